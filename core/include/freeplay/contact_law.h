@@ -1,0 +1,103 @@
+// ContactLaw: normal force between two surfaces as a function of their penetration.
+#pragma once
+
+#include <memory>
+
+#include "freeplay/parameter.h"
+
+namespace freeplay {
+
+struct Material {
+  double youngs_modulus;  ///< [Pa]
+  double poisson_ratio;   ///< [1]
+};
+
+/// A journal inside a bearing (internal contact). What the model file does not give is NaN.
+struct ContactPair {
+  double bearing_radius;    ///< [m]
+  double journal_radius;    ///< [m]
+  double radial_clearance;  ///< bearing minus journal radius [m]
+  double length;            ///< axial length of the contact [m]
+  Material bearing, journal;
+};
+
+/// Only evaluated for penetration > 0; the joint decides when contact exists.
+struct ContactState {
+  double penetration;     ///< delta [m], > 0
+  double rate;            ///< time derivative of delta, positive while closing [m/s]
+  double approach_speed;  ///< rate at the instant the present contact began [m/s]; 0: elastic part only
+};
+
+struct ContactForce {
+  double normal;         ///< repulsive, never negative [N]
+  double d_penetration;  ///< partial derivative with respect to penetration [N/m]
+  double d_rate;         ///< partial derivative with respect to rate [N s/m]
+  double potential;      ///< energy stored by the elastic part [J]
+};
+
+/// A contact-force law. Immutable after construction: the memory of an impact belongs to the joint, which
+/// passes it in ContactState, so that one law serves many states at once.
+class ContactLaw {
+ public:
+  virtual ~ContactLaw() = default;
+  virtual ContactForce evaluate(const ContactState& state) const = 0;
+  /// A static sentence when `state` lies outside the law's range of validity, else null.
+  virtual const char* outside_range(const ContactState& /*state*/) const { return nullptr; }
+};
+
+namespace abi {
+struct ContactLawTable {
+  std::uint32_t size;
+  void (*destroy)(void* self) noexcept;
+  Status (*evaluate)(const void* self, const ContactState*, ContactForce*, Message*) noexcept;
+  Status (*outside_range)(const void* self, const ContactState*, const char** why, Message*) noexcept;
+};
+
+template <class Law>
+inline constexpr ContactLawTable contact_law_table{
+    sizeof(ContactLawTable), [](void* self) noexcept { delete static_cast<Law*>(self); },
+    [](const void* self, const ContactState* in, ContactForce* out, Message* m) noexcept {
+      return guarded(m, [&] { *out = static_cast<const Law*>(self)->evaluate(*in); });
+    },
+    [](const void* self, const ContactState* in, const char** why, Message* m) noexcept {
+      return guarded(m, [&] { *why = static_cast<const Law*>(self)->outside_range(*in); });
+    }};
+
+template <class Law>
+Status create_contact_law(const ParameterTable* table, const ContactPair* pair, void** self, Message* m) noexcept {
+  return guarded(m, [&] { *self = std::make_unique<Law>(Parameters(*table), *pair).release(); });
+}
+}  // namespace abi
+
+/// A joint's handle on a law that may live in another plugin.
+class ContactLawRef {
+ public:
+  ContactLawRef() = default;
+  ContactLawRef(const abi::ContactLawTable& table, const void* self) : table_(&table), self_(self) {}
+
+  ContactForce evaluate(const ContactState& state) const {
+    ContactForce force{};
+    Message message;
+    abi::require(table_->evaluate(self_, &state, &force, &message), message);
+    return force;
+  }
+  const char* outside_range(const ContactState& state) const {
+    const char* why = nullptr;
+    Message message;
+    abi::require(table_->outside_range(self_, &state, &why, &message), message);
+    return why;
+  }
+
+ private:
+  const abi::ContactLawTable* table_ = nullptr;
+  const void* self_ = nullptr;
+};
+
+inline ContactLawRef Parameters::contact_law(const char* name, const ContactPair& pair) const {
+  ContactLawRef law;
+  Message message;
+  abi::require(table_->contact_law(table_->self, name, &pair, &law, &message), message);
+  return law;
+}
+
+}  // namespace freeplay

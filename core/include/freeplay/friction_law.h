@@ -1,0 +1,87 @@
+// FrictionLaw: tangential force between two surfaces in contact.
+#pragma once
+
+#include <memory>
+
+#include "freeplay/parameter.h"
+
+namespace freeplay {
+
+struct FrictionState {
+  double normal_force;          ///< >= 0 [N]
+  double slip_speed;            ///< signed tangential speed [m/s]
+  Span<const double> internal;  ///< the law's share of z, e.g. a bristle deflection [m]
+};
+
+struct FrictionForce {
+  double tangential;  ///< force along the positive slip direction [N]; opposes slip_speed
+  double d_normal;    ///< partial derivative with respect to normal_force [1]
+  double d_slip;      ///< partial derivative with respect to slip_speed [N s/m]
+};
+
+/// A friction law. Laws with memory declare internal variables and give their rates; the owning joint keeps
+/// them in its own z, so that they roll back with the state. Immutable after construction.
+class FrictionLaw {
+ public:
+  virtual ~FrictionLaw() = default;
+  virtual int internal_variables() const { return 0; }
+  /// `internal_rate` has internal_variables() entries [unit of z per second].
+  virtual FrictionForce evaluate(const FrictionState& state, Span<double> internal_rate) const = 0;
+};
+
+namespace abi {
+struct FrictionLawTable {
+  std::uint32_t size;
+  void (*destroy)(void* self) noexcept;
+  Status (*internal_variables)(const void* self, std::int32_t* count, Message*) noexcept;
+  Status (*evaluate)(const void* self, const FrictionState*, Span<double>, FrictionForce*, Message*) noexcept;
+};
+
+template <class Law>
+inline constexpr FrictionLawTable friction_law_table{
+    sizeof(FrictionLawTable), [](void* self) noexcept { delete static_cast<Law*>(self); },
+    [](const void* self, std::int32_t* count, Message* m) noexcept {
+      return guarded(m, [&] { *count = static_cast<const Law*>(self)->internal_variables(); });
+    },
+    [](const void* self, const FrictionState* in, Span<double> rate, FrictionForce* out, Message* m) noexcept {
+      return guarded(m, [&] { *out = static_cast<const Law*>(self)->evaluate(*in, rate); });
+    }};
+
+template <class Law>
+Status create_friction_law(const ParameterTable* table, void** self, Message* m) noexcept {
+  return guarded(m, [&] { *self = std::make_unique<Law>(Parameters(*table)).release(); });
+}
+}  // namespace abi
+
+/// A joint's handle on a law that may live in another plugin.
+class FrictionLawRef {
+ public:
+  FrictionLawRef() = default;
+  FrictionLawRef(const abi::FrictionLawTable& table, const void* self) : table_(&table), self_(self) {}
+
+  int internal_variables() const {
+    std::int32_t count = 0;
+    Message message;
+    abi::require(table_->internal_variables(self_, &count, &message), message);
+    return count;
+  }
+  FrictionForce evaluate(const FrictionState& state, Span<double> internal_rate) const {
+    FrictionForce force{};
+    Message message;
+    abi::require(table_->evaluate(self_, &state, internal_rate, &force, &message), message);
+    return force;
+  }
+
+ private:
+  const abi::FrictionLawTable* table_ = nullptr;
+  const void* self_ = nullptr;
+};
+
+inline FrictionLawRef Parameters::friction_law(const char* name) const {
+  FrictionLawRef law;
+  Message message;
+  abi::require(table_->friction_law(table_->self, name, &law, &message), message);
+  return law;
+}
+
+}  // namespace freeplay

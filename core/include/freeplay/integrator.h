@@ -1,0 +1,164 @@
+// Integrator: turns one time step into a few nonlinear stages. The host solves the stages.
+#pragma once
+
+#include <memory>
+
+#include "freeplay/parameter.h"
+
+namespace freeplay {
+
+/// One state of the model. Views into a single block owned by the host.
+struct StateView {
+  double* t;            ///< [s]
+  Span<double> q;       ///< coordinates, nq
+  Span<double> v;       ///< velocities, nv (tangent space, so nv may be less than nq)
+  Span<double> a;       ///< accelerations, nv
+  Span<double> lambda;  ///< constraint multipliers, nc; the force on the bodies is -Phi_q^T lambda
+  Span<double> z;       ///< internal variables of the joints, nz
+  Span<double> memory;  ///< this integrator's numbers that live from step to step
+};
+
+enum class ConstraintLevel : std::uint32_t { position, velocity };
+
+/// One implicit stage. With the unknown acceleration a and internal rate z':
+///   v = v_known + beta_v a,   q = retract(q_base, increment_known + beta_q a),   z = z_known + beta_z z',
+///   M(q) a + Phi_q^T lambda = f(t,q,v,z) together with the constraints at `level`.
+/// The known terms must not alias the state being solved for.
+struct Stage {
+  double t;
+  Span<const double> q_base, increment_known, v_known, z_known;
+  double beta_q, beta_v, beta_z;
+  ConstraintLevel level;
+};
+
+struct StageResult {
+  std::int32_t converged;  ///< 0 or 1
+  std::int32_t iterations;
+};
+
+namespace abi {
+struct StageSolverTable {
+  std::uint32_t size;
+  void* self;
+  Status (*solve)(void*, const Stage*, StateView*, StageResult*, Message*) noexcept;
+  Status (*project_velocity)(void*, StateView*, Message*) noexcept;
+  Status (*project_position)(void*, StateView*, Message*) noexcept;
+  Status (*accelerate)(void*, StateView*, Span<double> z_rate, Message*) noexcept;
+};
+}  // namespace abi
+
+/// What an integrator may ask of the model; assembly, Newton and linear algebra stay in the host.
+class StageSolver {
+ public:
+  explicit StageSolver(const abi::StageSolverTable& table) : table_(&table) {}
+
+  /// Solves a stage; `out.a` and `out.lambda` are the starting guess. Leaves t, q, v, a, lambda, z of the stage in
+  /// `out`. A stage that does not converge is a result, not an error.
+  StageResult solve(const Stage& stage, StateView& out) {
+    StageResult result{};
+    Message message;
+    abi::require(table_->solve(table_->self, &stage, &out, &result, &message), message);
+    return result;
+  }
+  /// v <- v - M^-1 Phi_q^T mu with Phi_q v = nu: returns v to the constraints, least in the mass norm.
+  void project_velocity(StateView& state) {
+    Message message;
+    abi::require(table_->project_velocity(table_->self, &state, &message), message);
+  }
+  /// The same for q and Phi = 0, repeated until it holds. For explicit methods.
+  void project_position(StateView& state) {
+    Message message;
+    abi::require(table_->project_position(table_->self, &state, &message), message);
+  }
+  /// Fills a, lambda (index-1 system) and z_rate at given t, q, v, z.
+  void accelerate(StateView& state, Span<double> z_rate) {
+    Message message;
+    abi::require(table_->accelerate(table_->self, &state, z_rate, &message), message);
+  }
+
+ private:
+  const abi::StageSolverTable* table_;
+};
+
+struct Sizes {
+  std::int32_t nq, nv, nc, nz;
+};
+
+/// Work space that the host reserves, so that stepping never allocates.
+struct IntegratorLayout {
+  std::uint32_t size = sizeof(IntegratorLayout);
+  Sizes sizes{};                     ///< in
+  std::int32_t memory = 0;           ///< numbers kept between accepted steps; part of the state
+  std::int32_t scratch = 0;          ///< numbers valid within one attempt
+  std::int32_t order = 1;            ///< of the local solution
+  std::uint32_t error_estimate = 0;  ///< nonzero: Attempt::error means something
+  double newton_tolerance = 1e-10;   ///< largest position error left by a stage, in model sizes
+  std::int32_t newton_max_iterations = 20;
+};
+
+/// The parameters of every implicit integrator; spread them into its table and copy them in declare().
+inline constexpr Parameter newton_tolerance_parameter{
+    .name = "newton.tolerance",
+    .default_value = 1e-10,
+    .minimum = 0.0,
+    .open = Open::minimum,
+    .summary = "Largest position error that the iteration of a stage may leave, relative to the size of the model."};
+inline constexpr Parameter newton_iterations_parameter{
+    .name = "newton.max_iterations",
+    .kind = ParameterKind::integer,
+    .default_value = 20,
+    .minimum = 1,
+    .summary = "Iterations after which a stage is given up and the step is halved."};
+
+struct Attempt {
+  std::int32_t converged;  ///< 0 or 1
+  double error;            ///< weighted local error, <= 1 is acceptable; 0 without an estimate
+};
+
+/// Attempts steps; never accepts one. Immutable after construction.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual void declare(IntegratorLayout& layout) const = 0;
+  /// Fills `memory` at the start of a run and after an event; a and lambda of the state are consistent.
+  virtual void restart(StateView& /*state*/, StageSolver& /*solver*/) const {}
+  /// Advances `to`, which enters as a copy of the accepted state, from t to t + dt.
+  virtual Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const = 0;
+};
+
+namespace abi {
+struct IntegratorTable {
+  std::uint32_t size;
+  void (*destroy)(void*) noexcept;
+  Status (*declare)(const void*, IntegratorLayout*, Message*) noexcept;
+  Status (*restart)(const void*, StateView*, const StageSolverTable*, Message*) noexcept;
+  Status (*attempt)(const void*, double, StateView*, Span<double>, const StageSolverTable*, Attempt*,
+                    Message*) noexcept;
+};
+
+template <class I>
+inline constexpr IntegratorTable integrator_table{
+    sizeof(IntegratorTable), [](void* s) noexcept { delete static_cast<I*>(s); },
+    [](const void* s, IntegratorLayout* layout, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const I*>(s)->declare(*layout); });
+    },
+    [](const void* s, StateView* state, const StageSolverTable* table, Message* m) noexcept {
+      return guarded(m, [&] {
+        StageSolver solver(*table);
+        static_cast<const I*>(s)->restart(*state, solver);
+      });
+    },
+    [](const void* s, double dt, StateView* to, Span<double> scratch, const StageSolverTable* table, Attempt* result,
+       Message* m) noexcept {
+      return guarded(m, [&] {
+        StageSolver solver(*table);
+        *result = static_cast<const I*>(s)->attempt(dt, *to, scratch, solver);
+      });
+    }};
+
+template <class I>
+Status create_integrator(const ParameterTable* table, void** self, Message* m) noexcept {
+  return guarded(m, [&] { *self = std::make_unique<I>(Parameters(*table)).release(); });
+}
+}  // namespace abi
+}  // namespace freeplay

@@ -1,0 +1,218 @@
+// Joint: anything that connects two markers by constraint rows, by forces, or by both.
+//
+// Conventions, stated once: SI units, world axes, matrices row-major. a is the marker on the first body, b the one
+// on the second. Forces act on body b, their reactions on body a. Twists are [velocity; angular velocity], wrenches
+// [force; moment about the marker's origin], 6 numbers each. In planar models the motion lies in the world xy-plane;
+// the host reads columns vx, vy, wz and entries Fx, Fy, Mz.
+#pragma once
+
+#include <memory>
+
+#include "freeplay/contact_law.h"
+#include "freeplay/friction_law.h"
+#include "freeplay/parameter.h"
+
+namespace freeplay {
+
+enum class Space : std::uint32_t { planar = 1, spatial = 2, both = 3 };
+
+/// Pose and twist of a marker.
+struct MarkerKinematics {
+  double position[3];          ///< [m]
+  double rotation[9];          ///< world-from-marker; column k is the marker's axis k
+  double velocity[3];          ///< [m/s]
+  double angular_velocity[3];  ///< [rad/s]
+};
+
+/// Position and orientation of one marker in another.
+struct Pose {
+  double position[3];  ///< [m]
+  double rotation[9];  ///< row-major
+};
+
+struct Channel {
+  const char* name;
+  const char* unit;
+};
+
+enum class Crossing : std::uint32_t { rising, falling };
+
+/// A zero crossing that the joint wants to be told of.
+struct Event {
+  const char* name;
+  Crossing crossing;
+  std::uint32_t locate;        ///< nonzero: runs with error control shorten the step to the crossing
+  Span<const Channel> fields;  ///< numbers recorded with each occurrence; NaN is recorded as empty
+};
+
+/// The one number that tells where a joint stands. Drivers, gears and start values work on it.
+enum class Coordinate : std::uint32_t { none, angle, position };
+
+/// What a joint asks of the model, answered once, before the layout of the state is fixed.
+struct JointLayout {
+  std::uint32_t size = sizeof(JointLayout);
+  Space space = Space::planar;  ///< in: the model's space, planar or spatial
+  Coordinate coordinate = Coordinate::none;
+  std::int32_t constraint_rows = 0;
+  std::int32_t internal_variables = 0;
+  std::int32_t history = 0;                ///< numbers that change only when a step is accepted
+  std::uint32_t forces = 0;                ///< nonzero: apply() does something
+  std::uint32_t analytic_derivatives = 0;  ///< nonzero: apply() fills JointForces::derivatives
+  std::uint32_t pin = 0;                   ///< nonzero: planar, origins coincide and only the turn is free
+  double clearance = 0.0;                  ///< radius of the massless link that stands for the play [m]; 0 without play
+  Span<const Event> events;
+  Span<const Channel> channels;
+};
+
+/// Everything a joint may read. All views are valid during the call only.
+struct JointInput {
+  double t;                     ///< [s]
+  const MarkerKinematics* a;    ///< marker on the first body
+  const MarkerKinematics* b;    ///< marker on the second body
+  double coordinate;            ///< second relative to first [rad or m], angles continuous over turns
+  double coordinate_rate;       ///< [rad/s or m/s]
+  Span<const double> internal;  ///< this joint's share of z
+  Span<const double> history;   ///< this joint's share of h
+};
+
+/// Rows of Phi(q,t) = 0. Zeroed by the host.
+struct ConstraintRows {
+  Span<double> phi;       ///< residual, constraint_rows
+  Span<double> jacobian;  ///< G, constraint_rows x 12 with respect to [twist a, twist b]: d(phi)/dt = G V - nu
+  Span<double> nu;        ///< -(partial phi / partial t)
+  Span<double> gamma;     ///< G dV/dt = gamma for the markers' accelerations
+};
+
+/// The joint coordinate s: s' = G V, s'' = G dV/dt + bias. An angle may be given in any turn; the host makes it
+/// continuous.
+struct CoordinateRow {
+  double value;
+  double bias;
+  double jacobian[12];
+};
+
+/// Wrenches that the joint exerts on each body at its marker. Zeroed by the host.
+struct JointForces {
+  double wrench_a[6], wrench_b[6];  ///< [N, N m]
+  double potential;                 ///< stored energy [J]; the host derives the dissipated part
+  Span<double> internal_rate;       ///< z'
+  /// (12 + nz) x (24 + nz) partial derivatives of [wrench a, wrench b, z'] with respect to
+  /// [pose a, pose b, twist a, twist b, z]; a pose changes by a displacement and a rotation vector in world axes.
+  /// Empty when not wanted.
+  Span<double> derivatives;
+};
+
+/// Start of a joint with play: where its second marker stands in the first, world axes.
+struct InitialOffset {
+  double position[3];  ///< [m]
+  double velocity[3];  ///< [m/s]
+};
+
+/// Marker accelerations [a; alpha] in world axes, 6 numbers each [m/s^2, rad/s^2].
+struct MarkerAccelerations {
+  double a[6], b[6];
+};
+
+/// Base class of every joint and two-marker force. Immutable after construction: whatever changes lives in
+/// `internal` or `history`. Override only what the joint has. Any of them may throw.
+class Joint {
+ public:
+  virtual ~Joint() = default;
+  virtual void declare(JointLayout& layout) const = 0;
+  virtual void coordinate(const JointInput&, CoordinateRow&) const {}
+  virtual void constrain(const JointInput&, ConstraintRows&) const {}
+  virtual void apply(const JointInput&, JointForces&) const {}
+  /// First z and h, at the assembled start.
+  virtual void initialize(const JointInput&, Span<double> /*internal*/, Span<double> /*history*/) const {}
+  /// Before every attempt of a step of length dt, also a repeated one: may prepare `history` of the trial state, which
+  /// is thrown away with a rejected attempt.
+  virtual void begin_step(const JointInput&, const MarkerAccelerations&, double /*dt*/,
+                          Span<double> /*history*/) const {}
+  /// Values and time derivatives of the event functions; NaN in `g`: cannot happen now.
+  virtual void events(const JointInput&, Span<double> /*g*/, Span<double> /*rate*/) const {}
+  /// Event `index` happened at the state of the input (interpolated inside the step in fixed-step runs).
+  virtual void on_event(int /*index*/, const JointInput&, Span<double> /*internal*/, Span<double> /*history*/,
+                        Span<double> /*fields*/) const {}
+  /// After a step was accepted and its events were told. `lambda` are the joint's multipliers.
+  virtual void commit(const JointInput&, Span<const double> /*lambda*/, Span<double> /*history*/) const {}
+  virtual void observe(const JointInput&, Span<const double> /*lambda*/, Span<double> /*channels*/) const {}
+  /// Largest sensible step from here [s].
+  virtual double step_limit(const JointInput&) const { return unbounded; }
+  /// Pose of marker b in marker a for a value of the joint coordinate; false: this type cannot place a body.
+  virtual bool place(double /*coordinate*/, Pose& /*b_in_a*/) const { return false; }
+  /// A joint with play: its start, given the force [N] of the ideal joint on the second body (world axes).
+  virtual void initial_offset(Span<const double> /*reaction*/, InitialOffset&) const {}
+};
+
+namespace abi {
+struct JointTable {
+  std::uint32_t size;
+  void (*destroy)(void*) noexcept;
+  Status (*declare)(const void*, JointLayout*, Message*) noexcept;
+  Status (*coordinate)(const void*, const JointInput*, CoordinateRow*, Message*) noexcept;
+  Status (*constrain)(const void*, const JointInput*, ConstraintRows*, Message*) noexcept;
+  Status (*apply)(const void*, const JointInput*, JointForces*, Message*) noexcept;
+  Status (*initialize)(const void*, const JointInput*, Span<double>, Span<double>, Message*) noexcept;
+  Status (*begin_step)(const void*, const JointInput*, const MarkerAccelerations*, double, Span<double>,
+                       Message*) noexcept;
+  Status (*events)(const void*, const JointInput*, Span<double>, Span<double>, Message*) noexcept;
+  Status (*on_event)(const void*, std::int32_t, const JointInput*, Span<double>, Span<double>, Span<double>,
+                     Message*) noexcept;
+  Status (*commit)(const void*, const JointInput*, Span<const double>, Span<double>, Message*) noexcept;
+  Status (*observe)(const void*, const JointInput*, Span<const double>, Span<double>, Message*) noexcept;
+  Status (*step_limit)(const void*, const JointInput*, double*, Message*) noexcept;
+  Status (*place)(const void*, double, Pose*, std::int32_t*, Message*) noexcept;
+  Status (*initial_offset)(const void*, Span<const double>, InitialOffset*, Message*) noexcept;
+};
+
+/// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
+template <class J>
+inline constexpr JointTable joint_table{
+    sizeof(JointTable),
+    [](void* s) noexcept { delete static_cast<J*>(s); },
+    [](const void* s, JointLayout* layout, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->declare(*layout); });
+    },
+    [](const void* s, const JointInput* in, CoordinateRow* row, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->coordinate(*in, *row); });
+    },
+    [](const void* s, const JointInput* in, ConstraintRows* rows, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->constrain(*in, *rows); });
+    },
+    [](const void* s, const JointInput* in, JointForces* forces, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->apply(*in, *forces); });
+    },
+    [](const void* s, const JointInput* in, Span<double> z, Span<double> h, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->initialize(*in, z, h); });
+    },
+    [](const void* s, const JointInput* in, const MarkerAccelerations* acc, double dt, Span<double> h,
+       Message* m) noexcept { return guarded(m, [&] { static_cast<const J*>(s)->begin_step(*in, *acc, dt, h); }); },
+    [](const void* s, const JointInput* in, Span<double> g, Span<double> rate, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->events(*in, g, rate); });
+    },
+    [](const void* s, std::int32_t event, const JointInput* in, Span<double> z, Span<double> h, Span<double> fields,
+       Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->on_event(event, *in, z, h, fields); });
+    },
+    [](const void* s, const JointInput* in, Span<const double> l, Span<double> h, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->commit(*in, l, h); });
+    },
+    [](const void* s, const JointInput* in, Span<const double> l, Span<double> c, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->observe(*in, l, c); });
+    },
+    [](const void* s, const JointInput* in, double* dt, Message* m) noexcept {
+      return guarded(m, [&] { *dt = static_cast<const J*>(s)->step_limit(*in); });
+    },
+    [](const void* s, double coordinate, Pose* pose, std::int32_t* can, Message* m) noexcept {
+      return guarded(m, [&] { *can = static_cast<const J*>(s)->place(coordinate, *pose) ? 1 : 0; });
+    },
+    [](const void* s, Span<const double> reaction, InitialOffset* out, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->initial_offset(reaction, *out); });
+    }};
+
+template <class J>
+Status create_joint(const ParameterTable* table, void** self, Message* m) noexcept {
+  return guarded(m, [&] { *self = std::make_unique<J>(Parameters(*table)).release(); });
+}
+}  // namespace abi
+}  // namespace freeplay

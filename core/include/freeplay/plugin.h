@@ -1,0 +1,110 @@
+// The plugin entry point: one C function per library, one table of components.
+#pragma once
+
+#include <cstring>
+
+#include "freeplay/contact_law.h"
+#include "freeplay/friction_law.h"
+#include "freeplay/integrator.h"
+#include "freeplay/joint.h"
+
+namespace freeplay {
+
+inline constexpr std::uint32_t abi_version = 1;
+
+/// Everything besides abi_version that must agree for the tables to mean the same thing.
+inline constexpr const char* abi_fingerprint = "lp64 little ieee754";
+static_assert(sizeof(void*) == 8 && sizeof(Span<double>) == 16 && std::numeric_limits<double>::is_iec559);
+
+enum class ComponentKind : std::uint32_t { joint, contact_law, friction_law, integrator };
+
+/// What the host knows of a type before it creates an instance; texts are for `freeplay list` and `describe`.
+struct Description {
+  const char* name;             ///< the word in a model file, kebab-case
+  Space space = Space::both;    ///< joints: where the type may be used
+  const char* summary = "";     ///< one sentence
+  const char* formula = "";     ///< the equations in words and symbols
+  const char* validity = "";    ///< where it may be used; "" without a limit
+  const char* references = "";  ///< paper or book with equation number; "" when elementary
+  Span<const Parameter> parameters = {};
+  std::uint32_t preferred = 0;  ///< nonzero: used where the model file names none of this kind
+  // Joints with play. A joint of type `ideal` that has the key `block` is of this type, and `ideal` stands in for it
+  // where the play is closed: in assembly, `--ideal` and the analysis.
+  const char* ideal = nullptr;
+  const char* block = nullptr;
+  // Joints: other words for the first and the second of `between`, such as bearing and journal.
+  const char* first_end = nullptr;
+  const char* second_end = nullptr;
+};
+
+/// One row of a plugin's table.
+struct Component {
+  ComponentKind kind;
+  const void* table;  ///< abi::JointTable and so on, by kind
+  void (*create)();   ///< abi::create_joint<T> and so on, by kind
+  Description description;
+};
+
+template <class T>
+Component joint(const Description& d) {
+  return {ComponentKind::joint, &abi::joint_table<T>, reinterpret_cast<void (*)()>(&abi::create_joint<T>), d};
+}
+template <class T>
+Component contact_law(const Description& d) {
+  return {ComponentKind::contact_law, &abi::contact_law_table<T>,
+          reinterpret_cast<void (*)()>(&abi::create_contact_law<T>), d};
+}
+template <class T>
+Component friction_law(const Description& d) {
+  return {ComponentKind::friction_law, &abi::friction_law_table<T>,
+          reinterpret_cast<void (*)()>(&abi::create_friction_law<T>), d};
+}
+template <class T>
+Component integrator(const Description& d) {
+  return {ComponentKind::integrator, &abi::integrator_table<T>,
+          reinterpret_cast<void (*)()>(&abi::create_integrator<T>), d};
+}
+
+/// Given by the host. A newer host may have a larger struct; fields are only ever appended.
+struct Host {
+  std::uint32_t size;
+  std::uint32_t abi_version;
+  const char* fingerprint;
+};
+
+/// Filled by the plugin. All pointers are to static storage.
+struct Manifest {
+  std::uint32_t size;
+  std::uint32_t abi_version;
+  std::uint32_t component_size, parameter_size;  ///< strides, so that both may grow
+  const char* fingerprint;
+  const char* compiler;  ///< recorded in results, not compared
+  const char* name;
+  const char* version;
+  Span<const Component> components;
+};
+
+/// Answers the host. Fails when host and plugin cannot understand each other.
+inline Status publish(const Host& host, Manifest& manifest, const char* name, const char* version,
+                      Span<const Component> components) noexcept {
+  manifest = {sizeof(Manifest), abi_version, sizeof(Component), sizeof(Parameter), abi_fingerprint,
+              __VERSION__,      name,        version,           components};
+  const bool match = host.abi_version == abi_version && std::strcmp(host.fingerprint, abi_fingerprint) == 0;
+  return match ? Status::ok : Status::failed;
+}
+
+using PluginEntry = Status (*)(const Host*, Manifest*) noexcept;
+
+}  // namespace freeplay
+
+/// Declares the entry point. A library linked into the executable gets a name of its own,
+/// so that built-ins and shared objects pass through the same function type.
+#define FREEPLAY_JOIN(a, b) a##b
+#if defined(FREEPLAY_STATIC_PLUGIN)
+#define FREEPLAY_PLUGIN(library) FREEPLAY_ENTRY(FREEPLAY_JOIN(freeplay_plugin_v1_, library))
+#else
+#define FREEPLAY_PLUGIN(library) FREEPLAY_ENTRY(freeplay_plugin_v1)
+#endif
+#define FREEPLAY_ENTRY(symbol)                                                                          \
+  extern "C" __attribute__((visibility("default"))) freeplay::Status symbol(const freeplay::Host* host, \
+                                                                            freeplay::Manifest* manifest) noexcept
