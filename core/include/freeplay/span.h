@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <ranges>
 #include <span>
 #include <type_traits>
 
@@ -27,7 +28,10 @@ struct Span {
   constexpr T* end() const { return data + size; }
   constexpr bool empty() const { return size == 0; }
   constexpr Span part(std::size_t offset, std::size_t count) const { return {data + offset, count}; }
-  constexpr operator std::span<T>() const { return {data, size}; }
 };
 
 }  // namespace freeplay
+
+/// A Span refers to numbers that outlive it, so that it turns into a std::span implicitly.
+template <class T>
+inline constexpr bool std::ranges::enable_borrowed_range<freeplay::Span<T>> = true;

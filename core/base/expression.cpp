@@ -1,0 +1,187 @@
+#include "base/expression.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "base/token.h"
+
+namespace freeplay {
+namespace {
+
+// Formulas that people write need a handful of places; the deepest that 10 000 characters can ask for is one operand
+// and one operator a level.
+constexpr int usual_stack = 32, deepest_stack = 5001;
+
+/// Why the operands are outside of the operation's domain, or null.
+const char* power_domain(double base, double exponent) {
+  if (base == 0.0 && exponent < 0.0) return "division by zero: zero to a negative power";
+  if (base < 0.0 && exponent != std::floor(exponent)) return "a negative number to a power that is not an integer";
+  return nullptr;
+}
+
+}  // namespace
+
+bool fits(DimensionKind kind, const Dimension& dimension, const Dimension& field) {
+  return kind != DimensionKind::dimensioned || dimension == field;
+}
+
+int Expression::operand_count(Operation operation) noexcept {
+  switch (operation) {
+    case Operation::push_constant:
+    case Operation::push_time:
+      return 0;
+    case Operation::add:
+    case Operation::subtract:
+    case Operation::multiply:
+    case Operation::divide:
+    case Operation::power:
+    case Operation::arctangent2:
+    case Operation::minimum:
+    case Operation::maximum:
+      return 2;
+    case Operation::smooth:
+      return 3;
+    default:
+      return 1;
+  }
+}
+
+/// Replaces operands[0] by the result.
+bool Expression::apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) noexcept {
+  Jet& a = operands[0];
+  const Jet* const b = operands + 1;  // only read by operations of two and more operands
+  const char* outside = nullptr;
+  switch (instruction.operation) {
+    case Operation::push_constant:
+      a = Jet::constant(instruction.constant);
+      break;
+    case Operation::push_time:
+      break;
+    case Operation::negate:
+      a = -a;
+      break;
+    case Operation::add:
+      a = a + *b;
+      break;
+    case Operation::subtract:
+      a = a - *b;
+      break;
+    case Operation::multiply:
+      a = a * *b;
+      break;
+    case Operation::divide:
+      if (b->value == 0.0) outside = "division by zero";
+      a = a / *b;
+      break;
+    case Operation::power_constant:
+      outside = power_domain(a.value, instruction.constant);
+      a = pow(a, instruction.constant);
+      break;
+    case Operation::power:
+      if (!(a.value > 0.0)) outside = "the base must be positive where the exponent depends on t";
+      a = pow(a, *b);
+      break;
+    case Operation::sine:
+      a = sin(a);
+      break;
+    case Operation::cosine:
+      a = cos(a);
+      break;
+    case Operation::tangent:
+      a = tan(a);
+      break;
+    case Operation::arcsine:
+      if (std::abs(a.value) > 1.0) outside = "asin of a number beyond -1 to 1";
+      a = asin(a);
+      break;
+    case Operation::arccosine:
+      if (std::abs(a.value) > 1.0) outside = "acos of a number beyond -1 to 1";
+      a = acos(a);
+      break;
+    case Operation::root:
+      if (a.value < 0.0) outside = "square root of a negative number";
+      a = sqrt(a);
+      break;
+    case Operation::exponential:
+      a = exp(a);
+      break;
+    case Operation::logarithm:
+      if (a.value <= 0.0) outside = "logarithm of a number that is not positive";
+      a = log(a);
+      break;
+    case Operation::absolute:
+      a = abs(a);
+      break;
+    case Operation::arctangent2:
+      if (a.value == 0.0 && b->value == 0.0) outside = "atan2(0, 0) has no value";
+      a = atan2(a, *b);
+      break;
+    case Operation::minimum:
+      a = min(a, *b);
+      break;
+    case Operation::maximum:
+      a = max(a, *b);
+      break;
+    case Operation::smooth:
+      if (b[0].value >= b[1].value) outside = "smooth(x, a, b) needs a < b";
+      a = freeplay::smooth(a, b[0], b[1]);
+      break;
+  }
+  if (!outside && a.is_finite()) return true;
+  if (outside) {
+    failure = {"bad-expression", outside, instruction.offset, instruction.length};
+  } else if (std::isfinite(a.value)) {
+    failure = {"bad-expression", "a time derivative is not finite", instruction.offset, instruction.length};
+  } else {
+    failure = {"bad-number", "the result is not finite", instruction.offset, instruction.length};
+  }
+  return false;
+}
+
+template <int depth>
+bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexcept {
+  Jet stack[depth];
+  Jet* top = stack;  // one past the last operand
+  for (const Instruction& instruction : program_) {
+    if (instruction.operation == Operation::push_time) {
+      *top++ = Jet::time(t);
+      continue;
+    }
+    Jet* const operands = top - operand_count(instruction.operation);
+    if (!apply(instruction, operands, failure)) return false;
+    top = operands + 1;
+  }
+  out = stack[0];
+  return true;
+}
+
+bool Expression::evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept {
+  return stack_depth_ <= usual_stack ? run<usual_stack>(t, out, failure) : run<deepest_stack>(t, out, failure);
+}
+
+Quantity Expression::constant() const { return {program_.front().constant, kind_, dimension_}; }
+
+void Expression::require(const Dimension& field) const {
+  if (fits(kind_, dimension_, field)) return;
+  throw ExpressionError("dimension-mismatch",
+                        fmt::format("expected {}, but this is {}", dimension_name(field), dimension_name(dimension_)),
+                        0, std::max(1, characters_), {},
+                        field.dimensionless() ? "write a number without a unit, or an angle"
+                                              : fmt::format("write a unit such as '{}'", si_unit(field)));
+}
+
+std::vector<std::string> referenced_parameters(std::string_view text) {
+  std::vector<std::string> names;
+  for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
+    std::size_t begin = at + 1;
+    if (begin < text.size() && text[begin] == '{') begin = skip_blanks(text, begin + 1);
+    const std::string name(text.substr(begin, word_end(text, begin) - begin));
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,124 @@
+// Expression: a formula of the model file, with units, parameters and exact time derivatives.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/expression_error.h"
+#include "base/jet.h"
+#include "base/unit.h"
+
+namespace freeplay {
+
+/// How much is known about the dimension of a value. `plain`: numbers and pi only. `free`: contains t or a parameter
+/// without a dimension, fits anywhere as SI. `dimensioned`: the exponents are known.
+enum class DimensionKind { plain, free, dimensioned };
+
+/// A constant value in SI. `dimension` counts only if `kind` is `dimensioned`.
+struct Quantity {
+  double value = 0.0;
+  DimensionKind kind = DimensionKind::plain;
+  Dimension dimension{};
+};
+
+/// True if a value of this kind and dimension may stand in a field of dimension `field`.
+bool fits(DimensionKind kind, const Dimension& dimension, const Dimension& field);
+inline bool fits(const Quantity& quantity, const Dimension& field) {
+  return fits(quantity.kind, quantity.dimension, field);
+}
+
+/// The parameters that `$name` can refer to.
+class Scope {
+ public:
+  virtual ~Scope() = default;
+
+  /// The parameter of that name, or null. The pointer need only live until the next call.
+  virtual const Quantity* find(std::string_view name) const = 0;
+
+  /// All names, for suggestions.
+  virtual std::vector<std::string> names() const = 0;
+};
+
+/// Why and where a formula has no value at some time. The texts are literals; the place counts characters.
+struct EvaluationFailure {
+  const char* id = "";      ///< "bad-expression" outside of a domain, "bad-number" for a value that is not finite
+  const char* reason = "";  ///< such as "division by zero"
+  int offset = 0, length = 1;
+};
+
+/// A compiled formula f(t). Parameters are folded in as constants; what depends on `t` becomes a flat postfix program.
+/// Immutable, cheap to copy for short formulas, safe to evaluate from several threads.
+class Expression {
+ public:
+  /// Reads `text` (at most 10 000 characters, 256 nested parentheses). Throws ExpressionError with any of its ids.
+  /// `t` is `time-not-allowed` unless `time_allowed`. Parameters that are themselves in error are the caller's matter:
+  /// do not compile a text whose referenced_parameters() contain one.
+  static Expression compile(std::string_view text, const Scope& scope, bool time_allowed);
+
+  /// Value and exact first and second time derivative at time `t` [s], in SI units per s and s^2. At a kink of abs, min
+  /// and max the derivatives from the right. Returns false, and says why, outside of a domain; `out` is then unchanged.
+  /// Does not allocate.
+  bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+
+  bool depends_on_time() const { return depends_on_time_; }
+  DimensionKind kind() const { return kind_; }
+  const Dimension& dimension() const { return dimension_; }
+
+  /// The value of an expression that does not depend on time.
+  Quantity constant() const;
+
+  /// Throws ExpressionError `dimension-mismatch` over the whole text unless the value fits a field of this dimension.
+  void require(const Dimension& field) const;
+
+ private:
+  friend class ExpressionCompiler;
+
+  enum class Operation {
+    push_constant,
+    push_time,
+    negate,
+    add,
+    subtract,
+    multiply,
+    divide,
+    power_constant,
+    power,
+    sine,
+    cosine,
+    tangent,
+    arcsine,
+    arccosine,
+    root,
+    exponential,
+    logarithm,
+    absolute,
+    arctangent2,
+    minimum,
+    maximum,
+    smooth
+  };
+  struct Instruction {
+    Operation operation;
+    double constant;     // of push_constant; the exponent of power_constant
+    int offset, length;  // of the operator or function in the text [characters]
+  };
+
+  template <int depth>
+  bool run(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+  static bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) noexcept;
+  static int operand_count(Operation operation) noexcept;
+
+  std::vector<Instruction> program_;
+  int stack_depth_ = 0;
+  int characters_ = 0;
+  bool depends_on_time_ = false;
+  DimensionKind kind_ = DimensionKind::plain;
+  Dimension dimension_;
+};
+
+/// Names of the parameters that `text` refers to, each once, in order. Reads no values and tolerates errors: it serves
+/// to order parameters and to find cycles before anything is compiled.
+std::vector<std::string> referenced_parameters(std::string_view text);
+
+}  // namespace freeplay

@@ -1,0 +1,511 @@
+// Reads the grammar of the model format, section 1.4, and checks dimensions by section 1.5. Each rule of the grammar is
+// one function; it leaves one value on the program's stack and returns what is known of it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/expression.h"
+#include "base/suggestion.h"
+#include "base/text.h"
+#include "base/token.h"
+
+namespace freeplay {
+
+class ExpressionCompiler {
+ public:
+  ExpressionCompiler(std::string_view text, const Scope& scope, bool time_allowed)
+      : text_(text), scope_(scope), time_allowed_(time_allowed) {}
+
+  Expression compile() {
+    expression_.characters_ = character_count(text_);
+    if (expression_.characters_ > longest) fail("bad-expression", 0, 0, "an expression has at most 10 000 characters");
+    if (skip_blanks(text_, 0) == text_.size()) fail("bad-expression", 0, 0, "a number or expression is missing");
+    const Operand result = sum();
+    if (peek() != '\0') fail_at_rest();
+    expression_.depends_on_time_ = result.depends_on_time;
+    expression_.kind_ = result.kind;
+    expression_.dimension_ = result.dimension;
+    return std::move(expression_);
+  }
+
+ private:
+  using Operation = Expression::Operation;
+
+  /// What is known of a value on the stack; [begin, end) are bytes of the text.
+  struct Operand {
+    DimensionKind kind = DimensionKind::plain;
+    Dimension dimension{};
+    bool depends_on_time = false;
+    std::size_t begin = 0, end = 0;
+
+    bool dimensioned() const { return kind == DimensionKind::dimensioned; }
+  };
+
+  struct Function {
+    std::string_view name;
+    Operation operation;
+    int least, most;  // number of arguments
+  };
+
+  static constexpr int longest = 10000, deepest = 256, any_number = 1 << 20;
+  static constexpr std::array<Function, 13> functions = {{
+      {"sin", Operation::sine, 1, 1},
+      {"cos", Operation::cosine, 1, 1},
+      {"tan", Operation::tangent, 1, 1},
+      {"asin", Operation::arcsine, 1, 1},
+      {"acos", Operation::arccosine, 1, 1},
+      {"sqrt", Operation::root, 1, 1},
+      {"exp", Operation::exponential, 1, 1},
+      {"log", Operation::logarithm, 1, 1},
+      {"abs", Operation::absolute, 1, 1},
+      {"atan2", Operation::arctangent2, 2, 2},
+      {"min", Operation::minimum, 2, any_number},
+      {"max", Operation::maximum, 2, any_number},
+      {"smooth", Operation::smooth, 3, 3},
+  }};
+
+  static const Function* find_function(std::string_view name) {
+    const auto found = std::find_if(functions.begin(), functions.end(), [&](const auto& f) { return f.name == name; });
+    return found == functions.end() ? nullptr : &*found;
+  }
+
+  // --- grammar
+
+  Operand sum() {
+    Operand left = product();
+    while (peek() == '+' || peek() == '-') {
+      const std::size_t sign = position_++;
+      const Operand right = product();
+      const auto operation = text_[sign] == '+' ? Operation::add : Operation::subtract;
+      left = emit(operation, agree(left, right), sign, sign + 1);
+    }
+    return left;
+  }
+
+  Operand product() {
+    Operand left = signed_power();
+    while (peek() == '*' || peek() == '/') {
+      const std::size_t sign = position_++;
+      const Operand right = signed_power();
+      const bool times = text_[sign] == '*';
+      Operand result = join(left, right);
+      if (left.kind == DimensionKind::free || right.kind == DimensionKind::free) {
+        result.kind = DimensionKind::free;
+      } else if (left.dimensioned() || right.dimensioned()) {
+        result.kind = DimensionKind::dimensioned;
+        result.dimension = times ? left.dimension * right.dimension : left.dimension / right.dimension;
+      }
+      left = emit(times ? Operation::multiply : Operation::divide, result, sign, sign + 1);
+    }
+    return left;
+  }
+
+  /// unary and power of the grammar. A chain such as -a^-b^c is collected first and applied from the right, so that
+  /// thousands of signs or powers need no recursion.
+  Operand signed_power() {
+    struct Link {
+      Operand operand;
+      bool negative;
+      std::size_t sign, caret;
+    };
+    std::vector<Link> chain;
+    for (bool more = true; more;) {
+      Link link{{}, false, 0, 0};
+      while (peek() == '+' || peek() == '-') {
+        link.sign = position_;
+        link.negative ^= text_[position_++] == '-';
+      }
+      link.operand = postfix();
+      more = peek() == '^';
+      if (more) link.caret = position_++;
+      chain.push_back(link);
+    }
+    Operand result = chain.back().operand;
+    for (std::size_t i = chain.size(); i-- > 0;) {
+      const Link& link = chain[i];
+      if (i + 1 < chain.size()) result = raise(link.operand, result, link.caret);
+      if (link.negative) {
+        result.begin = link.sign;
+        result = emit(Operation::negate, result, link.sign, link.sign + 1);
+      }
+    }
+    return result;
+  }
+
+  Operand postfix() {
+    peek();
+    const std::size_t begin = position_;
+    if (const std::size_t end = number_end(text_, begin); end > begin) return number(begin, end);
+    const char c = peek();
+    if (c == '(') return group();
+    if (c == '$') return without_unit(parameter());
+    if (word_end(text_, begin) > begin) return without_unit(word());
+    if (c == '.') fail_if_not_finite_word(begin + 1, begin);
+    fail_at_rest();
+  }
+
+  Operand number(std::size_t begin, std::size_t end) {
+    const double value = number_value(text_.substr(begin, end - begin));
+    if (!std::isfinite(value)) fail("bad-number", begin, end, "the number is too large");
+    refuse_other_notations(begin, end);
+    position_ = end;
+    Operand operand;
+    operand.begin = begin;
+    operand.end = end;
+    push(value, begin, end);
+    return with_unit(operand);
+  }
+
+  Operand group() {
+    const std::size_t open = position_;
+    enter(open);
+    Operand operand = sum();
+    if (peek() == ',') fail_at_comma();
+    leave(open);
+    operand.begin = open;
+    operand.end = position_;
+    return with_unit(operand);
+  }
+
+  Operand parameter() {
+    const std::size_t begin = position_++;
+    const bool braced = position_ < text_.size() && text_[position_] == '{';
+    if (braced) position_ = skip_blanks(text_, position_ + 1);
+    const std::size_t name_begin = position_;
+    position_ = word_end(text_, position_);
+    const std::string_view name = text_.substr(name_begin, position_ - name_begin);
+    if (name.empty()) fail("bad-expression", begin, begin + 1, "a parameter name must follow '$'");
+    if (braced) {
+      if (peek() != '}') fail("bad-expression", begin, position_, "this '${' has no '}'");
+      ++position_;
+    }
+    const Quantity* const found = scope_.find(name);
+    if (!found) {
+      const bool builtin = name == "t" || name == "pi";
+      fail("unknown-name", begin, position_, fmt::format("unknown parameter '{}'", name),
+           builtin ? "" : suggestion(name, scope_.names()).value_or(""),
+           builtin ? fmt::format("write '{}' without '$'", name) : "");
+    }
+    Operand operand;
+    operand.kind = found->kind == DimensionKind::dimensioned ? DimensionKind::dimensioned : DimensionKind::free;
+    if (operand.dimensioned()) operand.dimension = found->dimension;
+    operand.begin = begin;
+    operand.end = position_;
+    push(found->value, begin, position_);
+    return operand;
+  }
+
+  Operand word() {
+    const std::size_t begin = position_, end = word_end(text_, begin);
+    const std::string_view name = text_.substr(begin, end - begin);
+    position_ = end;
+    if (const Function* function = find_function(name); function && peek() == '(') return call(*function, begin);
+    Operand operand;
+    operand.begin = begin;
+    operand.end = end;
+    if (name == "pi") {
+      push(3.14159265358979323846, begin, end);
+      return operand;
+    }
+    if (name != "t") fail_at_word(name, begin, end);
+    if (!time_allowed_) fail("time-not-allowed", begin, end, "'t' is not allowed here: the value must be constant");
+    operand.kind = DimensionKind::free;
+    operand.depends_on_time = true;
+    return emit(Operation::push_time, operand, begin, end);
+  }
+
+  Operand call(const Function& function, std::size_t begin) {
+    const std::size_t open = position_, name_end = begin + function.name.size();
+    enter(open);
+    const bool folds = function.most == any_number;  // min and max take any number of arguments, two at a time
+    std::vector<Operand> arguments;
+    for (bool more = true; more;) {
+      const Operand argument = sum();
+      if (folds && !arguments.empty()) {
+        arguments.front() = emit(function.operation, agree(arguments.front(), argument), begin, name_end);
+      }
+      arguments.push_back(argument);
+      more = peek() == ',';
+      if (more && static_cast<int>(arguments.size()) == function.most) fail_at_comma();
+      if (more) ++position_;
+    }
+    leave(open);
+    if (static_cast<int>(arguments.size()) < function.least) {
+      fail("bad-expression", begin, position_,
+           fmt::format("'{}' needs {}{} arguments", function.name, folds ? "at least " : "", function.least));
+    }
+    Operand result = folds ? arguments.front() : call_result(function, arguments);
+    result.begin = begin;
+    result.end = position_;
+    return folds ? result : emit(function.operation, result, begin, name_end);
+  }
+
+  // --- units
+
+  /// The operand with the unit that may follow it.
+  Operand with_unit(const Operand& operand) {
+    peek();
+    const std::size_t begin = position_, end = word_end(text_, begin);
+    if (end == begin) return operand;
+    const std::string_view name = text_.substr(begin, end - begin);
+    if (name == "t" || name == "pi" || find_function(name)) fail_at_rest();
+    if (operand.dimensioned()) fail("bad-unit", begin, end, "what is in the parentheses has a unit already");
+    const Unit unit = parse_unit_at(text_, position_);
+    Operand result = operand;
+    result.end = position_;
+    if (operand.kind == DimensionKind::plain) {
+      result.kind = DimensionKind::dimensioned;
+      result.dimension = unit.dimension;
+    }
+    push(unit.factor, begin, position_);
+    return emit(Operation::multiply, result, operand.begin, position_);
+  }
+
+  Operand without_unit(const Operand& operand) {
+    peek();
+    const std::size_t end = word_end(text_, position_);
+    const std::string_view name = text_.substr(position_, end - position_);
+    if (is_unit_name(name)) {
+      fail("bad-expression", position_, end, "a unit may follow only a number or a group in parentheses", {},
+           fmt::format("write '* 1 {}'", name));
+    }
+    return operand;
+  }
+
+  // --- dimensions
+
+  static Operand join(const Operand& left, const Operand& right) {
+    Operand result;
+    result.depends_on_time = left.depends_on_time || right.depends_on_time;
+    result.begin = left.begin;
+    result.end = right.end;
+    return result;
+  }
+
+  /// Operands that are added or compared.
+  Operand agree(const Operand& left, const Operand& right) const {
+    if (left.dimensioned() && right.dimensioned() && !(left.dimension == right.dimension)) {
+      fail("dimension-mismatch", left.begin, right.end,
+           fmt::format("{} and {} cannot be added or compared", dimension_name(left.dimension),
+                       dimension_name(right.dimension)));
+    }
+    Operand result = join(left, right);
+    const Operand& leading = left.kind >= right.kind ? left : right;  // plain < free < dimensioned
+    result.kind = leading.kind;
+    result.dimension = leading.dimension;
+    return result;
+  }
+
+  Operand call_result(const Function& function, const std::vector<Operand>& arguments) const {
+    Operand result = arguments.front();
+    switch (function.operation) {
+      case Operation::absolute:
+        return result;
+      case Operation::root:
+        result.dimension = power(result.dimension, 0.5);
+        return result;
+      case Operation::arctangent2:
+      case Operation::smooth:
+        for (std::size_t i = 1; i < arguments.size(); ++i) result = agree(result, arguments[i]);
+        break;
+      default:
+        if (result.dimensioned() && !result.dimension.dimensionless()) {
+          fail("dimension-mismatch", result.begin, result.end,
+               fmt::format("'{}' needs an angle or a number, but this is {}", function.name,
+                           dimension_name(result.dimension)));
+        }
+    }
+    result.kind = DimensionKind::plain;
+    result.dimension = {};
+    return result;
+  }
+
+  Operand raise(const Operand& base, const Operand& exponent, std::size_t caret) {
+    if (exponent.dimensioned()) {
+      fail("dimension-mismatch", exponent.begin, exponent.end, "an exponent must be a number without a unit");
+    }
+    const bool plain = exponent.kind == DimensionKind::plain;
+    if (base.dimensioned() && (!plain || exponent.depends_on_time)) {
+      fail("dimension-mismatch", exponent.begin, exponent.end,
+           "the exponent of a value with a unit must consist of numbers");
+    }
+    Operand result = join(base, exponent);
+    result.kind = plain ? base.kind : DimensionKind::free;
+    if (exponent.depends_on_time) return emit(Operation::power, result, caret, caret + 1);
+    const double n = expression_.program_.back().constant;
+    if (base.dimensioned()) result.dimension = power(base.dimension, n);
+    pop();
+    return emit(Operation::power_constant, result, caret, caret + 1, n);
+  }
+
+  // --- program
+
+  void push(double constant, std::size_t begin, std::size_t end) {
+    append({Operation::push_constant, constant, characters(0, begin), characters(begin, end)});
+  }
+
+  void pop() {
+    expression_.program_.pop_back();
+    --depth_;
+  }
+
+  /// Appends an operation on the values at the top of the stack, or its result when they are constant.
+  Operand emit(Operation operation, const Operand& result, std::size_t begin, std::size_t end, double constant = 0.0) {
+    const Expression::Instruction instruction{operation, constant, characters(0, begin), characters(begin, end)};
+    if (result.depends_on_time) {
+      append(instruction);
+      return result;
+    }
+    // A constant operand is always a single push, so the operands are the last instructions.
+    const int count = Expression::operand_count(operation);
+    std::array<Jet, 3> operands{};
+    for (int i = count; i-- > 0; pop()) {
+      operands[static_cast<std::size_t>(i)] = Jet::constant(expression_.program_.back().constant);
+    }
+    EvaluationFailure failure;
+    if (!Expression::apply(instruction, operands.data(), failure)) {
+      throw ExpressionError(failure.id, failure.reason, failure.offset, failure.length);
+    }
+    append({Operation::push_constant, operands[0].value, instruction.offset, instruction.length});
+    return result;
+  }
+
+  void append(const Expression::Instruction& instruction) {
+    expression_.program_.push_back(instruction);
+    depth_ += 1 - Expression::operand_count(instruction.operation);
+    expression_.stack_depth_ = std::max(expression_.stack_depth_, depth_);
+  }
+
+  // --- text
+
+  /// Next character that is not blank, which is then at position_; 0 at the end.
+  char peek() {
+    position_ = skip_blanks(text_, position_);
+    return position_ < text_.size() ? text_[position_] : '\0';
+  }
+
+  /// Characters in the bytes [begin, end). Places are asked for in rising order nearly always, so that counting on from
+  /// the last one keeps a long text linear.
+  int characters(std::size_t begin, std::size_t end) {
+    if (begin > 0) return character_count(text_.substr(begin, end - begin));
+    if (end < counted_bytes_) {
+      counted_ = 0;
+      counted_bytes_ = 0;
+    }
+    counted_ += character_count(text_.substr(counted_bytes_, end - counted_bytes_));
+    counted_bytes_ = end;
+    return counted_;
+  }
+
+  void enter(std::size_t open) {
+    position_ = open + 1;
+    if (++nesting_ > deepest) fail("bad-expression", open, open + 1, "parentheses are nested more than 256 deep");
+  }
+
+  void leave(std::size_t open) {
+    const char c = peek();
+    if (c == '\0') fail("bad-expression", open, open + 1, "this '(' is never closed", {}, "add the missing ')'");
+    if (c != ')') fail_at_rest();
+    ++position_;
+    --nesting_;
+  }
+
+  // --- errors
+
+  [[noreturn]] void fail(const char* id, std::size_t begin, std::size_t end, std::string message,
+                         std::string nearest = {}, std::string hint = {}) const {
+    begin = std::min(begin, text_.size());
+    const int length = end > begin ? character_count(text_.substr(begin, end - begin)) : 1;
+    throw ExpressionError(id, std::move(message), character_count(text_.substr(0, begin)), std::max(1, length),
+                          std::move(nearest), std::move(hint));
+  }
+
+  /// What stands at position_ does not continue the expression.
+  [[noreturn]] void fail_at_rest() {
+    const char c = peek();
+    const std::size_t begin = position_;
+    if (c == '\0') fail("bad-expression", begin, begin, "the expression ends too early");
+    if (c == ',') fail_at_comma();
+    const std::size_t end = std::max(word_end(text_, begin), number_end(text_, begin));
+    const bool operand_missing = c == ')' || c == '*' || c == '/' || c == '^';
+    if (!operand_missing && (end > begin || c == '$' || c == '(')) {
+      fail("bad-expression", begin, end, "an operator is missing here", {}, "write '*' to multiply");
+    }
+    const std::size_t length = std::max<std::size_t>(1, character_bytes(text_, begin));
+    const std::string_view found = text_.substr(begin, length);
+    if (found == "\u2212") fail("bad-expression", begin, begin + length, "unexpected '\u2212'", {}, "write '-'");
+    fail("bad-expression", begin, begin + length, fmt::format("unexpected '{}'", found));
+  }
+
+  [[noreturn]] void fail_at_comma() {
+    const auto digit = [&](std::size_t i) { return i < text_.size() && text_[i] >= '0' && text_[i] <= '9'; };
+    const bool decimal = position_ > 0 && digit(position_ - 1) && digit(position_ + 1);
+    fail("bad-expression", position_, position_ + 1, "unexpected ','", {},
+         decimal ? "write a decimal point, as in '0.5'" : "");
+  }
+
+  void fail_if_not_finite_word(std::size_t word_begin, std::size_t begin) const {
+    const std::size_t end = word_end(text_, word_begin);
+    std::string lower(text_.substr(word_begin, end - word_begin));
+    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    if (lower == "inf" || lower == "infinity" || lower == "nan") {
+      fail("bad-number", begin, end, "a number must be finite");
+    }
+  }
+
+  /// A word that is no value: says what is missing around it.
+  [[noreturn]] void fail_at_word(std::string_view name, std::size_t begin, std::size_t end) {
+    fail_if_not_finite_word(begin, begin);
+    const bool called = peek() == '(';
+    if (find_function(name)) {
+      fail("bad-expression", begin, end, fmt::format("'{}' needs its arguments in parentheses", name));
+    }
+    if (is_unit_name(name) && !called) {
+      fail("bad-expression", begin, end, fmt::format("the unit '{}' needs a number before it", name), {},
+           fmt::format("write '1 {}'", name));
+    }
+    if (scope_.find(name) && !called) {
+      fail("bad-expression", begin, end, fmt::format("'{}' is not a number", name), {},
+           fmt::format("write '${}' for the parameter", name));
+    }
+    std::vector<std::string> known;
+    for (const Function& function : functions) known.emplace_back(function.name);
+    if (!called) known.emplace_back("pi");
+    fail("bad-expression", begin, end,
+         called ? fmt::format("unknown function '{}'", name) : fmt::format("'{}' is not a number", name),
+         suggestion(name, known).value_or(""));
+  }
+
+  /// 1_000, 0x1F, 0o17, 0b1: numbers elsewhere.
+  void refuse_other_notations(std::size_t begin, std::size_t end) const {
+    const std::size_t rest = word_end(text_, end);
+    if (rest == end) return;
+    if (text_[end] == '_') fail("bad-expression", begin, rest, "digits cannot be grouped with '_'");
+    const bool prefix = text_.substr(begin, end - begin) == "0" && end + 1 < rest &&
+                        std::string_view("xXoObB").find(text_[end]) != std::string_view::npos;
+    if (prefix) fail("bad-expression", begin, rest, "a number must be decimal");
+  }
+
+  std::string_view text_;
+  const Scope& scope_;
+  bool time_allowed_;
+  std::size_t position_ = 0;
+  int nesting_ = 0, depth_ = 0;
+  std::size_t counted_bytes_ = 0;
+  int counted_ = 0;
+  Expression expression_;
+};
+
+Expression Expression::compile(std::string_view text, const Scope& scope, bool time_allowed) {
+  return ExpressionCompiler(text, scope, time_allowed).compile();
+}
+
+}  // namespace freeplay

@@ -1,0 +1,21 @@
+// Text: characters of UTF-8 input, and text that is safe to print.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace freeplay {
+
+/// Bytes of the character that begins at byte `position`: 1 to 4, or 0 if no valid UTF-8 character begins there
+/// (overlong forms, surrogates and values above U+10FFFF are invalid).
+std::size_t character_bytes(std::string_view text, std::size_t position);
+
+/// Number of characters. A byte that belongs to no valid character counts as one.
+int character_count(std::string_view text);
+
+/// The text with each control character (C0, DEL, C1, line and paragraph separators), direction override and invalid
+/// byte replaced by one '?', and each tab by one blank. The number of characters stays the same.
+std::string printable(std::string_view text);
+
+}  // namespace freeplay

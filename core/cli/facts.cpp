@@ -1,0 +1,79 @@
+#include "cli/facts.h"
+
+#include <fmt/format.h>
+
+namespace freeplay {
+namespace {
+
+const char* space_word(const Model& model) { return model.space == Space::planar ? "planar" : "spatial"; }
+
+/// A count, or null for the -1 of "not computed".
+Json count(int value) { return value < 0 ? Json(nullptr) : Json(value); }
+
+std::string line(const std::string& name, int value) {
+  return fmt::format("  {:<18}  {}\n", name, value < 0 ? "-" : std::to_string(value));
+}
+
+std::string ideal_text(const ConstraintFacts& ideal) {
+  const auto number = [](int value) { return value < 0 ? std::string("-") : std::to_string(value); };
+  std::string text = fmt::format("  {:<18}  constraints {}  rank {}  redundant {}  dof {}  dof_driven {}", "ideal",
+                                 ideal.constraints, number(ideal.rank), number(ideal.redundant), number(ideal.dof),
+                                 number(ideal.dof_driven));
+  if (ideal.driver_redundant > 0) text += fmt::format("  driver_redundant {}", ideal.driver_redundant);
+  return text + "\n";
+}
+
+Json ideal_json(const ConstraintFacts& ideal) {
+  return {{"constraints", ideal.constraints},
+          {"rank", count(ideal.rank)},
+          {"redundant", count(ideal.redundant)},
+          {"dof", count(ideal.dof)},
+          {"dof_driven", count(ideal.dof_driven)},
+          {"driver_redundant", count(ideal.driver_redundant)}};
+}
+
+}  // namespace
+
+std::string facts_text(const Model& model, const ModelFacts& facts) {
+  const ConstraintFacts& actual = facts.actual;
+  std::string text = fmt::format("  {:<18}  {}\n", "space", space_word(model));
+  text += line("bodies", facts.bodies) + line("joints", facts.joints);
+  text += line("clearance_joints", facts.clearance_joints) + line("drivers", facts.drivers);
+  text += line("coordinates", facts.coordinates) + line("velocities", facts.velocities);
+  text += line("constraints", actual.constraints) + line("driver_constraints", facts.driver_constraints);
+  text += line("rank", actual.rank) + line("redundant", actual.redundant);
+  text += line("dof", actual.dof) + line("dof_driven", actual.dof_driven);
+  if (actual.driver_redundant > 0) text += line("driver_redundant", actual.driver_redundant);
+  if (facts.ideal) text += ideal_text(*facts.ideal);
+  return text;
+}
+
+Json facts_json(const Model& model, const ModelFacts& facts) {
+  const ConstraintFacts& actual = facts.actual;
+  return {{"space", space_word(model)},
+          {"bodies", facts.bodies},
+          {"joints", facts.joints},
+          {"clearance_joints", facts.clearance_joints},
+          {"drivers", facts.drivers},
+          {"coordinates", facts.coordinates},
+          {"velocities", facts.velocities},
+          {"constraints", actual.constraints},
+          {"driver_constraints", facts.driver_constraints},
+          {"rank", count(actual.rank)},
+          {"redundant", count(actual.redundant)},
+          {"dof", count(actual.dof)},
+          {"dof_driven", count(actual.dof_driven)},
+          {"driver_redundant", count(actual.driver_redundant)},
+          {"ideal", facts.ideal ? ideal_json(*facts.ideal) : Json(nullptr)}};
+}
+
+Json start_json(const Model& model, const Start& start) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const std::span<const double> pose = start.state.q().subspan(3 * i, 3);
+    json[model.bodies[i].name] = {{"x", pose[0]}, {"y", pose[1]}, {"angle", pose[2]}};
+  }
+  return json;
+}
+
+}  // namespace freeplay

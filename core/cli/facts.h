@@ -1,0 +1,20 @@
+// Facts: what `freeplay validate` tells about a model.
+#pragma once
+
+#include <string>
+
+#include "io/json_text.h"
+#include "model/model.h"
+#include "run/assembly.h"
+
+namespace freeplay {
+
+/// The block of lines below the file's name.
+std::string facts_text(const Model& model, const ModelFacts& facts);
+
+Json facts_json(const Model& model, const ModelFacts& facts);
+
+/// Assembled centres of mass by body.
+Json start_json(const Model& model, const Start& start);
+
+}  // namespace freeplay

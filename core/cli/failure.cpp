@@ -1,0 +1,77 @@
+#include "cli/failure.h"
+
+#include <fmt/format.h>
+
+#include "cli/terminal.h"
+
+namespace freeplay {
+namespace {
+
+constexpr const char* program = "freeplay";
+
+/// A place in the file, or null: the program itself has no lines.
+Json place(int number) { return number > 0 ? Json(number) : Json(nullptr); }
+
+Json message_json(const Diagnostic& diagnostic) {
+  const std::string& file = diagnostic.location.file;
+  const std::string& remedy = diagnostic.suggestion.empty() ? diagnostic.hint : diagnostic.suggestion;
+  return {{"file", file.empty() || file == program ? Json(nullptr) : Json(file)},
+          {"line", place(diagnostic.location.line)},
+          {"column", place(diagnostic.location.column)},
+          {"severity", diagnostic.severity == Severity::error ? "error" : "warning"},
+          {"id", diagnostic.id},
+          {"message", diagnostic.message},
+          {"suggestion", remedy.empty() ? Json(nullptr) : Json(remedy)}};
+}
+
+/// One sentence for all messages.
+std::string in_short(const Diagnostics& diagnostics) {
+  std::string first;
+  int errors = 0;
+  for (const Diagnostic& diagnostic : diagnostics.sorted()) {
+    if (diagnostic.severity != Severity::error) continue;
+    if (errors++ == 0) first = diagnostic.message;
+  }
+  return errors > 1 ? fmt::format("{} (and {} more)", first, errors - 1) : first;
+}
+
+}  // namespace
+
+Diagnostic as_diagnostic(const Error& error) {
+  Diagnostic diagnostic;
+  diagnostic.id = error.id();
+  diagnostic.message = error.message();
+  diagnostic.location = error.location();
+  if (diagnostic.location.file.empty()) diagnostic.location = {program, 0, 0};
+  diagnostic.hint = error.hint();
+  return diagnostic;
+}
+
+Json messages_json(const Diagnostics& diagnostics, int max_errors) {
+  Json messages = Json::array();
+  int errors = 0;
+  for (const Diagnostic& diagnostic : diagnostics.sorted()) {
+    if (diagnostic.severity == Severity::error && max_errors > 0 && errors++ == max_errors) break;
+    messages.push_back(message_json(diagnostic));
+  }
+  return messages;
+}
+
+int report_failure(const Diagnostics& diagnostics, int exit_code, const CommonOptions& options) {
+  print_messages(diagnostics.format(options.max_errors), options.no_color);
+  if (options.json) {
+    print_json(Json{{"error",
+                {{"exit_code", exit_code},
+                 {"message", in_short(diagnostics)},
+                 {"messages", messages_json(diagnostics, options.max_errors)}}}});
+  }
+  return exit_code;
+}
+
+int report_failure(const Error& error, const CommonOptions& options) {
+  Diagnostics diagnostics;
+  diagnostics.add(as_diagnostic(error));
+  return report_failure(diagnostics, error.exit_code(), options);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,32 @@
+#include "cli/interrupt.h"
+
+#include <csignal>
+
+#include <unistd.h>
+
+namespace freeplay {
+namespace {
+
+std::atomic<int> watched = 0, interrupts = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void on_interrupt(int) {
+  if (watched == 0 || interrupts.fetch_add(1) > 0) _exit(130);
+}
+
+void on_closed_pipe(int) { _exit(0); }
+
+}  // namespace
+
+void handle_signals() {
+  std::signal(SIGPIPE, on_closed_pipe);
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+const std::atomic<int>& watch_interrupts() {
+  watched = 1;
+  return interrupts;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,14 @@
+// Interrupt: Ctrl-C, SIGTERM and closed pipes.
+#pragma once
+
+#include <atomic>
+
+namespace freeplay {
+
+/// A closed pipe ends the program quietly with 0, an interrupt with 130.
+void handle_signals();
+
+/// From here on the first interrupt only sets the flag, which the caller watches; a second one ends at once.
+const std::atomic<int>& watch_interrupts();
+
+}  // namespace freeplay

@@ -1,0 +1,131 @@
+#include "cli/list_command.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/suggestion.h"
+#include "cli/component_entry.h"
+#include "cli/failure.h"
+#include "cli/load_model.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "run/channel.h"
+
+namespace freeplay {
+namespace {
+
+struct ListOptions {
+  std::string kind, model;
+};
+
+const std::vector<std::string> kinds{"joints", "laws", "forces", "integrators", "plugins", "channels"};
+
+bool belongs(const RegisteredComponent& entry, const std::string& kind) {
+  switch (entry.component->kind) {
+    case ComponentKind::joint: return kind.empty() || kind == "joints";
+    case ComponentKind::contact_law:
+    case ComponentKind::friction_law: return kind.empty() || kind == "laws";
+    case ComponentKind::integrator: break;
+  }
+  return kind.empty() || kind == "integrators";
+}
+
+/// One object per library, with the number of its types.
+Json plugins_json(const Registry& registry) {
+  Json list = Json::array();
+  for (const RegisteredComponent& entry : registry.components()) {
+    const auto same = [&](const RegisteredComponent& other) { return other.library == entry.library; };
+    const bool seen = std::ranges::any_of(list, [&](const Json& row) { return row["name"] == entry.library; });
+    if (seen) continue;
+    const auto count = std::ranges::count_if(registry.components(), same);
+    list.push_back({{"name", entry.library},
+                    {"kind", "plugin"},
+                    {"space", "both"},
+                    {"source", entry.library},
+                    {"summary", fmt::format("{} types", count)},
+                    {"parameters", Json::array()},
+                    {"formula", ""},
+                    {"validity", ""},
+                    {"references", ""}});
+  }
+  return list;
+}
+
+Json entries_json(const Registry& registry, const std::string& kind) {
+  Json list = Json::array();
+  for (const RegisteredComponent& entry : registry.components()) {
+    if (belongs(entry, kind)) list.push_back(component_json(entry));
+  }
+  if (kind.empty() || kind == "plugins") {
+    for (const Json& plugin : plugins_json(registry)) list.push_back(plugin);
+  }
+  return list;
+}
+
+int list_components(const ListOptions& options, const CommonOptions& common) {
+  const Json list = entries_json(Registry::with_builtins(), options.kind);
+  if (common.json) {
+    print_json(list);
+    return 0;
+  }
+  TextTable table;
+  const std::vector<std::string> columns{"name", "kind", "space", "source", "summary"};
+  table.add_row(columns);
+  for (const Json& entry : list) {
+    std::vector<std::string> cells;
+    for (const std::string& column : columns) cells.push_back(entry[column].get<std::string>());
+    table.add_row(std::move(cells));
+  }
+  print(table.text());
+  return 0;
+}
+
+int list_channels(const ListOptions& options, const CommonOptions& common) {
+  if (options.model.empty()) {
+    throw Error(Error::Category::usage, "missing-argument", "list channels needs a model file");
+  }
+  const LoadedModel loaded = load_model(options.model, {}, Registry::with_builtins(), common.strict);
+  if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  const Channels channels(*loaded.model);
+  Json list = Json::array();
+  TextTable table;
+  for (const ChannelInfo& channel : channels.all()) {
+    list.push_back({{"name", channel.name}, {"unit", channel.unit}});
+    table.add_row({channel.name, channel.unit});
+  }
+  if (common.json) {
+    print_json(list);
+  } else {
+    print(table.text());
+  }
+  return 0;
+}
+
+int list(const ListOptions& options, const CommonOptions& common) {
+  if (!options.kind.empty() && std::ranges::find(kinds, options.kind) == kinds.end()) {
+    const auto nearest = suggestion(options.kind, kinds);
+    throw Error(Error::Category::usage, "unknown-name", fmt::format("there is no kind '{}' to list", options.kind), {},
+                nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+  }
+  if (options.kind == "channels") return list_channels(options, common);
+  if (!options.model.empty()) {
+    throw Error(Error::Category::usage, "unexpected-argument", fmt::format("unexpected argument '{}'", options.model));
+  }
+  return list_components(options, common);
+}
+
+}  // namespace
+
+Command add_list_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("list", "List joints, laws, integrators, plugins, or the columns of a model");
+  const auto options = std::make_shared<ListOptions>();
+  app->add_option("KIND", options->kind, "joints, laws, forces, integrators, plugins or channels; all but channels");
+  app->add_option("MODEL", options->model, "Model file, for channels");
+  add_common_options(*app, common);
+  return {app, [options, &common] { return list(*options, common); }};
+}
+
+}  // namespace freeplay

@@ -1,0 +1,94 @@
+#include "cli/load_model.h"
+
+#include <fmt/format.h>
+
+#include "base/suggestion.h"
+#include "cli/failure.h"
+#include "io/channel_selection.h"
+#include "io/yaml_document.h"
+#include "model/model_builder.h"
+#include "run/channel.h"
+
+namespace freeplay {
+namespace {
+
+/// Takes what was thrown while `loaded` was made into its messages.
+void keep(const Error& error, LoadedModel& loaded, bool strict) {
+  if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw error;
+  Diagnostic diagnostic = as_diagnostic(error);
+  if (error.location().file.empty()) diagnostic.location = {loaded.document->file_name(), 0, 0};
+  loaded.exit_code = error.exit_code();
+  if (error.category() == Error::Category::plugin) {
+    // Reported alone: without the plugin the rest of the file cannot be judged.
+    loaded.diagnostics = Diagnostics(strict);
+    loaded.diagnostics.add_source(loaded.document->file_name(), loaded.document->text());
+  }
+  loaded.diagnostics.add(std::move(diagnostic));
+}
+
+std::vector<std::string> channel_names(const Channels& channels) {
+  std::vector<std::string> names;
+  for (const ChannelInfo& channel : channels.all()) names.push_back(channel.name);
+  return names;
+}
+
+/// Place of item `index` of simulation.output.channels; the file where the text does not say it.
+Location pattern_location(const Document& document, std::size_t index) {
+  const Node* node = &document.root();
+  for (const char* key : {"simulation", "output", "channels"}) {
+    node = node->is_map() ? node->find(key) : nullptr;
+    if (node == nullptr) return {document.file_name(), 0, 0};
+  }
+  if (node->is_list() && index < node->items.size()) return node->items[index]->location();
+  return node->location();
+}
+
+/// Channels are known only when the model is complete, so their names are checked last.
+void check_channels(const Model& model, const Document& document, Diagnostics& diagnostics) {
+  const Channels channels(model);
+  const std::vector<std::string> names = channel_names(channels);
+  const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
+    diagnostics.error(location, static_cast<int>(name.size()), "unknown-name", message,
+                      suggestion(name, names).value_or(""));
+  };
+  for (const StopCondition& condition : model.settings.stop) {
+    if (channels.find(condition.channel) >= 0) continue;
+    unknown(condition.location, condition.channel, fmt::format("there is no channel '{}'", condition.channel));
+  }
+  for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {
+    const std::string& pattern = model.settings.channels[i];
+    if (matches_channel(pattern, channels)) continue;
+    unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
+  }
+}
+
+}  // namespace
+
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const Registry& registry, bool strict) {
+  LoadedModel loaded{Diagnostics(strict), {}, {}, 0};
+  loaded.document = read_yaml(file, loaded.diagnostics);
+  try {
+    if (loaded.document) loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics);
+    if (loaded.model) check_channels(*loaded.model, *loaded.document, loaded.diagnostics);
+  } catch (const Error& error) {
+    keep(error, loaded, strict);
+  }
+  if (loaded.diagnostics.has_errors() || !loaded.model) {
+    loaded.model.reset();
+    if (loaded.exit_code == 0) loaded.exit_code = 3;
+  }
+  return loaded;
+}
+
+std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
+  try {
+    System system(*loaded.model);
+    Start start = assemble(system);
+    return std::make_unique<AssembledModel>(std::move(system), std::move(start));
+  } catch (const Error& error) {
+    keep(error, loaded, false);
+    return nullptr;
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,37 @@
+// LoadModel: reads and checks a model file, the same way for every command.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "cli/options.h"
+#include "component/registry.h"
+#include "model/document.h"
+#include "model/model.h"
+#include "run/assembly.h"
+
+namespace freeplay {
+
+/// A model file after reading: a model, or messages that say why there is none.
+struct LoadedModel {
+  Diagnostics diagnostics;
+  std::optional<Document> document;
+  std::unique_ptr<Model> model;
+  int exit_code = 0;  ///< 3 or 5 when something is wrong
+};
+
+/// Reads and checks `file`. Throws Error{usage} for what the options ask for and the model does not have.
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const Registry& registry, bool strict);
+
+/// A model that is ready to move. The system refers to the model.
+struct AssembledModel {
+  System system;
+  Start start;
+};
+
+/// Assembles the model of `loaded`; null with a message there if it cannot be put together.
+std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded);
+
+}  // namespace freeplay

@@ -1,0 +1,99 @@
+// Freeplay's command line: parses, calls the command, and turns whatever is thrown into an exit code.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/describe_command.h"
+#include "cli/failure.h"
+#include "cli/interrupt.h"
+#include "cli/list_command.h"
+#include "cli/run_command.h"
+#include "cli/terminal.h"
+#include "cli/unknown_word.h"
+#include "cli/validate_command.h"
+#include "freeplay/plugin.h"
+#include "io/version.h"
+
+namespace freeplay {
+namespace {
+
+int print_version(const CommonOptions& common) {
+  if (common.json) {
+    print_json(Json{{"freeplay", program_version},
+               {"schema", schema_version},
+               {"plugin_abi", abi_version},
+               {"compiler", "gcc " __VERSION__},
+               {"build", FREEPLAY_BUILD}});
+  } else {
+    print(fmt::format("freeplay {} (schema {}, plugin ABI {})\n", program_version, schema_version, abi_version));
+  }
+  return 0;
+}
+
+int execute(int argc, char** argv, CommonOptions& common) {
+  CLI::App program("Freeplay simulates planar mechanisms whose joints have clearance.", "freeplay");
+  bool version = false;
+  program.add_flag("--version", version, "Print the version");
+  add_common_options(program, common);
+  const Command commands[] = {add_run_command(program, common), add_validate_command(program, common),
+                              add_list_command(program, common), add_describe_command(program, common)};
+  // Words that the parser does not know are left to unknown_word(), which suggests what was meant.
+  program.require_subcommand(0, 1)->allow_extras();
+  for (const Command& command : commands) command.app->allow_extras();
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    print(program.help());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    throw Error(Error::Category::usage, "bad-usage", error.what());
+  }
+  refuse_unknown_words(program);
+  refuse_later_options(common);
+  if (version) return print_version(common);
+  for (const Command& command : commands) {
+    if (command.app->parsed()) return command.execute();
+  }
+  if (common.json) throw Error(Error::Category::usage, "missing-argument", "a command is needed");
+  print(program.help());
+  return 2;
+}
+
+/// True if --json stands on the command line, however the rest of it reads.
+bool json_wanted(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
+}
+
+int execute_and_report(int argc, char** argv) {
+  CommonOptions common;
+  try {
+    return execute(argc, argv, common);
+  } catch (const Error& error) {
+    common.json = common.json || json_wanted(argc, argv);
+    return report_failure(error, common);
+  } catch (const std::exception& error) {
+    common.json = common.json || json_wanted(argc, argv);
+    const std::string message = fmt::format("internal error: {}", error.what());
+    return report_failure(Error(Error::Category::internal, "internal", message, {}, "please report this"), common);
+  }
+}
+
+}  // namespace
+}  // namespace freeplay
+
+int main(int argc, char** argv) {
+  freeplay::handle_signals();
+  try {
+    return freeplay::execute_and_report(std::max(argc, 1), argv);
+  } catch (const freeplay::Error& error) {  // stdout did not take even the report
+    std::fputs(("freeplay: error: " + error.message() + "\n").c_str(), stderr);
+    return error.exit_code();
+  } catch (...) {
+    return 1;
+  }
+}

@@ -1,0 +1,90 @@
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/expression.h"
+
+namespace freeplay {
+namespace {
+
+constexpr const char* common_group = "Options of every command";
+constexpr const char* model_group = "Options of every command that reads a model";
+
+[[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
+                            const std::string& hint = {}) {
+  throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
+              hint);
+}
+
+/// Options are read before any model, so they know no parameters.
+class NoParameters : public Scope {
+ public:
+  const Quantity* find(std::string_view) const override { return nullptr; }
+  std::vector<std::string> names() const override { return {}; }
+};
+
+}  // namespace
+
+CLI::Option* add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+                            const std::string& help) {
+  // One value for each mention; by default the parser would also take the words that follow.
+  return app.add_option(name, values, help)->allow_extra_args(false);
+}
+
+void add_common_options(CLI::App& app, CommonOptions& options) {
+  app.add_flag("-q,--quiet", options.quiet, "No progress, no text but the data asked for")->group(common_group);
+  app.add_flag("-v,--verbose", options.verbose, "More on stderr")->group(common_group);
+  app.add_flag("--json", options.json, "Machine-readable stdout: one JSON document")->group(common_group);
+  app.add_flag("--no-color", options.no_color, "No colour")->group(common_group);
+  app.add_option("--max-errors", options.max_errors, "Messages of one file to print (20); 0 is no limit")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->group(common_group);
+  app.add_flag("--strict", options.strict, "Warnings in input files are errors")->group(common_group);
+  add_repeatable(app, "--plugin", options.plugins, "Load a plugin (not in this release)")
+      ->type_name("LIB")
+      ->group(common_group);
+}
+
+void add_model_options(CLI::App& app, ModelOptions& options) {
+  add_repeatable(app, "--set", options.set, "Replace a parameter: --set c=\"50 um\"; repeatable")
+      ->type_name("NAME=VALUE")
+      ->group(model_group);
+  add_repeatable(app, "--ideal", options.ideal, "Close the clearance of a joint: name, pattern with * or all; repeatable")
+      ->type_name("JOINT")
+      ->group(model_group);
+}
+
+void refuse_later_options(const CommonOptions& options) {
+  if (!options.plugins.empty()) not_in_this_release("--plugin");
+}
+
+BuildOptions build_options(const ModelOptions& options) {
+  BuildOptions build;
+  for (const std::string& text : options.set) {
+    const std::size_t sign = text.find('=');
+    if (sign == std::string::npos || sign == 0) bad_value("--set", text, "NAME=VALUE is needed");
+    build.set.emplace_back(text.substr(0, sign), text.substr(sign + 1));
+  }
+  build.ideal = options.ideal;
+  return build;
+}
+
+double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
+  try {
+    const Expression expression = Expression::compile(text, NoParameters{}, false);
+    expression.require(dimension);
+    const double value = expression.constant().value;
+    if (!(value > 0.0)) bad_value(option, text, "it must be greater than 0");
+    return value;
+  } catch (const ExpressionError& e) {
+    bad_value(option, text, e.message, e.suggestion.empty() ? e.hint : fmt::format("did you mean '{}'?", e.suggestion));
+  }
+}
+
+void not_in_this_release(const std::string& what) {
+  throw Error(Error::Category::usage, "not-in-this-release", fmt::format("{}: not in this release", what));
+}
+
+}  // namespace freeplay

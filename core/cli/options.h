@@ -1,0 +1,52 @@
+// Options: what commands share on the command line.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "base/unit.h"
+#include "model/build_options.h"
+
+namespace freeplay {
+
+/// Options of every command.
+struct CommonOptions {
+  bool quiet = false, verbose = false, json = false, no_color = false, strict = false;
+  int max_errors = 20;  ///< 0: no limit
+  std::vector<std::string> plugins;
+};
+
+/// Options of every command that reads a model.
+struct ModelOptions {
+  std::vector<std::string> set, ideal;
+};
+
+/// A command that was added to the program, and what to do when it was chosen. Returns the exit code.
+struct Command {
+  CLI::App* app;
+  std::function<int()> execute;
+};
+
+void add_common_options(CLI::App& app, CommonOptions& options);
+void add_model_options(CLI::App& app, ModelOptions& options);
+
+/// An option that may be given several times, one value each.
+CLI::Option* add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+                            const std::string& help);
+
+/// Throws Error{usage} for an option that a later release will have.
+void refuse_later_options(const CommonOptions& options);
+
+/// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
+BuildOptions build_options(const ModelOptions& options);
+
+/// A positive quantity such as "0.5 s". Throws Error{usage} "bad-value".
+double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
+
+[[noreturn]] void not_in_this_release(const std::string& what);
+
+}  // namespace freeplay

@@ -1,0 +1,58 @@
+#include "cli/progress_line.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace freeplay {
+namespace {
+
+/// Digits in groups of three.
+std::string grouped(long number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, " ");
+  return text;
+}
+
+/// Hours only where there are any.
+std::string clock_text(double seconds) {
+  const long s = std::lround(seconds);
+  if (s >= 3600) return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return fmt::format("{:02}:{:02}", s / 60, s % 60);
+}
+
+}  // namespace
+
+std::string progress_text(double start, double end, double t, long steps, double elapsed) {
+  const double done = std::clamp((t - start) / (end - start), 0.0, 1.0);
+  const std::string eta = done > 0.0 ? clock_text(elapsed * (1.0 - done) / done) : "--:--";
+  return fmt::format("{:4.0f} %  t = {:.3g} / {:g} s  {} steps  eta {}", std::floor(100.0 * done), t, end,
+                     grouped(steps), eta);
+}
+
+ProgressLine::ProgressLine(double start, double end, bool shown)
+    : start_(start), end_(end), shown_(shown), began_(std::chrono::steady_clock::now()) {}
+
+ProgressLine::~ProgressLine() {
+  if (width_ == 0) return;
+  show("");
+  std::fputc('\r', stderr);
+}
+
+void ProgressLine::update(double t, long steps) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  show(progress_text(start_, end_, t, steps, std::chrono::duration<double>(now - began_).count()));
+}
+
+void ProgressLine::show(const std::string& line) {
+  // Blanks over the rest of the last line: escape sequences are not for every terminal.
+  fmt::print(stderr, "\r{:<{}}", line, width_);
+  std::fflush(stderr);
+  width_ = line.size();
+}
+
+}  // namespace freeplay

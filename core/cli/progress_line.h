@@ -1,0 +1,33 @@
+// ProgressLine: how far a run is, on a terminal.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace freeplay {
+
+/// One line on stderr that is written over and goes away at the end. Silent unless `shown`.
+class ProgressLine {
+ public:
+  ProgressLine(double start, double end, bool shown);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Shows simulated time `t` [s]; at most ten times a second.
+  void update(double t, long steps);
+
+ private:
+  void show(const std::string& line);
+
+  double start_, end_;
+  bool shown_;
+  std::size_t width_ = 0;
+  std::chrono::steady_clock::time_point began_, last_{};
+};
+
+/// `  42 %  t = 0.252 / 0.6 s  126 000 steps  eta 00:12`, after `elapsed` seconds of work.
+std::string progress_text(double start, double end, double t, long steps, double elapsed);
+
+}  // namespace freeplay

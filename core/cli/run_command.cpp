@@ -1,0 +1,246 @@
+#include "cli/run_command.h"
+
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/facts.h"
+#include "cli/failure.h"
+#include "cli/interrupt.h"
+#include "cli/load_model.h"
+#include "cli/progress_line.h"
+#include "cli/run_table.h"
+#include "cli/terminal.h"
+#include "io/channel_selection.h"
+#include "io/csv_sink.h"
+#include "io/event_sink.h"
+#include "io/result_directory.h"
+#include "io/run_log.h"
+#include "io/summary.h"
+#include "io/version.h"
+#include "run/simulation.h"
+
+namespace freeplay {
+namespace {
+
+struct RunOptions {
+  std::string model, end, step, accuracy, integrator, out, format;
+  ModelOptions model_options;
+  bool force = false, dry_run = false, verify = false, profile = false, resume = false;
+};
+
+void refuse_later_options(const RunOptions& options) {
+  if (!options.accuracy.empty()) not_in_this_release("--accuracy");
+  if (options.verify) not_in_this_release("--verify");
+  if (options.profile) not_in_this_release("--profile");
+  if (options.resume) not_in_this_release("--resume");
+  if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
+  if (options.format.empty() || options.format == "csv") return;
+  throw Error(Error::Category::usage, "bad-value",
+              fmt::format("bad value '{}' of --format: it must be csv, hdf5 or both", options.format));
+}
+
+BuildOptions build_options(const RunOptions& options) {
+  BuildOptions build = freeplay::build_options(options.model_options);
+  if (!options.end.empty()) build.end = positive_quantity("--end", options.end, dimension::time);
+  if (!options.step.empty()) build.step = positive_quantity("--step", options.step, dimension::time);
+  if (!options.integrator.empty()) build.integrator = options.integrator;
+  return build;
+}
+
+std::filesystem::path result_path(const RunOptions& options, const Model& model) {
+  if (!options.out.empty()) return options.out;
+  return std::filesystem::path("results") / result_name(model.name, !options.model_options.ideal.empty());
+}
+
+std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<const std::string> more) {
+  std::vector<std::string> warnings;
+  for (const Diagnostic& diagnostic : diagnostics.sorted()) {
+    warnings.push_back(fmt::format("{} [{}]", diagnostic.message, diagnostic.id));
+  }
+  warnings.insert(warnings.end(), more.begin(), more.end());
+  return warnings;
+}
+
+/// The files of one run, from the open directory to the sealed summary.
+class Recording {
+ public:
+  Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels)
+      : directory_(path, force),
+        log_(directory_.file("run.log")),
+        rows_(directory_.file("results.csv"), channels, select_channels(channels, model.settings.channels)),
+        events_(directory_.file("events.csv"), model),
+        advice_(model) {
+    directory_.write("model.yaml", model.text);
+  }
+
+  std::array<Sink*, 3> sinks() { return {&rows_, &events_, &advice_}; }
+  RunLog& log() { return log_; }
+  const ContactAdvice& advice() const { return advice_; }
+
+  void flush_if_due() {
+    rows_.flush_if_due();
+    events_.flush_if_due();
+  }
+
+  /// Ends the growing files. Throws Error{file} for the first that could not be written.
+  void close() {
+    rows_.close();
+    events_.close();
+    log_.close();
+  }
+
+  std::vector<std::string> files() const {
+    std::vector<std::string> names = directory_.files();
+    const auto place = std::ranges::lower_bound(names, "summary.json");
+    names.insert(place, "summary.json");
+    return names;
+  }
+
+  void seal(const Json& summary) { directory_.write("summary.json", json_text(summary)); }
+
+ private:
+  ResultDirectory directory_;
+  RunLog log_;
+  CsvSink rows_;
+  EventSink events_;
+  ContactAdvice advice_;
+};
+
+/// Runs to the end and tells it as a record.
+class RunJob {
+ public:
+  RunJob(const LoadedModel& loaded, AssembledModel& assembled, std::filesystem::path path, const RunOptions& options,
+         const CommonOptions& common)
+      : loaded_(loaded),
+        assembled_(assembled),
+        common_(common),
+        path_(std::move(path)),
+        channels_(*loaded.model),
+        recording_(path_, options.force, *loaded.model, channels_),
+        sinks_(recording_.sinks()),
+        simulation_(assembled.system, assembled.start, channels_, sinks_) {}
+
+  int execute() {
+    note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
+                     settings().start, settings().end));
+    for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
+    Outcome outcome = run();
+    for (const std::string& text : simulation_.warnings()) warn(text);
+    note(fmt::format("{} at {:g} s after {} steps, {} rows", status_word(outcome.status), outcome.time, outcome.steps,
+                     outcome.rows));
+    if (!outcome.reason.empty()) recording_.log().write(outcome.exit_code == 0 ? "note" : "error", outcome.reason);
+    recording_.close();
+    return finish(outcome);
+  }
+
+ private:
+  const Settings& settings() const { return loaded_.model->settings; }
+
+  void note(const std::string& text) {
+    recording_.log().write("note", text);
+    if (common_.verbose) print_messages("freeplay: note: " + text + "\n", common_.no_color);
+  }
+
+  void warn(const std::string& text) {
+    recording_.log().write("warning", text);
+    print_messages("freeplay: warning: " + text + "\n", common_.no_color);
+  }
+
+  Outcome run() {
+    ProgressLine progress(settings().start, settings().end, stderr_is_terminal() && !common_.quiet);
+    RunHooks hooks;
+    hooks.interrupt = &watch_interrupts();
+    hooks.progress = [&](double t, long steps) {
+      progress.update(t, steps);
+      recording_.flush_if_due();
+    };
+    return simulation_.run(hooks);
+  }
+
+  int finish(const Outcome& outcome) {
+    const RunRecord record{*loaded_.model,
+                           channels_,
+                           assembled_.start.facts,
+                           outcome,
+                           simulation_.statistics(),
+                           simulation_.last_row(),
+                           recording_.advice(),
+                           warnings_of(loaded_.diagnostics, simulation_.warnings()),
+                           recording_.files()};
+    const Json json = summary(record);
+    recording_.seal(json);
+    if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
+      print_messages(fmt::format("freeplay: error: {}\n", outcome.reason), common_.no_color);
+    }
+    if (common_.json) {
+      print_json(json);
+    } else if (!common_.quiet) {
+      print(run_table(record) + fmt::format("  results in {}\n", path_.string()));
+    }
+    return outcome.exit_code;
+  }
+
+  const LoadedModel& loaded_;
+  AssembledModel& assembled_;
+  const CommonOptions& common_;
+  std::filesystem::path path_;
+  Channels channels_;
+  Recording recording_;
+  std::array<Sink*, 3> sinks_;
+  Simulation simulation_;
+};
+
+int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const CommonOptions& common) {
+  const Model& model = *loaded.model;
+  if (common.json) {
+    print_json(Json{{"file", model.file},
+               {"ok", true},
+               {"facts", facts_json(model, assembled.start.facts)},
+               {"start", start_json(model, assembled.start)},
+               {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
+  } else if (!common.quiet) {
+    print(model.file + ": ok\n" + facts_text(model, assembled.start.facts));
+  }
+  return 0;
+}
+
+int run(const RunOptions& options, const CommonOptions& common) {
+  if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
+  refuse_later_options(options);
+  LoadedModel loaded = load_model(options.model, build_options(options), Registry::with_builtins(), common.strict);
+  if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  const std::filesystem::path path = result_path(options, *loaded.model);
+  if (!options.dry_run) check_result_directory(path, options.force);
+  const auto assembled = assemble_model(loaded);
+  if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  if (options.dry_run) return dry_run(loaded, *assembled, common);
+  return RunJob(loaded, *assembled, path, options, common).execute();
+}
+
+}  // namespace
+
+Command add_run_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("run", "Simulate a model and write its results");
+  const auto options = std::make_shared<RunOptions>();
+  app->add_option("MODEL", options->model, "Model file");
+  app->add_option("--end", options->end, "End time: \"0.5 s\"")->type_name("T");
+  app->add_option("--step", options->step, "Step: 2us")->type_name("H");
+  app->add_option("--accuracy", options->accuracy, "Accuracy instead of a step (not in this release)")->type_name("L");
+  app->add_option("--integrator", options->integrator, "Integrator, with its default parameters")->type_name("NAME");
+  app->add_flag("--verify", options->verify, "Run again finer and compare (not in this release)");
+  app->add_flag("--profile", options->profile, "Tell where the time went (not in this release)");
+  app->add_option("--out", options->out, "Result directory (results/NAME)")->type_name("DIR");
+  app->add_flag("--force", options->force, "Write into a directory that holds other files");
+  app->add_option("--format", options->format, "csv; hdf5 and both are not in this release")->type_name("FORMAT");
+  app->add_flag("--resume", options->resume, "Go on from a checkpoint (not in this release)");
+  app->add_flag("--dry-run", options->dry_run, "Load, assemble, print the facts, write nothing");
+  add_model_options(*app, options->model_options);
+  add_common_options(*app, common);
+  return {app, [options, &common] { return run(*options, common); }};
+}
+
+}  // namespace freeplay

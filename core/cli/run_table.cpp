@@ -1,0 +1,90 @@
+#include "cli/run_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "cli/text_table.h"
+
+namespace freeplay {
+namespace {
+
+using Align = TextTable::Align;
+
+std::string quantity(double value, const char* unit, int digits = 4) {
+  return std::isfinite(value) ? fmt::format("{:.{}g} {}", value, digits, unit) : "-";
+}
+
+/// With the prefix that leaves one to three digits before the point.
+std::string prefixed(double value, const char* unit) {
+  if (!std::isfinite(value)) return "-";
+  constexpr std::pair<double, const char*> prefixes[] = {{1.0, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
+  for (const auto& [factor, prefix] : prefixes) {
+    if (std::abs(value) >= factor) return fmt::format("{:.4g} {}{}", value / factor, prefix, unit);
+  }
+  return fmt::format("{:.4g} {}", value, unit);
+}
+
+std::string first_line(const RunRecord& record) {
+  const Settings& settings = record.model.settings;
+  return fmt::format("{}: {}, {:g} s in {} steps ({}, {:g} s), {:.3g} s wall\n", record.model.name,
+                     status_word(record.outcome.status), record.outcome.time, record.outcome.steps,
+                     settings.integrator_parameters.component->description.name, settings.step,
+                     record.outcome.wall_seconds);
+}
+
+void add_joints(const RunRecord& record, TextTable& table) {
+  table.add_row({"joint", "max |F|", "contacts", "in contact", "max delta"});
+  const bool any = has_statistics(record.model.settings, record.outcome);
+  for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
+    const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
+    const bool touches = any && has_contact_statistics(record.channels.joints[i]);
+    table.add_row({record.model.joints[i].name, quantity(seen.max_force, "N"),
+                   touches ? std::to_string(seen.contacts) : "-",
+                   touches ? fmt::format("{:.1f} %", 100.0 * seen.contact_fraction) : "-",
+                   touches ? quantity(seen.max_penetration, "m", 2) : "-"});
+  }
+}
+
+bool is_slide(const Model& model, const Driver& driver) {
+  return model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::position;
+}
+
+void add_drivers(const RunRecord& record, TextTable& table) {
+  const std::vector<Driver>& drivers = record.model.drivers;
+  const auto slides = std::ranges::count_if(drivers, [&](const Driver& d) { return is_slide(record.model, d); });
+  const bool all = slides == static_cast<std::ptrdiff_t>(drivers.size());
+  table.add_row({"driver", slides == 0 ? "max |torque|" : all ? "max |force|" : "max |effort|", "rms"});
+  for (std::size_t i = 0; i < drivers.size(); ++i) {
+    const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
+    const char* unit = is_slide(record.model, drivers[i]) ? "N" : "N*m";
+    table.add_row({drivers[i].name, quantity(seen.max_abs, unit), quantity(seen.rms, unit)});
+  }
+}
+
+void add_paths(const RunRecord& record, TextTable& table) {
+  table.add_row({"path", "max error", "rms", "max angle", "rms"});
+  for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
+    const PathStatistics seen = record.statistics.path(static_cast<int>(i));
+    table.add_row({record.model.kinematics[i].name, prefixed(seen.max_position, "m"), prefixed(seen.rms_position, "m"),
+                   prefixed(seen.max_angle, "rad"), prefixed(seen.rms_angle, "rad")});
+  }
+}
+
+}  // namespace
+
+std::string run_table(const RunRecord& record) {
+  std::string text = first_line(record);
+  if (!record.outcome.reason.empty()) text += fmt::format("  {}\n", record.outcome.reason);
+  TextTable joints({Align::left, Align::left, Align::right, Align::right, Align::left}), drivers, paths;
+  if (!record.model.joints.empty()) add_joints(record, joints);
+  if (!record.model.drivers.empty()) add_drivers(record, drivers);
+  if (!record.model.kinematics.empty()) add_paths(record, paths);
+  text += joints.text("  ") + drivers.text("  ") + paths.text("  ");
+  return text + fmt::format("  energy residual {}   position residual {}\n",
+                            quantity(record.statistics.energy_residual(), "J", 2),
+                            quantity(record.statistics.position_residual(), "m", 2));
+}
+
+}  // namespace freeplay

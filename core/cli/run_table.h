@@ -1,0 +1,13 @@
+// RunTable: what `freeplay run` prints about a run.
+#pragma once
+
+#include <string>
+
+#include "io/summary.h"
+
+namespace freeplay {
+
+/// First line, tables of joints, drivers and paths, residuals.
+std::string run_table(const RunRecord& record);
+
+}  // namespace freeplay

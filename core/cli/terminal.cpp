@@ -1,0 +1,62 @@
+#include "cli/terminal.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include <unistd.h>
+
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+bool colour_wanted(bool no_color) {
+  const char* none = std::getenv("NO_COLOR");
+  const char* kind = std::getenv("TERM");
+  return !no_color && (none == nullptr || *none == '\0') && kind != nullptr && std::strcmp(kind, "dumb") != 0 &&
+         stderr_is_terminal();
+}
+
+/// Paints the word that says how bad a message is. Source lines are indented and stay as they are.
+void append_painted(std::string& out, std::string_view line) {
+  constexpr std::pair<std::string_view, const char*> words[] = {{": error: ", "\x1b[1;31m"},
+                                                                {": warning: ", "\x1b[1;35m"}};
+  for (const auto& [word, colour] : words) {
+    const std::size_t at = line.find(word);
+    if (line.starts_with(' ') || at == std::string_view::npos) continue;
+    out.append(line.substr(0, at + 2)).append(colour);
+    out.append(word.substr(2, word.size() - 3)).append("\x1b[0m").append(line.substr(at + word.size() - 1));
+    return;
+  }
+  out += line;
+}
+
+}  // namespace
+
+void print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  throw Error(Error::Category::file, "cannot-write", std::string("cannot write to stdout: ") + std::strerror(errno));
+}
+
+void print_json(const Json& json) { print(json_text(json)); }
+
+void print_messages(std::string_view text, bool no_color) {
+  std::string out;
+  if (colour_wanted(no_color)) {
+    while (!text.empty()) {
+      const std::size_t length = std::min(text.find('\n'), text.size() - 1) + 1;
+      append_painted(out, text.substr(0, length));
+      text.remove_prefix(length);
+    }
+  } else {
+    out = text;
+  }
+  std::fwrite(out.data(), 1, out.size(), stderr);
+}
+
+bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) != 0; }
+
+}  // namespace freeplay

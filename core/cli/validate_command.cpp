@@ -1,0 +1,87 @@
+#include "cli/validate_command.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/facts.h"
+#include "cli/failure.h"
+#include "cli/load_model.h"
+#include "cli/terminal.h"
+
+namespace freeplay {
+namespace {
+
+struct ValidateOptions {
+  std::vector<std::string> models;
+  ModelOptions model;
+  bool no_assemble = false;
+};
+
+/// What is known of one file.
+struct Verdict {
+  std::string file;
+  LoadedModel loaded;
+  std::optional<ModelFacts> facts;
+  Json start = nullptr;
+
+  bool ok() const { return loaded.exit_code == 0; }
+};
+
+Verdict judge(const std::string& file, const ValidateOptions& options, const Registry& registry, bool strict) {
+  Verdict verdict{file, load_model(file, build_options(options.model), registry, strict), {}, {}};
+  if (!verdict.ok()) return verdict;
+  if (options.no_assemble) {
+    verdict.facts = count_facts(*verdict.loaded.model);
+  } else if (const auto assembled = assemble_model(verdict.loaded)) {
+    verdict.facts = assembled->start.facts;
+    verdict.start = start_json(*verdict.loaded.model, assembled->start);
+  }
+  return verdict;
+}
+
+Json verdict_json(const Verdict& verdict, int max_errors) {
+  return {{"file", verdict.file},
+          {"ok", verdict.ok()},
+          {"facts", verdict.ok() ? facts_json(*verdict.loaded.model, *verdict.facts) : Json(nullptr)},
+          {"start", verdict.start},
+          {"messages", messages_json(verdict.loaded.diagnostics, max_errors)}};
+}
+
+void print_verdict(const Verdict& verdict, const CommonOptions& common) {
+  if (!common.quiet && !common.json) {
+    print(verdict.file + (verdict.ok() ? ": ok\n" : ": not ok\n"));
+    if (verdict.ok()) print(facts_text(*verdict.loaded.model, *verdict.facts));
+  }
+  print_messages(verdict.loaded.diagnostics.format(common.max_errors), common.no_color);
+}
+
+int validate(const ValidateOptions& options, const CommonOptions& common) {
+  if (options.models.empty()) throw Error(Error::Category::usage, "missing-argument", "validate needs a model file");
+  const Registry registry = Registry::with_builtins();
+  Json list = Json::array();
+  int exit_code = 0;
+  for (const std::string& file : options.models) {
+    const Verdict verdict = judge(file, options, registry, common.strict);
+    print_verdict(verdict, common);
+    list.push_back(verdict_json(verdict, common.max_errors));
+    exit_code = std::max(exit_code, verdict.loaded.exit_code);
+  }
+  if (common.json) print_json(options.models.size() == 1 ? list.front() : list);
+  return exit_code;
+}
+
+}  // namespace
+
+Command add_validate_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("validate", "Check model files, assemble them and print their facts");
+  const auto options = std::make_shared<ValidateOptions>();
+  app->add_option("MODEL", options->models, "Model files");
+  app->add_flag("--no-assemble", options->no_assemble, "Check the text only: rank and dof stay unknown");
+  add_model_options(*app, options->model);
+  add_common_options(*app, common);
+  return {app, [options, &common] { return validate(*options, common); }};
+}
+
+}  // namespace freeplay

@@ -1,0 +1,33 @@
+// ParameterBlock: the checked values of one component, ready for its constructor.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "freeplay/plugin.h"
+
+namespace freeplay {
+
+struct ParameterBlock;
+
+/// Value of one entry of a parameter table, SI. What was not written holds its default.
+struct ParameterValue {
+  bool given = false;
+  double number = std::numeric_limits<double>::quiet_NaN();
+  int word = -1;
+  std::array<double, 3> vector{};
+  TimeFunction function;
+  std::shared_ptr<const void> function_owner;  ///< keeps what `function` points at
+  std::shared_ptr<const ParameterBlock> law;  ///< contact_law, friction_law
+};
+
+/// Values by the names of the component's table.
+struct ParameterBlock {
+  const Component* component = nullptr;
+  std::map<std::string, ParameterValue, std::less<>> values;
+};
+
+}  // namespace freeplay

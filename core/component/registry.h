@@ -1,0 +1,41 @@
+// Registry: the types that a model file may name, from the tables of all loaded libraries.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "freeplay/plugin.h"
+
+namespace freeplay {
+
+/// A type and the library it comes from.
+struct RegisteredComponent {
+  const Component* component;
+  std::string library;  ///< "built-in" or the path of the shared object
+};
+
+/// All known types in order of registration. Names are unique within a kind.
+class Registry {
+ public:
+  /// The types built into the program, published through the same table that a shared library fills.
+  static Registry with_builtins();
+
+  /// Asks `entry` for its table and registers what it holds. Throws Error{plugin}: "plugin-refused" when host and
+  /// library do not agree, "plugin-clash" when a name is taken.
+  void add(PluginEntry entry, const std::string& library);
+
+  const std::vector<RegisteredComponent>& components() const { return components_; }
+  /// Null when there is no such type.
+  const Component* find(ComponentKind kind, std::string_view name) const;
+  /// The type used where a model names none; null when the kind has none.
+  const Component* preferred(ComponentKind kind) const;
+  /// The joint type with play that stands for a joint of type `ideal` with the key `block`; null without one.
+  const Component* twin(std::string_view ideal, std::string_view block) const;
+  std::vector<std::string> names(ComponentKind kind) const;
+
+ private:
+  std::vector<RegisteredComponent> components_;
+};
+
+}  // namespace freeplay

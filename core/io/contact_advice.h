@@ -1,0 +1,40 @@
+// ContactAdvice: whether the steps were short enough for the impacts.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "model/model.h"
+#include "run/sink.h"
+
+namespace freeplay {
+
+/// Looks at events that tell `duration` and `steps` of a contact that ended, from Settings::discard on.
+class ContactAdvice : public Sink {
+ public:
+  /// Steps that an impact should take.
+  static constexpr double per_contact = 20.0;
+
+  explicit ContactAdvice(const Model& model);
+
+  void row(std::span<const double>) override {}
+  void event(const EventRecord& record) override;
+  bool ok() const override { return true; }
+
+  long under_resolved() const { return under_resolved_; }
+  /// Fewest steps of a contact; NaN when none ended.
+  double fewest_steps() const { return fewest_steps_; }
+  /// Step that gives every contact `per_contact` steps [s]; NaN when all have them.
+  double step() const { return step_; }
+
+ private:
+  struct Fields {
+    int duration = -1, steps = -1;
+  };
+  double from_;
+  std::vector<std::vector<Fields>> fields_;  // joint, event
+  long under_resolved_ = 0;
+  double fewest_steps_ = std::numeric_limits<double>::quiet_NaN(), step_ = fewest_steps_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,43 @@
+// GrowingFile: a text file that grows line by line while a run goes on.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace freeplay {
+
+/// Collects whole lines and writes them when there are many, when a second has passed, and at the end, so that a reader
+/// never sees half a line and waits at most a second. Lines do not allocate once the longest one was seen. The first
+/// failure to write is kept; what was written before it stays, cut to whole lines.
+class GrowingFile {
+ public:
+  /// Makes the file, or empties it. Throws Error{file} "cannot-write".
+  explicit GrowingFile(std::filesystem::path path);
+  ~GrowingFile();
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+
+  /// Text of the line in hand, to append to.
+  std::string& line() { return text_; }
+  /// Ends the line in hand.
+  void end_line();
+  /// Writes if the last time was a second ago.
+  void flush_if_due();
+  /// Writes everything. Throws Error{file} "cannot-write" for the first failure of all.
+  void close();
+
+  bool ok() const { return failure_ == 0; }
+
+ private:
+  void flush();
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  int failure_ = 0;  // errno of the first failure
+  std::string text_;
+  std::chrono::steady_clock::time_point last_flush_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,37 @@
+// ResultDirectory: where the files of one run go.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace freeplay {
+
+/// Name of the default directory below `results`: the model's name with characters outside [A-Za-z0-9_.-] and leading
+/// dots replaced by '_', and `-ideal` appended for an ideal run.
+std::string result_name(std::string_view model_name, bool ideal);
+
+/// Throws Error{file} unless a result may go to `path`: it does not exist, is empty, holds an earlier result (a
+/// summary.json of this program), or `force` allows to write beside other files. Changes nothing.
+void check_result_directory(const std::filesystem::path& path, bool force);
+
+/// A directory that is ready for a new result.
+class ResultDirectory {
+ public:
+  /// Checks, makes the directory and removes the files of an earlier result, and only these. Throws Error{file}.
+  ResultDirectory(std::filesystem::path path, bool force);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path file(std::string_view name) const { return path_ / name; }
+  /// Writes a whole file under a temporary name and renames it, so that it is there complete or not at all.
+  /// Throws Error{file}.
+  void write(std::string_view name, std::string_view text) const;
+  /// Sorted names of what is there.
+  std::vector<std::string> files() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,219 @@
+#include "io/summary.h"
+
+#include "io/sha256.h"
+#include "io/version.h"
+
+namespace freeplay {
+namespace {
+
+const char* word(Space space) { return space == Space::planar ? "planar" : "spatial"; }
+
+const char* word(DriverKind kind) {
+  switch (kind) {
+    case DriverKind::angle: return "angle";
+    case DriverKind::position: return "position";
+    case DriverKind::velocity: return "velocity";
+    case DriverKind::torque: return "torque";
+    case DriverKind::force: break;
+  }
+  return "force";
+}
+
+/// A count, or null for the -1 of "not computed".
+Json count(int value) { return value < 0 ? Json(nullptr) : Json(value); }
+
+Json model_part(const Model& model, const ModelFacts& facts) {
+  return {{"name", model.name},
+          {"file", model.file},
+          {"sha256", sha256(model.text)},
+          {"space", word(model.space)},
+          {"bodies", facts.bodies},
+          {"joints", facts.joints},
+          {"clearance_joints", facts.clearance_joints},
+          {"drivers", facts.drivers},
+          {"dof", count(facts.actual.dof)},
+          {"dof_driven", count(facts.actual.dof_driven)},
+          {"redundant", count(facts.actual.redundant)}};
+}
+
+/// The word of a choice: words are separated by '|'.
+std::string choice(const char* words, int index) {
+  std::string_view rest = words;
+  for (int i = 0; i < index && !rest.empty(); ++i) rest.remove_prefix(std::min(rest.find('|'), rest.size() - 1) + 1);
+  return std::string(rest.substr(0, rest.find('|')));
+}
+
+Json parameter_value(const Parameter& parameter, const ParameterValue& value) {
+  if (value.word >= 0 && parameter.choices != nullptr) return choice(parameter.choices, value.word);
+  if (parameter.kind == ParameterKind::vector) return value.vector;
+  return json_number(value.number);
+}
+
+Json integrator_part(const ParameterBlock& block) {
+  Json part = {{"type", block.component->description.name}};
+  for (const Parameter& parameter : block.component->description.parameters) {
+    const auto value = block.values.find(parameter.name);
+    if (value == block.values.end()) continue;
+    Json* at = &part;  // the name is a path
+    std::string_view path = parameter.name;
+    for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
+      at = &(*at)[std::string(path.substr(0, dot))];
+      path.remove_prefix(dot + 1);
+    }
+    (*at)[std::string(path)] = parameter_value(parameter, value->second);
+  }
+  return part;
+}
+
+Json settings_part(const Model& model) {
+  const Settings& settings = model.settings;
+  Json set = Json::object();
+  for (const auto& [name, text] : model.overrides) set[name] = text;
+  return {{"start", settings.start},
+          {"end", settings.end},
+          {"integrator", integrator_part(settings.integrator_parameters)},
+          {"step", {{"size", settings.step}, {"adaptive", false}}},
+          {"interval", settings.interval},
+          {"discard", settings.discard},
+          {"set", set},
+          {"ideal", model.ideal}};
+}
+
+Json counts_part(const Outcome& outcome, const Statistics& statistics) {
+  return {{"rows", outcome.rows},
+          {"steps", outcome.steps},
+          {"rejected", outcome.rejected},
+          {"iterations", outcome.iterations},
+          {"factorizations", outcome.factorizations},
+          {"contacts", statistics.contacts()},
+          {"contacts_total", statistics.contacts_total()}};
+}
+
+Json bodies_part(const RunRecord& record) {
+  Json part = Json::object();
+  for (std::size_t i = 0; i < record.model.bodies.size(); ++i) {
+    const auto pose = record.last_row.subspan(static_cast<std::size_t>(record.channels.bodies[i]), 3);
+    part[record.model.bodies[i].name] = {
+        {"x", json_number(pose[0])},
+        {"y", json_number(pose[1])},
+        {"angle", json_number(pose[2])},
+        {"max_speed", json_number(record.statistics.body_max_speed(static_cast<int>(i)))}};
+  }
+  return part;
+}
+
+Json joints_part(const RunRecord& record) {
+  Json part = Json::object();
+  for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
+    const JointElement& joint = record.model.joints[i];
+    const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
+    const bool touches = has_contact_statistics(record.channels.joints[i]);
+    const auto contact = [&](double value) { return touches ? json_number(value) : Json(nullptr); };
+    const bool counted = touches && has_statistics(record.model.settings, record.outcome);
+    part[joint.name] = {{"type", joint.component->description.name},
+                        {"max_force", json_number(seen.max_force)},
+                        {"rms_force", json_number(seen.rms_force)},
+                        {"max_fn", contact(seen.max_normal_force)},
+                        {"max_delta", contact(seen.max_penetration)},
+                        {"max_eccentricity", contact(seen.max_eccentricity)},
+                        {"contacts", counted ? Json(seen.contacts) : Json(nullptr)},
+                        {"contact_fraction", contact(seen.contact_fraction)},
+                        {"dissipated", contact(seen.dissipated)}};
+  }
+  return part;
+}
+
+Json drivers_part(const RunRecord& record) {
+  Json part = Json::object();
+  for (std::size_t i = 0; i < record.model.drivers.size(); ++i) {
+    const Driver& driver = record.model.drivers[i];
+    const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
+    part[driver.name] = {{"kind", word(driver.kind)},
+                         {"max_abs", json_number(seen.max_abs)},
+                         {"rms", json_number(seen.rms)},
+                         {"work", json_number(seen.work)}};
+  }
+  return part;
+}
+
+Json paths_part(const RunRecord& record) {
+  Json part = Json::object();
+  for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
+    const PathStatistics seen = record.statistics.path(static_cast<int>(i));
+    part[record.model.kinematics[i].name] = {{"max_position", json_number(seen.max_position)},
+                                             {"rms_position", json_number(seen.rms_position)},
+                                             {"max_angle", json_number(seen.max_angle)},
+                                             {"rms_angle", json_number(seen.rms_angle)}};
+  }
+  return part;
+}
+
+Json energy_part(const EnergyColumns& columns, std::span<const double> row) {
+  const auto value = [&](int column) { return json_number(row[static_cast<std::size_t>(column)]); };
+  return {{"kinetic", value(columns.kinetic)},
+          {"potential", value(columns.potential)},
+          {"dissipated", value(columns.dissipated)},
+          {"work", value(columns.work)},
+          {"residual", value(columns.residual)}};
+}
+
+Json advice_part(const ContactAdvice& advice) {
+  return {{"under_resolved", advice.under_resolved()},
+          {"min_steps_per_contact", json_number(advice.fewest_steps())},
+          {"step", json_number(advice.step())}};
+}
+
+Json performance_part(const Outcome& outcome) {
+  const double rate = outcome.wall_seconds > 0.0 ? static_cast<double>(outcome.steps) / outcome.wall_seconds : 0.0;
+  return {{"wall_seconds", outcome.wall_seconds}, {"steps_per_second", rate}};
+}
+
+}  // namespace
+
+const char* status_word(RunStatus status) {
+  switch (status) {
+    case RunStatus::completed: return "completed";
+    case RunStatus::stopped: return "stopped";
+    case RunStatus::failed: return "failed";
+    case RunStatus::interrupted: break;
+  }
+  return "interrupted";
+}
+
+bool has_contact_statistics(const JointColumns& columns) {
+  return columns.normal_force >= 0 && columns.penetration >= 0 && columns.contact >= 0;
+}
+
+bool has_statistics(const Settings& settings, const Outcome& outcome) {
+  return outcome.time >= settings.start + settings.discard;
+}
+
+Json summary(const RunRecord& record) {
+  const Outcome& outcome = record.outcome;
+  const Statistics& statistics = record.statistics;
+  return {{"freeplay", {{"version", program_version}, {"schema", schema_version}}},
+          {"model", model_part(record.model, record.facts)},
+          {"settings", settings_part(record.model)},
+          {"status", status_word(outcome.status)},
+          {"stop_reason", outcome.reason.empty() ? Json(nullptr) : Json(outcome.reason)},
+          {"exit_code", outcome.exit_code},
+          {"time", {{"reached", outcome.time}}},
+          {"counts", counts_part(outcome, statistics)},
+          {"residuals",
+           {{"position_max", json_number(statistics.position_residual())},
+            {"velocity_max", json_number(statistics.velocity_residual())},
+            {"energy_max", json_number(statistics.energy_residual())}}},
+          {"bodies", bodies_part(record)},
+          {"joints", joints_part(record)},
+          {"drivers", drivers_part(record)},
+          {"paths", paths_part(record)},
+          {"energy", energy_part(record.channels.energy, record.last_row)},
+          {"advice", advice_part(record.advice)},
+          {"verify", nullptr},
+          {"agree_until", nullptr},
+          {"performance", performance_part(outcome)},
+          {"files", record.files},
+          {"warnings", record.warnings}};
+}
+
+}  // namespace freeplay

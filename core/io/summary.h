@@ -1,0 +1,40 @@
+// Summary: summary.json, what a run did in one object.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/contact_advice.h"
+#include "io/json_text.h"
+#include "model/model.h"
+#include "run/simulation.h"
+
+namespace freeplay {
+
+/// Everything that a summary tells about.
+struct RunRecord {
+  const Model& model;
+  const Channels& channels;
+  const ModelFacts& facts;
+  const Outcome& outcome;
+  const Statistics& statistics;
+  std::span<const double> last_row;  ///< every channel
+  const ContactAdvice& advice;
+  std::vector<std::string> warnings;
+  std::vector<std::string> files;  ///< names in the result directory
+};
+
+/// completed, stopped, failed or interrupted.
+const char* status_word(RunStatus status);
+
+/// The object of section 2.4 of the command-line contract.
+Json summary(const RunRecord& record);
+
+/// True if the joint publishes what the contact part of its statistics needs.
+bool has_contact_statistics(const JointColumns& columns);
+
+/// True if the run reached the time from which statistics are taken.
+bool has_statistics(const Settings& settings, const Outcome& outcome);
+
+}  // namespace freeplay

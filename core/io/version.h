@@ -1,0 +1,11 @@
+// Version: of the program and of the formats that it writes.
+#pragma once
+
+namespace freeplay {
+
+inline constexpr const char* program_version = FREEPLAY_VERSION;
+
+/// Of the model file, of summary.json and of the result files.
+inline constexpr int schema_version = 1;
+
+}  // namespace freeplay

@@ -1,0 +1,180 @@
+#include "io/yaml_strictness.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace freeplay {
+namespace {
+
+constexpr const char* comment_without_blank = "a comment needs a blank before its '#'";
+constexpr std::size_t none = std::string_view::npos;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+bool is_one_of(char c, std::string_view set) { return set.find(c) != none; }
+
+std::size_t line_end(std::string_view text, std::size_t at) { return std::min(text.find('\n', at), text.size()); }
+
+/// Number of blanks at the beginning of a line; tabs do not indent.
+int indentation(std::string_view text, std::size_t line_begin) {
+  const std::size_t end = text.find_first_not_of(' ', line_begin);
+  return static_cast<int>(std::min(end, text.size()) - line_begin);
+}
+
+/// A line that continues a value must be indented by blanks.
+std::optional<YamlFault> find_indentation_fault(std::string_view text, std::size_t line_begin, int indent,
+                                                bool tabs_only) {
+  const int blanks = indentation(text, line_begin);
+  const std::size_t first = line_begin + static_cast<std::size_t>(blanks);
+  const std::size_t content = text.find_first_not_of(" \t\r", line_begin);
+  if (content == none || text[content] == '\n' || blanks > indent) return std::nullopt;
+  if (text[first] == '\t') return YamlFault{first, "a tab cannot indent a line", "indent with blanks"};
+  if (tabs_only) return std::nullopt;
+  return YamlFault{first, "this line of a quoted text must be indented"};
+}
+
+/// Walks through a list in brackets or a map in braces.
+class FlowScanner {
+ public:
+  FlowScanner(std::string_view text, std::size_t begin, int indent) : text_(text), at_(begin), indent_(indent) {}
+
+  std::optional<YamlFault> scan() {
+    do {
+      if (auto fault = step()) return fault;
+    } while (depth_ > 0 && at_ < text_.size());
+    if (at_ < text_.size() && text_[at_] == '#') return YamlFault{at_, comment_without_blank};
+    return std::nullopt;
+  }
+
+ private:
+  std::optional<YamlFault> step() {
+    const char c = text_[at_];
+    if (c == '\n') return find_indentation_fault(text_, ++at_, indent_, true);
+    if (is_blank(c)) {
+      ++at_;
+    } else if (c == '#' && is_blank(text_[at_ - 1])) {
+      at_ = line_end(text_, at_);
+    } else if (is_one_of(c, "[]{},")) {
+      return indicator(c);
+    } else if (token_begins_ && is_one_of(c, "\"'")) {
+      at_ = std::min(quoted_end(text_, at_), text_.size());
+      content(true);
+    } else if (token_begins_ && is_one_of(c, "&!")) {
+      at_ = std::min(text_.find_first_of(" \t\r\n,[]{}", at_), text_.size());
+      entry_begins_ = false;
+    } else if (token_begins_ && c == '-' && ends_token(at_ + 1)) {
+      return YamlFault{at_, "a '-' cannot be an entry between brackets"};
+    } else {
+      const bool colon = is_one_of(c, ":?") && (ends_token(at_ + 1) || (c == ':' && after_json_));
+      ++at_;
+      content(false);
+      token_begins_ = colon;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<YamlFault> indicator(char c) {
+    if (c == ',' && entry_begins_) return YamlFault{at_, "an entry is missing before this comma"};
+    ++at_;
+    const bool opens = c == '[' || c == '{', closes = c == ']' || c == '}';
+    depth_ += opens ? 1 : closes ? -1 : 0;
+    token_begins_ = entry_begins_ = !closes;
+    after_json_ = closes;
+    if (!closes && at_ < text_.size() && text_[at_] == '#') return YamlFault{at_, comment_without_blank};
+    return std::nullopt;
+  }
+
+  void content(bool quoted) {
+    token_begins_ = entry_begins_ = false;
+    after_json_ = quoted;
+  }
+
+  bool ends_token(std::size_t at) const {
+    return at >= text_.size() || is_blank(text_[at]) || is_one_of(text_[at], ",[]{}");
+  }
+
+  std::string_view text_;
+  std::size_t at_;
+  int indent_;
+  int depth_ = 0;
+  bool token_begins_ = true;   // a quote would open a quoted scalar here
+  bool entry_begins_ = false;  // nothing of the entry has come
+  bool after_json_ = false;    // behind a quoted scalar or a bracket a ':' needs no blank
+};
+
+}  // namespace
+
+std::optional<YamlFault> find_bad_character(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const std::size_t length = character_bytes(text, i);
+    if (length == 0) return YamlFault{i, "this byte is not UTF-8", "save the file as UTF-8"};
+    // Next line (U+0085) is the only control character beyond ASCII that YAML lets pass.
+    const bool c1 = c == 0xC2 && static_cast<unsigned char>(text[i + 1]) < 0xA0 && text[i + 1] != '\x85';
+    if ((c < 0x20 && !is_blank(text[i])) || c == 0x7F || c1) {
+      return YamlFault{i, "a control character cannot stand in the file"};
+    }
+    i += length;
+  }
+  return std::nullopt;
+}
+
+std::optional<YamlFault> find_flow_fault(std::string_view text, std::size_t begin, int indent) {
+  return FlowScanner(text, begin, indent).scan();
+}
+
+std::optional<YamlFault> find_quoted_fault(std::string_view text, std::size_t begin, int indent) {
+  const std::size_t end = quoted_end(text, begin);
+  if (end == none) return YamlFault{begin, "this quote is never closed"};
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    if (text[i] == '\n') {
+      if (auto fault = find_indentation_fault(text, i + 1, indent, false)) return fault;
+    } else if (text[begin] == '"' && text[i] == '\\' && i + 1 < end) {
+      if (!is_one_of(text[i + 1], "0abt\tnvfre \"/\\N_LPxuU\r\n")) {
+        return YamlFault{i, "this escape is unknown", "write '\\\\' for a backslash, or use single quotes"};
+      }
+      i += text[i + 1] == '\n' ? 0 : 1;
+    }
+  }
+  if (end < text.size() && text[end] == '#') return YamlFault{end, comment_without_blank};
+  return std::nullopt;
+}
+
+std::optional<YamlFault> find_block_scalar_fault(std::string_view text, std::size_t begin, int indent) {
+  const std::size_t header_end = line_end(text, begin);
+  const std::string_view header = text.substr(begin, header_end - begin);
+  if (header.substr(0, header.find('#')).find_first_of("123456789") != none) return std::nullopt;
+  int widest = 0;
+  std::size_t widest_begin = header_end;
+  for (std::size_t at = header_end + 1; at < text.size(); at = line_end(text, at) + 1) {
+    const int blanks = indentation(text, at);
+    const std::size_t content = at + static_cast<std::size_t>(blanks);
+    const bool empty = content >= text.size() || is_one_of(text[content], "\r\n");
+    if (!empty) {
+      if (blanks > indent && blanks < widest) return YamlFault{widest_begin, "this empty line has too many blanks"};
+      return std::nullopt;
+    }
+    if (blanks > widest) {
+      widest = blanks;
+      widest_begin = at;
+    }
+  }
+  return std::nullopt;
+}
+
+std::size_t quoted_end(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  for (std::size_t i = begin + 1; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == quote) {
+      const bool doubled = quote == '\'' && i + 1 < text.size() && text[i + 1] == quote;
+      if (!doubled) return i + 1;
+      ++i;
+    }
+  }
+  return none;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,36 @@
+// RowRank: which rows of a constraint Jacobian are independent, and multipliers of least norm when some are not.
+#pragma once
+
+#include <Eigen/QR>
+#include <span>
+#include <vector>
+
+namespace freeplay {
+
+/// Rank-revealing decomposition of J^T (column-pivoted QR), J being nc x nv with columns in m and rad.
+/// Sized once; analyse() and shift() do not allocate.
+class RowRank {
+ public:
+  RowRank(int rows, int columns);
+
+  /// Relative size below which a pivot counts as zero (theory of redundant constraints, threshold of the largest pivot).
+  static constexpr double tolerance = 1e-10;
+
+  /// Decomposes J given by rows (row-major nc x nv). Returns the rank.
+  int analyse(std::span<const double> jacobian);
+  int rank() const { return rank_; }
+  /// Nonzero for rows that the others determine. Valid after analyse().
+  std::span<const char> dependent() const { return dependent_; }
+
+  /// Moves multipliers along the null space of J^T: first the rows from `first_driver` on get least norm among
+  /// themselves, then the rows before it. The resultant J^T lambda does not change.
+  void least_norm(std::span<double> lambda, int first_driver);
+
+ private:
+  int rows_, columns_, rank_ = 0;
+  Eigen::MatrixXd transposed_, null_space_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  std::vector<char> dependent_, done_;
+};
+
+}  // namespace freeplay

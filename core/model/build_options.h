@@ -1,0 +1,18 @@
+// BuildOptions: what the command line changes in a model.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace freeplay {
+
+struct BuildOptions {
+  std::vector<std::pair<std::string, std::string>> set;  ///< parameter and text; the last one of a name wins
+  std::vector<std::string> ideal;                        ///< names or patterns of joints with play, or "all"
+  std::optional<double> end, step;                       ///< [s]
+  std::optional<std::string> integrator;                 ///< name
+};
+
+}  // namespace freeplay

@@ -1,0 +1,78 @@
+// Draft: a model while it is being built, with the names that are known so far.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "component/registry.h"
+#include "model/build_options.h"
+#include "model/map_reader.h"
+#include "model/name_table.h"
+#include "model/part.h"
+
+namespace freeplay {
+
+inline constexpr long largest_model = 200'000;  ///< bodies, joints, drivers and forces together
+
+struct Draft {
+  Draft(const Registry& known_types, const BuildOptions& build_options, Diagnostics& messages)
+      : registry(known_types), options(build_options), diagnostics(messages) {}
+
+  const Registry& registry;
+  const BuildOptions& options;
+  Diagnostics& diagnostics;
+  Model model;
+
+  const Reading* top = nullptr;               ///< what the top level is read in
+  std::deque<Part> parts;                     ///< the top level first
+  std::vector<std::string> broken_instances;  ///< names that begin so may have been meant to exist
+
+  NameTable bodies, joints, drivers, forces;
+  std::vector<bool> joint_usable;   ///< false: its own mistakes were reported, its coordinate is unknown
+  std::vector<bool> ideal_matched;  ///< by index of options.ideal
+
+  std::unordered_map<int, std::string> prescribed;  ///< joints whose coordinate a driver prescribes, and its name
+
+  struct Frame {
+    BodyId body = ground;
+    Vector3 position{};
+    double angle = 0.0;
+  };
+  std::unordered_map<std::string, Frame> frames;  ///< by BODY/FRAME
+  std::unordered_map<std::string, int> markers;   ///< index into model.markers by BODY/FRAME
+
+  // Names, in the order in which section 8 of the format looks them up. All report `unknown-name` at `value`.
+  std::optional<BodyId> body(const CheckedValue& value, const Part& part) const;
+  std::optional<int> joint(const CheckedValue& value, const Part& part) const;
+  /// Names or patterns of joints, expanded in order; nothing when one was in error.
+  std::optional<std::vector<int>> joint_list(const CheckedValue& value, const Part& part) const;
+  /// The marker of a frame reference, created when it is new.
+  std::optional<int> marker(const CheckedValue& value, const Part& part);
+
+  /// The same for names that are at hand; nothing is reported.
+  std::optional<BodyId> find_body(const std::string& name, const Part& part) const;
+  std::optional<int> find_joint(const std::string& name, const Part& part) const;
+
+  const std::string& body_name(BodyId body) const;
+  int marker(const std::string& full_name);
+  /// May the name belong to an instance that was in error, so that it need not be reported?
+  bool excused(const std::string& name) const;
+
+  /// Reports `bad-name`, and `reserved-name` for a word of `reserved`, at the key of a declaration.
+  static void check_name(const CheckedValue& entry, const std::vector<std::string>& reserved = {});
+
+ private:
+  void unknown(const CheckedValue& value, const char* kind, const std::string& name, const NameTable& table,
+               const Part& part) const;
+  std::optional<std::string> frame_name(const CheckedValue& value, const std::string& reference,
+                                        const Part& part) const;
+};
+
+/// The joints among `names` that match, looked up among the part's own first.
+std::vector<int> matching(const NameTable& names, const std::string& pattern, const Part& part);
+
+}  // namespace freeplay

@@ -1,0 +1,124 @@
+#include "model/force_section.h"
+
+#include "model/name_rule.h"
+
+namespace freeplay {
+namespace {
+
+const std::vector<std::string> type_words = {"force", "torque", "gravity"};
+
+/// Reads one entry of `forces`.
+class ForceEntry {
+ public:
+  ForceEntry(Draft& draft, const Part& part, const CheckedValue& entry)
+      : draft_(draft), part_(part), entry_(entry), map_(entry, Uses::presets) {}
+
+  void read() {
+    const auto type = map_.require("type");
+    const auto word = type ? type->string() : std::nullopt;
+    if (!word) return;
+    if (*word == "force") {
+      read_force();
+    } else if (*word == "torque") {
+      read_torque();
+    } else if (*word == "gravity") {
+      read_gravity();
+    } else {
+      const std::string suggested = nearest(*word, type_words);
+      type->fail("unknown-type", "unknown type '" + *word + "' in '" + type->path() + "'", suggested,
+                 suggested.empty() ? "not in this release, which has " + either(type_words) : "");
+      return;
+    }
+    map_.finish();
+  }
+
+ private:
+  void read_force() {
+    const auto at = map_.require("at");
+    const auto value = map_.require("value");
+    const auto axes = map_.find("axes");
+    AppliedForce force = named(ForceKind::force);
+    const auto word = axes ? axes->word({"global", "frame"}) : std::optional<int>(0);
+    const auto marker = at ? draft_.marker(*at, part_) : std::nullopt;
+    const auto items = value ? value->list(2) : std::nullopt;
+    bool good = marker && word && items;
+    if (items) {
+      for (const CheckedValue& item : *items) good = append(item, dimension::force, force) && good;
+    }
+    if (!good) return;
+    force.marker = *marker;
+    force.frame_axes = *word == 1;
+    draft_.model.forces.push_back(std::move(force));
+  }
+
+  void read_torque() {
+    const auto on = map_.require("on");
+    const auto value = map_.require("value");
+    AppliedForce torque = named(ForceKind::torque);
+    const std::optional<BodyId> body = on ? draft_.body(*on, part_) : std::nullopt;
+    const bool good = value && append(*value, dimension::torque, torque);
+    if (!good || !body) return;
+    torque.marker = draft_.marker(draft_.body_name(*body) + (*body == ground ? "/origin" : "/com"));
+    draft_.model.forces.push_back(std::move(torque));
+  }
+
+  void read_gravity() {
+    const auto on = map_.require("on");
+    const auto value = map_.require("value");
+    const auto acceleration = value ? value->vector(dimension::acceleration) : std::nullopt;
+    const auto items = on ? on->list() : std::nullopt;
+    if (!items) return;
+    for (const CheckedValue& item : *items) {
+      for (const BodyId body : bodies(item)) {
+        if (acceleration && body != ground) draft_.model.bodies[static_cast<std::size_t>(body)].gravity = *acceleration;
+      }
+    }
+  }
+
+  std::vector<BodyId> bodies(const CheckedValue& item) const {
+    const auto name = item.reference();
+    if (!name) return {};
+    if (!is_pattern(*name)) {
+      const std::optional<BodyId> body = draft_.body(item, part_);
+      return body ? std::vector<BodyId>{*body} : std::vector<BodyId>{};
+    }
+    const std::vector<int> found = matching(draft_.bodies, *name, part_);
+    if (found.empty() && !draft_.excused(*name)) {
+      item.fail("unknown-name", "no body matches the pattern '" + *name + "'");
+    }
+    return found;
+  }
+
+  static bool append(const CheckedValue& value, const Dimension& dimension, AppliedForce& force) {
+    std::optional<Expression> expression = value.time_function(dimension);
+    if (expression) force.value.push_back(std::move(*expression));
+    return expression.has_value();
+  }
+
+  AppliedForce named(ForceKind kind) const {
+    AppliedForce force;
+    force.name = part_.full(entry_.key());
+    force.location = entry_.key_location();
+    force.kind = kind;
+    return force;
+  }
+
+  Draft& draft_;
+  const Part& part_;
+  const CheckedValue& entry_;
+  MapReader map_;
+};
+
+}  // namespace
+
+void add_forces(Draft& draft, const Part& part) {
+  const auto section = part.section("forces");
+  if (!section) return;
+  for (const CheckedValue& entry : entries_of(*section)) {
+    Draft::check_name(entry);
+    draft.forces.add(part.full(entry.key()));
+    ForceEntry(draft, part, entry).read();
+  }
+}
+
+}  // namespace freeplay

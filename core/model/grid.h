@@ -1,0 +1,17 @@
+// Grid: several values of one quantity, as `analysis` and `sweep` write them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "model/checked_value.h"
+
+namespace freeplay {
+
+inline constexpr long largest_grid = 100'000'000;  ///< points
+
+/// Checks a grid of whatever dimension, or of `dimension` if that is given. Returns the number of points, nothing after
+/// an error.
+std::optional<long> check_grid(const CheckedValue& value, const std::optional<Dimension>& dimension);
+
+}  // namespace freeplay

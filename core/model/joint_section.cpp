@@ -1,0 +1,199 @@
+#include "model/joint_section.h"
+
+#include "model/name_rule.h"
+#include "model/parameter_check.h"
+
+namespace freeplay {
+namespace {
+
+bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
+
+bool serves(Space space, Space model_space) {
+  return (static_cast<unsigned>(space) & static_cast<unsigned>(model_space)) != 0;
+}
+
+/// Reads one entry of `joints`.
+class JointEntry {
+ public:
+  JointEntry(Draft& draft, const Part& part, const CheckedValue& entry, std::size_t index)
+      : draft_(draft), part_(part), entry_(entry), map_(entry, Uses::presets), index_(index) {}
+
+  void read() {
+    if (!map_.good()) return;
+    const auto type = map_.require("type");
+    const Component* named = type ? find_type(draft_.registry, ComponentKind::joint, *type) : nullptr;
+    read_ends(named);
+    // Without a type nobody knows which keys are allowed.
+    if (named == nullptr || !serves_space(*named, *type)) return;
+    choose_twins(*named);
+    create();
+    map_.finish();
+  }
+
+ private:
+  JointElement& element() { return draft_.model.joints[index_]; }
+
+  bool serves_space(const Component& named, const CheckedValue& type) {
+    const Space space = draft_.model.space;
+    if (serves(named.description.space, space)) return true;
+    std::vector<std::string> others;
+    for (const RegisteredComponent& other : draft_.registry.components()) {
+      if (other.component->kind != ComponentKind::joint || !serves(other.component->description.space, space)) continue;
+      others.emplace_back(other.component->description.name);
+    }
+    const std::string word = space == Space::planar ? "planar" : "spatial";
+    type.fail("type-space",
+              std::string("the type '") + named.description.name + "' does not work in " + word + " models", {},
+              "types that do: " + either(others));
+    return false;
+  }
+
+  /// A type with the block of its twin is that twin; a type with play names its ideal twin itself.
+  void choose_twins(const Component& named) {
+    component_ = &named;
+    ideal_ = &named;
+    for (const RegisteredComponent& other : draft_.registry.components()) {
+      const Description& twin = other.component->description;
+      if (other.component->kind != ComponentKind::joint || !same_text(twin.ideal, named.description.name)) continue;
+      if (twin.block == nullptr) continue;
+      if (map_.has(twin.block)) component_ = other.component;
+      map_.find(twin.block);
+    }
+    const char* ideal = component_->description.ideal;
+    if (ideal == nullptr) return;
+    ideal_ = draft_.registry.find(ComponentKind::joint, ideal);
+    if (ideal_ == nullptr) {
+      throw Error(Error::Category::plugin, "plugin-failed",
+                  std::string("the ideal type '") + ideal + "' of '" + component_->description.name + "' is missing",
+                  entry_.key_location());
+    }
+  }
+
+  // --- ends ------------------------------------------------------------------------------------------------------
+
+  void read_ends(const Component* named) {
+    const char* first = named == nullptr ? nullptr : named->description.first_end;
+    const char* second = named == nullptr ? nullptr : named->description.second_end;
+    const auto between = map_.find("between");
+    const bool by_ends = first != nullptr && second != nullptr && (map_.has(first) || map_.has(second));
+    if (between) {
+      if (by_ends) {
+        map_.find(first);
+        map_.find(second);
+        if (!map_.conflict("between", first)) map_.conflict("between", second);
+      }
+      if (const auto ends = between->list(2)) join((*ends)[0], (*ends)[1], *between);
+      return;
+    }
+    if (!by_ends) {
+      if (named != nullptr) map_.report_missing("between");
+      return;
+    }
+    const auto a = map_.require(first), b = map_.require(second);
+    if (a && b) join(*a, *b, *b);
+  }
+
+  void join(const CheckedValue& first, const CheckedValue& second, const CheckedValue& place) {
+    const std::optional<int> a = draft_.marker(first, part_), b = draft_.marker(second, part_);
+    if (!a || !b) return;
+    const auto body_of = [&](int marker) { return draft_.model.markers[static_cast<std::size_t>(marker)].body; };
+    if (body_of(*a) == body_of(*b)) {
+      place.fail("same-body", "'" + entry_.path() + "' joins two frames of '" + draft_.body_name(body_of(*a)) + "'");
+    }
+    element().marker_a = *a;
+    element().marker_b = *b;
+  }
+
+  // --- components ------------------------------------------------------------------------------------------------
+
+  bool is_made_ideal() {
+    bool made = false;
+    for (std::size_t i = 0; i < draft_.options.ideal.size(); ++i) {
+      const std::string& pattern = draft_.options.ideal[i];
+      if (pattern != "all" && !matches(pattern, element().name)) continue;
+      draft_.ideal_matched[i] = true;
+      made = true;
+    }
+    return made;
+  }
+
+  void create() {
+    JointRef joint, ideal;
+    const CheckedParameters ideal_parameters = check_parameters(*ideal_, map_, draft_.registry);
+    const bool twins = ideal_ != component_;
+    const bool usable = make(ideal_parameters, ideal, element().ideal_layout);
+    JointLayout layout = element().ideal_layout;
+    joint = ideal;
+    if (twins) {
+      const CheckedParameters parameters = check_parameters(*component_, map_, draft_.registry);
+      make(parameters, joint, layout);
+    }
+    const bool play = twins && !is_made_ideal();
+    element().ideal_component = ideal_;
+    element().ideal = ideal;
+    element().component = play ? component_ : ideal_;
+    element().joint = play ? joint : ideal;
+    element().layout = play ? layout : element().ideal_layout;
+    element().has_play = play;
+    draft_.joint_usable[index_] = usable;
+  }
+
+  bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {
+    joint = JointRef();
+    layout = JointLayout();
+    layout.space = draft_.model.space;
+    if (!parameters.block) return false;
+    CreationFault fault;
+    joint = draft_.model.instances.create_joint(*parameters.block, fault);
+    if (!joint) {
+      report_fault(fault, parameters, entry_);
+      return false;
+    }
+    Message message;
+    if (joint.declare(layout, message)) return true;
+    throw Error(Error::Category::plugin, "plugin-failed",
+                "in '" + entry_.path() + "': '" + parameters.block->component->description.name + "': " + message.text,
+                entry_.key_location());
+  }
+
+  Draft& draft_;
+  const Part& part_;
+  const CheckedValue& entry_;
+  MapReader map_;
+  std::size_t index_;
+  const Component* component_ = nullptr;
+  const Component* ideal_ = nullptr;
+};
+
+}  // namespace
+
+void add_joints(Draft& draft, const Part& part) {
+  const auto section = part.section("joints");
+  if (!section) return;
+  for (const CheckedValue& entry : entries_of(*section)) {
+    Draft::check_name(entry);
+    const std::string name = part.full(entry.key());
+    if (!draft.joints.add(name)) continue;  // only after an instance name was refused
+    JointElement& element = draft.model.joints.emplace_back();
+    element.name = name;
+    element.location = entry.key_location();
+    draft.joint_usable.push_back(false);
+    JointEntry(draft, part, entry, draft.model.joints.size() - 1).read();
+  }
+}
+
+void require_ideal_matches(const Draft& draft) {
+  for (std::size_t i = 0; i < draft.options.ideal.size(); ++i) {
+    const std::string& pattern = draft.options.ideal[i];
+    if (pattern == "all" || draft.ideal_matched[i]) continue;
+    std::vector<std::string> with_play;
+    for (const JointElement& joint : draft.model.joints) {
+      if (joint.has_play) with_play.push_back(joint.name);
+    }
+    const std::string suggested = nearest(pattern, with_play);
+    throw Error(Error::Category::usage, "usage", "--ideal " + pattern + ": no joint with clearance has such a name", {},
+                suggested.empty() ? "" : "did you mean '" + suggested + "'?");
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,15 @@
+// The section `joints`.
+#pragma once
+
+#include "model/draft.h"
+
+namespace freeplay {
+
+/// Adds the joints of a part; all frames are known. A joint with play is created together with its ideal twin.
+void add_joints(Draft& draft, const Part& part);
+
+/// Throws Error{usage} when an `--ideal` pattern matched no joint with play. Call after the joints of all parts, and
+/// only if nothing was wrong with them.
+void require_ideal_matches(const Draft& draft);
+
+}  // namespace freeplay

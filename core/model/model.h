@@ -1,0 +1,139 @@
+// Model: the checked mechanism, immutable after build_model().
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/expression.h"
+#include "component/instances.h"
+
+namespace freeplay {
+
+using Vector3 = std::array<double, 3>;
+
+/// Index of a body in Model::bodies, or `ground`.
+using BodyId = int;
+inline constexpr BodyId ground = -1;
+
+struct Body {
+  std::string name;
+  double mass = 0.0;                    ///< [kg]
+  std::array<double, 9> inertia{};      ///< about the centre of mass, body axes [kg m^2]; planar: the last entry
+  Vector3 com{};                        ///< centre of mass in the body frame [m]
+  Vector3 gravity{};                    ///< acceleration of free fall [m/s^2]
+  std::optional<Vector3> position;      ///< starting guess of the body frame [m]
+  std::optional<double> angle;          ///< planar starting guess [rad]
+  Vector3 velocity{};                   ///< starting guess for the body frame's origin [m/s]
+  Vector3 angular_velocity{};           ///< [rad/s]; planar: z
+};
+
+/// Point with axes fixed on a body ("frame" in model files).
+struct Marker {
+  BodyId body = ground;
+  std::string name;      ///< BODY/FRAME
+  Vector3 position{};    ///< in the body frame [m]
+  double angle = 0.0;    ///< planar [rad]
+};
+
+/// A joint or a force between two markers.
+struct JointElement {
+  std::string name;
+  Location location;                    ///< of the entry
+  const Component* component = nullptr; ///< the type that runs
+  JointRef joint;
+  JointLayout layout;
+  int marker_a = 0, marker_b = 0;       ///< indices into Model::markers
+  // The ideal twin of a joint with play; equal to the above for all others.
+  const Component* ideal_component = nullptr;
+  JointRef ideal;
+  JointLayout ideal_layout;
+  bool has_play = false;
+  std::optional<double> start_coordinate, start_speed;  ///< held exactly while assembling (`initial`)
+};
+
+enum class DriverKind { angle, position, velocity, torque, force };
+inline bool prescribes(DriverKind kind) { return kind != DriverKind::torque && kind != DriverKind::force; }
+
+/// One driven joint.
+struct Driver {
+  std::string name;
+  Location location;
+  int joint = 0;
+  DriverKind kind = DriverKind::angle;
+  Expression value;             ///< of time; unused when `kinematics` is set
+  int kinematics = -1;          ///< index into Model::kinematics: motion by inverse kinematics
+  int elbow = 1;                ///< working mode of the leg, 1 or -1
+  bool elbow_given = false;
+};
+
+/// The frame of an inverse-kinematics entry and its path. Its drivers are neighbours in Model::drivers.
+struct InverseKinematics {
+  std::string name;
+  Location location, frame_location, path_location;
+  int marker = 0;
+  std::array<std::optional<Expression>, 3> path;  ///< x, y [m], angle [rad]; left out: follows from the mechanism
+  int first_driver = 0, driver_count = 0;
+};
+
+enum class ForceKind { force, torque };
+
+/// Force or torque given as functions of time.
+struct AppliedForce {
+  std::string name;
+  Location location;
+  ForceKind kind = ForceKind::force;
+  int marker = 0;                   ///< torque: the marker `com` of the body
+  bool frame_axes = false;          ///< force: components in the marker's axes instead of world axes
+  std::vector<Expression> value;    ///< force: 2 or 3 [N]; torque: 1 or 3 [N m]
+};
+
+/// Ends a run, successfully.
+struct StopCondition {
+  std::string channel;
+  double limit = 0.0;
+  bool above = true;
+  double after = 0.0;  ///< [s]
+  Location location;
+};
+
+struct Settings {
+  double start = 0.0, end = 1.0;  ///< [s]
+  double step = 1e-4;             ///< [s]
+  ParameterBlock integrator_parameters;
+  IntegratorRef integrator;
+  double interval = 0.0;                      ///< of output rows [s]
+  double discard = 0.0;                       ///< left out of statistics, from the start [s]
+  std::vector<std::string> channels{"*"};     ///< patterns of result columns
+  std::vector<int> frames;                    ///< markers to report
+  std::vector<StopCondition> stop;
+  double assembly_tolerance = 1e-10;          ///< [m, rad]
+  int assembly_iterations = 50;
+};
+
+struct Model {
+  std::string file, text, name;  ///< path as given, text byte for byte, name for reports
+  Space space = Space::planar;
+  Vector3 gravity{};
+  std::vector<Body> bodies;
+  std::vector<Marker> markers;
+  std::vector<JointElement> joints;
+  std::vector<Driver> drivers;
+  std::vector<InverseKinematics> kinematics;
+  std::vector<AppliedForce> forces;
+  Settings settings;
+  std::vector<std::pair<std::string, std::string>> overrides;  ///< --set, name and text
+  std::vector<std::string> ideal;                              ///< --ideal, as asked for
+  Instances instances;                                         ///< keeps joints and laws alive
+
+  int clearance_joints() const {
+    int count = 0;
+    for (const JointElement& joint : joints) count += joint.has_play ? 1 : 0;
+    return count;
+  }
+};
+
+}  // namespace freeplay

@@ -1,0 +1,226 @@
+#include "model/model_builder.h"
+
+#include <deque>
+#include <filesystem>
+#include <utility>
+
+#include "model/analysis_section.h"
+#include "model/body_section.h"
+#include "model/draft.h"
+#include "model/driver_section.h"
+#include "model/force_section.h"
+#include "model/frame_section.h"
+#include "model/initial_section.h"
+#include "model/joint_section.h"
+#include "model/name_rule.h"
+#include "model/parameter_override.h"
+#include "model/simulation_section.h"
+#include "model/sweep_section.h"
+#include "model/template.h"
+
+namespace freeplay {
+namespace {
+
+constexpr long schema_version = 1;
+
+class ModelBuilder {
+ public:
+  ModelBuilder(const Document& document, const Registry& registry, const BuildOptions& options,
+               Diagnostics& diagnostics)
+      : document_(document),
+        diagnostics_(diagnostics),
+        draft_(registry, options, diagnostics),
+        overrides_(options, diagnostics),
+        parameters_(used_),
+        presets_(used_),
+        reading_{&diagnostics, &parameters_, &presets_} {
+    draft_.top = &reading_;
+    draft_.ideal_matched.assign(options.ideal.size(), false);
+  }
+
+  std::unique_ptr<Model> build() {
+    const CheckedValue root(reading_, document_.root(), nullptr, "");
+    if (!root.node().is_null() && !root.node().is_map()) {
+      root.fail("wrong-type", std::string("a model must be a map, not ") + root.node().kind_name());
+      return nullptr;
+    }
+    const Node nothing{.kind = Node::Kind::map, .line = 1, .column = 1, .file = document_.root().file};
+    MapReader top(root.node().is_map() ? root : CheckedValue(reading_, nothing, nullptr, ""));
+    if (!read_version(top)) return nullptr;
+    read_parameters(top);
+    if (!read_header(top)) return nullptr;
+    open_sections(top);
+    read_sections();
+    top.finish();
+    if (!diagnostics_.has_errors()) require_ideal_matches(draft_);
+    warn_unused();
+    if (diagnostics_.has_errors()) return nullptr;
+    return std::make_unique<Model>(std::move(draft_.model));
+  }
+
+ private:
+  // --- head of the file ------------------------------------------------------------------------------------------
+
+  /// Another version may mean other keys, so nothing else is read then.
+  bool read_version(MapReader& top) {
+    const auto version = top.require("freeplay");
+    if (!version) return true;
+    const auto number = version->quantity(dimension::none);
+    if (!number || *number == schema_version) return true;
+    version->fail("bad-version",
+                  "schema version " + version->node().text + " is not known; this program reads version 1");
+    return false;
+  }
+
+  /// False when the rest cannot be read sensibly.
+  bool read_header(MapReader& top) {
+    Model& model = draft_.model;
+    model.file = document_.file_name();
+    model.text = document_.text();
+    model.name = std::filesystem::path(model.file).stem().string();
+    model.overrides = draft_.options.set;
+    model.ideal = draft_.options.ideal;
+    const auto name = top.find("name"), description = top.find("description"), space = top.find("space");
+    if (name) model.name = name->string().value_or(model.name);
+    if (description) description->string();
+    refuse_plugins(top.find("plugins"));
+    top.refuse("urdf");
+    if (space) {
+      const std::optional<int> word = space->word({"planar", "spatial"});
+      if (word == std::optional<int>(1)) {
+        space->fail("type-space", "spatial bodies are not in this release");
+        return false;
+      }
+    }
+    if (const auto gravity = top.find("gravity")) {
+      model.gravity = gravity->vector(dimension::acceleration).value_or(Vector3{});
+    }
+    return true;
+  }
+
+  static void refuse_plugins(const std::optional<CheckedValue>& plugins) {
+    if (!plugins || plugins->node().is_null()) return;
+    const auto items = plugins->list();
+    if (!items || items->empty()) return;
+    const CheckedValue& first = items->front();
+    const std::string word = first.string().value_or("");
+    throw Error(Error::Category::plugin, "plugin-not-found", "plugin '" + word + "' cannot be loaded", first.location(),
+                "not in this release");
+  }
+
+  void read_parameters(MapReader& top) {
+    const auto section = top.find("parameters");
+    if (section && !section->node().is_null()) {
+      for (const CheckedValue& entry : entries_of(*section)) {
+        if (!check_parameter_name(entry)) {
+          parameters_.add_broken(entry.key());
+          continue;
+        }
+        const Node* replaced = overrides_.text_of(entry.key());
+        parameters_.add(entry.key(), *entry.key_node(), replaced == nullptr ? entry.node() : *replaced, entry.path(),
+                        reading_);
+      }
+    }
+    overrides_.require_declared(parameters_);
+    parameters_.evaluate();
+  }
+
+  // --- sections --------------------------------------------------------------------------------------------------
+
+  static std::optional<CheckedValue> present(std::optional<CheckedValue> section) {
+    if (section && section->node().is_null()) return std::nullopt;
+    return section;
+  }
+
+  void open_sections(MapReader& top) {
+    if (const auto presets = present(top.find("presets"))) presets_.read(*presets);
+    simulation_ = present(top.find("simulation"));
+    if (simulation_) reading_.start_time = read_start_time(*simulation_);
+    Part& part = draft_.parts.emplace_back();
+    for (const char* name : {"bodies", "frames", "joints", "drivers", "forces"}) {
+      const auto section = present(top.find(name));
+      if (section) part.sections.emplace(name, *section);
+    }
+    templates_ = present(top.find("templates"));
+    initial_ = present(top.find("initial"));
+    analysis_ = present(top.find("analysis"));
+    sweep_ = present(top.find("sweep"));
+    if (templates_) check_templates(*templates_);
+    const auto instances = present(top.find("instances"));
+    if (instances) expand_instances(draft_, templates_, *instances, used_, storage_);
+  }
+
+  void read_sections() {
+    if (!within_limit()) return;
+    for (const Part& part : draft_.parts) add_bodies(draft_, part);
+    for (const Part& part : draft_.parts) add_frames(draft_, part);
+    for (const Part& part : draft_.parts) add_joints(draft_, part);
+    for (const Part& part : draft_.parts) add_drivers(draft_, part);
+    for (const Part& part : draft_.parts) add_forces(draft_, part);
+    if (initial_) read_initial(draft_, *initial_);
+    read_simulation(draft_, simulation_);
+    if (analysis_) check_analysis(draft_, *analysis_);
+    if (sweep_) check_sweep(draft_, *sweep_, parameters_);
+    if (!draft_.model.bodies.empty() || diagnostics_.has_errors()) return;
+    CheckedValue(reading_, document_.root(), nullptr, "").fail("empty-model", "the model has no body that moves");
+  }
+
+  bool within_limit() {
+    std::size_t count = 0;
+    for (const Part& part : draft_.parts) {
+      for (const char* name : {"bodies", "joints", "drivers", "forces"}) {
+        const auto section = part.section(name);
+        if (section) count += section->node().entries.size();
+      }
+    }
+    if (count <= static_cast<std::size_t>(largest_model)) return true;
+    CheckedValue(reading_, document_.root(), nullptr, "")
+        .fail("too-large", "a model has at most " + std::to_string(largest_model) + " elements");
+    return false;
+  }
+
+  // --- warnings --------------------------------------------------------------------------------------------------
+
+  void warn_unused() {
+    // What an error kept from being read may well use it.
+    if (diagnostics_.has_errors()) return;
+    const Node& root = document_.root();
+    warn_unused_in(root.find("parameters"), "parameter");
+    warn_unused_in(root.find("presets"), "preset");
+    const Node* templates = root.find("templates");
+    warn_unused_in(templates, "template");
+    if (templates == nullptr) return;
+    for (const Node::Entry& entry : templates->entries) {
+      if (used_.contains(entry.key)) warn_unused_in(entry.value->find("parameters"), "parameter");
+    }
+  }
+
+  void warn_unused_in(const Node* section, const std::string& kind) {
+    if (section == nullptr) return;
+    for (const Node::Entry& entry : section->entries) {
+      if (is_note(entry.key->text) || used_.contains(entry.key)) continue;
+      CheckedValue(reading_, *entry.value, entry.key, entry.key->text)
+          .warn_at_key("unused", kind + " '" + entry.key->text + "' is not used");
+    }
+  }
+
+  const Document& document_;
+  Diagnostics& diagnostics_;
+  Draft draft_;
+  ParameterOverrides overrides_;
+  UsedKeys used_;
+  ParameterScope parameters_;
+  PresetTable presets_;
+  Reading reading_;
+  InstanceStorage storage_;
+  std::optional<CheckedValue> simulation_, templates_, initial_, analysis_, sweep_;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> build_model(const Document& document, const Registry& registry, const BuildOptions& options,
+                                   Diagnostics& diagnostics) {
+  return ModelBuilder(document, registry, options, diagnostics).build();
+}
+
+}  // namespace freeplay

@@ -1,0 +1,45 @@
+#include "model/name_rule.h"
+
+namespace freeplay {
+namespace {
+
+// Not std::isalpha: names must not depend on the locale.
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool follows_rule(std::string_view word, bool hyphen) {
+  if (word.empty() || word.size() > 64 || !is_letter(word.front())) return false;
+  for (const char c : word) {
+    if (!is_letter(c) && !is_digit(c) && !(hyphen && c == '-')) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_name(std::string_view word) { return follows_rule(word, true) && !is_note(word); }
+
+bool is_parameter_name(std::string_view word) { return follows_rule(word, false); }
+
+bool matches(std::string_view pattern, std::string_view name) {
+  // Greedy with one point of return: a later star makes the choices of an earlier one irrelevant.
+  std::size_t p = 0, n = 0, star = std::string_view::npos, star_name = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      star_name = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++star_name;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+}  // namespace freeplay

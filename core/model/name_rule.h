@@ -1,0 +1,23 @@
+// NameRule: which words may name things, and which names match a pattern.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace freeplay {
+
+/// [A-Za-z_][A-Za-z0-9_-]{0,63}, the rule for bodies, joints and everything else but parameters.
+bool is_name(std::string_view word);
+
+/// [A-Za-z_][A-Za-z0-9_]{0,63}: a hyphen would be a minus sign in an expression.
+bool is_parameter_name(std::string_view word);
+
+/// Keys that begin with "x-" belong to the person, not to the format.
+inline bool is_note(std::string_view key) { return key.substr(0, 2) == "x-"; }
+
+inline bool is_pattern(std::string_view word) { return word.find('*') != std::string_view::npos; }
+
+/// Does `name` match `pattern`, in which `*` stands for any run of characters, dots included?
+bool matches(std::string_view pattern, std::string_view name);
+
+}  // namespace freeplay

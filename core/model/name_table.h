@@ -1,0 +1,31 @@
+// NameTable: the full names of one kind of thing, numbered in order of declaration.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace freeplay {
+
+/// Names of bodies, joints, drivers or forces.
+class NameTable {
+ public:
+  /// False when the name is taken.
+  bool add(const std::string& name) {
+    const bool fresh = index_.emplace(name, static_cast<int>(names_.size())).second;
+    if (fresh) names_.push_back(name);
+    return fresh;
+  }
+  std::optional<int> find(const std::string& name) const {
+    const auto found = index_.find(name);
+    return found == index_.end() ? std::nullopt : std::optional<int>(found->second);
+  }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::unordered_map<std::string, int> index_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace freeplay

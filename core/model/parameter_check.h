@@ -1,0 +1,31 @@
+// ParameterCheck: a block of the model file against a component's parameter table.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "component/instances.h"
+#include "component/registry.h"
+#include "model/map_reader.h"
+
+namespace freeplay {
+
+/// What the file says about a component.
+struct CheckedParameters {
+  std::optional<ParameterBlock> block;         ///< nothing when something in it was in error
+  std::map<std::string, CheckedValue> places;  ///< values and blocks that are written, by their path in the table
+};
+
+/// Reads the keys of `entry` that the table of `component` names and makes them known to it; the caller finishes the
+/// entry. Maps within it are finished here.
+CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry);
+
+/// The type `word` of this kind, or null after `unknown-type` at `value`.
+const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value);
+
+/// Reports a constructor's complaint at the place in `entry` that it names. Throws Error{plugin} when the constructor
+/// failed for another reason.
+void report_fault(const CreationFault& fault, const CheckedParameters& parameters, const CheckedValue& entry);
+
+}  // namespace freeplay

@@ -1,0 +1,22 @@
+// Reading: what a value of the model file sees while it is read, and where its mistakes go.
+#pragma once
+
+#include <string>
+
+#include "base/diagnostics.h"
+
+namespace freeplay {
+
+class ParameterScope;
+class PresetTable;
+
+/// One for the top level, one for each instance of a template. Referred to by every value that is read in it.
+struct Reading {
+  Diagnostics* diagnostics;
+  const ParameterScope* scope;
+  const PresetTable* presets = nullptr;
+  std::string instance{};   ///< full name of the instance; empty at top level
+  double start_time = 0.0;  ///< time functions are tried here [s]
+};
+
+}  // namespace freeplay

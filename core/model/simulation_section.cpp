@@ -1,0 +1,217 @@
+#include "model/simulation_section.h"
+
+#include <fmt/format.h>
+
+#include "model/parameter_check.h"
+
+namespace freeplay {
+namespace {
+
+/// Reads the section into the draft's settings.
+class SimulationSection {
+ public:
+  explicit SimulationSection(Draft& draft) : draft_(draft), settings_(draft.model.settings) {}
+
+  void read(const CheckedValue& section) {
+    MapReader map(section);
+    read_span(map);
+    read_step(map);
+    integrator_ = map.find("integrator");
+    const auto output = map.find("output");
+    const auto stop = map.find("stop");
+    map.refuse("accuracy");
+    settings_.interval = (settings_.end - settings_.start) / 1000.0;
+    if (output) read_output(*output);
+    if (stop) read_stop(*stop);
+    map.finish();
+  }
+
+  /// What the command line says, and what neither it nor the file says.
+  void complete(bool section_given) {
+    const BuildOptions& options = draft_.options;
+    if (options.end && !(*options.end > settings_.start)) {
+      throw Error(Error::Category::usage, "usage",
+                  fmt::format("--end {} must be greater than the start, {} s", *options.end, settings_.start));
+    }
+    if (options.step && !(*options.step > 0.0)) {
+      throw Error(Error::Category::usage, "usage", fmt::format("--step {} must be > 0", *options.step));
+    }
+    if (options.step) settings_.step = *options.step;
+    if (!section_given) {
+      settings_.end = options.end.value_or(settings_.end);
+      settings_.interval = (settings_.end - settings_.start) / 1000.0;
+    }
+    create_integrator();
+  }
+
+ private:
+  void read_span(MapReader& map) {
+    const auto start = map.find("start");
+    const auto end = map.find("end");
+    if (start) settings_.start = start->quantity(dimension::time).value_or(0.0);
+    const std::optional<double> written = end ? end->quantity(dimension::time) : std::optional<double>(settings_.end);
+    const bool good = !written || *written > settings_.start;
+    if (!good && (end || !draft_.options.end)) {
+      (end ? *end : *start)
+          .fail("out-of-range",
+                fmt::format("'end' ({} s) must be greater than 'start' ({} s)", *written, settings_.start));
+    }
+    settings_.end = draft_.options.end.value_or(good && written ? *written : settings_.start + 1.0);
+  }
+
+  void read_step(MapReader& map) {
+    const auto step = map.find("step");
+    if (!step) return;
+    std::optional<double> size;
+    if (step->node().is_map()) {
+      MapReader inner(*step);
+      const auto value = inner.find("size");
+      if (value) size = value->quantity(dimension::time, positive);
+      for (const char* key : {"adaptive", "tolerance", "min", "max", "per_contact"}) inner.refuse(key);
+      inner.finish();
+    } else {
+      size = step->quantity(dimension::time, positive);
+    }
+    settings_.step = size.value_or(settings_.step);
+  }
+
+  void read_output(const CheckedValue& value) {
+    MapReader map(value);
+    const auto interval = map.find("interval");
+    const auto channels = map.find("channels");
+    const auto frames = map.find("frames");
+    const auto format = map.find("format");
+    const auto discard = map.find("discard");
+    if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
+    if (channels) read_channels(*channels);
+    if (frames) read_frames(*frames);
+    if (format) read_format(*format);
+    if (discard) settings_.discard = discard->quantity(dimension::time, not_negative).value_or(0.0);
+    map.finish();
+  }
+
+  void read_channels(const CheckedValue& value) {
+    settings_.channels.clear();
+    const auto items = value.list();
+    if (!items) return;
+    for (const CheckedValue& item : *items) {
+      if (const auto pattern = item.string()) settings_.channels.push_back(*pattern);
+    }
+  }
+
+  void read_frames(const CheckedValue& value) {
+    const auto items = value.list();
+    if (!items) return;
+    for (const CheckedValue& item : *items) {
+      if (const auto marker = draft_.marker(item, draft_.parts.front())) settings_.frames.push_back(*marker);
+    }
+  }
+
+  static void read_format(const CheckedValue& value) {
+    if (value.node().is_scalar() && (value.node().text == "hdf5" || value.node().text == "both")) {
+      return value.fail("wrong-type", "'" + value.path() + "' must be csv, not '" + value.node().text + "'", {},
+                        "not in this release");
+    }
+    value.word({"csv", "hdf5", "both"});
+  }
+
+  void read_stop(const CheckedValue& value) {
+    const auto items = value.list();
+    if (!items) return;
+    for (const CheckedValue& item : *items) read_condition(item);
+  }
+
+  void read_condition(const CheckedValue& value) {
+    MapReader map(value);
+    const auto channel = map.require("channel");
+    const auto above = map.find("above");
+    const auto below = map.find("below");
+    const auto after = map.find("after");
+    map.conflict("above", "below");
+    if (map.good() && !above && !below) map.report_missing("above");
+    StopCondition stop;
+    stop.location = channel ? channel->location() : value.location();
+    stop.above = above.has_value();
+    if (channel) stop.channel = channel->string().value_or("");
+    const auto& limit = above ? above : below;
+    // Its dimension is that of the channel, which is unknown until the model is complete.
+    if (limit) stop.limit = limit->any_quantity().value_or(Quantity{}).value;
+    if (after) stop.after = after->quantity(dimension::time).value_or(0.0);
+    map.finish();
+    settings_.stop.push_back(std::move(stop));
+  }
+
+  // --- integrator ------------------------------------------------------------------------------------------------
+
+  void create_integrator() {
+    const Component* chosen = nullptr;
+    if (integrator_) chosen = read_integrator(*integrator_);
+    if (draft_.options.integrator) {
+      const Component* asked = asked_for(*draft_.options.integrator);
+      if (asked != chosen) use_defaults(*asked);
+    } else if (!integrator_) {
+      const Component* preferred = draft_.registry.preferred(ComponentKind::integrator);
+      if (preferred != nullptr) use_defaults(*preferred);
+    }
+  }
+
+  /// The file's choice, checked and created even if the command line asks for another.
+  const Component* read_integrator(const CheckedValue& value) {
+    const bool by_name = value.node().is_scalar();
+    if (!by_name && !value.node().is_map()) {
+      value.wrong_type("a name or a map");
+      return nullptr;
+    }
+    MapReader map = by_name ? MapReader::empty(value) : MapReader(value);
+    const auto type = by_name ? std::optional<CheckedValue>(value) : map.require("type");
+    const Component* component = type ? find_type(draft_.registry, ComponentKind::integrator, *type) : nullptr;
+    if (component == nullptr) return nullptr;
+    create(check_parameters(*component, map, draft_.registry), value);
+    map.finish();
+    return component;
+  }
+
+  const Component* asked_for(const std::string& name) const {
+    const Component* found = draft_.registry.find(ComponentKind::integrator, name);
+    if (found != nullptr) return found;
+    const std::vector<std::string> names = draft_.registry.names(ComponentKind::integrator);
+    const std::string suggested = nearest(name, names);
+    throw Error(Error::Category::usage, "usage", "--integrator " + name + ": there is no such integrator", {},
+                suggested.empty() ? "there is " + either(names) : "did you mean '" + suggested + "'?");
+  }
+
+  void use_defaults(const Component& component) {
+    const Node nothing;
+    const CheckedValue owner(*draft_.top, nothing, nullptr, "simulation.integrator");
+    MapReader map = MapReader::empty(owner);
+    create(check_parameters(component, map, draft_.registry), owner);
+  }
+
+  void create(CheckedParameters checked, const CheckedValue& place) {
+    if (!checked.block) return;
+    CreationFault fault;
+    settings_.integrator = draft_.model.instances.create_integrator(*checked.block, fault);
+    if (!settings_.integrator) return report_fault(fault, checked, place);
+    settings_.integrator_parameters = std::move(*checked.block);
+  }
+
+  Draft& draft_;
+  Settings& settings_;
+  std::optional<CheckedValue> integrator_;
+};
+
+}  // namespace
+
+double read_start_time(const CheckedValue& section) {
+  if (!section.node().is_map()) return 0.0;  // reported by read_simulation()
+  const auto start = MapReader(section).find("start");
+  return start ? start->quantity(dimension::time).value_or(0.0) : 0.0;
+}
+
+void read_simulation(Draft& draft, const std::optional<CheckedValue>& section) {
+  SimulationSection reader(draft);
+  if (section) reader.read(*section);
+  reader.complete(section.has_value());
+}
+
+}  // namespace freeplay

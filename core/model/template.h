@@ -1,0 +1,25 @@
+// Template: pieces of mechanism, and the instances that repeat them.
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "model/draft.h"
+#include "model/parameter_scope.h"
+
+namespace freeplay {
+
+/// What the values of instances refer to while the model is built.
+struct InstanceStorage {
+  std::deque<ParameterScope> scopes;
+  std::deque<Reading> readings;
+};
+
+/// Adds a part for each instance to `draft.parts`. The sections belong to the top level; `templates` may be missing.
+void expand_instances(Draft& draft, const std::optional<CheckedValue>& templates, const CheckedValue& instances,
+                      UsedKeys& used, InstanceStorage& storage);
+
+/// Reports bad names of templates.
+void check_templates(const CheckedValue& templates);
+
+}  // namespace freeplay

@@ -1,0 +1,494 @@
+#include "run/assembly.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "run/newton_stage_solver.h"
+#include "run/placing.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+[[noreturn]] void throw_fault(const Model& model, const Fault& fault) {
+  if (fault.kind == Fault::Kind::motion) throw_motion_fault(model, fault.motion, Error::Category::input);
+  const JointElement& joint = model.joints[at(fault.joint)];
+  throw Error(Error::Category::plugin, "plugin-failed",
+              fmt::format("joint '{}' failed while the model was assembled: {}", joint.name, fault.message.text),
+              joint.location);
+}
+
+Decomposition decompose(const MatrixXd& matrix) {
+  Decomposition decomposition;
+  decomposition.setThreshold(RowRank::tolerance);
+  decomposition.compute(matrix);
+  return decomposition;
+}
+
+// Orthonormal basis of the null space of a matrix with `columns` columns.
+MatrixXd null_space(const MatrixXd& matrix, int columns) {
+  if (matrix.rows() == 0) return MatrixXd::Identity(columns, columns);
+  const Decomposition d = decompose(matrix.transpose());
+  const MatrixXd q = d.householderQ() * MatrixXd::Identity(columns, columns);
+  return q.rightCols(columns - d.rank());
+}
+
+int rank(const MatrixXd& matrix) {
+  if (matrix.rows() == 0 || matrix.cols() == 0) return 0;
+  const VectorXd sigma = Eigen::BDCSVD<MatrixXd>(matrix).singularValues();
+  int count = 0;
+  while (count < sigma.size() && sigma[count] > 1e-9 * sigma[0] && sigma[count] > 0.0) ++count;
+  return count;
+}
+
+// The closed mechanism at the start time and the rows that hold it there.
+class Assembler {
+ public:
+  explicit Assembler(System& system)
+      : system_(system),
+        model_(system.model()),
+        closed_(system.model(), Variant::closed),
+        state_(closed_.layout(), 0),
+        e_(prepare()) {}
+
+  Start run() {
+    choose_held_coordinates();
+    place_bodies(closed_, held_, state_.q());
+    remember_turns();
+    set_offsets({});
+    solve_positions();
+    check_paths();
+    solve_velocities();
+    if (load_journals()) {
+      solve_positions();
+      solve_velocities();
+    }
+    return release();
+  }
+
+ private:
+  Evaluation prepare() {
+    closed_.share_motions(system_);
+    state_.t() = model_.settings.start;
+    return Evaluation(closed_);
+  }
+
+  void evaluate(unsigned terms) {
+    if (!closed_.evaluate(point(state_), terms | term_coordinate, e_)) throw_fault(model_, e_.fault);
+  }
+
+  // Values that joints lead or are driven to at the start. A driver of a speed starts where `initial` says.
+  void choose_held_coordinates() {
+    held_.assign(model_.joints.size(), nan);
+    leads_.clear();
+    held_row_.assign(at(closed_.layout().nc()), 1);
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      if (model_.joints[j].start_coordinate) held_[j] = *model_.joints[j].start_coordinate;
+    }
+    std::vector<char> driven(model_.joints.size(), 0);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (driver.kind != DriverKind::velocity) continue;
+      driven[at(driver.joint)] = 1;
+      if (const auto& start = model_.joints[at(driver.joint)].start_coordinate) {
+        system_.motions().set_start(d, *start);
+      } else {
+        held_row_[at(closed_.layout().driver_row(d))] = 0;
+      }
+    }
+    std::vector<TimeValue> motion(model_.drivers.size());
+    MotionFault fault;
+    if (!system_.motions().evaluate(state_.t(), {motion.data(), motion.size()}, fault)) {
+      throw_motion_fault(model_, fault, Error::Category::input);
+    }
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (!prescribes(driver.kind) || driver.kind == DriverKind::velocity) continue;
+      driven[at(driver.joint)] = 1;
+      held_[at(driver.joint)] = motion[at(d)].value;
+    }
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (model_.joints[at(j)].start_coordinate && !driven[at(j)]) leads_.push_back(j);
+    }
+  }
+
+  // Angles are counted from the value that a joint leads or is driven to, else from (-pi, pi].
+  void remember_turns() {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const int turn = closed_.layout().turn(j);
+      if (turn >= 0) state_.h()[at(turn)] = std::isnan(held_[at(j)]) ? 0.0 : held_[at(j)];
+    }
+  }
+
+  // Starts of the joints with play; `reactions` hold a force for each joint, or nothing yet.
+  bool set_offsets(const std::vector<std::array<double, 3>>& reactions) {
+    bool moved = false;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (!joint.has_play) continue;
+      std::array<double, 3> force = reactions.empty() ? std::array<double, 3>{} : reactions[at(j)];
+      InitialOffset offset{};
+      Message message;
+      if (!joint.joint.initial_offset({force.data(), force.size()}, offset, message)) {
+        throw Error(Error::Category::input, "assembly-failed",
+                    fmt::format("joint '{}' has no start: {}", joint.name, message.text), joint.location);
+      }
+      moved = moved || !reactions.empty();
+      closed_.set_offset(j, offset);
+    }
+    return moved;
+  }
+
+  struct Rows {
+    MatrixXd matrix;
+    VectorXd residual;
+    std::vector<int> row;   // of the closed system, -1 for a leading joint
+    std::vector<int> lead;  // joint that leads, -1
+  };
+
+  // Rows of the closed mechanism and its drivers, then those of leading joints. Speeds: Phi_q v - nu.
+  Rows rows(bool speeds) {
+    evaluate(term_position | term_velocity);
+    const int nc = closed_.layout().nc(), nv = closed_.layout().nv();
+    RowMajor jacobian(nc, nv);
+    closed_.dense_jacobian(e_, {jacobian.data(), at(nc * nv)});
+    VectorXd flow(nc);
+    closed_.multiply(e_, state_.v(), {flow.data(), at(nc)});
+    Rows out;
+    std::vector<int> leads;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (speeds ? joint.start_speed.has_value() : std::ranges::count(leads_, j) > 0) leads.push_back(j);
+    }
+    for (int r = 0; r < nc; ++r) {
+      if (speeds || held_row_[at(r)]) out.row.push_back(r), out.lead.push_back(-1);
+    }
+    for (const int j : leads) out.row.push_back(-1), out.lead.push_back(j);
+    const auto count = static_cast<Eigen::Index>(out.row.size());
+    out.matrix = MatrixXd::Zero(count, nv);
+    out.residual = VectorXd::Zero(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const int r = out.row[static_cast<std::size_t>(i)], j = out.lead[static_cast<std::size_t>(i)];
+      if (r >= 0) {
+        out.matrix.row(i) = jacobian.row(r);
+        out.residual[i] = speeds ? flow[r] - e_.nu[at(r)] : e_.phi[at(r)];
+        continue;
+      }
+      CoordinateRow marker_row;
+      double row[6], bias = 0.0;
+      if (!closed_.coordinate_row(j, point(state_), e_, marker_row, row, bias)) throw_fault(model_, e_.fault);
+      const JointElement& joint = model_.joints[at(j)];
+      const int bodies[2] = {model_.markers[at(joint.marker_a)].body, model_.markers[at(joint.marker_b)].body};
+      for (int k = 0; k < 2; ++k) {
+        for (int c = 0; c < 3 && bodies[k] != ground; ++c) out.matrix(i, 3 * bodies[k] + c) = row[3 * k + c];
+      }
+      out.residual[i] = speeds ? e_.coordinate_rate[at(j)] - *joint.start_speed
+                               : e_.coordinate[at(j)] - *joint.start_coordinate;
+    }
+    return out;
+  }
+
+  static double largest(const VectorXd& residual) {
+    return residual.size() == 0 ? 0.0 : residual.lpNorm<Eigen::Infinity>();
+  }
+
+  // Newton with corrections of least norm in m and rad, shortened where the residual would grow.
+  void solve_positions() {
+    const double tolerance = model_.settings.assembly_tolerance;
+    Rows now = rows(false);
+    for (int iteration = 0; iteration < model_.settings.assembly_iterations; ++iteration) {
+      const double before = now.residual.norm();
+      if (before == 0.0) break;
+      const VectorXd step = decompose(now.matrix).solve(-now.residual);
+      const std::vector<double> q(state_.q().begin(), state_.q().end());
+      double length = 1.0, after = before;
+      for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
+        for (std::size_t i = 0; i < q.size(); ++i) {
+          state_.q()[i] = q[i] + length * step[static_cast<Eigen::Index>(i)];
+        }
+        now = rows(false);
+        after = now.residual.norm();
+        if (after < before) break;
+      }
+      if (!(after < before)) {
+        std::ranges::copy(q, state_.q().begin());
+        now = rows(false);
+        break;
+      }
+      // Past the tolerance go on while it pays: later steps start from rounding, not from here.
+      if (largest(now.residual) <= 1e-3 * tolerance && after > 0.1 * before) break;
+    }
+    if (!(largest(now.residual) <= tolerance)) report_gap(now);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (driver.kind == DriverKind::velocity && !model_.joints[at(driver.joint)].start_coordinate) {
+        system_.motions().set_start(d, e_.coordinate[at(driver.joint)]);
+        e_.motion_time = nan;
+      }
+    }
+  }
+
+  [[noreturn]] void report_gap(const Rows& rows) const {
+    double worst = -1.0;
+    std::string text;
+    Location location;
+    const auto consider = [&](double gap, const std::string& words, const Location& place) {
+      if (!(gap <= worst)) worst = gap, text = words, location = place;
+    };
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const Slice slice = closed_.layout().rows(j);
+      double gap = 0.0;
+      for (int r = 0; r < slice.size; ++r) gap = std::hypot(gap, e_.phi[at(slice.offset + r)]);
+      consider(gap, fmt::format("joint '{}' stays open by {:.6g} m", model_.joints[at(j)].name, gap),
+               model_.joints[at(j)].location);
+    }
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
+      if (rows.lead[i] >= 0) {
+        const JointElement& joint = model_.joints[at(rows.lead[i])];
+        consider(gap, fmt::format("joint '{}' misses its start value by {:.6g}", joint.name, gap), joint.location);
+      }
+    }
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const int r = closed_.layout().driver_row(d);
+      if (r < 0 || !held_row_[at(r)]) continue;
+      const double gap = std::abs(e_.phi[at(r)]);
+      consider(gap, fmt::format("driver '{}' misses its value by {:.6g}", model_.drivers[at(d)].name, gap),
+               model_.drivers[at(d)].location);
+    }
+    throw Error(Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
+                "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
+  }
+
+  // With its frame prescribed the ideal mechanism must be still, and the frame must be able to follow.
+  void check_paths() {
+    const int nv = closed_.layout().nv();
+    for (const InverseKinematics& entry : model_.kinematics) {
+      evaluate(term_position | term_velocity);
+      const int nc = closed_.layout().nc();
+      RowMajor jacobian(nc, nv);
+      closed_.dense_jacobian(e_, {jacobian.data(), at(nc * nv)});
+      std::vector<int> kept;
+      for (int r = 0; r < nc; ++r) kept.push_back(r);
+      for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
+        std::erase(kept, closed_.layout().driver_row(d));
+      }
+      const BodyId body = model_.markers[at(entry.marker)].body;
+      MatrixXd without(static_cast<Eigen::Index>(kept.size()), nv);
+      for (std::size_t i = 0; i < kept.size(); ++i) without.row(static_cast<Eigen::Index>(i)) = jacobian.row(kept[i]);
+      MatrixXd with = MatrixXd::Zero(without.rows() + 3, nv);
+      with.topRows(without.rows()) = without;
+      const planar::Arm& arm = e_.arms[at(entry.marker)];
+      for (int i = 0; i < 3 && body != ground; ++i) {
+        double g[6] = {};
+        g[planar::components[i]] = 1.0;
+        double row[3];
+        planar::body_row(g, arm, row);
+        for (int c = 0; c < 3; ++c) with(without.rows() + i, 3 * body + c) = row[c];
+      }
+      const int free = rank(without), prescribed = rank(with);
+      if (prescribed < nv) {
+        throw Error(Error::Category::input, "ik-underdetermined",
+                    fmt::format("with its frame on the path of '{}' the mechanism still has {} freedom(s)", entry.name,
+                                nv - prescribed),
+                    entry.path_location);
+      }
+      if (prescribed < free + 3) {
+        throw Error(Error::Category::input, "ik-unreachable",
+                    fmt::format("the frame of '{}' cannot follow x, y and angle: the mechanism leaves it {} freedom(s)",
+                                entry.name, prescribed - free),
+                    entry.path_location);
+      }
+    }
+  }
+
+  // Least change of the given velocities in kinetic energy; in m and rad where the mass says nothing.
+  void solve_velocities() {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      const Body& body = model_.bodies[b];
+      const double angle = state_.q()[3 * b + 2], w = body.angular_velocity[2];
+      const double x = std::cos(angle) * body.com[0] - std::sin(angle) * body.com[1];
+      const double y = std::sin(angle) * body.com[0] + std::cos(angle) * body.com[1];
+      state_.v()[3 * b] = body.velocity[0] - w * y;
+      state_.v()[3 * b + 1] = body.velocity[1] + w * x;
+      state_.v()[3 * b + 2] = w;
+    }
+    const int nv = closed_.layout().nv();
+    const Eigen::Map<const VectorXd> mass(system_.mass().data(), nv);
+    // Repeated because the rate of a coordinate is linear in v only to rounding.
+    for (int pass = 0; pass < 3; ++pass) {
+      const Rows now = rows(true);
+      if (now.row.empty()) return;
+      VectorXd change = decompose(now.matrix).solve(-now.residual);
+      if (pass == 0) {
+        const MatrixXd n = null_space(now.matrix, nv);
+        const MatrixXd reduced = n.transpose() * mass.asDiagonal() * n;
+        if (n.cols() > 0) {
+          change -= n * decompose(reduced).solve(VectorXd(n.transpose() * VectorXd(mass.cwiseProduct(change))));
+        }
+      }
+      for (int i = 0; i < nv; ++i) state_.v()[at(i)] += change[i];
+    }
+    const Rows last = rows(true);
+    const double tolerance = 1e-8 * std::max(1.0, Eigen::Map<const VectorXd>(state_.v().data(), nv).norm());
+    Eigen::Index worst = 0;
+    if (last.residual.size() > 0 && last.residual.cwiseAbs().maxCoeff(&worst) > tolerance) {
+      const auto i = static_cast<std::size_t>(worst);
+      throw Error(Error::Category::input, "assembly-failed",
+                  fmt::format("drivers and start speeds contradict each other: {} misses its speed by {:.6g}",
+                              name_of(last.row[i], last.lead[i]), std::abs(last.residual[worst])));
+    }
+  }
+
+  std::string name_of(int row, int lead) const {
+    if (lead >= 0) return fmt::format("joint '{}'", model_.joints[at(lead)].name);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      if (closed_.layout().driver_row(d) == row) return fmt::format("driver '{}'", model_.drivers[at(d)].name);
+    }
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const Slice slice = closed_.layout().rows(j);
+      if (row >= slice.offset && row < slice.offset + slice.size) {
+        return fmt::format("joint '{}'", model_.joints[at(j)].name);
+      }
+    }
+    return "a constraint";
+  }
+
+  // Journals that rest in their bearings need the reactions of the ideal mechanism.
+  bool load_journals() {
+    if (model_.clearance_joints() == 0) return false;
+    NewtonStageSolver solver(closed_, {});
+    solver.use_history(state_.h());
+    StateView view = state_.view();
+    if (!solver.accelerate(view, view.z)) return false;  // the released mechanism decides
+    evaluate(term_position | term_velocity | term_force);
+    std::vector<std::array<double, 3>> reactions(model_.joints.size());
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      double wrench[3];
+      closed_.reaction(j, e_, state_.lambda(), wrench);
+      reactions[at(j)] = {wrench[0], wrench[1], 0.0};
+    }
+    return set_offsets(reactions);
+  }
+
+  Start release() {
+    ConstraintFacts ideal;
+    if (model_.clearance_joints() > 0) ideal = facts_of(closed_);
+    evaluate(term_position | term_velocity);
+    Start start{State(system_.layout(), 0), count_facts(model_)};
+    State& state = start.state;
+    state.t() = state_.t();
+    std::ranges::copy(state_.q(), state.q().begin());
+    std::ranges::copy(state_.v(), state.v().begin());
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (const int turn = system_.layout().turn(j); turn >= 0) state.h()[at(turn)] = e_.coordinate[at(j)];
+    }
+    initialize_joints(state);
+    refuse_massless_motion(state);
+    NewtonStageSolver solver(system_, {});
+    solver.use_history(state.h());
+    StateView view = state.view();
+    std::vector<double> z_rate(state.z().size());
+    if (!solver.accelerate(view, {z_rate.data(), z_rate.size()})) {
+      if (solver.fault().kind != Fault::Kind::none) throw_fault(model_, solver.fault());
+      throw Error(Error::Category::input, "singular-mass", solver.trouble());
+    }
+    start.facts.actual = facts_of(system_);
+    if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
+    return start;
+  }
+
+  void initialize_joints(State& state) {
+    Evaluation e(system_);
+    if (!system_.evaluate(point(state), term_coordinate, e)) throw_fault(model_, e.fault);
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const Slice z = system_.layout().internal(j), h = system_.layout().history(j);
+      Message message;
+      if (!system_.joint(j).initialize(system_.input(j, point(state), e), Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                                       Span<double>(state.h()).part(at(h.offset), at(h.size)), message)) {
+        throw Error(Error::Category::plugin, "plugin-failed",
+                    fmt::format("joint '{}' failed at its start: {}", model_.joints[at(j)].name, message.text),
+                    model_.joints[at(j)].location);
+      }
+    }
+  }
+
+  void refuse_massless_motion(const State& state) {
+    Evaluation e(system_);
+    if (!system_.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
+    const int nc = system_.layout().nc(), nv = system_.layout().nv();
+    const Eigen::Map<const VectorXd> mass(system_.mass().data(), nv);
+    if (mass.minCoeff() > 0.0) return;  // every motion carries mass
+    RowMajor jacobian(nc, nv);
+    system_.dense_jacobian(e, {jacobian.data(), at(nc * nv)});
+    const MatrixXd n = null_space(jacobian, nv);
+    if (n.cols() == 0) return;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(n.transpose() * mass.asDiagonal() * n);
+    if (eigen.eigenvalues()[0] > 1e-12 * mass.maxCoeff()) return;
+    const VectorXd motion = n * eigen.eigenvectors().col(0);
+    Eigen::Index worst = 0;
+    motion.cwiseAbs().maxCoeff(&worst);
+    throw Error(Error::Category::input, "singular-mass",
+                fmt::format("body '{}' can move without moving any mass", model_.bodies[at(static_cast<int>(worst) / 3)].name),
+                {}, "give it inertia, or hold that motion by a joint");
+  }
+
+  ConstraintFacts facts_of(const System& system) {
+    const bool closed = system.variant() == Variant::closed;
+    Evaluation e(system);
+    State state(system.layout(), 0);
+    state.t() = state_.t();
+    std::ranges::copy(state_.q(), state.q().begin());
+    std::ranges::copy(state_.v(), state.v().begin());
+    if (closed) std::ranges::copy(state_.h(), state.h().begin());
+    if (!system.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
+    const int nc = system.layout().nc(), nv = system.layout().nv(), joints = system.layout().first_driver_row();
+    RowMajor jacobian(nc, nv);
+    system.dense_jacobian(e, {jacobian.data(), at(nc * nv)});
+    const int all = rank(jacobian), own = rank(jacobian.topRows(joints));
+    return {joints, own, joints - own, nv - own, nv - all, nc - all - (joints - own)};
+  }
+
+  System& system_;
+  const Model& model_;
+  System closed_;
+  State state_;
+  Evaluation e_;
+  std::vector<double> held_;     // by joint
+  std::vector<int> leads_;       // joints that lead and are not driven
+  std::vector<char> held_row_;   // rows of the closed system that hold positions
+};
+
+}  // namespace
+
+ModelFacts count_facts(const Model& model) {
+  ModelFacts facts;
+  facts.bodies = static_cast<int>(model.bodies.size());
+  facts.joints = static_cast<int>(model.joints.size());
+  facts.clearance_joints = model.clearance_joints();
+  facts.drivers = static_cast<int>(model.drivers.size());
+  const auto count = [&](Variant variant, ConstraintFacts& out) {
+    const Layout layout(model, variant);
+    facts.coordinates = layout.nq();
+    facts.velocities = layout.nv();
+    facts.driver_constraints = layout.nc() - layout.first_driver_row();
+    out = {layout.first_driver_row(), -1, -1, -1, -1, -1};
+  };
+  if (facts.clearance_joints > 0) count(Variant::closed, facts.ideal.emplace());
+  count(Variant::released, facts.actual);
+  return facts;
+}
+
+Start assemble(System& system) { return Assembler(system).run(); }
+
+}  // namespace freeplay

@@ -1,0 +1,87 @@
+#include "run/channel.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace freeplay {
+
+Channels::Channels(const Model& model) {
+  time = add("time", "s");
+  const auto pose = [&](const std::string& prefix) {
+    const int first = add(prefix + ".x", "m");
+    add(prefix + ".y", "m");
+    add(prefix + ".angle", "rad");
+    add(prefix + ".vx", "m/s");
+    add(prefix + ".vy", "m/s");
+    add(prefix + ".omega", "rad/s");
+    return first;
+  };
+  for (const Body& body : model.bodies) bodies.push_back(pose("body." + body.name));
+  for (const JointElement& joint : model.joints) {
+    const std::string prefix = "joint." + joint.name;
+    JointColumns columns;
+    if (joint.layout.coordinate != Coordinate::none) {
+      const bool angle = joint.layout.coordinate == Coordinate::angle;
+      columns.coordinate = add(prefix + (angle ? ".angle" : ".position"), angle ? "rad" : "m");
+      columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
+    }
+    columns.force_x = add(prefix + ".fx", "N");
+    columns.force_y = add(prefix + ".fy", "N");
+    columns.torque = add(prefix + ".torque", "N*m");
+    columns.own = static_cast<int>(all_.size());
+    for (const Channel& channel : joint.layout.channels) {
+      const int index = add(prefix + "." + channel.name, channel.unit);
+      const std::string_view name = channel.name;
+      // The names that the contract gives a meaning in summaries, whatever type publishes them.
+      if (name == "ex") columns.eccentricity_x = index;
+      if (name == "ey") columns.eccentricity_y = index;
+      if (name == "delta") columns.penetration = index;
+      if (name == "fn") columns.normal_force = index;
+      if (name == "contact") columns.contact = index;
+    }
+    joints.push_back(columns);
+  }
+  for (const Driver& driver : model.drivers) {
+    const std::string prefix = "driver." + driver.name;
+    const bool angle =
+        model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
+    const bool effort = !prescribes(driver.kind);
+    DriverColumns columns;
+    columns.value = add(prefix + ".value", effort ? (angle ? "N*m" : "N") : (angle ? "rad" : "m"));
+    columns.effort = add(prefix + (angle ? ".torque" : ".force"), angle ? "N*m" : "N");
+    columns.power = add(prefix + ".power", "W");
+    drivers.push_back(columns);
+    if (driver.kinematics < 0) continue;
+    const InverseKinematics& entry = model.kinematics[static_cast<std::size_t>(driver.kinematics)];
+    const std::size_t index = static_cast<std::size_t>(driver.kinematics);
+    if (&driver != &model.drivers[static_cast<std::size_t>(entry.first_driver + entry.driver_count - 1)]) continue;
+    if (paths.size() <= index) paths.resize(index + 1);
+    const std::string path = "driver." + entry.name;
+    paths[index] = {add(path + ".ex", "m"), add(path + ".ey", "m"), add(path + ".eangle", "rad")};
+  }
+  for (const AppliedForce& force : model.forces) {
+    const std::string prefix = "force." + force.name;
+    forces.push_back({add(prefix + ".fx", "N"), add(prefix + ".fy", "N"), add(prefix + ".torque", "N*m"),
+                      add(prefix + ".power", "W")});
+  }
+  for (const int frame : model.settings.frames) {
+    frames.push_back(pose("frame." + model.markers[static_cast<std::size_t>(frame)].name));
+  }
+  energy.kinetic = add("energy.kinetic", "J");
+  energy.potential = add("energy.potential", "J");
+  energy.dissipated = add("energy.dissipated", "J");
+  energy.work = add("energy.work", "J");
+  energy.residual = add("energy.residual", "J");
+}
+
+int Channels::add(std::string name, const char* unit) {
+  all_.push_back({std::move(name), unit});
+  return static_cast<int>(all_.size()) - 1;
+}
+
+int Channels::find(std::string_view name) const {
+  const auto found = std::ranges::find(all_, name, &ChannelInfo::name);
+  return found == all_.end() ? -1 : static_cast<int>(found - all_.begin());
+}
+
+}  // namespace freeplay

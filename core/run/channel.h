@@ -1,0 +1,61 @@
+// Channels: the named numbers of a result row, in the order of the command-line contract.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+
+namespace freeplay {
+
+struct ChannelInfo {
+  std::string name;  ///< KIND.NAME.QUANTITY, or "time"
+  std::string unit;  ///< SI, model-format spelling
+};
+
+/// Where the columns of one joint stand in a row; -1 where it has none.
+struct JointColumns {
+  int coordinate = -1, speed = -1, force_x = -1, force_y = -1, torque = -1;
+  int penetration = -1, normal_force = -1, contact = -1, eccentricity_x = -1, eccentricity_y = -1;
+  int own = -1;  ///< first of the type's own channels
+};
+struct DriverColumns {
+  int value = -1, effort = -1, power = -1;
+};
+/// Pose of an inverse-kinematics frame minus its path.
+struct PathColumns {
+  int error_x = -1, error_y = -1, error_angle = -1;
+};
+struct ForceColumns {
+  int force_x = -1, force_y = -1, torque = -1, power = -1;
+};
+struct EnergyColumns {
+  int kinetic = -1, potential = -1, dissipated = -1, work = -1, residual = -1;
+};
+
+/// All columns of a model, fixed before the first row: time; bodies, joints, drivers, forces, frames in declaration
+/// order; energy.
+class Channels {
+ public:
+  explicit Channels(const Model& model);
+
+  std::span<const ChannelInfo> all() const { return all_; }
+  /// Index of the column with this name, or -1.
+  int find(std::string_view name) const;
+
+  int time = 0;
+  std::vector<int> bodies;  ///< first of six columns: x y angle vx vy omega
+  std::vector<JointColumns> joints;
+  std::vector<DriverColumns> drivers;
+  std::vector<PathColumns> paths;
+  std::vector<ForceColumns> forces;
+  std::vector<int> frames;  ///< first of six columns, as for bodies
+  EnergyColumns energy;
+
+ private:
+  int add(std::string name, const char* unit);
+  std::vector<ChannelInfo> all_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,87 @@
+// NewtonStageSolver: the implementation behind the SDK's StageSolver.
+//
+// A stage asks for (a, lambda) with v = V + beta_v a, q = retract(q_n, D + beta_q a) and
+//   [ M - beta_v f_v - beta_q f_q   Phi_q^T ] [ da      ]     [ M a + Phi_q^T lambda - f ]
+//   [ Phi_q                         0       ] [ dlambda ] = - [ Phi / beta_q             ]
+// (Bottasso, Dopico and Trainelli 2008: scaled like this the matrix does not depend on the step for small steps).
+// d(Phi_q^T lambda)/dq is left out: it is beta_q lambda s against an inertia, and costs contraction, not accuracy.
+// Factors are kept over stages and steps, one for each pair of betas, while the iteration contracts.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "freeplay/integrator.h"
+#include "linear/kkt_matrix.h"
+#include "linear/row_rank.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+struct StageOptions {
+  double tolerance = 1e-10;  ///< largest position error left by a stage, in model sizes [1], and its like in velocity
+  int max_iterations = 20;
+};
+
+class NewtonStageSolver {
+ public:
+  NewtonStageSolver(const System& system, const StageOptions& options);
+
+  const abi::StageSolverTable& table() const { return table_; }
+  /// h of the states handed in from now on; views must stay valid.
+  void use_history(std::span<const double> h) { h_ = h; }
+
+  bool solve(const Stage& stage, StateView& out, StageResult& result);
+  bool project_velocity(StateView& state);
+  bool project_position(StateView& state);
+  /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
+  bool accelerate(StateView& state, Span<double> z_rate);
+
+  /// Why the last call failed: an element's fault, or kind none with `trouble()`.
+  const Fault& fault() const { return e_.fault; }
+  const char* trouble() const { return trouble_; }
+  /// Row with the largest position residual when the last stage gave up, or -1.
+  int worst_row() const { return worst_row_; }
+  long iterations() const { return iterations_; }
+  long factorizations() const { return factorizations_; }
+  int rank() const { return rows_.rank(); }
+
+ private:
+  struct Factor {
+    double beta_q = -1.0, beta_v = -1.0;
+    long used = -1;
+    bool valid = false;
+    std::unique_ptr<KktMatrix> matrix;
+    std::vector<int> slots;
+  };
+
+  Factor& factor_for(double beta_q, double beta_v);
+  bool evaluate(const StateView& at, unsigned terms);
+  /// Assembles and factors at the present evaluation (which must hold Phi_q and, for betas > 0, derivatives).
+  bool refactor(Factor& factor);
+  void assemble(Factor& factor);
+  bool find_dependent_rows();
+  void solve_with(const Factor& factor);
+  double norm(std::span<const double> increment) const;
+  /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_).
+  bool refine(std::span<double> x_a, std::span<double> x_c, double scale);
+
+  const System& system_;
+  StageOptions options_;
+  abi::StageSolverTable table_;
+  Evaluation e_;
+  RowRank rows_;
+  std::span<const double> h_;
+  std::array<Factor, 4> factors_;
+  std::vector<MatrixEntry> entries_;
+  std::vector<double> unit_, dense_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, multipliers_;
+  std::vector<char> dependent_;
+  bool any_dependent_ = false, rank_known_ = false;
+  long clock_ = 0, iterations_ = 0, factorizations_ = 0;
+  int worst_row_ = -1;
+  const char* trouble_ = "";
+};
+
+}  // namespace freeplay

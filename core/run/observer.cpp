@@ -1,0 +1,114 @@
+#include "run/observer.h"
+
+#include <cmath>
+
+namespace freeplay {
+namespace {
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+bool Observer::observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
+                       Fault& fault) const {
+  const Model& model = system_.model();
+  row[at(channels_.time)] = point.t;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      row[at(channels_.bodies[b]) + i] = point.q[3 * b + i];
+      row[at(channels_.bodies[b]) + 3 + i] = point.v[3 * b + i];
+    }
+  }
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    if (!observe_joint(j, point, e, lambda, row, fault)) return false;
+  }
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) observe_driver(d, e, lambda, row);
+  for (int k = 0; k < static_cast<int>(model.kinematics.size()); ++k) {
+    if (!observe_path(k, point, e, row, fault)) return false;
+  }
+  for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) observe_force(f, e, row);
+  for (int f = 0; f < static_cast<int>(channels_.frames.size()); ++f) observe_frame(f, point, e, row);
+  double stored = system_.gravity_potential(point.q);
+  for (const double potential : e.potential) stored += potential;
+  row[at(channels_.energy.kinetic)] = system_.kinetic_energy(point.v);
+  row[at(channels_.energy.potential)] = stored;
+  return true;
+}
+
+bool Observer::observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
+                             std::span<double> row, Fault& fault) const {
+  const JointColumns& columns = channels_.joints[at(index)];
+  if (columns.coordinate >= 0) {
+    row[at(columns.coordinate)] = e.coordinate[at(index)];
+    row[at(columns.speed)] = e.coordinate_rate[at(index)];
+  }
+  double wrench[3];
+  system_.reaction(index, e, lambda, wrench);
+  row[at(columns.force_x)] = wrench[0];
+  row[at(columns.force_y)] = wrench[1];
+  row[at(columns.torque)] = wrench[2];
+  const std::size_t own = system_.joint_layout(index).channels.size;
+  if (own == 0) return true;
+  const Slice rows = system_.layout().rows(index);
+  if (system_.joint(index).observe(system_.input(index, point, e), {lambda.data() + rows.offset, at(rows.size)},
+                                   {row.data() + columns.own, own}, fault.message)) {
+    return true;
+  }
+  fault.kind = Fault::Kind::plugin;
+  fault.joint = index;
+  return false;
+}
+
+void Observer::observe_driver(int index, const Evaluation& e, std::span<const double> lambda,
+                              std::span<double> row) const {
+  const DriverColumns& columns = channels_.drivers[at(index)];
+  const int r = system_.layout().driver_row(index);
+  const std::size_t joint = at(system_.model().drivers[at(index)].joint);
+  const double prescribed = e.motion[at(index)].value;
+  const double effort = r < 0 ? prescribed : -lambda[at(r)];
+  // An angle from inverse kinematics is known up to whole turns; the joint counts them.
+  const bool turns = r >= 0 && system_.motions().modulo_turns(index);
+  row[at(columns.value)] = turns ? e.coordinate[joint] - e.phi[at(r)] : prescribed;
+  row[at(columns.effort)] = effort;
+  row[at(columns.power)] = effort * e.coordinate_rate[joint];
+}
+
+double Observer::marker_angle(int marker, const Point& point) const {
+  const Marker& m = system_.model().markers[at(marker)];
+  return m.angle + (m.body == ground ? 0.0 : point.q[3 * at(m.body) + 2]);
+}
+
+bool Observer::observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row,
+                            Fault& fault) const {
+  PathPose wanted;
+  if (!system_.motions().path(index, point.t, wanted, fault.motion)) {
+    fault.kind = Fault::Kind::motion;
+    return false;
+  }
+  const int marker = system_.model().kinematics[at(index)].marker;
+  const PathColumns& columns = channels_.paths[at(index)];
+  const double turned = marker_angle(marker, point) - wanted[2].value;
+  row[at(columns.error_x)] = e.markers[at(marker)].position[0] - wanted[0].value;
+  row[at(columns.error_y)] = e.markers[at(marker)].position[1] - wanted[1].value;
+  row[at(columns.error_angle)] = turned - 2.0 * M_PI * std::round(turned / (2.0 * M_PI));
+  return true;
+}
+
+void Observer::observe_force(int index, const Evaluation& e, std::span<double> row) const {
+  const ForceColumns& columns = channels_.forces[at(index)];
+  const MarkerKinematics& k = e.markers[at(system_.model().forces[at(index)].marker)];
+  const double* applied = &e.applied[3 * at(index)];
+  row[at(columns.force_x)] = applied[0];
+  row[at(columns.force_y)] = applied[1];
+  row[at(columns.torque)] = applied[2];
+  row[at(columns.power)] =
+      applied[0] * k.velocity[0] + applied[1] * k.velocity[1] + applied[2] * k.angular_velocity[2];
+}
+
+void Observer::observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const {
+  const int marker = system_.model().settings.frames[at(index)];
+  const MarkerKinematics& k = e.markers[at(marker)];
+  const double values[6] = {k.position[0], k.position[1], marker_angle(marker, point),
+                            k.velocity[0], k.velocity[1], k.angular_velocity[2]};
+  std::copy_n(values, 6, row.begin() + channels_.frames[at(index)]);
+}
+
+}  // namespace freeplay

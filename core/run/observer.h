@@ -1,0 +1,34 @@
+// Observer: turns an accepted state into the numbers of a result row.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "run/channel.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Fills every column but dissipated, work and residual, which the energy account knows.
+class Observer {
+ public:
+  Observer(const System& system, const Channels& channels) : system_(system), channels_(channels) {}
+
+  /// `e` holds all terms at `point`. False, with `fault` filled, when a joint's observation fails.
+  bool observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
+               Fault& fault) const;
+
+ private:
+  bool observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
+                     std::span<double> row, Fault& fault) const;
+  void observe_driver(int index, const Evaluation& e, std::span<const double> lambda, std::span<double> row) const;
+  bool observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault) const;
+  void observe_force(int index, const Evaluation& e, std::span<double> row) const;
+  void observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const;
+  double marker_angle(int marker, const Point& point) const;
+
+  const System& system_;
+  const Channels& channels_;
+};
+
+}  // namespace freeplay

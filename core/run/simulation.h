@@ -1,0 +1,54 @@
+// Simulation: the only loop over time.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "run/assembly.h"
+#include "run/channel.h"
+#include "run/sink.h"
+#include "run/statistics.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+enum class RunStatus { completed, stopped, failed, interrupted };
+
+/// How a run ended. A failed run keeps everything up to the last accepted step.
+struct Outcome {
+  RunStatus status = RunStatus::completed;
+  int exit_code = 0;         ///< 0, 4 (numerical failure), 5 (a plugin failed), 6 (a sink failed) or 130
+  std::string reason;        ///< which condition stopped it, or what failed, where, and what to try; else empty
+  double time = 0.0;         ///< reached [s]
+  double wall_seconds = 0.0; ///< from the assembled start to the last accepted step
+  long steps = 0, rejected = 0, iterations = 0, factorizations = 0, rows = 0;
+};
+
+struct RunHooks {
+  const std::atomic<int>* interrupt = nullptr;  ///< nonzero: end after the present step
+  /// Called at most ten times a second: time reached, steps so far.
+  std::function<void(double, long)> progress;
+};
+
+/// Advances a model from its start to Settings::end and feeds sinks and statistics.
+class Simulation {
+ public:
+  Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks);
+  ~Simulation();
+  Outcome run(const RunHooks& hooks);
+  const Statistics& statistics() const;
+  /// The last accepted row, every channel.
+  std::span<const double> last_row() const;
+  /// Warnings met on the way, such as a law used outside its range.
+  std::span<const std::string> warnings() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace freeplay

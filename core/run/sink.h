@@ -1,0 +1,31 @@
+// Sink: where rows and events of a run go.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "run/channel.h"
+
+namespace freeplay {
+
+/// One event of a joint. Fields that were not told are NaN.
+struct EventRecord {
+  double time = 0.0;
+  int joint = 0;
+  int event = 0;                   ///< index into the joint's events
+  std::span<const double> fields;  ///< as the event declares them; valid during the call only
+};
+
+/// Receives a run as it grows. Rows hold every channel in the order of Channels::all(); a sink picks what it writes.
+/// Writing failures are thrown as Error{file} from any function but row() and event(), which keep the first failure
+/// and report it by ok().
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void row(std::span<const double> values) = 0;
+  virtual void event(const EventRecord& record) = 0;
+  virtual bool ok() const = 0;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,136 @@
+#include "run/step_events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "run/event_finder.h"
+
+namespace freeplay {
+namespace {
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr int most_per_step = 8;  // of one joint; more are rounding, not motion
+}  // namespace
+
+StepEvents::StepEvents(const System& system) : system_(system), between_(system.layout(), 0), e_between_(system) {
+  std::size_t most_events = 0, all_fields = 0;
+  for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
+    const Span<const Event> events = system.joint_layout(j).events;
+    if (events.empty()) continue;
+    watched_.push_back(j);
+    most_events = std::max(most_events, events.size);
+    std::size_t most_fields = 0;
+    for (const Event& event : events) most_fields = std::max(most_fields, event.fields.size);
+    all_fields += most_per_step * most_fields;
+  }
+  for (auto* numbers : {&g0_, &r0_, &g1_, &r1_}) numbers->resize(most_events);
+  // Reserved once: a step appends without allocating.
+  values_.reserve(all_fields);
+  happenings_.reserve(most_per_step * watched_.size());
+}
+
+bool StepEvents::functions(int joint, const Point& point, const Evaluation& e, std::span<double> g,
+                           std::span<double> rate, Fault& fault) const {
+  if (system_.joint(joint).events(system_.input(joint, point, e), {g.data(), g.size()}, {rate.data(), rate.size()},
+                                  fault.message)) {
+    return true;
+  }
+  fault.kind = Fault::Kind::plugin;
+  fault.joint = joint;
+  return false;
+}
+
+bool StepEvents::apply(const State& before, const Evaluation& e_before, State& after, const Evaluation& e_after,
+                       Fault& fault) {
+  happenings_.clear();
+  values_.clear();
+  for (const int joint : watched_) {
+    if (!apply_joint(joint, before, e_before, after, e_after, fault)) return false;
+  }
+  // Stable by hand: a handful of entries, and no allocation.
+  for (std::size_t i = 1; i < happenings_.size(); ++i) {
+    for (std::size_t k = i; k > 0 && happenings_[k].time < happenings_[k - 1].time; --k) {
+      std::swap(happenings_[k], happenings_[k - 1]);
+    }
+  }
+  return true;
+}
+
+bool StepEvents::apply_joint(int joint, const State& before, const Evaluation& e_before, State& after,
+                             const Evaluation& e_after, Fault& fault) {
+  const Span<const Event> events = system_.joint_layout(joint).events;
+  const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
+  const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
+  const double dt = after.t() - before.t();
+  double reached = 0.0;
+  for (int count = 0; count < most_per_step; ++count) {
+    // The joint's present history decides what can happen next.
+    const Point start{before.t(), before.q(), before.v(), before.z(), after.h()};
+    if (!functions(joint, start, e_before, g0, r0, fault)) return false;
+    if (!functions(joint, point(after), e_after, g1, r1, fault)) return false;
+    int next = -1;
+    double earliest = 2.0;
+    for (std::size_t i = 0; i < events.size; ++i) {
+      if (std::isnan(g0[i]) || std::isnan(g1[i])) continue;
+      const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
+      // The common case of a step far from any zero needs no cubic.
+      const auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, reached);
+      if (s && *s < earliest) earliest = *s, next = static_cast<int>(i);
+    }
+    if (next < 0) return true;
+    reached = earliest;
+    if (!tell_inside(joint, next, earliest, before, after, fault)) return false;
+  }
+  return true;
+}
+
+bool StepEvents::tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault) {
+  const double dt = after.t() - before.t();
+  between_.t() = before.t() + s * dt;
+  for (std::size_t i = 0; i < before.q().size(); ++i) {
+    between_.q()[i] = Hermite{before.q()[i], before.v()[i] * dt, after.q()[i], after.v()[i] * dt}.at(s);
+  }
+  for (std::size_t i = 0; i < before.v().size(); ++i) {
+    between_.v()[i] = Hermite{before.v()[i], before.a()[i] * dt, after.v()[i], after.a()[i] * dt}.at(s);
+  }
+  std::ranges::copy(after.z(), between_.z().begin());
+  std::ranges::copy(after.h(), between_.h().begin());
+  if (!system_.evaluate(point(between_), 0, e_between_)) {
+    fault = e_between_.fault;
+    return false;
+  }
+  return tell(joint, event, point(between_), e_between_, after, fault);
+}
+
+bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault) {
+  const Slice z = system_.layout().internal(joint), h = system_.layout().history(joint);
+  const std::size_t first = values_.size(), count = system_.joint_layout(joint).events[at(event)].fields.size;
+  values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
+  if (!system_.joint(joint).on_event(event, system_.input(joint, here, e),
+                                     Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                                     Span<double>(state.h()).part(at(h.offset), at(h.size)),
+                                     {values_.data() + first, count}, fault.message)) {
+    fault.kind = Fault::Kind::plugin;
+    fault.joint = joint;
+    return false;
+  }
+  happenings_.push_back({here.t, joint, event, first, count});
+  return true;
+}
+
+bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
+  happenings_.clear();
+  values_.clear();
+  for (const int joint : watched_) {
+    const Span<const Event> events = system_.joint_layout(joint).events;
+    const std::span g = std::span(g0_).first(events.size), r = std::span(r0_).first(events.size);
+    if (!functions(joint, point(start), e, g, r, fault)) return false;
+    for (std::size_t i = 0; i < events.size; ++i) {
+      if (events[i].crossing != Crossing::rising || !(g[i] > 0.0)) continue;
+      if (!tell(joint, static_cast<int>(i), point(start), e, start, fault)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,96 @@
+#include "system/leg.h"
+
+#include <cmath>
+
+namespace freeplay {
+namespace {
+
+struct OtherEnd {
+  int joint = -1;
+  int near = 0, far = 0;  // markers on the body asked for and on the other
+};
+
+bool ties(const JointElement& joint) { return joint.ideal_layout.constraint_rows > 0; }
+
+// The only joint of `body` besides `known`, force elements left out; joint -1 when there is not exactly one.
+OtherEnd only_other_joint(const Model& model, BodyId body, int known) {
+  OtherEnd found;
+  int count = 0;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[static_cast<std::size_t>(j)];
+    if (j == known || !ties(joint)) continue;
+    const BodyId a = model.markers[static_cast<std::size_t>(joint.marker_a)].body;
+    const BodyId b = model.markers[static_cast<std::size_t>(joint.marker_b)].body;
+    if (a != body && b != body) continue;
+    ++count;
+    found = a == body ? OtherEnd{j, joint.marker_a, joint.marker_b} : OtherEnd{j, joint.marker_b, joint.marker_a};
+  }
+  return count == 1 ? found : OtherEnd{};
+}
+
+struct Point {
+  double x, y;
+};
+Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y}; }
+
+}  // namespace
+
+std::optional<Leg> find_leg(const Model& model, int driven, int frame) {
+  const auto marker = [&](int m) -> const Marker& { return model.markers[static_cast<std::size_t>(m)]; };
+  const auto at = [&](int m) { return Point{marker(m).position[0], marker(m).position[1]}; };
+  const auto is_pin = [&](int j) { return model.joints[static_cast<std::size_t>(j)].ideal_layout.pin != 0; };
+
+  const JointElement& a = model.joints[static_cast<std::size_t>(driven)];
+  if (!is_pin(driven) || marker(a.marker_a).body != ground) return std::nullopt;
+  const BodyId crank = marker(a.marker_b).body, platform = marker(frame).body;
+  if (crank == platform) return std::nullopt;
+  const OtherEnd b = only_other_joint(model, crank, driven);
+  if (b.joint < 0 || !is_pin(b.joint)) return std::nullopt;
+  const BodyId coupler = marker(b.far).body;
+  if (coupler == ground || coupler == platform) return std::nullopt;
+  const OtherEnd c = only_other_joint(model, coupler, b.joint);
+  if (c.joint < 0 || !is_pin(c.joint) || marker(c.far).body != platform) return std::nullopt;
+
+  const Point ab = at(b.near) - at(a.marker_b), bc = at(c.near) - at(b.far), fc = at(c.far) - at(frame);
+  Leg leg;
+  leg.name = a.name;
+  leg.ax = at(a.marker_a).x;
+  leg.ay = at(a.marker_a).y;
+  leg.crank = std::hypot(ab.x, ab.y);
+  leg.coupler = std::hypot(bc.x, bc.y);
+  if (leg.crank == 0.0 || leg.coupler == 0.0) return std::nullopt;
+  leg.cx = fc.x;
+  leg.cy = fc.y;
+  leg.crank_direction = std::atan2(ab.y, ab.x);
+  leg.coupler_direction = std::atan2(bc.y, bc.x);
+  leg.coordinate_offset = marker(a.marker_b).angle - marker(a.marker_a).angle;
+  leg.crank_body = crank;
+  leg.coupler_body = coupler;
+  leg.crank_pin_x = at(a.marker_b).x;
+  leg.crank_pin_y = at(a.marker_b).y;
+  leg.coupler_pin_x = at(b.far).x;
+  leg.coupler_pin_y = at(b.far).y;
+  return leg;
+}
+
+LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
+  const auto constant = [](double value) { return Jet::constant(value); };
+  const Jet c = cos(angle), s = sin(angle);
+  const Jet p = x + c * constant(leg.cx) - s * constant(leg.cy) - constant(leg.ax);
+  const Jet q = y + s * constant(leg.cx) + c * constant(leg.cy) - constant(leg.ay);
+  const Jet squared = p * p + q * q;
+  const Jet w1 = constant(2.0 * leg.crank) * p, w2 = constant(2.0 * leg.crank) * q;
+  const Jet w3 = squared + constant(leg.crank * leg.crank - leg.coupler * leg.coupler);
+  const Jet room = w1 * w1 + w2 * w2 - w3 * w3;
+  LegPose pose;
+  pose.distance = std::sqrt(squared.value);
+  pose.reachable = room.value > 0.0;
+  if (!pose.reachable) return pose;
+  const Jet direction = atan2(w2, w1) + constant(leg.elbow) * atan2(sqrt(room), w3);
+  const Jet bx = p - constant(leg.crank) * cos(direction), by = q - constant(leg.crank) * sin(direction);
+  pose.crank = direction - constant(leg.crank_direction);
+  pose.coupler = atan2(by, bx) - constant(leg.coupler_direction);
+  return pose;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,43 @@
+// Leg: closed-form inverse kinematics of a crank and a coupler that carry a platform.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/jet.h"
+#include "model/model.h"
+
+namespace freeplay {
+
+/// Ground pin A - crank - pin B - coupler - pin C on the platform. The crank's direction A to B follows from C by
+///   w1 cos + w2 sin = w3,  (w1, w2) = 2 l1 (C - A),  w3 = |C - A|^2 + l1^2 - l2^2
+///   direction = atan2(w2, w1) + elbow atan2(sqrt(w1^2 + w2^2 - w3^2), w3)
+/// Zhang and Zhang 2016, eq. (4), in the atan2 form that keeps its digits near stretch.
+struct Leg {
+  std::string name;              ///< of the driven joint
+  double ax = 0.0, ay = 0.0;     ///< pin A, world axes [m]
+  double crank = 0.0, coupler = 0.0;  ///< lengths l1, l2 [m]
+  double cx = 0.0, cy = 0.0;     ///< pin C relative to the path's frame, platform body axes [m]
+  double crank_direction = 0.0;  ///< of A to B in the crank's body axes [rad]
+  double coupler_direction = 0.0;///< of B to C in the coupler's body axes [rad]
+  double coordinate_offset = 0.0;///< joint coordinate minus the crank's body angle [rad]
+  int elbow = 1;
+  int crank_body = 0, coupler_body = 0;
+  double crank_pin_x = 0.0, crank_pin_y = 0.0;      ///< pin A in the crank's body frame [m]
+  double coupler_pin_x = 0.0, coupler_pin_y = 0.0;  ///< pin B in the coupler's body frame [m]
+};
+
+/// The leg that drives joint `driven` under a path of marker `frame`; nothing when the chain has another shape.
+std::optional<Leg> find_leg(const Model& model, int driven, int frame);
+
+/// Angles of the bodies of a leg [rad], principal values, with derivatives.
+struct LegPose {
+  Jet crank, coupler;
+  bool reachable = true;
+  double distance = 0.0;  ///< of A and C [m]
+};
+
+/// `x`, `y` [m] and `angle` [rad]: position of the path's frame and angle of the platform's body.
+LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
+
+}  // namespace freeplay

@@ -1,0 +1,95 @@
+// Planar bodies: (x, y, theta) of the centre of mass, and how markers ride on them.
+//
+// With s the marker's offset from the centre of mass in world axes, E the quarter turn and w = theta':
+//   P = r + s,  P' = r' + E s w,  P'' = r'' + E s w' - s w^2;  twist = J v with J = [1 E s; 0 1].
+// This file and its spatial counterpart alone know the coordinates of a body.
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include "model/model.h"
+
+namespace freeplay::planar {
+
+inline constexpr int coordinates = 3, velocities = 3;
+/// Entries of a twist or wrench that a planar model has: vx vy wz, Fx Fy Mz.
+inline constexpr int components[3] = {0, 1, 5};
+
+/// What a marker's place on its body comes to, found once.
+struct Mount {
+  BodyId body = ground;
+  double x = 0.0, y = 0.0;              ///< offset from the centre of mass, body axes [m]
+  double cosine = 1.0, sine = 0.0;      ///< of the marker's angle on the body
+};
+
+/// Offset of a marker from its body's centre of mass in world axes [m], and the body's angular velocity.
+struct Arm {
+  double x = 0.0, y = 0.0, w = 0.0;
+};
+
+/// Sine and cosine of a body's angle.
+struct Turn {
+  double cosine = 1.0, sine = 0.0;
+};
+
+inline Mount mount(const Model& model, const Marker& marker) {
+  Mount m{marker.body, marker.position[0], marker.position[1], std::cos(marker.angle), std::sin(marker.angle)};
+  if (marker.body != ground) {
+    const Body& body = model.bodies[static_cast<std::size_t>(marker.body)];
+    m.x -= body.com[0];
+    m.y -= body.com[1];
+  }
+  return m;
+}
+
+/// Pose and twist of a marker. Entries that a planar motion never changes are left as they are (zero, and 1 in the
+/// rotation's last place).
+inline void marker_kinematics(const Mount& m, const double* q, const double* v, const Turn& turn, MarkerKinematics& k,
+                              Arm& arm) {
+  arm = {turn.cosine * m.x - turn.sine * m.y, turn.sine * m.x + turn.cosine * m.y, v[2]};
+  k.position[0] = q[0] + arm.x;
+  k.position[1] = q[1] + arm.y;
+  const double c = turn.cosine * m.cosine - turn.sine * m.sine, s = turn.sine * m.cosine + turn.cosine * m.sine;
+  k.rotation[0] = c;
+  k.rotation[1] = -s;
+  k.rotation[3] = s;
+  k.rotation[4] = c;
+  k.velocity[0] = v[0] - arm.y * v[2];
+  k.velocity[1] = v[1] + arm.x * v[2];
+  k.angular_velocity[2] = v[2];
+}
+
+/// Row g of a marker's twist (6 numbers) as a row of the body's velocities (3 numbers): g J.
+inline void body_row(const double* g, const Arm& arm, double* row) {
+  row[0] = g[0];
+  row[1] = g[1];
+  row[2] = g[5] - arm.y * g[0] + arm.x * g[1];
+}
+
+/// g J' v: what the marker's acceleration holds besides J a.
+inline double velocity_product(const double* g, const Arm& arm) {
+  return -(g[0] * arm.x + g[1] * arm.y) * arm.w * arm.w;
+}
+
+/// Generalised force J^T W of a wrench (6 numbers) at the marker, added.
+inline void add_wrench(const double* wrench, const Arm& arm, double* force) {
+  force[0] += wrench[0];
+  force[1] += wrench[1];
+  force[2] += wrench[5] + arm.x * wrench[1] - arm.y * wrench[0];
+}
+
+/// J a + J' v: linear and angular acceleration of a marker, 6 numbers.
+inline void marker_acceleration(const double* a, const Arm& arm, double* out) {
+  out[0] = a[0] - arm.y * a[2] - arm.x * arm.w * arm.w;
+  out[1] = a[1] + arm.x * a[2] - arm.y * arm.w * arm.w;
+  out[2] = out[3] = out[4] = 0.0;
+  out[5] = a[2];
+}
+
+/// q <- base + increment.
+inline void retract(std::span<const double> base, std::span<const double> increment, std::span<double> q) {
+  for (std::size_t i = 0; i < q.size(); ++i) q[i] = base[i] + increment[i];
+}
+
+}  // namespace freeplay::planar

@@ -1,0 +1,60 @@
+// State: everything that the next step depends on, in one block of numbers.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "freeplay/integrator.h"
+#include "system/layout.h"
+
+namespace freeplay {
+
+/// [t | q | v | a | lambda | z | h | integrator memory]. Copying it is the only rollback.
+class State {
+ public:
+  State() = default;
+  State(const Layout& layout, int memory)
+      : nq_(size(layout.nq())),
+        nv_(size(layout.nv())),
+        nc_(size(layout.nc())),
+        nz_(size(layout.nz())),
+        nh_(size(layout.nh())),
+        memory_(size(memory)),
+        block_(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_ + memory_, 0.0) {}
+
+  /// Copies a state of the same layout without allocating; the memory of the integrator may differ in size.
+  void assign(const State& other) {
+    const std::size_t common = std::min(block_.size(), other.block_.size());
+    std::copy_n(other.block_.begin(), common, block_.begin());
+  }
+
+  double& t() { return block_[0]; }
+  double t() const { return block_[0]; }
+  std::span<double> q() { return part(1, nq_); }
+  std::span<double> v() { return part(1 + nq_, nv_); }
+  std::span<double> a() { return part(1 + nq_ + nv_, nv_); }
+  std::span<double> lambda() { return part(1 + nq_ + 2 * nv_, nc_); }
+  std::span<double> z() { return part(1 + nq_ + 2 * nv_ + nc_, nz_); }
+  std::span<double> h() { return part(1 + nq_ + 2 * nv_ + nc_ + nz_, nh_); }
+  std::span<double> memory() { return part(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_, memory_); }
+  std::span<const double> q() const { return part(1, nq_); }
+  std::span<const double> v() const { return part(1 + nq_, nv_); }
+  std::span<const double> a() const { return part(1 + nq_ + nv_, nv_); }
+  std::span<const double> lambda() const { return part(1 + nq_ + 2 * nv_, nc_); }
+  std::span<const double> z() const { return part(1 + nq_ + 2 * nv_ + nc_, nz_); }
+  std::span<const double> h() const { return part(1 + nq_ + 2 * nv_ + nc_ + nz_, nh_); }
+  /// For checkpoints and hashes.
+  std::span<const double> block() const { return block_; }
+  StateView view() { return {&block_[0], Span<double>(q()), Span<double>(v()), Span<double>(a()),
+                             Span<double>(lambda()), Span<double>(z()), Span<double>(memory())}; }
+
+ private:
+  static std::size_t size(int n) { return static_cast<std::size_t>(n); }
+  std::span<double> part(std::size_t offset, std::size_t count) { return {block_.data() + offset, count}; }
+  std::span<const double> part(std::size_t offset, std::size_t count) const { return {block_.data() + offset, count}; }
+  std::size_t nq_ = 0, nv_ = 0, nc_ = 0, nz_ = 0, nh_ = 0, memory_ = 0;
+  std::vector<double> block_;
+};
+
+}  // namespace freeplay

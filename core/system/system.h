@@ -1,0 +1,155 @@
+// System: the equations of motion of a model.
+//
+//   M a + Phi_q^T lambda = f(t, q, v, z),   Phi(q, t) = 0,   Phi_q v = nu,   Phi_q a = gamma
+//
+// Phi_q is nc x nv: the derivative along tangent increments of q. The force of the constraints on the bodies is
+// -Phi_q^T lambda.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "system/layout.h"
+#include "system/motion.h"
+#include "system/planar_kinematics.h"
+#include "system/state.h"
+
+namespace freeplay {
+
+/// Where the equations are evaluated. Views only.
+struct Point {
+  double t = 0.0;
+  std::span<const double> q, v, z, h;
+};
+inline Point point(const State& state) { return {state.t(), state.q(), state.v(), state.z(), state.h()}; }
+
+/// Which terms of the equations are wanted.
+enum Term : unsigned {
+  term_position = 1,      ///< phi and Phi_q
+  term_velocity = 2,      ///< nu (with phi)
+  term_acceleration = 4,  ///< gamma (with phi)
+  term_force = 8,         ///< f
+  term_derivative = 16,   ///< derivatives of f (with f)
+  term_coordinate = 32,   ///< coordinates of all joints
+};
+
+/// Element that failed, and why.
+struct Fault {
+  enum class Kind { none, plugin, motion } kind = Kind::none;
+  int joint = -1;      ///< index into Model::joints
+  MotionFault motion;  ///< kind motion
+  Message message;     ///< kind plugin
+};
+
+/// Rows of one element in the columns of one body: `rows` x 3 numbers from `offset` of Evaluation::jacobian.
+struct JacobianBlock {
+  int row = 0, rows = 0, body = 0, offset = 0;
+};
+
+/// Derivatives of the generalised forces of one joint: 6 x 6 numbers each, rows and columns [body a, body b].
+struct ForceBlock {
+  int joint = 0;
+  BodyId a = ground, b = ground;
+};
+
+struct Evaluation;
+
+class System {
+ public:
+  explicit System(const Model& model, Variant variant = Variant::released);
+
+  const Model& model() const { return model_; }
+  const Layout& layout() const { return layout_; }
+  Variant variant() const { return variant_; }
+  Motions& motions() { return *motions_; }
+  const Motions& motions() const { return *motions_; }
+  /// Drivers move as those of another system of the same model do.
+  void share_motions(const System& other) { motions_ = other.motions_; }
+  /// Diagonal of M: mass, mass, inertia of every body.
+  std::span<const double> mass() const { return mass_; }
+  /// Largest distance that matters: unit of position tolerances [m].
+  double size() const { return size_; }
+
+  /// Closed variant: the second marker of a joint with play stands off by this, world axes.
+  void set_offset(int joint, const InitialOffset& offset) { offsets_[static_cast<std::size_t>(joint)] = offset; }
+  const JointRef& joint(int index) const;
+  const JointLayout& joint_layout(int index) const;
+
+  /// Fills the wanted terms; false with `Evaluation::fault` when an element fails. Does not allocate.
+  bool evaluate(const Point& point, unsigned terms, Evaluation& out) const;
+
+  /// out += Phi_q^T lambda and out = Phi_q v.
+  void add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
+  void multiply(const Evaluation& e, std::span<const double> v, std::span<double> out) const;
+  /// Phi_q as row-major nc x nv.
+  void dense_jacobian(const Evaluation& e, std::span<double> out) const;
+
+  std::span<const JacobianBlock> jacobian_blocks() const { return blocks_; }
+  std::span<const ForceBlock> force_blocks() const { return force_blocks_; }
+
+  /// What joint `index` sees at an evaluated point; valid while `e` and the point's arrays are.
+  JointInput input(int index, const Point& point, const Evaluation& e) const;
+  /// Value, row and bias of a joint's coordinate in the columns of its two bodies (6 numbers).
+  bool coordinate_row(int index, const Point& point, Evaluation& e, CoordinateRow& marker_row, double* row,
+                      double& bias) const;
+  /// Force and torque (Fx, Fy, Mz) on the second body at its marker: constraint and applied parts together.
+  void reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const;
+  /// Accelerations of a joint's two markers.
+  void marker_accelerations(int index, const Evaluation& e, std::span<const double> a, MarkerAccelerations& out) const;
+
+  double kinetic_energy(std::span<const double> v) const;
+  double gravity_potential(std::span<const double> q) const;
+
+ private:
+  bool evaluate_coordinates(const Point& point, bool all, Evaluation& e) const;
+  bool evaluate_rows(const Point& point, Evaluation& e) const;
+  bool evaluate_driver_rows(const Point& point, Evaluation& e) const;
+  bool evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const;
+  bool evaluate_applied(const Point& point, Evaluation& e) const;
+  void map_row(int joint, const double* marker_row, const Evaluation& e, double* row) const;
+  double row_velocity_product(int joint, const double* marker_row, const Evaluation& e) const;
+  void map_derivatives(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
+  BodyId body_a(int joint) const;
+  BodyId body_b(int joint) const;
+
+  const Model& model_;
+  Variant variant_;
+  Layout layout_;
+  std::shared_ptr<Motions> motions_;
+  std::vector<double> mass_, weight_;
+  std::vector<planar::Mount> mounts_;
+  std::vector<InitialOffset> offsets_;
+  std::vector<char> needs_coordinate_, has_forces_;
+  std::vector<JacobianBlock> blocks_;
+  std::vector<int> row_block_a_, row_block_b_;  // by joint: index into blocks_ of its rows, -1 on ground
+  std::vector<int> driver_block_a_, driver_block_b_;
+  std::vector<ForceBlock> force_blocks_;
+  double size_ = 1.0;
+  friend struct Evaluation;
+};
+
+/// Results and work space of System::evaluate. Sized once.
+struct Evaluation {
+  explicit Evaluation(const System& system);
+
+  std::vector<MarkerKinematics> markers;
+  std::vector<planar::Arm> arms;
+  std::vector<double> phi, nu, gamma, jacobian, force;
+  std::vector<double> force_q, force_v;      ///< 36 numbers per force block
+  std::vector<double> coordinate, coordinate_rate;  ///< by joint
+  std::vector<TimeValue> motion;             ///< by driver
+  std::vector<double> potential;             ///< stored energy by joint [J]
+  std::vector<double> wrench;                ///< by joint: 6 numbers on a, 6 on b, at the markers
+  std::vector<double> internal_rate;         ///< z'
+  std::vector<double> applied;               ///< by applied force: Fx, Fy, Mz in world axes at its marker
+  Fault fault;
+
+  // Work space.
+  std::vector<MarkerKinematics> shifted;     ///< by joint: second marker of a closed joint that stands off
+  std::vector<double> row_space, derivative_space;
+  std::vector<planar::Turn> turns;
+  double motion_time;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,42 @@
+#include "freeplay/plugin.h"
+#include "planar_marker.h"
+
+namespace freeplay {
+namespace {
+
+using namespace planar;
+
+/// Two markers that coincide, in the plane. With origins P [m] and angles theta:
+///
+///   Phi = (P_b - P_a, theta_b - theta_a) = 0, the angle up to whole turns
+///   d(Phi)/dt = (v_b - v_a, w_b - w_a)        gamma = 0
+class Fixed final : public Joint {
+ public:
+  explicit Fixed(const Parameters&) {}
+
+  void declare(JointLayout& layout) const override { layout.constraint_rows = 3; }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    for (int i = 0; i < 2; ++i) {
+      rows.phi.data[i] = in.b->position[i] - in.a->position[i];
+      rows.jacobian.data[12 * i + velocity_a + i] = -1.0;
+      rows.jacobian.data[12 * i + velocity_b + i] = 1.0;
+    }
+    rows.phi[2] = relative_angle(*in.a, *in.b);
+    write_turn(rows.jacobian.data + 24);
+  }
+  bool place(double, Pose& b_in_a) const override {
+    b_in_a = pose(0.0, 0.0);
+    return true;
+  }
+};
+
+}  // namespace
+
+Component fixed() {
+  return joint<Fixed>({.name = "fixed",
+                       .space = Space::planar,
+                       .summary = "Weld: both frames coincide.",
+                       .formula = "P_b - P_a = 0, theta_b - theta_a = 0 up to whole turns."});
+}
+
+}  // namespace freeplay

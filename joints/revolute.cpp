@@ -1,0 +1,52 @@
+#include "freeplay/plugin.h"
+#include "planar_marker.h"
+
+namespace freeplay {
+namespace {
+
+using namespace planar;
+
+/// Ideal pin in the plane. Two rows and their derivatives, markers a and b with origins P_a, P_b [m]:
+///
+///   Phi = P_b - P_a = 0        d(Phi)/dt = v_b - v_a        gamma = 0
+///
+/// Coordinate: the angle of marker b relative to marker a [rad]. Nikravesh 1988.
+class Revolute final : public Joint {
+ public:
+  explicit Revolute(const Parameters&) {}
+
+  void declare(JointLayout& layout) const override {
+    layout.coordinate = Coordinate::angle;
+    layout.constraint_rows = 2;
+    layout.pin = 1;
+  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override {
+    row.value = relative_angle(*in.a, *in.b);
+    write_turn(row.jacobian);
+  }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    for (int i = 0; i < 2; ++i) {
+      rows.phi.data[i] = in.b->position[i] - in.a->position[i];
+      rows.jacobian.data[12 * i + velocity_a + i] = -1.0;
+      rows.jacobian.data[12 * i + velocity_b + i] = 1.0;
+    }
+  }
+  bool place(double angle, Pose& b_in_a) const override {
+    b_in_a = pose(0.0, angle);
+    return true;
+  }
+};
+
+}  // namespace
+
+Component revolute() {
+  return joint<Revolute>({.name = "revolute",
+                          .space = Space::planar,
+                          .summary = "Pin: the origins of both frames coincide, the turn is free.",
+                          .formula = "P_b - P_a = 0; coordinate: angle of the second frame relative to the first.",
+                          .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems",
+                          .first_end = "bearing",
+                          .second_end = "journal"});
+}
+
+}  // namespace freeplay

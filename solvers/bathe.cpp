@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+
+#include "freeplay/plugin.h"
+
+namespace freeplay {
+namespace {
+
+/// Composite method of Bathe: trapezoidal rule to t + s h, then three-point backward Euler to t + h. With velocities v,
+/// accelerations a, increments d from the state n at the start of the step (h: step, s: split, rho: spectral radius
+/// for h -> infinity):
+///
+///   v_s = v_n + s h/2 (a_n + a_s)                d_s = s h/2 (v_n + v_s)
+///   v_1 = v_n + h (q0 a_n + q1 a_s + q2 a_1)     d_1 = h (q0 v_n + q1 v_s + q2 v_1)
+///   q1 = (rho + 1)/(2 s (rho - 1) + 4)    q0 = 1/2 - (1 - s) q1    q2 = 1/2 - s q1 = (1 - s)/(2 + s (rho - 1))
+///
+/// Internal variables z follow the rule of v. Constraints hold at position level in both stages; then v is projected
+/// and a, lambda are solved again at the accepted state, which makes every quantity of order 2, without drift. Bathe
+/// and Baig 2005; Bathe 2007; Noh and Bathe 2018 (rho).
+class Bathe final : public Integrator {
+ public:
+  explicit Bathe(const Parameters& p)
+      : tolerance_(p.number("newton.tolerance")), iterations_(p.integer("newton.max_iterations")) {
+    const double rho = p.number("rho_inf");
+    const bool optimal = p.word("split") == 0;
+    // s_0 = (2 - sqrt(2 + 2 rho))/(1 - rho), written so that rho = 1 is no exception.
+    split_ = optimal ? 2.0 / (2.0 + std::sqrt(2.0 + 2.0 * rho)) : p.number("split");
+    q1_ = (rho + 1.0) / (2.0 * split_ * (rho - 1.0) + 4.0);
+    q0_ = 0.5 - (1.0 - split_) * q1_;
+    // With the optimal split both stages have one matrix; equal bits let the host see it.
+    q2_ = optimal ? 0.5 * split_ : (1.0 - split_) / (2.0 + split_ * (rho - 1.0));
+  }
+
+  void declare(IntegratorLayout& layout) const override {
+    const Sizes& n = layout.sizes;
+    layout.memory = n.nz;  // z' at the accepted state
+    layout.scratch = n.nq + 4 * n.nv + 2 * n.nz;
+    layout.order = 2;
+    layout.newton_tolerance = tolerance_;
+    layout.newton_max_iterations = iterations_;
+  }
+  void restart(StateView& state, StageSolver& solver) const override {
+    if (!state.z.empty()) solver.accelerate(state, state.memory);
+  }
+
+  Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const override {
+    Start n(to, scratch);
+    if (!trapezoid(dt, n, to, solver)) return {.converged = 0, .error = 0.0};
+    if (!backward_euler(dt, n, to, solver)) return {.converged = 0, .error = 0.0};
+    solver.project_velocity(to);
+    solver.accelerate(to, to.memory);
+    return {.converged = 1, .error = 0.0};
+  }
+
+ private:
+  /// Values at the start of the step and the known terms of the present stage, in slices of the scratch.
+  struct Start {
+    Start(const StateView& state, Span<double> scratch) : t(*state.t) {
+      std::size_t used = 0;
+      const auto take = [&](std::size_t count) {
+        used += count;
+        return scratch.part(used - count, count);
+      };
+      q = take(state.q.size);
+      v = take(state.v.size);
+      a = take(state.v.size);
+      z = take(state.z.size);
+      v_known = take(state.v.size);
+      increment_known = take(state.v.size);
+      z_known = take(state.z.size);
+      std::copy(state.q.begin(), state.q.end(), q.begin());
+      std::copy(state.v.begin(), state.v.end(), v.begin());
+      std::copy(state.a.begin(), state.a.end(), a.begin());
+      std::copy(state.z.begin(), state.z.end(), z.begin());
+    }
+    double t;
+    Span<double> q, v, a, z, v_known, increment_known, z_known;
+  };
+
+  bool trapezoid(double dt, Start& n, StateView& to, StageSolver& solver) const {
+    const double b = 0.5 * split_ * dt;
+    for (std::size_t i = 0; i < n.v.size; ++i) {
+      n.v_known[i] = n.v[i] + b * n.a[i];
+      n.increment_known[i] = b * (n.v[i] + n.v_known[i]);
+    }
+    for (std::size_t i = 0; i < n.z.size; ++i) n.z_known[i] = n.z[i] + b * to.memory[i];
+    return solve(n.t + split_ * dt, b, n, to, solver);
+  }
+
+  /// `to` holds the stage at t + s h, whose a is the starting guess of this one.
+  bool backward_euler(double dt, Start& n, StateView& to, StageSolver& solver) const {
+    const double b = q2_ * dt, b_first = 0.5 * split_ * dt;
+    for (std::size_t i = 0; i < n.v.size; ++i) {
+      n.v_known[i] = n.v[i] + dt * (q0_ * n.a[i] + q1_ * to.a[i]);
+      n.increment_known[i] = dt * (q0_ * n.v[i] + q1_ * to.v[i]) + b * n.v_known[i];
+    }
+    for (std::size_t i = 0; i < n.z.size; ++i) {
+      const double rate = (to.z[i] - n.z_known[i]) / b_first;
+      n.z_known[i] = n.z[i] + dt * (q0_ * to.memory[i] + q1_ * rate);
+    }
+    return solve(n.t + dt, b, n, to, solver);
+  }
+
+  static bool solve(double t, double b, const Start& n, StateView& to, StageSolver& solver) {
+    const Stage stage{.t = t,
+                      .q_base = n.q,
+                      .increment_known = n.increment_known,
+                      .v_known = n.v_known,
+                      .z_known = n.z_known,
+                      .beta_q = b * b,
+                      .beta_v = b,
+                      .beta_z = b,
+                      .level = ConstraintLevel::position};
+    return solver.solve(stage, to).converged != 0;
+  }
+
+  double tolerance_;
+  int iterations_;
+  double split_, q0_, q1_, q2_;
+};
+
+constexpr Parameter parameters[] = {
+    {.name = "split",
+     .default_value = 0.5,
+     .minimum = 0.0,
+     .maximum = 1.0,
+     .open = Open::both,
+     .choices = "optimal",
+     .summary = "Fraction of the step taken by the trapezoidal rule; 'optimal' gives the least period error."},
+    {.name = "rho_inf",
+     .default_value = 0.0,
+     .minimum = 0.0,
+     .maximum = 1.0,
+     .summary = "Spectral radius for large steps: 0 damps high frequencies most, 1 not at all."},
+    newton_tolerance_parameter,
+    newton_iterations_parameter,
+};
+
+}  // namespace
+
+Component bathe() {
+  return integrator<Bathe>(
+      {.name = "bathe",
+       .summary = "Two-step composite method, implicit, order 2, damps high frequencies.",
+       .formula =
+           "v_s = v_n + s h/2 (a_n + a_s), d_s = s h/2 (v_n + v_s); v_1 = v_n + h (q0 a_n + q1 a_s + q2 a_1), d_1 = h "
+           "(q0 v_n + q1 v_s + q2 v_1); q1 = (rho + 1)/(2 s (rho - 1) + 4), q0 = (s - 1) q1 + 1/2, q2 = 1/2 - s q1; "
+           "optimal s = (2 - sqrt(2 + 2 rho))/(1 - rho).",
+       .validity = "Fixed steps; it gives no error estimate.",
+       .references = "Bathe and Baig 2005, Comput Struct 83; Bathe 2007, Comput Struct 85; Noh and Bathe 2018, Comput "
+                     "Struct 202",
+       .parameters = parameters,
+       .preferred = 1});
+}
+
+}  // namespace freeplay

@@ -1,0 +1,12 @@
+// The integrators of the library, one row each.
+#include "freeplay/plugin.h"
+
+namespace freeplay {
+Component bathe();
+}  // namespace freeplay
+
+FREEPLAY_PLUGIN(solvers) {
+  using namespace freeplay;
+  static const Component components[] = {bathe()};
+  return publish(*host, *manifest, "solvers", "0.1.0", components);
+}

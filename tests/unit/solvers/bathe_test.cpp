@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "../parameter_stub.h"
+
+extern "C" freeplay::Status freeplay_plugin_v1_solvers(const freeplay::Host*, freeplay::Manifest*) noexcept;
+
+namespace freeplay::test {
+namespace {
+
+/// q'' = -omega^2 q - 2 zeta omega q', and apart from it z' = -decay z. Stages are linear and solved in closed form.
+struct Oscillator {
+  double omega = 1.0, zeta = 0.0, decay = 0.0;
+  int stages_to_converge = 1000;
+  int projections = 0, accelerations = 0;
+  std::vector<Stage> stages{};
+  std::vector<double> guesses{};
+
+  double acceleration(double q, double v) const { return -omega * omega * q - 2.0 * zeta * omega * v; }
+
+  abi::StageSolverTable table() {
+    return {sizeof(abi::StageSolverTable), this, solve, project_velocity, project_position, accelerate};
+  }
+  static Oscillator& self(void* s) { return *static_cast<Oscillator*>(s); }
+  static Status solve(void* s, const Stage* stage, StateView* out, StageResult* result, Message*) noexcept {
+    Oscillator& o = self(s);
+    o.stages.push_back(*stage);
+    o.guesses.push_back(out->a[0]);
+    if (static_cast<int>(o.stages.size()) > o.stages_to_converge) {
+      *result = {0, 20};
+      return Status::ok;
+    }
+    const double q = stage->q_base[0] + stage->increment_known[0], v = stage->v_known[0];
+    const double a =
+        o.acceleration(q, v) / (1.0 + o.omega * o.omega * stage->beta_q + 2.0 * o.zeta * o.omega * stage->beta_v);
+    *out->t = stage->t;
+    out->a[0] = a;
+    out->v[0] = v + stage->beta_v * a;
+    out->q[0] = q + stage->beta_q * a;
+    if (!out->z.empty()) out->z[0] = stage->z_known[0] / (1.0 + o.decay * stage->beta_z);
+    *result = {1, 1};
+    return Status::ok;
+  }
+  static Status project_velocity(void* s, StateView*, Message*) noexcept {
+    ++self(s).projections;
+    return Status::ok;
+  }
+  static Status project_position(void*, StateView*, Message*) noexcept { return Status::failed; }
+  static Status accelerate(void* s, StateView* state, Span<double> z_rate, Message*) noexcept {
+    ++self(s).accelerations;
+    state->a[0] = self(s).acceleration(state->q[0], state->v[0]);
+    if (!state->z.empty()) z_rate[0] = -self(s).decay * state->z[0];
+    return Status::ok;
+  }
+};
+
+constexpr double optimal = -1.0;
+
+ParameterStub parameters(double split, double rho) {
+  ParameterStub stub(component(freeplay_plugin_v1_solvers, "bathe"));
+  if (split == optimal) {
+    stub.words["split"] = 0;
+  } else {
+    stub.numbers["split"] = split;
+  }
+  stub.numbers["rho_inf"] = rho;
+  return stub;
+}
+
+/// One state of the oscillator and the integrator that drives it.
+struct Trial {
+  Trial(double split, double rho, Oscillator model, double q0, double v0, double z0 = 0.0)
+      : integrator(component(freeplay_plugin_v1_solvers, "bathe"), parameters(split, rho)), oscillator(model) {
+    layout.sizes = {1, 1, 0, 1};
+    integrator.call(&abi::IntegratorTable::declare, &layout);
+    memory.resize(static_cast<std::size_t>(layout.memory));
+    scratch.assign(static_cast<std::size_t>(layout.scratch), NAN);
+    q[0] = q0;
+    v[0] = v0;
+    z[0] = z0;
+    a[0] = oscillator.acceleration(q0, v0);
+    StateView s = state();
+    const abi::StageSolverTable table = oscillator.table();
+    integrator.call(&abi::IntegratorTable::restart, &s, &table);
+  }
+  StateView state() { return {&t, q, v, a, {}, z, {memory.data(), memory.size()}}; }
+  Attempt step(double dt) {
+    Attempt result{};
+    StateView s = state();
+    const abi::StageSolverTable table = oscillator.table();
+    integrator.call(&abi::IntegratorTable::attempt, dt, &s, Span<double>(scratch.data(), scratch.size()), &table,
+                    &result);
+    return result;
+  }
+  IntegratorInstance integrator;
+  Oscillator oscillator;
+  IntegratorLayout layout;
+  double t = 0.0, q[1], v[1], a[1], z[1];
+  std::vector<double> memory, scratch;
+};
+
+// One step in double precision by the matrix recursion of the method, from consistent initial values.
+TEST(Bathe, OneStepOfTheDampedOscillator) {
+  const struct {
+    double omega, zeta, q0, v0, h, split, rho, q, v, a;
+  } cases[] = {{1.0, 0.0, 1.0, 0.0, 0.1, 0.5, 0.0, 0.995007975731039, -0.0997919585497688, -0.99500797573104},
+               {1.0, 0.0, 1.0, 0.0, 0.1, optimal, 0.0, 0.995007832947154, -0.0997931746341209, -0.99500783294715},
+               {1.0, 0.0, 1.0, 0.0, 0.1, optimal, 0.5, 0.995006914583094, -0.0998040774626316, -0.99500691458309},
+               {1.0, 0.0, 1.0, 0.0, 0.1, 0.5, 1.0, 0.995006244145504, -0.0998126951417388, -0.9950062441455},
+               {1.0, 0.0, 1.0, 0.0, 0.1, optimal, 1.0, 0.995006244145504, -0.0998126951417388, -0.9950062441455},
+               {3.0, 0.05, 0.2, -1.0, 0.25, 0.5, 0.0, -0.0653050791135196, -1.07246747271287, 0.90948595383554},
+               {3.0, 0.05, 0.2, -1.0, 0.25, optimal, 0.0, -0.0654598830376207, -1.07222060395382, 0.91080512852473},
+               {3.0, 0.05, 0.2, -1.0, 0.25, optimal, 0.5, -0.0670238891769333, -1.07098259574874, 0.92450978131702},
+               {3.0, 0.05, 0.2, -1.0, 0.25, 0.5, 1.0, -0.0682842794349492, -1.07016151766045, 0.93560697021268}};
+  for (const auto& c : cases) {
+    Trial run(c.split, c.rho, {.omega = c.omega, .zeta = c.zeta}, c.q0, c.v0);
+    ASSERT_EQ(run.step(c.h).converged, 1);
+    EXPECT_NEAR(run.q[0], c.q, 1e-13);
+    EXPECT_NEAR(run.v[0], c.v, 1e-13);
+    EXPECT_NEAR(run.a[0], c.a, 1e-13);
+    EXPECT_EQ(run.t, c.h);
+  }
+}
+
+// abs(R) of one step of the undamped oscillator; its 2 x 2 amplification matrix has the determinant abs(R)^2.
+TEST(Bathe, SpectralRadiusDampsLargeSteps) {
+  const struct {
+    double split, rho, step_per_period, radius;
+  } cases[] = {{0.5, 0.0, 0.01, 0.999999945920908},
+               {0.5, 0.0, 0.1, 0.999493934337159},
+               {0.5, 0.0, 0.2, 0.993272946041567},
+               {0.5, 0.0, 1.0, 0.64846636770808},
+               {0.5, 0.0, 10.0, 0.0793841811474615},
+               {optimal, 0.0, 0.1, 0.999463321935721},
+               {optimal, 0.0, 1.0, 0.635575314210254},
+               {optimal, 0.0, 10.0, 0.076677104507046},
+               {optimal, 0.5, 1.0, 0.768233340145411},
+               {optimal, 0.5, 10.0, 0.505236783761441},
+               {0.5, 1.0, 10.0, 1.0}};
+  for (const auto& c : cases) {
+    Trial first(c.split, c.rho, {}, 1.0, 0.0), second(c.split, c.rho, {}, 0.0, 1.0);
+    const double h = 2.0 * M_PI * c.step_per_period;
+    first.step(h);
+    second.step(h);
+    EXPECT_NEAR(std::sqrt(first.q[0] * second.v[0] - second.q[0] * first.v[0]), c.radius, 1e-12);
+  }
+}
+
+// z' = -z by R(x) = (12 + 5x)/((4 - x)(3 - x)), closed form for split 1/2 and rho 0, at x = -h.
+TEST(Bathe, InternalVariablesFollowTheSameRule) {
+  Trial run(0.5, 0.0, {.decay = 1.0}, 0.0, 0.0, 2.0);
+  const double x = -0.3, r = (12.0 + 5.0 * x) / ((4.0 - x) * (3.0 - x));
+  run.step(0.3);
+  EXPECT_NEAR(run.z[0], 2.0 * r, 1e-14);
+  run.step(0.3);
+  EXPECT_NEAR(run.z[0], 2.0 * r * r, 1e-14);
+}
+
+// Weights q0, q1, q2 of rho = 1/2 with the optimal split, evaluated in 34 digits; they differ from each other.
+TEST(Bathe, InternalVariablesTakeTheWeightsOfBothStages) {
+  const double s = 0.535898384862246, q0 = 0.299038105676658, q1 = 0.433012701892219, q2 = 0.267949192431123;
+  Trial run(optimal, 0.5, {.decay = 1.0}, 0.0, 0.0, 2.0);
+  run.step(0.3);
+  const double x = -0.3, stage = (1.0 + 0.5 * s * x) / (1.0 - 0.5 * s * x);
+  EXPECT_NEAR(run.z[0], 2.0 * (1.0 + x * (q0 + q1 * stage)) / (1.0 - q2 * x), 1e-14);
+}
+
+TEST(Bathe, StagesHoldPositionsAndThenVelocitiesAreProjected) {
+  Trial run(0.4, 0.0, {}, 1.0, 0.0);
+  run.t = 3.0;
+  const int before = run.oscillator.accelerations;
+  run.step(0.5);
+  ASSERT_EQ(run.oscillator.stages.size(), 2u);
+  for (const Stage& s : run.oscillator.stages) EXPECT_EQ(s.level, ConstraintLevel::position);
+  EXPECT_EQ(run.oscillator.stages[0].t, 3.0 + 0.4 * 0.5);
+  EXPECT_EQ(run.oscillator.stages[1].t, 3.5);
+  EXPECT_EQ(run.oscillator.guesses[0], -1.0);  // a at the start of the step
+  EXPECT_EQ(run.oscillator.projections, 1);
+  EXPECT_EQ(run.oscillator.accelerations, before + 1);
+}
+
+TEST(Bathe, OptimalSplitGivesBothStagesOneMatrix) {
+  for (const double rho : {0.0, 0.3, 1.0}) {
+    Trial run(optimal, rho, {}, 1.0, 0.0);
+    run.step(0.1);
+    EXPECT_EQ(run.oscillator.stages[0].beta_q, run.oscillator.stages[1].beta_q);
+    EXPECT_EQ(run.oscillator.stages[0].beta_v, run.oscillator.stages[1].beta_v);
+  }
+}
+
+// q1 = (rho + 1)/(2 s (rho - 1) + 4), q2 = 1/2 - s q1.
+TEST(Bathe, SecondStageWeighsAsPublishedForAnySplit) {
+  for (const double split : {1e-6, 0.2, 0.9, 1.0 - 1e-9})
+    for (const double rho : {0.0, 0.7, 1.0}) {
+      Trial run(split, rho, {}, 1.0, 0.0);
+      run.step(1.0);
+      const double q1 = (rho + 1.0) / (2.0 * split * (rho - 1.0) + 4.0);
+      EXPECT_NEAR(run.oscillator.stages[1].beta_v, 0.5 - split * q1, 1e-15);
+      EXPECT_GT(run.oscillator.stages[1].beta_v, 0.0);
+    }
+}
+
+TEST(Bathe, IsOfSecondOrder) {
+  const auto error = [](int steps) {
+    Trial run(0.5, 0.0, {.omega = 2.0, .zeta = 0.1}, 1.0, 0.0);
+    for (int i = 0; i < steps; ++i) run.step(1.0 / steps);
+    // q = exp(-zeta omega t)(cos w t + zeta omega/w sin w t), w = omega sqrt(1 - zeta^2)
+    const double w = 2.0 * std::sqrt(0.99);
+    return std::abs(run.q[0] - std::exp(-0.2) * (std::cos(w) + 0.2 / w * std::sin(w)));
+  };
+  EXPECT_NEAR(std::log2(error(100) / error(200)), 2.0, 0.05);
+}
+
+TEST(Bathe, GivesUpWithTheStageThatDoesNotConverge) {
+  for (const int good : {0, 1}) {
+    Trial run(0.5, 0.0, {.stages_to_converge = good}, 1.0, 0.0);
+    EXPECT_EQ(run.step(0.1).converged, 0);
+    EXPECT_EQ(static_cast<int>(run.oscillator.stages.size()), good + 1);
+    EXPECT_EQ(run.oscillator.projections, 0);
+  }
+}
+
+TEST(Bathe, DeclaresWhatItNeedsAndPassesTheNewtonParameters) {
+  ParameterStub stub = parameters(0.5, 0.0);
+  stub.numbers["newton.tolerance"] = 1e-8;
+  stub.numbers["newton.max_iterations"] = 7;
+  const IntegratorInstance integrator(component(freeplay_plugin_v1_solvers, "bathe"), stub);
+  IntegratorLayout layout;
+  layout.sizes = {7, 6, 2, 3};
+  integrator.call(&abi::IntegratorTable::declare, &layout);
+  EXPECT_EQ(layout.memory, 3);
+  EXPECT_EQ(layout.order, 2);
+  EXPECT_EQ(layout.newton_tolerance, 1e-8);
+  EXPECT_EQ(layout.newton_max_iterations, 7);
+}
+
+}  // namespace
+}  // namespace freeplay::test
