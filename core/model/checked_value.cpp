@@ -42,6 +42,16 @@ std::string either(const std::vector<std::string>& words) {
   return text;
 }
 
+/// The text of `--set` that makes the value at `at` wrong, or null.
+const Node* CheckedValue::blamed_override(const Node& at, const std::string& id) const {
+  if (!at.is_scalar() || id == "unknown-name" || id == "bad-unit") return nullptr;
+  for (const std::string& name : referenced_parameters(at.text)) {
+    const Node* override = reading_->scope->override_of(name);
+    if (override != nullptr && override != &at) return override;
+  }
+  return nullptr;
+}
+
 void CheckedValue::report(const Node& at, Location location, int length, Severity severity, const std::string& id,
                           const std::string& message, const std::string& suggested, const std::string& hint) const {
   Diagnostic diagnostic;
@@ -50,6 +60,12 @@ void CheckedValue::report(const Node& at, Location location, int length, Severit
   diagnostic.message = message;
   diagnostic.location = std::move(location);
   diagnostic.length = length > 0 ? length : at.length;
+  if (const Node* override = blamed_override(at, id)) {
+    diagnostic.notes.push_back(
+        fmt::format("at {}:{}:{}", diagnostic.location.file, diagnostic.location.line, diagnostic.location.column));
+    diagnostic.location = override->location();
+    diagnostic.length = override->length;
+  }
   diagnostic.suggestion = suggested;
   diagnostic.hint = hint;
   if (!user_.empty()) diagnostic.notes.push_back("used in '" + user_ + "'");

@@ -76,6 +76,7 @@ class CheckedValue {
  private:
   std::optional<Expression> compile(const Node& text_node, std::string_view text, int offset, bool time_allowed) const;
   void fail_inside(const Node& text_node, const ExpressionError& error, int offset) const;
+  const Node* blamed_override(const Node& at, const std::string& id) const;
   bool tried(const Expression& expression) const;
   std::optional<std::string> expand(const Node& text_node) const;
   void report(const Node& at, Location location, int length, Severity severity, const std::string& id,

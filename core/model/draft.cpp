@@ -136,7 +136,8 @@ std::optional<std::string> Draft::frame_name(const CheckedValue& value, const st
     if (name.starts_with(stem)) candidates.push_back(name.substr(stem.size()));
   }
   std::sort(candidates.begin(), candidates.end());
-  value.fail("unknown-name", "body '" + body_name(*id) + "' has no frame '" + frame + "'", nearest(frame, candidates));
+  // In the words of the file, so that the instances of a template share the message.
+  value.fail("unknown-name", "body '" + body_word + "' has no frame '" + frame + "'", nearest(frame, candidates));
   return std::nullopt;
 }
 

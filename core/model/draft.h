@@ -20,7 +20,9 @@ inline constexpr long largest_model = 200'000;  ///< bodies, joints, drivers and
 
 struct Draft {
   Draft(const Registry& known_types, const BuildOptions& build_options, Diagnostics& messages)
-      : registry(known_types), options(build_options), diagnostics(messages) {}
+      : registry(known_types), options(build_options), diagnostics(messages) {
+    frames["ground/origin"] = {};
+  }
 
   const Registry& registry;
   const BuildOptions& options;

@@ -98,10 +98,15 @@ class JointEntry {
     if (!a || !b) return;
     const auto body_of = [&](int marker) { return draft_.model.markers[static_cast<std::size_t>(marker)].body; };
     if (body_of(*a) == body_of(*b)) {
-      place.fail("same-body", "'" + entry_.path() + "' joins two frames of '" + draft_.body_name(body_of(*a)) + "'");
+      place.fail("same-body", "both frames of '" + entry_.path() + "' are on '" + body_word(first) + "'");
     }
     element().marker_a = *a;
     element().marker_b = *b;
+  }
+
+  /// The body as the file names it, so that the instances of a template share a message.
+  static std::string body_word(const CheckedValue& reference) {
+    return reference.node().text.substr(0, reference.node().text.find('/'));
   }
 
   // --- components ------------------------------------------------------------------------------------------------

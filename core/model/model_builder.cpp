@@ -118,7 +118,7 @@ class ModelBuilder {
         }
         const Node* replaced = overrides_.text_of(entry.key());
         parameters_.add(entry.key(), *entry.key_node(), replaced == nullptr ? entry.node() : *replaced, entry.path(),
-                        reading_);
+                        reading_, replaced != nullptr);
       }
     }
     overrides_.require_declared(parameters_);

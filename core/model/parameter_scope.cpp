@@ -16,12 +16,13 @@ ParameterScope::Entry& ParameterScope::append(const std::string& name) {
 }
 
 void ParameterScope::add(const std::string& name, const Node& key, const Node& value, std::string path,
-                         const Reading& reading) {
+                         const Reading& reading, bool overridden) {
   Entry& entry = append(name);
   entry.key = &key;
   entry.value = &value;
   entry.path = std::move(path);
   entry.reading = &reading;
+  if (overridden) entry.override = &value;
 }
 
 void ParameterScope::add_constant(const std::string& name, double value) {
@@ -48,6 +49,12 @@ bool ParameterScope::broken(std::string_view name) const {
   const Entry* own = entry(name);
   if (own != nullptr) return own->state == State::broken;
   return outer_ != nullptr && outer_->broken(name);
+}
+
+const Node* ParameterScope::override_of(std::string_view name) const {
+  const Entry* own = entry(name);
+  if (own != nullptr) return own->override;
+  return outer_ == nullptr ? nullptr : outer_->override_of(name);
 }
 
 std::vector<std::string> ParameterScope::names() const {
@@ -113,6 +120,11 @@ void ParameterScope::compute(Entry& computed) {
   const std::optional<Quantity> quantity = value.any_quantity();
   computed.state = quantity ? State::done : State::broken;
   if (quantity) computed.quantity = *quantity;
+  if (computed.override != nullptr || !computed.value->is_scalar()) return;
+  for (const std::string& name : referenced_parameters(computed.value->text)) {
+    const Node* text = computed.reading->scope->override_of(name);
+    if (text != nullptr) computed.override = text;
+  }
 }
 
 void ParameterScope::report_cycle(const std::vector<std::size_t>& path, std::size_t closing) {

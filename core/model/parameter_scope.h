@@ -25,8 +25,9 @@ class ParameterScope : public Scope {
   explicit ParameterScope(UsedKeys& used, const ParameterScope* outer = nullptr) : used_(&used), outer_(outer) {}
 
   /// A parameter with the text `value`, which is read in `reading` and refers to the parameters of `reading.scope`:
-  /// this scope or an outer one. `path` names it in messages.
-  void add(const std::string& name, const Node& key, const Node& value, std::string path, const Reading& reading);
+  /// this scope or an outer one. `path` names it in messages; `overridden` when `--set` gave the text.
+  void add(const std::string& name, const Node& key, const Node& value, std::string path, const Reading& reading,
+           bool overridden = false);
   /// A number that is given, such as the number of an instance.
   void add_constant(const std::string& name, double value);
   /// A parameter whose declaration is in error.
@@ -38,6 +39,8 @@ class ParameterScope : public Scope {
   const Quantity* find(std::string_view name) const override;
   std::vector<std::string> names() const override;
   bool broken(std::string_view name) const;
+  /// The text of `--set` on which the parameter depends, or null.
+  const Node* override_of(std::string_view name) const;
   bool declares(std::string_view name) const { return index_.contains(std::string(name)); }
 
  private:
@@ -48,6 +51,7 @@ class ParameterScope : public Scope {
     const Node* value = nullptr;
     std::string path;
     const Reading* reading = nullptr;
+    const Node* override = nullptr;
     State state = State::waiting;
     Quantity quantity{};
   };

@@ -12,6 +12,8 @@ namespace {
 constexpr const char* part_sections[] = {"bodies", "frames", "joints", "drivers", "forces"};
 constexpr const char* counted_sections[] = {"bodies", "joints", "drivers", "forces"};
 
+constexpr long most_copies = 1'000'000'000'000'000;  // whatever is an integer; the limit of elements comes first
+
 /// Elements that one instance declares.
 long element_count(const Node& content) {
   long count = 0;
@@ -36,13 +38,13 @@ class InstanceExpansion {
     const auto with = map.find("with");
     map.finish();
     const std::optional<CheckedValue> content = name ? find_template(*name) : std::nullopt;
-    const std::optional<long> copies = count ? count->integer(1, largest_model) : std::optional<long>(1);
+    const std::optional<long> copies = count ? count->integer(1, most_copies) : std::optional<long>(1);
     if (!content || !copies || (with && !with->node().is_map())) {
       if (with && !with->node().is_map()) with->wrong_type("a map");
       draft_.broken_instances.push_back(entry.key());
       return;
     }
-    elements_ += *copies * std::max(element_count(content->node()), 1L);
+    elements_ += std::min(*copies, largest_model + 1) * std::max(element_count(content->node()), 1L);
     if (elements_ > largest_model) {
       (count ? *count : entry)
           .fail("too-large", fmt::format("the model would have more than {} elements", largest_model));

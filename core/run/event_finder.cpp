@@ -1,8 +1,8 @@
 #include "run/event_finder.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace freeplay {
 
@@ -22,7 +22,7 @@ std::optional<double> first_rise(const Hermite& curve, double from) {
     if (a != 0.0) add(q / (3.0 * a));
     if (q != 0.0) add(c / q);
   }
-  std::sort(ends.begin() + 1, ends.begin() + count);
+  if (count == 3 && ends[2] < ends[1]) std::swap(ends[1], ends[2]);
   ends[static_cast<std::size_t>(count)] = 1.0;
   for (int i = 0; i < count; ++i) {
     double low = ends[static_cast<std::size_t>(i)], high = ends[static_cast<std::size_t>(i) + 1];

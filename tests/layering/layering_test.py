@@ -1,0 +1,201 @@
+"""Includes stay within the dependency rule, and no file under core names a component."""
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PLUGIN_FOLDERS = ("joints", "contact", "solvers", "plugins")
+
+# Room of core: the rooms that it may include. A room may always include itself and the SDK where `component` may.
+ROOMS = {
+    "base": [],
+    "component": ["base"],
+    "model": ["base", "component"],
+    "linear": ["base"],
+    "system": ["base", "component", "model", "linear"],
+    "run": ["base", "component", "model", "linear", "system"],
+    "io": ["base", "component", "model"],
+    "analysis": ["base", "component", "model", "linear", "system", "run"],
+    "contract": ["base", "component", "model", "linear", "system", "run"],
+    "study": ["base", "component", "model", "linear", "system", "run", "io"],
+    "report": ["base", "component", "model", "linear", "system", "run", "io"],
+    "cli": ["base", "component", "model", "linear", "system", "run", "io", "analysis", "contract", "study", "report"],
+}
+# Files of `run` that `io` may see: what a sink gets, and for the summary what a run leaves behind.
+SINK_FILES = {"run/sink.h", "run/channel.h", "run/checkpoint.h"}
+SUMMARY_FILES = {"run/simulation.h", "run/statistics.h", "run/assembly.h"}
+WITHOUT_SDK = {"base", "linear"}
+
+# Library headers by their first folder or name: the rooms that may include them.
+EVERY_ROOM = set(ROOMS)
+LIBRARIES = {
+    "yaml-cpp": {"io"},
+    "tinyxml2.h": {"io"},
+    "urdf_parser": {"io"},
+    "urdf_model": {"io"},
+    "hdf5.h": {"io"},
+    "openssl": {"io"},
+    "nlohmann": {"io", "cli"},
+    "CLI": {"cli"},
+    "fmt": EVERY_ROOM,
+    "Eigen": EVERY_ROOM - {"base", "component", "model"},
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+STANDARD = re.compile(r"^[a-z_0-9]+$")
+SYSTEM = {"unistd.h", "fcntl.h", "sys/stat.h", "sys/types.h"}
+
+
+def sources(*folders):
+    for folder in folders:
+        for path, _, files in os.walk(os.path.join(ROOT, folder)):
+            for name in sorted(files):
+                if name.endswith((".h", ".cpp", ".in")):
+                    yield os.path.relpath(os.path.join(path, name), ROOT)
+
+
+def read(path):
+    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+        return file.read()
+
+
+def library_fault(first, room):
+    """What is wrong with an include of a library by a room of core, or of a plugin folder (room None)."""
+    if first in LIBRARIES:
+        allowed = LIBRARIES[first] if room else {"Eigen"}
+        return None if (room or first) in allowed else "%s is not for %s" % (first, room or "plugins")
+    return "%s is not in the table of libraries" % first
+
+
+def plugin_fault(path, target):
+    folder = os.path.dirname(path)
+    if target.startswith("freeplay/") or os.path.exists(os.path.join(ROOT, folder, target)):
+        return None
+    return library_fault(target.split("/")[0], None)
+
+
+def sdk_fault(target):
+    if target.startswith("freeplay/") or target.startswith("Eigen/"):
+        return None
+    return "the SDK stands on the standard library"
+
+
+def core_fault(path, target):
+    room = path.split("/")[1]
+    first = target.split("/")[0]
+    if room == "include":
+        return sdk_fault(target)
+    if room not in ROOMS:
+        return "core/%s is not in the table of rooms" % room
+    if first == "freeplay":
+        return "%s does without the SDK" % room if room in WITHOUT_SDK else None
+    if first not in ROOMS:
+        return library_fault(first, room)
+    if first == room or first in ROOMS[room]:
+        return None
+    if room == "io" and (target in SINK_FILES or (target in SUMMARY_FILES and "/summary." in path)):
+        return None
+    return "%s may not include %s" % (room, target)
+
+
+def fault(path, bracket, target):
+    """What is wrong with one include, or None."""
+    if bracket == "<" and (STANDARD.match(target) or target in SYSTEM):
+        return None
+    if target.startswith(("gtest", "gmock")):
+        return "tests stay outside"
+    if path.startswith("core/"):
+        return core_fault(path, target)
+    return plugin_fault(path, target)
+
+
+def faults(path, text):
+    found = []
+    for number, line in enumerate(text.splitlines(), 1):
+        include = INCLUDE.match(line)
+        wrong = include and fault(path, include[1], include[2])
+        if wrong:
+            found.append("%s:%d: %s" % (path, number, wrong))
+    return found
+
+
+class Layering(unittest.TestCase):
+    def test_every_include_is_in_the_table(self):
+        seen, found = 0, []
+        for path in sources("core", *PLUGIN_FOLDERS):
+            seen += 1
+            found += faults(path, read(path))
+        self.assertGreater(seen, 20)
+        self.assertEqual([], found)
+
+    def test_a_bad_include_is_caught(self):
+        bad = {
+            "core/base/a.cpp": ['#include "model/model.h"', "#include <Eigen/Core>", '#include "freeplay/joint.h"'],
+            "core/model/a.cpp": ['#include "system/system.h"', "#include <yaml-cpp/yaml.h>", "#include <Eigen/Dense>"],
+            "core/system/a.cpp": ['#include "run/sink.h"', "#include <nlohmann/json.hpp>"],
+            "core/io/csv_sink.cpp": ['#include "run/simulation.h"', '#include "cli/options.h"'],
+            "core/run/a.cpp": ["#include <CLI/CLI.hpp>", "  #  include <gtest/gtest.h>", "#include <boost/any.hpp>"],
+            "core/unheard/a.cpp": ['#include "base/error.h"'],
+            "core/include/freeplay/a.h": ['#include "base/error.h"', "#include <fmt/format.h>"],
+            "joints/a.cpp": ['#include "base/error.h"', "#include <fmt/format.h>", '#include "model/model.h"'],
+        }
+        for path, lines in bad.items():
+            for line in lines:
+                with self.subTest(path=path, line=line):
+                    self.assertEqual(1, len(faults(path, line)))
+
+    def test_a_good_include_passes(self):
+        good = {
+            "core/io/summary.cpp": ['#include "run/simulation.h"', "#include <nlohmann/json.hpp>"],
+            "core/io/csv_sink.cpp": ['#include "run/sink.h"', "#include <vector>"],
+            "core/run/a.cpp": ["#include <Eigen/Dense>", '#include "system/system.h"', "#include <unistd.h>"],
+            "joints/a.cpp": ["#include <cmath>", '#include "freeplay/joint.h"', "#include <Eigen/Core>"],
+        }
+        for path, lines in good.items():
+            for line in lines:
+                self.assertEqual([], faults(path, line))
+
+
+# Names of components that are also plain words: they count only as a quoted word.
+def is_plain_word(name):
+    return name in {"fixed", "distance", "none", "constant", "linear", "spherical", "universal", "gear", "hard"}
+
+
+class Names(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            answer = subprocess.run([os.environ["FREEPLAY"], "list", "--json"], cwd=folder, capture_output=True,
+                                    check=True)
+        cls.names = [entry["name"] for entry in json.loads(answer.stdout) if entry["kind"] != "plugin"]
+
+    def test_core_names_no_component(self):
+        self.assertTrue(self.names)
+        found = []
+        for path in sources("core"):
+            if path.startswith("core/io/urdf"):  # a format with joint types of its own
+                continue
+            text = read(path).lower()
+            found += ["%s: %s" % (path, name) for name in self.names if self.occurs(name, text)]
+        self.assertEqual([], found)
+
+    def test_no_source_names_a_mechanism(self):
+        found = [path for path in sources("core", *PLUGIN_FOLDERS) if "rrr" in re.sub("arrrr*|errr+", "", read(path).lower())]
+        self.assertEqual([], found)
+
+    @staticmethod
+    def occurs(name, text):
+        if is_plain_word(name):
+            return re.search("[\"']%s[\"']" % re.escape(name), text)
+        return re.search(r"(?<![a-z0-9])%s(?![a-z0-9])" % re.escape(name).replace(r"\-", "[-_ ]"), text)
+
+    def test_a_name_is_found_where_it_stands(self):
+        self.assertTrue(self.occurs("slide-way", "a slide_way here"))
+        self.assertTrue(self.occurs("fixed", 'type == "fixed"'))
+        self.assertFalse(self.occurs("fixed", "a fixed step"))
+
+
+if __name__ == "__main__":
+    unittest.main()
