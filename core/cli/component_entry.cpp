@@ -31,13 +31,20 @@ bool is_open(const Parameter& parameter, Open end) {
 
 const char* kind_word(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::number: return "number";
-    case ParameterKind::integer: return "integer";
-    case ParameterKind::choice: return "choice";
-    case ParameterKind::vector: return "vector";
-    case ParameterKind::function: return "function";
-    case ParameterKind::contact_law: return "contact law";
-    case ParameterKind::friction_law: break;
+    case ParameterKind::number:
+      return "number";
+    case ParameterKind::integer:
+      return "integer";
+    case ParameterKind::choice:
+      return "choice";
+    case ParameterKind::vector:
+      return "vector";
+    case ParameterKind::function:
+      return "function";
+    case ParameterKind::contact_law:
+      return "contact law";
+    case ParameterKind::friction_law:
+      break;
   }
   return "friction law";
 }
@@ -103,19 +110,26 @@ Json parameter_json(const Parameter& parameter) {
 
 const char* kind_word(ComponentKind kind) {
   switch (kind) {
-    case ComponentKind::joint: return "joint";
-    case ComponentKind::contact_law: return "contact";
-    case ComponentKind::friction_law: return "friction";
-    case ComponentKind::integrator: break;
+    case ComponentKind::joint:
+      return "joint";
+    case ComponentKind::contact_law:
+      return "contact";
+    case ComponentKind::friction_law:
+      return "friction";
+    case ComponentKind::integrator:
+      break;
   }
   return "integrator";
 }
 
 const char* space_word(Space space) {
   switch (space) {
-    case Space::planar: return "planar";
-    case Space::spatial: return "spatial";
-    case Space::both: break;
+    case Space::planar:
+      return "planar";
+    case Space::spatial:
+      return "spatial";
+    case Space::both:
+      break;
   }
   return "both";
 }

@@ -80,7 +80,7 @@ int describe(const std::string& name, const CommonOptions& common) {
 Command add_describe_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = program.add_subcommand("describe", "Describe a joint, law or integrator");
   const auto name = std::make_shared<std::string>();
-  app->add_option("NAME", *name, "Name of a type, as `freeplay list` shows it");
+  app->add_option("NAME", *name, "Name of a type, as `freeplay list` shows it")->type_name("");
   add_common_options(*app, common);
   return {app, [name, &common] { return describe(*name, common); }};
 }

@@ -16,20 +16,17 @@ std::string line(const std::string& name, int value) {
 
 std::string ideal_text(const ConstraintFacts& ideal) {
   const auto number = [](int value) { return value < 0 ? std::string("-") : std::to_string(value); };
-  std::string text = fmt::format("  {:<18}  constraints {}  rank {}  redundant {}  dof {}  dof_driven {}", "ideal",
-                                 ideal.constraints, number(ideal.rank), number(ideal.redundant), number(ideal.dof),
-                                 number(ideal.dof_driven));
+  std::string text =
+      fmt::format("  {:<18}  constraints {}  rank {}  redundant {}  dof {}  dof_driven {}", "ideal", ideal.constraints,
+                  number(ideal.rank), number(ideal.redundant), number(ideal.dof), number(ideal.dof_driven));
   if (ideal.driver_redundant > 0) text += fmt::format("  driver_redundant {}", ideal.driver_redundant);
   return text + "\n";
 }
 
 Json ideal_json(const ConstraintFacts& ideal) {
-  return {{"constraints", ideal.constraints},
-          {"rank", count(ideal.rank)},
-          {"redundant", count(ideal.redundant)},
-          {"dof", count(ideal.dof)},
-          {"dof_driven", count(ideal.dof_driven)},
-          {"driver_redundant", count(ideal.driver_redundant)}};
+  return {{"constraints", ideal.constraints},      {"rank", count(ideal.rank)},
+          {"redundant", count(ideal.redundant)},   {"dof", count(ideal.dof)},
+          {"dof_driven", count(ideal.dof_driven)}, {"driver_redundant", count(ideal.driver_redundant)}};
 }
 
 }  // namespace

@@ -61,9 +61,9 @@ int report_failure(const Diagnostics& diagnostics, int exit_code, const CommonOp
   print_messages(diagnostics.format(options.max_errors), options.no_color);
   if (options.json) {
     print_json(Json{{"error",
-                {{"exit_code", exit_code},
-                 {"message", in_short(diagnostics)},
-                 {"messages", messages_json(diagnostics, options.max_errors)}}}});
+                     {{"exit_code", exit_code},
+                      {"message", in_short(diagnostics)},
+                      {"messages", messages_json(diagnostics, options.max_errors)}}}});
   }
   return exit_code;
 }

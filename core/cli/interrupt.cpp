@@ -20,6 +20,7 @@ void on_closed_pipe(int) { _exit(0); }
 
 void handle_signals() {
   std::signal(SIGPIPE, on_closed_pipe);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is a failed write, which is reported
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 }

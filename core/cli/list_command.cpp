@@ -24,10 +24,13 @@ const std::vector<std::string> kinds{"joints", "laws", "forces", "integrators", 
 
 bool belongs(const RegisteredComponent& entry, const std::string& kind) {
   switch (entry.component->kind) {
-    case ComponentKind::joint: return kind.empty() || kind == "joints";
+    case ComponentKind::joint:
+      return kind.empty() || kind == "joints";
     case ComponentKind::contact_law:
-    case ComponentKind::friction_law: return kind.empty() || kind == "laws";
-    case ComponentKind::integrator: break;
+    case ComponentKind::friction_law:
+      return kind.empty() || kind == "laws";
+    case ComponentKind::integrator:
+      break;
   }
   return kind.empty() || kind == "integrators";
 }
@@ -122,8 +125,9 @@ int list(const ListOptions& options, const CommonOptions& common) {
 Command add_list_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = program.add_subcommand("list", "List joints, laws, integrators, plugins, or the columns of a model");
   const auto options = std::make_shared<ListOptions>();
-  app->add_option("KIND", options->kind, "joints, laws, forces, integrators, plugins or channels; all but channels");
-  app->add_option("MODEL", options->model, "Model file, for channels");
+  app->add_option("KIND", options->kind, "joints, laws, forces, integrators, plugins or channels; all but channels")
+      ->type_name("");
+  app->add_option("MODEL", options->model, "Model file, for channels")->type_name("");
   add_common_options(*app, common);
   return {app, [options, &common] { return list(*options, common); }};
 }

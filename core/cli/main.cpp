@@ -25,10 +25,10 @@ namespace {
 int print_version(const CommonOptions& common) {
   if (common.json) {
     print_json(Json{{"freeplay", program_version},
-               {"schema", schema_version},
-               {"plugin_abi", abi_version},
-               {"compiler", "gcc " __VERSION__},
-               {"build", FREEPLAY_BUILD}});
+                    {"schema", schema_version},
+                    {"plugin_abi", abi_version},
+                    {"compiler", "gcc " __VERSION__},
+                    {"build", FREEPLAY_BUILD}});
   } else {
     print(fmt::format("freeplay {} (schema {}, plugin ABI {})\n", program_version, schema_version, abi_version));
   }

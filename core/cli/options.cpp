@@ -39,7 +39,9 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_flag("--no-color", options.no_color, "No colour")->group(common_group);
   app.add_option("--max-errors", options.max_errors, "Messages of one file to print (20); 0 is no limit")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
+      ->check([](const std::string& text) {
+        return text.find_first_not_of("0123456789") == std::string::npos ? "" : "it must be a whole number from 0 on";
+      })
       ->group(common_group);
   app.add_flag("--strict", options.strict, "Warnings in input files are errors")->group(common_group);
   add_repeatable(app, "--plugin", options.plugins, "Load a plugin (not in this release)")
@@ -51,7 +53,8 @@ void add_model_options(CLI::App& app, ModelOptions& options) {
   add_repeatable(app, "--set", options.set, "Replace a parameter: --set c=\"50 um\"; repeatable")
       ->type_name("NAME=VALUE")
       ->group(model_group);
-  add_repeatable(app, "--ideal", options.ideal, "Close the clearance of a joint: name, pattern with * or all; repeatable")
+  add_repeatable(app, "--ideal", options.ideal,
+                 "Close the clearance of a joint: name, pattern with * or all; repeatable")
       ->type_name("JOINT")
       ->group(model_group);
 }

@@ -161,14 +161,10 @@ class RunJob {
   }
 
   int finish(const Outcome& outcome) {
-    const RunRecord record{*loaded_.model,
-                           channels_,
-                           assembled_.start.facts,
-                           outcome,
-                           simulation_.statistics(),
-                           simulation_.last_row(),
-                           recording_.advice(),
-                           warnings_of(loaded_.diagnostics, simulation_.warnings()),
+    const RunRecord record{*loaded_.model,           channels_,
+                           assembled_.start.facts,   outcome,
+                           simulation_.statistics(), simulation_.last_row(),
+                           recording_.advice(),      warnings_of(loaded_.diagnostics, simulation_.warnings()),
                            recording_.files()};
     const Json json = summary(record);
     recording_.seal(json);
@@ -197,10 +193,10 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
   const Model& model = *loaded.model;
   if (common.json) {
     print_json(Json{{"file", model.file},
-               {"ok", true},
-               {"facts", facts_json(model, assembled.start.facts)},
-               {"start", start_json(model, assembled.start)},
-               {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
+                    {"ok", true},
+                    {"facts", facts_json(model, assembled.start.facts)},
+                    {"start", start_json(model, assembled.start)},
+                    {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
   } else if (!common.quiet) {
     print(model.file + ": ok\n" + facts_text(model, assembled.start.facts));
   }
@@ -226,7 +222,7 @@ int run(const RunOptions& options, const CommonOptions& common) {
 Command add_run_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = program.add_subcommand("run", "Simulate a model and write its results");
   const auto options = std::make_shared<RunOptions>();
-  app->add_option("MODEL", options->model, "Model file");
+  app->add_option("MODEL", options->model, "Model file")->type_name("");
   app->add_option("--end", options->end, "End time: \"0.5 s\"")->type_name("T");
   app->add_option("--step", options->step, "Step: 2us")->type_name("H");
   app->add_option("--accuracy", options->accuracy, "Accuracy instead of a step (not in this release)")->type_name("L");

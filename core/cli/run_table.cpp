@@ -34,8 +34,17 @@ std::string first_line(const RunRecord& record) {
                      record.outcome.wall_seconds);
 }
 
+/// The heading of the first column, as wide as the longest name of all tables.
+std::string heading(const RunRecord& record, const char* word) {
+  std::size_t width = 0;
+  for (const JointElement& joint : record.model.joints) width = std::max(width, joint.name.size());
+  for (const Driver& driver : record.model.drivers) width = std::max(width, driver.name.size());
+  for (const InverseKinematics& path : record.model.kinematics) width = std::max(width, path.name.size());
+  return fmt::format("{:<{}}", word, width);
+}
+
 void add_joints(const RunRecord& record, TextTable& table) {
-  table.add_row({"joint", "max |F|", "contacts", "in contact", "max delta"});
+  table.add_row({heading(record, "joint"), "max |F|", "contacts", "in contact", "max delta"});
   const bool any = has_statistics(record.model.settings, record.outcome);
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
@@ -55,7 +64,11 @@ void add_drivers(const RunRecord& record, TextTable& table) {
   const std::vector<Driver>& drivers = record.model.drivers;
   const auto slides = std::ranges::count_if(drivers, [&](const Driver& d) { return is_slide(record.model, d); });
   const bool all = slides == static_cast<std::ptrdiff_t>(drivers.size());
-  table.add_row({"driver", slides == 0 ? "max |torque|" : all ? "max |force|" : "max |effort|", "rms"});
+  table.add_row({heading(record, "driver"),
+                 slides == 0 ? "max |torque|"
+                 : all       ? "max |force|"
+                             : "max |effort|",
+                 "rms"});
   for (std::size_t i = 0; i < drivers.size(); ++i) {
     const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
     const char* unit = is_slide(record.model, drivers[i]) ? "N" : "N*m";
@@ -64,7 +77,7 @@ void add_drivers(const RunRecord& record, TextTable& table) {
 }
 
 void add_paths(const RunRecord& record, TextTable& table) {
-  table.add_row({"path", "max error", "rms", "max angle", "rms"});
+  table.add_row({heading(record, "path"), "max error", "rms", "max angle", "rms"});
   for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
     const PathStatistics seen = record.statistics.path(static_cast<int>(i));
     table.add_row({record.model.kinematics[i].name, prefixed(seen.max_position, "m"), prefixed(seen.rms_position, "m"),
@@ -82,9 +95,10 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.drivers.empty()) add_drivers(record, drivers);
   if (!record.model.kinematics.empty()) add_paths(record, paths);
   text += joints.text("  ") + drivers.text("  ") + paths.text("  ");
+  const bool any = has_statistics(record.model.settings, record.outcome);
   return text + fmt::format("  energy residual {}   position residual {}\n",
-                            quantity(record.statistics.energy_residual(), "J", 2),
-                            quantity(record.statistics.position_residual(), "m", 2));
+                            any ? quantity(record.statistics.energy_residual(), "J", 2) : "-",
+                            any ? quantity(record.statistics.position_residual(), "m", 2) : "-");
 }
 
 }  // namespace freeplay

@@ -5,8 +5,8 @@
 
 namespace freeplay {
 
-/// Throws Error{usage} for the first word that the parser left over: a command of a later release, an unknown command or
-/// option with the nearest known one, or an argument too many.
+/// Throws Error{usage} for the first word that the parser left over: a command of a later release, an unknown command
+/// or option with the nearest known one, or an argument too many.
 void refuse_unknown_words(const CLI::App& program);
 
 }  // namespace freeplay

@@ -77,7 +77,7 @@ int validate(const ValidateOptions& options, const CommonOptions& common) {
 Command add_validate_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = program.add_subcommand("validate", "Check model files, assemble them and print their facts");
   const auto options = std::make_shared<ValidateOptions>();
-  app->add_option("MODEL", options->models, "Model files");
+  app->add_option("MODEL", options->models, "Model files")->type_name("");
   app->add_flag("--no-assemble", options->no_assemble, "Check the text only: rank and dof stay unknown");
   add_model_options(*app, options->model);
   add_common_options(*app, common);

@@ -7,7 +7,8 @@
 namespace freeplay {
 
 bool matches_channel(std::string_view pattern, const Channels& channels) {
-  return std::ranges::any_of(channels.all(), [&](const ChannelInfo& channel) { return matches(pattern, channel.name); });
+  return std::ranges::any_of(channels.all(),
+                             [&](const ChannelInfo& channel) { return matches(pattern, channel.name); });
 }
 
 std::vector<std::size_t> select_channels(const Channels& channels, std::span<const std::string> patterns) {

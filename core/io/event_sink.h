@@ -14,8 +14,8 @@
 namespace freeplay {
 
 /// Columns time, joint, kind, those of a contact, then fields of other names in declaration order. A field of an event
-/// fills the column of its name; the others stay empty. Rows are sorted by time, then joint in declaration order: events
-/// of one step come in any order, so they wait for the next result row, which no event of a later step precedes.
+/// fills the column of its name; the others stay empty. Rows are sorted by time, then joint in declaration order:
+/// events of one step come in any order, so they wait for the next result row, which no event of a later step precedes.
 class EventSink : public Sink {
  public:
   /// `model` outlives the sink. Throws Error{file}.

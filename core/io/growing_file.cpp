@@ -5,9 +5,8 @@
 #include <string_view>
 
 #include <fcntl.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/error.h"
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* own_files[] = {"results.csv", "results.h5", "summary.json",  "events.csv", "model.yaml",
+constexpr const char* own_files[] = {"results.csv", "results.h5", "summary.json",   "events.csv", "model.yaml",
                                      "model.urdf",  "inputs",     "checkpoint.bin", "run.log"};
 
 [[noreturn]] void fail(std::string message, std::string hint = {}) {

@@ -1,5 +1,9 @@
 #include "io/summary.h"
 
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
 #include "io/sha256.h"
 #include "io/version.h"
 
@@ -10,11 +14,16 @@ const char* word(Space space) { return space == Space::planar ? "planar" : "spat
 
 const char* word(DriverKind kind) {
   switch (kind) {
-    case DriverKind::angle: return "angle";
-    case DriverKind::position: return "position";
-    case DriverKind::velocity: return "velocity";
-    case DriverKind::torque: return "torque";
-    case DriverKind::force: break;
+    case DriverKind::angle:
+      return "angle";
+    case DriverKind::position:
+      return "position";
+    case DriverKind::velocity:
+      return "velocity";
+    case DriverKind::torque:
+      return "torque";
+    case DriverKind::force:
+      break;
   }
   return "force";
 }
@@ -46,6 +55,7 @@ std::string choice(const char* words, int index) {
 Json parameter_value(const Parameter& parameter, const ParameterValue& value) {
   if (value.word >= 0 && parameter.choices != nullptr) return choice(parameter.choices, value.word);
   if (parameter.kind == ParameterKind::vector) return value.vector;
+  if (parameter.kind == ParameterKind::integer && std::isfinite(value.number)) return std::lround(value.number);
   return json_number(value.number);
 }
 
@@ -87,6 +97,15 @@ Json counts_part(const Outcome& outcome, const Statistics& statistics) {
           {"factorizations", outcome.factorizations},
           {"contacts", statistics.contacts()},
           {"contacts_total", statistics.contacts_total()}};
+}
+
+/// Null where the run ended before statistics began.
+Json residuals_part(const RunRecord& record) {
+  const bool any = has_statistics(record.model.settings, record.outcome);
+  const auto value = [&](double residual) { return any ? json_number(residual) : Json(nullptr); };
+  return {{"position_max", value(record.statistics.position_residual())},
+          {"velocity_max", value(record.statistics.velocity_residual())},
+          {"energy_max", value(record.statistics.energy_residual())}};
 }
 
 Json bodies_part(const RunRecord& record) {
@@ -172,10 +191,14 @@ Json performance_part(const Outcome& outcome) {
 
 const char* status_word(RunStatus status) {
   switch (status) {
-    case RunStatus::completed: return "completed";
-    case RunStatus::stopped: return "stopped";
-    case RunStatus::failed: return "failed";
-    case RunStatus::interrupted: break;
+    case RunStatus::completed:
+      return "completed";
+    case RunStatus::stopped:
+      return "stopped";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::interrupted:
+      break;
   }
   return "interrupted";
 }
@@ -190,7 +213,6 @@ bool has_statistics(const Settings& settings, const Outcome& outcome) {
 
 Json summary(const RunRecord& record) {
   const Outcome& outcome = record.outcome;
-  const Statistics& statistics = record.statistics;
   return {{"freeplay", {{"version", program_version}, {"schema", schema_version}}},
           {"model", model_part(record.model, record.facts)},
           {"settings", settings_part(record.model)},
@@ -198,11 +220,8 @@ Json summary(const RunRecord& record) {
           {"stop_reason", outcome.reason.empty() ? Json(nullptr) : Json(outcome.reason)},
           {"exit_code", outcome.exit_code},
           {"time", {{"reached", outcome.time}}},
-          {"counts", counts_part(outcome, statistics)},
-          {"residuals",
-           {{"position_max", json_number(statistics.position_residual())},
-            {"velocity_max", json_number(statistics.velocity_residual())},
-            {"energy_max", json_number(statistics.energy_residual())}}},
+          {"counts", counts_part(outcome, record.statistics)},
+          {"residuals", residuals_part(record)},
           {"bodies", bodies_part(record)},
           {"joints", joints_part(record)},
           {"drivers", drivers_part(record)},

@@ -1,9 +1,10 @@
 // RowRank: which rows of a constraint Jacobian are independent, and multipliers of least norm when some are not.
 #pragma once
 
-#include <Eigen/QR>
 #include <span>
 #include <vector>
+
+#include <Eigen/QR>
 
 namespace freeplay {
 
@@ -13,7 +14,8 @@ class RowRank {
  public:
   RowRank(int rows, int columns);
 
-  /// Relative size below which a pivot counts as zero (theory of redundant constraints, threshold of the largest pivot).
+  /// Relative size below which a pivot counts as zero (theory of redundant constraints, threshold of the largest
+  /// pivot).
   static constexpr double tolerance = 1e-10;
 
   /// Decomposes J given by rows (row-major nc x nv). Returns the rank.

@@ -1,10 +1,10 @@
 #include "run/assembly.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
 
 #include "run/newton_stage_solver.h"
 #include "run/placing.h"
@@ -192,8 +192,8 @@ class Assembler {
       for (int k = 0; k < 2; ++k) {
         for (int c = 0; c < 3 && bodies[k] != ground; ++c) out.matrix(i, 3 * bodies[k] + c) = row[3 * k + c];
       }
-      out.residual[i] = speeds ? e_.coordinate_rate[at(j)] - *joint.start_speed
-                               : e_.coordinate[at(j)] - *joint.start_coordinate;
+      out.residual[i] =
+          speeds ? e_.coordinate_rate[at(j)] - *joint.start_speed : e_.coordinate[at(j)] - *joint.start_coordinate;
     }
     return out;
   }
@@ -414,7 +414,8 @@ class Assembler {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice z = system_.layout().internal(j), h = system_.layout().history(j);
       Message message;
-      if (!system_.joint(j).initialize(system_.input(j, point(state), e), Span<double>(state.z()).part(at(z.offset), at(z.size)),
+      if (!system_.joint(j).initialize(system_.input(j, point(state), e),
+                                       Span<double>(state.z()).part(at(z.offset), at(z.size)),
                                        Span<double>(state.h()).part(at(h.offset), at(h.size)), message)) {
         throw Error(Error::Category::plugin, "plugin-failed",
                     fmt::format("joint '{}' failed at its start: {}", model_.joints[at(j)].name, message.text),
@@ -438,9 +439,10 @@ class Assembler {
     const VectorXd motion = n * eigen.eigenvectors().col(0);
     Eigen::Index worst = 0;
     motion.cwiseAbs().maxCoeff(&worst);
-    throw Error(Error::Category::input, "singular-mass",
-                fmt::format("body '{}' can move without moving any mass", model_.bodies[at(static_cast<int>(worst) / 3)].name),
-                {}, "give it inertia, or hold that motion by a joint");
+    throw Error(
+        Error::Category::input, "singular-mass",
+        fmt::format("body '{}' can move without moving any mass", model_.bodies[at(static_cast<int>(worst) / 3)].name),
+        {}, "give it inertia, or hold that motion by a joint");
   }
 
   ConstraintFacts facts_of(const System& system) {
@@ -464,9 +466,9 @@ class Assembler {
   System closed_;
   State state_;
   Evaluation e_;
-  std::vector<double> held_;     // by joint
-  std::vector<int> leads_;       // joints that lead and are not driven
-  std::vector<char> held_row_;   // rows of the closed system that hold positions
+  std::vector<double> held_;    // by joint
+  std::vector<int> leads_;      // joints that lead and are not driven
+  std::vector<char> held_row_;  // rows of the closed system that hold positions
 };
 
 }  // namespace

@@ -43,8 +43,7 @@ Channels::Channels(const Model& model) {
   }
   for (const Driver& driver : model.drivers) {
     const std::string prefix = "driver." + driver.name;
-    const bool angle =
-        model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
+    const bool angle = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
     const bool effort = !prescribes(driver.kind);
     DriverColumns columns;
     columns.value = add(prefix + ".value", effort ? (angle ? "N*m" : "N") : (angle ? "rad" : "m"));

@@ -10,8 +10,8 @@
 namespace freeplay {
 
 /// Powers are integrated over accepted steps by the trapezoidal rule. Booked are work of drivers and applied forces and
-/// the loss of joints: minus the power of their wrenches, less what they store. What an integrator or a projection loses
-/// is never booked; it is the residual.
+/// the loss of joints: minus the power of their wrenches, less what they store. What an integrator or a projection
+/// loses is never booked; it is the residual.
 class EnergyAccount {
  public:
   explicit EnergyAccount(const System& system);
@@ -19,8 +19,8 @@ class EnergyAccount {
   /// First call: the start. `row` needs the observed columns; fills dissipated, work and residual.
   void add(const System& system, const Evaluation& e, const Channels& channels, std::span<double> row);
 
-  std::span<const double> driver_work() const { return driver_work_; }   ///< [J]
-  std::span<const double> joint_loss() const { return joint_loss_; }     ///< [J]
+  std::span<const double> driver_work() const { return driver_work_; }  ///< [J]
+  std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
 
  private:
   bool started_ = false;

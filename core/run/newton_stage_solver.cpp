@@ -8,8 +8,9 @@ namespace freeplay {
 namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-constexpr double singular_pivot = 1e-13;      // smallest pivot over the largest
-constexpr double slow_contraction = 0.1;      // a stale factor that contracts less is renewed
+constexpr double singular_pivot = 1e-13;     // smallest pivot over the largest
+constexpr double slow_contraction = 0.1;     // a stale factor that contracts less is renewed
+constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr int refinement_limit = 30;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -25,7 +26,8 @@ Status guarded_call(Message* message, const NewtonStageSolver& solver, Call&& ca
 NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& options)
     : system_(system),
       options_(options),
-      table_{sizeof(abi::StageSolverTable), this,
+      table_{sizeof(abi::StageSolverTable),
+             this,
              [](void* self, const Stage* stage, StateView* out, StageResult* result, Message* m) noexcept {
                auto& solver = *static_cast<NewtonStageSolver*>(self);
                return guarded_call(m, solver, [&] { return solver.solve(*stage, *out, *result); });
@@ -73,6 +75,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   for (Factor& factor : factors_) {
     factor.matrix = make_dense_kkt();
     factor.slots = factor.matrix->set_pattern(nv + nc, entries_);
+    factor.internal = std::make_unique<InternalElimination>(system);
   }
   for (int i = 0; i < nv; ++i) unit_.push_back(i % 3 == 2 ? 1.0 : system.size());
   dense_.resize(at(nc) * at(nv));
@@ -119,6 +122,16 @@ void NewtonStageSolver::assemble(Factor& factor) {
   for (const double mass : system_.mass()) values[at(*slot++)] += mass;
   for (const char dependent : dependent_) values[at(*slot++)] += dependent ? 1.0 : 0.0;
   const bool forces = factor.beta_q > 0.0 || factor.beta_v > 0.0;
+  if (forces && !factor.internal->empty()) {
+    factor.internal->prepare(e_, factor.beta_q, factor.beta_v, factor.beta_z);
+    factor.internal->add_to_matrix([&](std::size_t block, int r, int c, double value) {
+      const BodyId row = r < 3 ? system_.force_blocks()[block].a : system_.force_blocks()[block].b;
+      const BodyId column = c < 3 ? system_.force_blocks()[block].a : system_.force_blocks()[block].b;
+      // Slots of a force block: four 3 x 3 pieces, row body by column body.
+      const int piece = 9 * (2 * (r / 3) + c / 3) + 3 * (r % 3) + c % 3;
+      if (row != ground && column != ground) values[at(slot[36 * block + at(piece)])] += value;
+    });
+  }
   for (std::size_t f = 0; f < system_.force_blocks().size(); ++f) {
     const ForceBlock& block = system_.force_blocks()[f];
     const BodyId bodies[2] = {block.a, block.b};
@@ -199,6 +212,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   *out.t = stage.t;
   std::ranges::fill(z_rate_, 0.0);
   Factor& factor = factor_for(beta_q, beta_v);
+  factor.beta_z = stage.beta_z;
   bool fresh = false;
   double previous = std::numeric_limits<double>::infinity(), ratio = 1.0;
   int diverging = 0;
@@ -212,7 +226,6 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const unsigned terms = term_position | term_velocity | term_force;
     const bool renew = !factor.valid || (!fresh && ratio > slow_contraction && iteration > 1);
     if (!evaluate(out, terms | (renew ? term_derivative : 0u))) return false;
-    std::ranges::copy(e_.internal_rate, z_rate_.begin());
     if (renew) {
       if (!refactor(factor)) return true;  // singular: not converged, a shorter step may do
       fresh = true;
@@ -234,9 +247,17 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     for (std::size_t r = 0; r < at(nc); ++r) {
       if (dependent_[r]) right_[at(nv) + r] = 0.0;
     }
+    if (!factor.internal->empty()) {
+      factor.internal->add_to_right(e_.internal_rate, z_rate_, std::span(right_).first(at(nv)));
+    }
     solve_with(factor);
     for (std::size_t i = 0; i < at(nv); ++i) out.a[i] += update_[i];
     for (std::size_t r = 0; r < at(nc); ++r) out.lambda[r] += update_[at(nv) + r];
+    bool internal_settled = true;
+    if (!factor.internal->empty()) {
+      internal_settled = factor.internal->advance(std::span(update_).first(at(nv)), stage.beta_z, out.z, z_rate_) <=
+                         internal_tolerance;
+    }
 
     const double change = norm(std::span(update_).first(at(nv)));
     if (!std::isfinite(change)) {
@@ -250,7 +271,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
     const bool accurate = iteration > 0 && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
     const bool noise = change * beta_q <= 50.0 * rounding && (ratio >= 0.3 || change * beta_q <= rounding);
-    if (accurate || (iteration > 0 && noise) || change == 0.0) {
+    if (internal_settled && (accurate || (iteration > 0 && noise) || change == 0.0)) {
       for (std::size_t i = 0; i < at(nv); ++i) {
         out.v[i] = stage.v_known[i] + beta_v * out.a[i];
         increment_[i] = stage.increment_known[i] + beta_q * out.a[i];
@@ -321,7 +342,8 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
       previous = std::numeric_limits<double>::infinity();
     }
   }
-  // A badly conditioned position (close to a singular one) stagnates above the target; what it reached is the best there is.
+  // A badly conditioned position (close to a singular one) stagnates above the target; what it reached is the best
+  // there is.
   return true;
 }
 

@@ -16,6 +16,7 @@
 #include "freeplay/integrator.h"
 #include "linear/kkt_matrix.h"
 #include "linear/row_rank.h"
+#include "run/internal_elimination.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -53,8 +54,10 @@ class NewtonStageSolver {
     double beta_q = -1.0, beta_v = -1.0;
     long used = -1;
     bool valid = false;
+    double beta_z = 0.0;
     std::unique_ptr<KktMatrix> matrix;
     std::vector<int> slots;
+    std::unique_ptr<InternalElimination> internal;
   };
 
   Factor& factor_for(double beta_q, double beta_v);

@@ -99,8 +99,7 @@ void Observer::observe_force(int index, const Evaluation& e, std::span<double> r
   row[at(columns.force_x)] = applied[0];
   row[at(columns.force_y)] = applied[1];
   row[at(columns.torque)] = applied[2];
-  row[at(columns.power)] =
-      applied[0] * k.velocity[0] + applied[1] * k.velocity[1] + applied[2] * k.angular_velocity[2];
+  row[at(columns.power)] = applied[0] * k.velocity[0] + applied[1] * k.velocity[1] + applied[2] * k.angular_velocity[2];
 }
 
 void Observer::observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const {

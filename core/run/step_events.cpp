@@ -106,10 +106,9 @@ bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation&
   const Slice z = system_.layout().internal(joint), h = system_.layout().history(joint);
   const std::size_t first = values_.size(), count = system_.joint_layout(joint).events[at(event)].fields.size;
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
-  if (!system_.joint(joint).on_event(event, system_.input(joint, here, e),
-                                     Span<double>(state.z()).part(at(z.offset), at(z.size)),
-                                     Span<double>(state.h()).part(at(h.offset), at(h.size)),
-                                     {values_.data() + first, count}, fault.message)) {
+  if (!system_.joint(joint).on_event(
+          event, system_.input(joint, here, e), Span<double>(state.z()).part(at(z.offset), at(z.size)),
+          Span<double>(state.h()).part(at(h.offset), at(h.size)), {values_.data() + first, count}, fault.message)) {
     fault.kind = Fault::Kind::plugin;
     fault.joint = joint;
     return false;

@@ -8,8 +8,8 @@
 
 namespace freeplay {
 
-/// F(t) = integral of f from `start` to t, to about 1e-14 of the largest panel. The interval is cut once, into panels on
-/// which one Gauss rule is exact to rounding; F depends on t alone, never on earlier calls.
+/// F(t) = integral of f from `start` to t, to about 1e-14 of the largest panel. The interval is cut once, into panels
+/// on which one Gauss rule is exact to rounding; F depends on t alone, never on earlier calls.
 class Antiderivative {
  public:
   Antiderivative() = default;

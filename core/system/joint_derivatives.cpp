@@ -24,11 +24,19 @@ void turn_about_z(double angle, MarkerKinematics& k) {
 void perturb(int component, double by, MarkerKinematics& k) {
   switch (component) {
     case 0:
-    case 1: k.position[component] += by; break;
-    case 2: turn_about_z(by, k); break;
+    case 1:
+      k.position[component] += by;
+      break;
+    case 2:
+      turn_about_z(by, k);
+      break;
     case 3:
-    case 4: k.velocity[component - 3] += by; break;
-    default: k.angular_velocity[2] += by; break;
+    case 4:
+      k.velocity[component - 3] += by;
+      break;
+    default:
+      k.angular_velocity[2] += by;
+      break;
   }
 }
 
@@ -84,6 +92,19 @@ bool difference_forces(const JointRef& joint, const JointInput& input, bool coor
       if (!follow(below) || !follow(above)) return false;
       if (!difference(below, above, 2.0 * step, column_of(second, component))) return false;
     }
+  }
+  for (std::size_t i = 0; i < nz; ++i) {
+    // Internal variables have sizes of their own (a bristle bends by microns): the step follows the value.
+    const double width = step * std::max(std::abs(input.internal[i]), 1e-3);
+    const std::span<double> moved = work.subspan(2 * nz, nz), raised = work.subspan(3 * nz, nz);
+    std::ranges::copy(input.internal, moved.begin());
+    std::ranges::copy(input.internal, raised.begin());
+    moved[i] -= width;
+    raised[i] += width;
+    JointInput below = input, above = input;
+    below.internal = {moved.data(), nz};
+    above.internal = {raised.data(), nz};
+    if (!difference(below, above, 2.0 * width, 24 + i)) return false;
   }
   return true;
 }

@@ -14,13 +14,13 @@ namespace freeplay {
 ///   direction = atan2(w2, w1) + elbow atan2(sqrt(w1^2 + w2^2 - w3^2), w3)
 /// Zhang and Zhang 2016, eq. (4), in the atan2 form that keeps its digits near stretch.
 struct Leg {
-  std::string name;              ///< of the driven joint
-  double ax = 0.0, ay = 0.0;     ///< pin A, world axes [m]
+  std::string name;                   ///< of the driven joint
+  double ax = 0.0, ay = 0.0;          ///< pin A, world axes [m]
   double crank = 0.0, coupler = 0.0;  ///< lengths l1, l2 [m]
-  double cx = 0.0, cy = 0.0;     ///< pin C relative to the path's frame, platform body axes [m]
-  double crank_direction = 0.0;  ///< of A to B in the crank's body axes [rad]
-  double coupler_direction = 0.0;///< of B to C in the coupler's body axes [rad]
-  double coordinate_offset = 0.0;///< joint coordinate minus the crank's body angle [rad]
+  double cx = 0.0, cy = 0.0;          ///< pin C relative to the path's frame, platform body axes [m]
+  double crank_direction = 0.0;       ///< of A to B in the crank's body axes [rad]
+  double coupler_direction = 0.0;     ///< of B to C in the coupler's body axes [rad]
+  double coordinate_offset = 0.0;     ///< joint coordinate minus the crank's body angle [rad]
   int elbow = 1;
   int crank_body = 0, coupler_body = 0;
   double crank_pin_x = 0.0, crank_pin_y = 0.0;      ///< pin A in the crank's body frame [m]

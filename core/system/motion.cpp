@@ -1,8 +1,8 @@
 #include "system/motion.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 
@@ -24,8 +24,7 @@ Motions::Motions(const Model& model)
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
     if (driver.kind == DriverKind::velocity) {
-      antiderivatives_[d] =
-          Antiderivative(driver.value, model.settings.start, model.settings.end, driver.location);
+      antiderivatives_[d] = Antiderivative(driver.value, model.settings.start, model.settings.end, driver.location);
     }
     if (driver.kinematics < 0) continue;
     const InverseKinematics& kinematics = model.kinematics[static_cast<std::size_t>(driver.kinematics)];
@@ -70,19 +69,19 @@ bool Motions::leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) 
   const int kinematics = model_.drivers[static_cast<std::size_t>(driver)].kinematics;
   PathPose frame;
   if (!path(kinematics, t, frame, fault)) return false;
-  const double turn = model_.markers[static_cast<std::size_t>(
-      model_.kinematics[static_cast<std::size_t>(kinematics)].marker)].angle;
+  const double turn =
+      model_.markers[static_cast<std::size_t>(model_.kinematics[static_cast<std::size_t>(kinematics)].marker)].angle;
   const Leg& leg = legs_[static_cast<std::size_t>(driver)];
   pose = solve_leg(leg, frame[0], frame[1], frame[2] - Jet::constant(turn));
   if (pose.reachable) return true;
   fault.driver = driver;
   fault.kinematics = kinematics;
   fault.id = "ik-unreachable";
-  const auto end = fmt::format_to_n(fault.text, sizeof fault.text - 1,
-                                    "leg of '{}' cannot reach the path at t = {} s: its pins are {:.6g} m apart, the leg "
-                                    "reaches from {:.6g} m to {:.6g} m",
-                                    leg.name, t, pose.distance, std::abs(leg.crank - leg.coupler),
-                                    leg.crank + leg.coupler);
+  const auto end =
+      fmt::format_to_n(fault.text, sizeof fault.text - 1,
+                       "leg of '{}' cannot reach the path at t = {} s: its pins are {:.6g} m apart, the leg "
+                       "reaches from {:.6g} m to {:.6g} m",
+                       leg.name, t, pose.distance, std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler);
   *end.out = '\0';
   return false;
 }

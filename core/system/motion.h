@@ -13,9 +13,9 @@ namespace freeplay {
 
 /// Why a driver or a path has no value at some time.
 struct MotionFault {
-  int driver = -1;       ///< index into Model::drivers, or -1
-  int kinematics = -1;   ///< index into Model::kinematics, or -1
-  const char* id = "";   ///< "ik-unreachable", "bad-expression", "bad-number"
+  int driver = -1;      ///< index into Model::drivers, or -1
+  int kinematics = -1;  ///< index into Model::kinematics, or -1
+  const char* id = "";  ///< "ik-unreachable", "bad-expression", "bad-number"
   char text[256] = "";
 };
 
@@ -44,9 +44,9 @@ class Motions {
 
  private:
   const Model& model_;
-  std::vector<Leg> legs_;                       ///< by driver; empty name: none
-  std::vector<Antiderivative> antiderivatives_; ///< by driver
-  std::vector<double> starts_;                  ///< by driver
+  std::vector<Leg> legs_;                        ///< by driver; empty name: none
+  std::vector<Antiderivative> antiderivatives_;  ///< by driver
+  std::vector<double> starts_;                   ///< by driver
 };
 
 }  // namespace freeplay

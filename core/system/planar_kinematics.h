@@ -19,8 +19,8 @@ inline constexpr int components[3] = {0, 1, 5};
 /// What a marker's place on its body comes to, found once.
 struct Mount {
   BodyId body = ground;
-  double x = 0.0, y = 0.0;              ///< offset from the centre of mass, body axes [m]
-  double cosine = 1.0, sine = 0.0;      ///< of the marker's angle on the body
+  double x = 0.0, y = 0.0;          ///< offset from the centre of mass, body axes [m]
+  double cosine = 1.0, sine = 0.0;  ///< of the marker's angle on the body
 };
 
 /// Offset of a marker from its body's centre of mass in world axes [m], and the body's angular velocity.

@@ -46,8 +46,10 @@ class State {
   std::span<const double> h() const { return part(1 + nq_ + 2 * nv_ + nc_ + nz_, nh_); }
   /// For checkpoints and hashes.
   std::span<const double> block() const { return block_; }
-  StateView view() { return {&block_[0], Span<double>(q()), Span<double>(v()), Span<double>(a()),
-                             Span<double>(lambda()), Span<double>(z()), Span<double>(memory())}; }
+  StateView view() {
+    return {&block_[0],        Span<double>(q()),     Span<double>(v()), Span<double>(a()), Span<double>(lambda()),
+            Span<double>(z()), Span<double>(memory())};
+  }
 
  private:
   static std::size_t size(int n) { return static_cast<std::size_t>(n); }

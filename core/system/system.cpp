@@ -54,7 +54,7 @@ System::System(const Model& model, Variant variant)
   }
   for (const Marker& marker : model.markers) mounts_.push_back(planar::mount(model, marker));
 
-  int offset = 0;
+  int offset = 0, internal_offset = 0;
   const auto add_block = [&](BodyId body, int row, int rows) {
     if (body == ground || rows == 0) return -1;
     blocks_.push_back({row, rows, body, offset});
@@ -67,7 +67,9 @@ System::System(const Model& model, Variant variant)
     row_block_b_.push_back(add_block(body_b(j), rows.offset, rows.size));
     if (joint_layout(j).forces != 0) {
       has_forces_[at(j)] = 1;
-      force_blocks_.push_back({j, body_a(j), body_b(j)});
+      const int nz = layout_.internal(j).size;
+      force_blocks_.push_back({j, body_a(j), body_b(j), nz, internal_offset});
+      internal_offset += nz * (18 + nz);
       if (joint_layout(j).coordinate != Coordinate::none) needs_coordinate_[at(j)] = 1;
     }
   }
@@ -78,6 +80,20 @@ System::System(const Model& model, Variant variant)
     driver_block_a_.push_back(row < 0 ? -1 : add_block(body_a(joint), row, 1));
     driver_block_b_.push_back(row < 0 ? -1 : add_block(body_b(joint), row, 1));
   }
+}
+
+InternalDerivatives::InternalDerivatives(const ForceBlock& block, std::span<double> all) {
+  std::size_t next = at(block.internal_offset);
+  const auto take = [&](int count) {
+    const auto part = all.subspan(next, at(count));
+    next += at(count);
+    return part;
+  };
+  const int nz = block.internal;
+  force_z = take(6 * nz);
+  rate_q = take(6 * nz);
+  rate_v = take(6 * nz);
+  rate_z = take(nz * nz);
 }
 
 Evaluation::Evaluation(const System& system) {
@@ -102,6 +118,9 @@ Evaluation::Evaluation(const System& system) {
   jacobian.resize(jacobian_size);
   force_q.resize(36 * system.force_blocks_.size());
   force_v.resize(36 * system.force_blocks_.size());
+  for (const ForceBlock& block : system.force_blocks_) {
+    internal_derivatives.resize(at(block.internal_offset + block.internal * (18 + block.internal)));
+  }
   coordinate.resize(joints);
   coordinate_rate.resize(joints);
   motion.resize(model.drivers.size());
@@ -113,7 +132,7 @@ Evaluation::Evaluation(const System& system) {
   int widest = 0;
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
   row_space.resize(at(12 * widest_joint));
-  derivative_space.resize(at((12 + widest) * (24 + widest) + 2 * widest));
+  derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
   turns.resize(model.bodies.size());
   motion_time = std::numeric_limits<double>::quiet_NaN();
 }
@@ -298,8 +317,8 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     bool good = joint(j).apply(in, out, e.fault.message);
     if (good && derivatives && layout.analytic_derivatives == 0) {
       good = difference_forces(joint(j), in, layout.coordinate != Coordinate::none,
-                               std::span(e.derivative_space).first(table),
-                               std::span(e.derivative_space).subspan(table), e.fault.message);
+                               std::span(e.derivative_space).first(table), std::span(e.derivative_space).subspan(table),
+                               e.fault.message);
     }
     if (!good) {
       e.fault.kind = Fault::Kind::plugin;
@@ -314,21 +333,21 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     if (block.a != ground) planar::add_wrench(wrench, e.arms[at(element.marker_a)], &e.force[3 * at(block.a)]);
     if (block.b != ground) planar::add_wrench(wrench + 6, e.arms[at(element.marker_b)], &e.force[3 * at(block.b)]);
     if (derivatives) map_derivatives(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
+    if (derivatives && nz > 0) map_internal(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
   }
   return true;
 }
 
 // From marker space to the columns of the two bodies: Q = J^T W, so dQ = J^T dW + dJ^T W with
 // dpose = J dq, dtwist = J dv + (dJ v) and d(s x F)/dtheta = -s.F.
-void System::map_derivatives(int joint, std::size_t block, const double* marker_space, int width,
-                             Evaluation& e) const {
+void System::map_derivatives(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const {
   const JointElement& element = model_.joints[at(joint)];
   const planar::Arm arms[2] = {e.arms[at(element.marker_a)], e.arms[at(element.marker_b)]};
   double* by_q = &e.force_q[36 * block];
   double* by_v = &e.force_v[36 * block];
-  for (int i = 0; i < 2; ++i) {      // wrench on body i
-    for (int k = 0; k < 2; ++k) {    // moved by body k
-      double q[3][3], v[3][3];       // rows Fx Fy Mz at the marker, columns x y theta of body k
+  for (int i = 0; i < 2; ++i) {    // wrench on body i
+    for (int k = 0; k < 2; ++k) {  // moved by body k
+      double q[3][3], v[3][3];     // rows Fx Fy Mz at the marker, columns x y theta of body k
       const planar::Arm& arm = arms[k];
       for (int r = 0; r < 3; ++r) {
         const double* row = marker_space + (6 * i + planar::components[r]) * width;
@@ -356,6 +375,32 @@ void System::map_derivatives(int joint, std::size_t block, const double* marker_
         }
       }
     }
+  }
+}
+
+// The same for z and z': rows and columns of internal variables have no arm.
+void System::map_internal(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const {
+  const JointElement& element = model_.joints[at(joint)];
+  const planar::Arm arms[2] = {e.arms[at(element.marker_a)], e.arms[at(element.marker_b)]};
+  const InternalDerivatives out(force_blocks_[block], e.internal_derivatives);
+  const std::size_t nz = at(force_blocks_[block].internal);
+  const auto row = [&](std::size_t r) { return marker_space + r * at(width); };
+  for (std::size_t z = 0; z < nz; ++z) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      double wrench[3];
+      for (std::size_t r = 0; r < 3; ++r) wrench[r] = row(6 * i + at(planar::components[r]))[24 + z];
+      wrench[2] += arms[i].x * wrench[1] - arms[i].y * wrench[0];
+      for (std::size_t r = 0; r < 3; ++r) out.force_z[(3 * i + r) * nz + z] = wrench[r];
+
+      const double* pose = row(12 + z) + 6 * i;
+      const double* twist = row(12 + z) + 12 + 6 * i;
+      double* by_q = &out.rate_q[6 * z + 3 * i];
+      double* by_v = &out.rate_v[6 * z + 3 * i];
+      planar::body_row(twist, arms[i], by_v);
+      planar::body_row(pose, arms[i], by_q);
+      by_q[2] -= (arms[i].x * twist[0] + arms[i].y * twist[1]) * arms[i].w;
+    }
+    for (std::size_t k = 0; k < nz; ++k) out.rate_z[z * nz + k] = row(12 + z)[24 + k];
   }
 }
 

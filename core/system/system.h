@@ -51,6 +51,18 @@ struct JacobianBlock {
 struct ForceBlock {
   int joint = 0;
   BodyId a = ground, b = ground;
+  int internal = 0;         ///< internal variables of the joint, nz
+  int internal_offset = 0;  ///< of its part of Evaluation::internal_derivatives
+};
+
+/// Row-major pieces of a joint's part of Evaluation::internal_derivatives, in the order they stand there.
+struct InternalDerivatives {
+  std::span<double> force_z;  ///< 6 x nz: generalised forces by z
+  std::span<double> rate_q;   ///< nz x 6: z' by the bodies' coordinates
+  std::span<double> rate_v;   ///< nz x 6: z' by their velocities
+  std::span<double> rate_z;   ///< nz x nz
+
+  InternalDerivatives(const ForceBlock& block, std::span<double> all);
 };
 
 struct Evaluation;
@@ -110,6 +122,7 @@ class System {
   void map_row(int joint, const double* marker_row, const Evaluation& e, double* row) const;
   double row_velocity_product(int joint, const double* marker_row, const Evaluation& e) const;
   void map_derivatives(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
+  void map_internal(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
   BodyId body_a(int joint) const;
   BodyId body_b(int joint) const;
 
@@ -136,17 +149,18 @@ struct Evaluation {
   std::vector<MarkerKinematics> markers;
   std::vector<planar::Arm> arms;
   std::vector<double> phi, nu, gamma, jacobian, force;
-  std::vector<double> force_q, force_v;      ///< 36 numbers per force block
+  std::vector<double> force_q, force_v;             ///< 36 numbers per force block
+  std::vector<double> internal_derivatives;         ///< of force blocks with internal variables
   std::vector<double> coordinate, coordinate_rate;  ///< by joint
-  std::vector<TimeValue> motion;             ///< by driver
-  std::vector<double> potential;             ///< stored energy by joint [J]
-  std::vector<double> wrench;                ///< by joint: 6 numbers on a, 6 on b, at the markers
-  std::vector<double> internal_rate;         ///< z'
-  std::vector<double> applied;               ///< by applied force: Fx, Fy, Mz in world axes at its marker
+  std::vector<TimeValue> motion;                    ///< by driver
+  std::vector<double> potential;                    ///< stored energy by joint [J]
+  std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
+  std::vector<double> internal_rate;                ///< z'
+  std::vector<double> applied;                      ///< by applied force: Fx, Fy, Mz in world axes at its marker
   Fault fault;
 
   // Work space.
-  std::vector<MarkerKinematics> shifted;     ///< by joint: second marker of a closed joint that stands off
+  std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
   std::vector<double> row_space, derivative_space;
   std::vector<planar::Turn> turns;
   double motion_time;

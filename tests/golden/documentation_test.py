@@ -1,0 +1,51 @@
+"""Every command of README.md and docs/getting-started.md does what the text says."""
+import os
+import re
+import shlex
+import subprocess
+import unittest
+
+from program import PROGRAM, ROOT, ProgramTest
+
+BLOCK = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
+
+
+def commands(page):
+    with open(os.path.join(ROOT, page), encoding="utf-8") as file:
+        blocks = BLOCK.findall(file.read())
+    return [line for block in blocks for line in block.splitlines() if line and not line.startswith("#")]
+
+
+class Documentation(ProgramTest):
+    """In an empty folder that sees the mechanisms; ./dev stands for the program where it only passes on."""
+
+    def setUp(self):
+        super().setUp()
+        os.symlink(os.path.join(ROOT, "mechanisms"), self.path("mechanisms"))
+
+    def run_page(self, page):
+        lines = commands(page)
+        self.assertTrue(lines)
+        for line in lines:
+            words = shlex.split(line)
+            self.assertEqual("./dev", words[0], line)
+            if words[1] in ("test", "build", "format", "bench", "clean"):
+                continue
+            done = subprocess.run([PROGRAM, *words[1:]], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(0, done.returncode, "%s\n%s" % (line, done.stderr))
+
+    def test_readme(self):
+        self.run_page("README.md")
+
+    def test_getting_started(self):
+        self.run_page(os.path.join("docs", "getting-started.md"))
+
+    def test_links_lead_somewhere(self):
+        for page in ("README.md", os.path.join("docs", "getting-started.md")):
+            with open(os.path.join(ROOT, page), encoding="utf-8") as file:
+                for target in re.findall(r"\]\((?!https?:)([^)#]+)", file.read()):
+                    self.assertTrue(os.path.exists(os.path.join(ROOT, os.path.dirname(page), target)), target)
+
+
+if __name__ == "__main__":
+    unittest.main()

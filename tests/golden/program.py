@@ -1,0 +1,43 @@
+"""Runs the program under test, whose path is in FREEPLAY, and keeps its files in a folder of their own."""
+import os
+import subprocess
+import tempfile
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PROGRAM = os.environ.get("FREEPLAY", os.path.join(ROOT, "build", "release", "freeplay"))
+MECHANISMS = os.path.join(ROOT, "mechanisms")
+
+
+def mechanism(name):
+    return os.path.join(MECHANISMS, name + ".yaml")
+
+
+class ProgramTest(unittest.TestCase):
+    """Every test starts in an empty folder."""
+
+    maxDiff = None
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, *names):
+        return os.path.join(self.folder, *names)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return name
+
+    def read(self, *names):
+        with open(self.path(*names), encoding="utf-8", newline="") as file:
+            return file.read()
+
+    def freeplay(self, *arguments, code=0, environment=None, **options):
+        """Runs the program, checks its exit code, and returns what it printed: stdout, stderr."""
+        done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=500,
+                              env={**os.environ, **(environment or {})}, **options)
+        self.assertEqual(code, done.returncode, "%s\n%s%s" % (" ".join(arguments), done.stdout, done.stderr))
+        return done.stdout, done.stderr

@@ -1,0 +1,227 @@
+"""freeplay run: files, numbers, stop conditions, interrupts and refusals."""
+import csv
+import hashlib
+import json
+import os
+import pty
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ProgramTest, mechanism
+
+SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "residuals",
+           "bodies", "joints", "drivers", "paths", "energy", "advice", "verify", "agree_until", "performance", "files",
+           "warnings"]
+FILES = ["events.csv", "model.yaml", "results.csv", "run.log", "summary.json"]
+EVENTS = "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps"
+
+PENDULUM = """freeplay: 1
+name: %s
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1 kg, inertia: 1/12, com: [0.5, 0]}}
+joints: {pivot: {type: revolute, between: [ground, rod]}}
+initial: {joints: {pivot: 0 deg}}
+simulation: {end: %s, step: 1 ms, output: {interval: 10 ms%s}%s}
+"""
+
+
+class Run(ProgramTest):
+    def pendulum(self, name="p", end="0.1 s", output="", more=""):
+        return self.write("p.yaml", PENDULUM % (name, end, output, more))
+
+    def rows(self, *names):
+        return list(csv.reader(self.read(*names).splitlines()))
+
+    def summary(self, *names):
+        return json.loads(self.read(*names, "summary.json"))
+
+    def test_files_of_a_run(self):
+        self.freeplay("run", self.pendulum())
+        self.assertEqual(FILES, sorted(os.listdir(self.path("results", "p"))))
+        summary = self.summary("results", "p")
+        self.assertEqual(SUMMARY, list(summary))
+        self.assertEqual(FILES, summary["files"])
+        self.assertEqual(self.read("p.yaml"), self.read("results", "p", "model.yaml"))
+        self.assertEqual(hashlib.sha256(self.read("p.yaml").encode()).hexdigest(), summary["model"]["sha256"])
+        self.assertEqual(EVENTS + "\n", self.read("results", "p", "events.csv"))
+        self.assertEqual(("completed", 0, 0.1), (summary["status"], summary["exit_code"], summary["time"]["reached"]))
+        self.assertEqual((11, 100), (summary["counts"]["rows"], summary["counts"]["steps"]))
+
+    def test_rows_stand_at_the_output_instants(self):
+        self.freeplay("run", self.pendulum())
+        rows = self.rows("results", "p", "results.csv")
+        self.assertEqual(["time", "body.rod.x", "body.rod.y", "body.rod.angle"], rows[0][:4])
+        self.assertEqual([float(row[0]) for row in rows[1:]], [k * 0.01 for k in range(11)])
+        self.assertEqual({len(rows[0])}, {len(row) for row in rows})
+
+    def test_channels_are_picked_by_patterns(self):
+        self.freeplay("run", self.pendulum(output=", channels: [energy.*, body.rod.y]"), "--out", "r")
+        self.assertEqual(["time", "body.rod.y", "energy.kinetic", "energy.potential", "energy.dissipated",
+                          "energy.work", "energy.residual"], self.rows("r", "results.csv")[0])
+
+    def test_a_pattern_without_a_channel(self):
+        self.pendulum(output=", channels: [energy.*, body.rood.y]")
+        _, err = self.freeplay("run", "p.yaml", code=3)
+        self.assertTrue(err.startswith("p.yaml:7:") and "[unknown-name]" in err, err)
+        self.assertIn("did you mean 'body.rod.y'?", err)
+
+    def test_a_stop_condition_ends_the_run_well(self):
+        self.freeplay("run", self.pendulum(end="2 s", more=", stop: [{channel: body.rod.y, below: -0.1}]"))
+        summary = self.summary("results", "p")
+        self.assertEqual(("stopped", 0), (summary["status"], summary["exit_code"]))
+        self.assertIn("body.rod.y", summary["stop_reason"])
+        # Half the angle phi that the rod has fallen: phi'^2 = 3 g sin(phi) / l, so y = -0.1 is reached near 0.19 s.
+        self.assertTrue(0.1 < summary["time"]["reached"] < 0.3)
+
+    def test_a_stop_condition_on_an_unknown_channel(self):
+        self.pendulum(more=", stop: [{channel: body.rod.yy, below: -0.1}]")
+        for command in ("run", "validate"):
+            _, err = self.freeplay(command, "p.yaml", code=3)
+            self.assertTrue(err.startswith("p.yaml:7:") and "[unknown-name]" in err, err)
+            self.assertIn("did you mean 'body.rod.y'?", err)
+
+    def test_default_directory(self):
+        self.freeplay("run", self.pendulum(name="..a b/c"), "--quiet")
+        self.assertEqual(["__a_b_c"], os.listdir(self.path("results")))
+        self.freeplay("run", mechanism("slider-crank"), "--end", "10 us", "--ideal", "all", "--quiet")
+        self.assertIn("slider-crank-ideal", os.listdir(self.path("results")))
+
+    def test_an_earlier_result_is_replaced(self):
+        self.freeplay("run", self.pendulum(), "--out", "r")
+        self.freeplay("run", "p.yaml", "--out", "r", "--end", "50 ms")
+        self.assertEqual(0.05, self.summary("r")["time"]["reached"])
+
+    def test_other_content_is_refused(self):
+        os.mkdir(self.path("r"))
+        self.write("r/precious", "x")
+        out, err = self.freeplay("run", self.pendulum(), "--out", "r", code=6)
+        self.assertEqual(("", ["precious"]), (out, os.listdir(self.path("r"))))
+        self.assertIn("--force", err)
+        self.freeplay("run", "p.yaml", "--out", "r", "--force")
+        self.assertEqual(sorted(FILES + ["precious"]), sorted(os.listdir(self.path("r"))))
+
+    def test_a_summary_of_something_else_is_other_content(self):
+        os.mkdir(self.path("r"))
+        self.write("r/summary.json", "{}")
+        self.freeplay("run", self.pendulum(), "--out", "r", code=6)
+
+    def test_a_directory_that_cannot_be_made(self):
+        for out in ("p.yaml", "p.yaml/r"):
+            _, err = self.freeplay("run", self.pendulum(), "--out", out, code=6)
+            self.assertIn(out, err)
+
+    def test_quiet_and_json(self):
+        self.assertEqual(("", ""), self.freeplay("run", self.pendulum(), "--quiet"))
+        out, err = self.freeplay("run", "p.yaml", "--json")
+        self.assertEqual(self.summary("results", "p"), json.loads(out))
+        self.assertEqual("", err)
+
+    def test_table(self):
+        out, _ = self.freeplay("run", mechanism("3-rrr"), "--end", "0.11 s")
+        lines = out.splitlines()
+        self.assertRegex(lines[0], r"^3-rrr: completed, 0\.11 s in 55000 steps \(\S+, 2e-06 s\), \S+ s wall$")
+        heads = [" ".join(line.split()) for line in lines]
+        for head in ("joint max |F| contacts in contact max delta", "driver max |torque| rms",
+                     "path max error rms max angle rms"):
+            self.assertIn(head, heads)
+        self.assertRegex(lines[-2], r"^  energy residual \S+ J   position residual \S+ m$")
+        self.assertEqual("  results in results/3-rrr", lines[-1])
+
+    def test_statistics_that_never_began_are_null(self):
+        out, _ = self.freeplay("run", mechanism("3-rrr"), "--end", "1 ms")
+        self.assertIn("energy residual -   position residual -", out)
+        summary = self.summary("results", "3-rrr")
+        self.assertEqual({None}, set(summary["residuals"].values()))
+        for joint in summary["joints"].values():
+            self.assertEqual({None}, {value for key, value in joint.items() if key != "type"})
+
+    def test_dry_run_writes_nothing(self):
+        out, _ = self.freeplay("run", self.pendulum(), "--dry-run")
+        self.assertEqual(self.freeplay("validate", "p.yaml")[0], out)
+        self.assertEqual(["p.yaml"], os.listdir(self.folder))
+
+    def test_settings_are_recorded(self):
+        self.freeplay("run", mechanism("slider-crank"), "--end", "2e-5", "--step", "2e-6", "--set", "c=1 mm", "--set",
+                      "c=0.2 mm", "--out", "r")
+        settings = self.summary("r")["settings"]
+        self.assertEqual((2e-5, {"size": 2e-6, "adaptive": False}, {"c": "0.2 mm"}, []),
+                         (settings["end"], settings["step"], settings["set"], settings["ideal"]))
+        self.assertIn("type", settings["integrator"])
+
+    def test_events_are_sorted_and_complete(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet")
+        rows = self.rows("results", "slider-crank", "events.csv")
+        self.assertEqual(EVENTS.split(","), rows[0])
+        times = [float(row[0]) for row in rows[1:]]
+        self.assertTrue(times)
+        self.assertEqual(sorted(times), times)
+        for row in rows[1:]:
+            cells = dict(zip(rows[0], row))
+            ended = cells["kind"] == "contact_end"
+            self.assertIn(cells["kind"], ("contact_begin", "contact_end"))
+            self.assertGreaterEqual(float(cells["speed"]), 0.0)
+            self.assertEqual([ended] * 4, [cells[k] != "" for k in ("duration", "max_fn", "max_delta", "steps")])
+        begins = sum(row[2] == "contact_begin" for row in rows[1:])
+        self.assertEqual(begins, self.summary("results", "slider-crank")["counts"]["contacts_total"])
+
+    def test_a_rerun_is_the_same_byte_for_byte_in_any_locale(self):
+        self.pendulum(end="0.5 s")
+        self.freeplay("run", "p.yaml", "--out", "a")
+        self.freeplay("run", "p.yaml", "--out", "b", environment={"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
+        for name in ("results.csv", "events.csv"):
+            self.assertEqual(self.read("a", name), self.read("b", name))
+        summaries = [self.summary(name) for name in ("a", "b")]
+        for summary in summaries:
+            del summary["performance"]
+        self.assertEqual(*summaries)
+
+    def test_an_interrupt_seals_the_files(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "1000 s", "--out", number.name],
+                                       cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            # Interrupted once rows have reached the file, which they do within a second.
+            deadline = time.monotonic() + 60
+            while not self.grown(number.name, "results.csv") and time.monotonic() < deadline:
+                time.sleep(0.05)
+            process.send_signal(number)
+            process.communicate(timeout=60)
+            self.assertEqual(130, process.returncode)
+            summary = self.summary(number.name)
+            self.assertEqual(("interrupted", 130), (summary["status"], summary["exit_code"]))
+            rows = self.rows(number.name, "results.csv")
+            self.assertEqual({len(rows[0])}, {len(row) for row in rows})
+            self.assertEqual(summary["counts"]["rows"], len(rows) - 1)
+            self.assertTrue(self.read(number.name, "results.csv").endswith("\n"))
+
+    def test_progress_is_shown_on_a_terminal_only(self):
+        main, terminal = pty.openpty()
+        done = subprocess.run([PROGRAM, "run", mechanism("slider-crank"), "--end", "50 ms"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=terminal, timeout=300)
+        os.close(terminal)
+        shown = os.read(main, 100000).decode()
+        os.close(main)
+        self.assertEqual(0, done.returncode)
+        self.assertRegex(shown, r"\r *\d+ %  t = \S+ / 0\.05 s  [\d ]+ steps  eta \d\d:\d\d")
+
+    def grown(self, *names):
+        return os.path.exists(self.path(*names)) and os.path.getsize(self.path(*names)) > 10000
+
+    def test_a_full_disk_keeps_whole_rows(self):
+        limit = 20000
+
+        def shrink():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        out, err = self.freeplay("run", self.pendulum(end="20 s"), "--out", "r", code=6, preexec_fn=shrink)
+        self.assertIn("cannot write", err)
+        text = self.read("r", "results.csv")
+        self.assertTrue(text.endswith("\n") and len(text) <= limit)
+        rows = self.rows("r", "results.csv")
+        self.assertEqual({len(rows[0])}, {len(row) for row in rows})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,146 @@
+"""freeplay validate: facts of the mechanisms, messages of broken files."""
+import json
+import unittest
+
+from program import ProgramTest, mechanism
+
+NAMES = ["space", "bodies", "joints", "clearance_joints", "drivers", "coordinates", "velocities", "constraints",
+         "driver_constraints", "rank", "redundant", "dof", "dof_driven", "driver_redundant"]
+IDEAL = ["constraints", "rank", "redundant", "dof", "dof_driven", "driver_redundant"]
+
+# Counted by hand: n legs have 2n + 1 bodies, 3n pins of 2 rows; a closed four-bar has 4 pins on 3 bodies.
+FACTS = {
+    "pendulum": (["planar", 1, 1, 0, 0, 3, 3, 2, 0, 2, 0, 1, 1, 0], None),
+    "four-bar": (["planar", 3, 4, 0, 1, 9, 9, 8, 1, 8, 0, 1, 0, 0], None),
+    "slider-crank": (["planar", 3, 4, 1, 1, 9, 9, 6, 1, 6, 0, 3, 2, 0], [8, 8, 0, 1, 0, 0]),
+    "3-rrr": (["planar", 7, 9, 6, 3, 21, 21, 6, 3, 6, 0, 15, 12, 0], [18, 18, 0, 3, 0, 0]),
+    "4-rrr": (["planar", 9, 12, 8, 4, 27, 27, 8, 4, 8, 0, 19, 15, 0], [24, 24, 0, 3, 0, 1]),
+}
+
+BAD = """freeplay: 1
+name: bad
+bodies:
+  rod: {mass: 1 kg, inertia: 1, intertia: 2}
+joints:
+  pivot: {type: revolut, between: [ground, rod]}
+"""
+
+
+def text_of(file, facts, ideal):
+    lines = ["%s: ok" % file]
+    lines += ["  %-18s  %s" % pair for pair in zip(NAMES, facts) if pair != ("driver_redundant", 0)]
+    if ideal:
+        parts = ["%s %s" % pair for pair in zip(IDEAL, ideal) if pair != ("driver_redundant", 0)]
+        lines.append("  %-18s  %s" % ("ideal", "  ".join(parts)))
+    return "\n".join(lines) + "\n"
+
+
+class Validate(ProgramTest):
+    def test_facts_as_text(self):
+        for name, (facts, ideal) in FACTS.items():
+            file = mechanism(name)
+            self.assertEqual((text_of(file, facts, ideal), ""), self.freeplay("validate", file))
+
+    def test_facts_as_json(self):
+        for name, (facts, ideal) in FACTS.items():
+            file = mechanism(name)
+            verdict = json.loads(self.freeplay("validate", file, "--json")[0])
+            self.assertEqual(["file", "ok", "facts", "start", "messages"], list(verdict))
+            self.assertEqual((file, True, []), (verdict["file"], verdict["ok"], verdict["messages"]))
+            expected = dict(zip(NAMES, facts), ideal=dict(zip(IDEAL, ideal)) if ideal else None)
+            self.assertEqual(list(expected.items()), list(verdict["facts"].items()))
+            self.assertEqual(facts[1], len(verdict["start"]))
+
+    def test_start_holds_centres_of_mass(self):
+        start = json.loads(self.freeplay("validate", mechanism("pendulum"), "--json")[0])["start"]["rod"]
+        for quantity, expected in (("x", 0.5), ("y", 0.0), ("angle", 0.0)):
+            self.assertAlmostEqual(expected, start[quantity], places=12)
+
+    def test_several_files(self):
+        files = [mechanism("pendulum"), mechanism("four-bar")]
+        self.assertEqual("".join(text_of(f, *FACTS[n]) for f, n in zip(files, ("pendulum", "four-bar"))),
+                         self.freeplay("validate", *files)[0])
+        verdicts = json.loads(self.freeplay("validate", *files, "none.yaml", "--json", code=3)[0])
+        self.assertEqual([True, True, False], [verdict["ok"] for verdict in verdicts])
+
+    def test_without_assembly_ranks_are_unknown(self):
+        out, _ = self.freeplay("validate", mechanism("3-rrr"), "--no-assemble", "--json")
+        verdict = json.loads(out)
+        facts = verdict["facts"]
+        self.assertEqual([None] * 4, [facts[name] for name in ("rank", "redundant", "dof", "dof_driven")])
+        self.assertEqual((6, 18, None), (facts["constraints"], facts["ideal"]["constraints"], verdict["start"]))
+
+    def test_ideal_closes_clearance(self):
+        out, _ = self.freeplay("validate", mechanism("3-rrr"), "--ideal", "all", "--json")
+        facts = json.loads(out)["facts"]
+        self.assertEqual((18, 0, None), (facts["constraints"], facts["dof_driven"], facts["ideal"]))
+
+    def test_set_replaces_a_parameter(self):
+        out, _ = self.freeplay("validate", mechanism("pendulum"), "--set", "l=3 m", "--set", "l=200 cm", "--json")
+        self.assertAlmostEqual(1.0, json.loads(out)["start"]["rod"]["x"], places=12)
+
+    def test_messages_have_a_place_and_a_remedy(self):
+        out, err = self.freeplay("validate", self.write("bad.yaml", BAD), code=3)
+        self.assertEqual("bad.yaml: not ok\n", out)
+        self.assertEqual("""bad.yaml:4:33: error: unknown key 'intertia' in 'bodies.rod' [unknown-key]
+    4 |   rod: {mass: 1 kg, inertia: 1, intertia: 2}
+      |                                 ^~~~~~~~
+      = did you mean 'inertia'?
+""", err[:err.index("bad.yaml:6")])
+        self.assertIn("""
+    6 |   pivot: {type: revolut, between: [ground, rod]}
+      |                 ^~~~~~~
+      = did you mean 'revolute'?
+""", err)
+
+    def test_messages_as_json(self):
+        out, _ = self.freeplay("validate", self.write("bad.yaml", BAD), "--json", code=3)
+        verdict = json.loads(out)
+        self.assertEqual((False, None), (verdict["ok"], verdict["facts"]))
+        first = verdict["messages"][0]
+        self.assertEqual(("bad.yaml", 4, 33, "error", "unknown-key", "inertia"),
+                         tuple(first[k] for k in ("file", "line", "column", "severity", "id", "suggestion")))
+        self.assertEqual("unknown-type", verdict["messages"][1]["id"])
+
+    def test_max_errors_limits_the_messages(self):
+        self.write("bad.yaml", BAD)
+        _, err = self.freeplay("validate", "bad.yaml", "--max-errors", "1", code=3)
+        self.assertNotIn("revolut", err)
+
+    def test_missing_file(self):
+        out, err = self.freeplay("validate", "none.yaml", code=3)
+        self.assertTrue(err.startswith("none.yaml: error: ") and err.endswith("[file-not-found]\n"), err)
+
+    def test_quiet_says_only_what_is_wrong(self):
+        self.assertEqual(("", ""), self.freeplay("validate", mechanism("pendulum"), "--quiet"))
+        out, err = self.freeplay("validate", "none.yaml", "--quiet", code=3)
+        self.assertEqual("", out)
+        self.assertIn("[file-not-found]", err)
+
+    def test_warnings_and_strict(self):
+        text = "freeplay: 1\nname: w\nparameters: {spare: 1}\nbodies: {b: {mass: 1, inertia: 1}}\n"
+        self.write("w.yaml", text)
+        _, err = self.freeplay("validate", "w.yaml")
+        self.assertIn("warning: ", err)
+        self.assertIn("[unused]", err)
+        _, err = self.freeplay("validate", "w.yaml", "--strict", code=3)
+        self.assertIn("error: ", err)
+
+    def test_a_model_that_cannot_be_assembled(self):
+        text = """freeplay: 1
+name: apart
+bodies:
+  a: {mass: 1, inertia: 1}
+joints:
+  p: {type: revolute, between: [ground, a]}
+  q: {type: revolute, between: [ground/far, a/end]}
+frames:
+  ground/far: [5 m, 0]
+  a/end: [1 m, 0]
+"""
+        out, err = self.freeplay("validate", self.write("apart.yaml", text), code=3)
+        self.assertRegex(err, r"^apart\.yaml(:\d+:\d+)?: error: .*\[assembly-failed\]\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

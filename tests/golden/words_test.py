@@ -1,0 +1,155 @@
+"""Commands, options and their mistakes."""
+import json
+import os
+import re
+import subprocess
+import unittest
+
+from program import PROGRAM, ProgramTest, mechanism
+
+LATER_COMMANDS = ["show", "schema", "init", "convert", "analyze", "sweep", "report", "export", "compare",
+                  "check-plugin", "doctor"]
+COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
+
+
+class Words(ProgramTest):
+    def test_version_is_one_line(self):
+        out, err = self.freeplay("--version")
+        self.assertRegex(out, r"\Afreeplay \d+\.\d+\.\d+ \(schema 1, plugin ABI 1\)\n\Z")
+        self.assertEqual("", err)
+
+    def test_version_as_json(self):
+        out, _ = self.freeplay("--version", "--json")
+        self.assertEqual(["freeplay", "schema", "plugin_abi", "compiler", "build"], list(json.loads(out)))
+
+    def test_help_lists_commands_and_options(self):
+        out, err = self.freeplay("--help")
+        for word in ["Usage: freeplay", "run", "validate", "list", "describe", "--version", *COMMON]:
+            self.assertIn(word, out)
+        self.assertEqual("", err)
+
+    def test_help_of_each_command(self):
+        own = {"run": ["MODEL", "--end", "--step", "--integrator", "--out", "--force", "--dry-run", "--set", "--ideal"],
+               "validate": ["MODEL", "--no-assemble", "--set", "--ideal"], "list": ["KIND"], "describe": ["NAME"]}
+        for command, words in own.items():
+            out, _ = self.freeplay(command, "--help")
+            self.assertIn("Usage: freeplay " + command, out)
+            for word in words + COMMON:
+                self.assertIn(word, out, command)
+
+    def test_alone_it_prints_the_help_and_exits_2(self):
+        self.assertEqual(self.freeplay("--help")[0], self.freeplay(code=2)[0])
+
+    def test_unknown_command_suggests_the_nearest(self):
+        out, err = self.freeplay("vaildate", "x.yaml", code=2)
+        self.assertEqual("", out)
+        self.assertEqual("freeplay: error: unknown command 'vaildate' [unknown-command]\n"
+                         "      = did you mean 'validate'?\n", err)
+
+    def test_unknown_option_suggests_the_nearest(self):
+        for arguments in (["run", "x.yaml", "--ende", "3"], ["run", "--ende", "3", "x.yaml"], ["run", "--ende=3"]):
+            out, err = self.freeplay(*arguments, code=2)
+            self.assertEqual("freeplay: error: unknown option '--ende' [unknown-option]\n"
+                             "      = did you mean '--end'?\n", err)
+        self.assertIn("did you mean '--json'?", self.freeplay("--jsn", code=2)[1])
+
+    def test_missing_and_extra_arguments(self):
+        for arguments in (["run"], ["validate"], ["describe"], ["run", "a.yaml", "b.yaml"], ["run", "a.yaml", "--end"],
+                          ["list", "joints", "x"], ["list", "channels"], ["list", "joint"]):
+            self.freeplay(*arguments, code=2)
+
+    def test_later_commands(self):
+        for command in LATER_COMMANDS:
+            _, err = self.freeplay(command, "x", "--out", "y", code=2)
+            self.assertEqual("freeplay: error: %s: not in this release [not-in-this-release]\n" % command, err)
+
+    def test_later_options(self):
+        model = mechanism("pendulum")
+        for option in (["--accuracy", "1um"], ["--verify"], ["--profile"], ["--resume"], ["--format", "hdf5"],
+                       ["--format", "both"], ["--plugin", "x.so"]):
+            _, err = self.freeplay("run", model, *option, code=2)
+            self.assertIn("not in this release", err)
+        self.assertEqual([], os.listdir(self.folder))
+
+    def test_bad_values(self):
+        model = mechanism("pendulum")
+        for option, value in (("--end", "-1 s"), ("--end", "0"), ("--end", "3 mm"), ("--step", "-2us"),
+                              ("--step", "two"), ("--format", "text"), ("--max-errors", "-1"), ("--max-errors", "x"),
+                              ("--set", "l"), ("--set", "l=1 parsec"), ("--set", "nothing=1"), ("--ideal", "nothing"),
+                              ("--integrator", "nothing")):
+            _, err = self.freeplay("run", model, option, value, "--out", "r", code=2)
+            self.assertTrue(err.startswith("freeplay: error: "), err)
+        self.assertEqual([], os.listdir(self.folder))
+
+    def test_failure_as_json(self):
+        for arguments, code in ((["vaildate"], 2), (["run", "none.yaml"], 3), (["show"], 2), (["--ende"], 2), ([], 2),
+                                (["run", "--step"], 2), (["describe", "nothing"], 2)):
+            out, _ = self.freeplay(*arguments, "--json", code=code)
+            error = json.loads(out)["error"]
+            self.assertEqual(["exit_code", "message", "messages"], list(error))
+            self.assertEqual(code, error["exit_code"])
+            for message in error["messages"]:
+                self.assertEqual(["file", "line", "column", "severity", "id", "message", "suggestion"], list(message))
+
+    def test_closed_pipe_ends_quietly(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run([PROGRAM, "list"], stdout=writer, stderr=subprocess.PIPE, cwd=self.folder)
+        os.close(writer)
+        self.assertEqual((0, b""), (done.returncode, done.stderr))
+
+    def test_full_stdout_is_a_failure_to_write(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "list"], stdout=full, stderr=subprocess.PIPE, cwd=self.folder)
+        self.assertEqual(6, done.returncode)
+
+
+class Types(ProgramTest):
+    COLUMNS = ["name", "kind", "space", "source", "summary"]
+
+    def test_list_is_a_table_of_what_its_json_holds(self):
+        for kind in ([], ["joints"], ["laws"], ["forces"], ["integrators"], ["plugins"]):
+            entries = json.loads(self.freeplay("list", *kind, "--json")[0])
+            lines = self.freeplay("list", *kind)[0].splitlines()
+            self.assertEqual(self.COLUMNS, lines[0].split())
+            starts = [lines[0].index(column) for column in self.COLUMNS] + [None]
+            rows = [[line[a:b].strip() for a, b in zip(starts, starts[1:])] for line in lines[1:]]
+            self.assertEqual([[entry[column] for column in self.COLUMNS] for entry in entries], rows)
+
+    def test_kinds(self):
+        expected = {"joints": {"joint"}, "laws": {"contact", "friction"}, "integrators": {"integrator"}}
+        for kind, words in expected.items():
+            entries = json.loads(self.freeplay("list", kind, "--json")[0])
+            self.assertEqual(words, {entry["kind"] for entry in entries})
+            self.assertEqual({"built-in"}, {entry["source"] for entry in entries})
+
+    def test_everything_listed_can_be_described(self):
+        for entry in json.loads(self.freeplay("list", "--json")[0]):
+            if entry["kind"] == "plugin":
+                continue
+            self.assertEqual(entry, json.loads(self.freeplay("describe", entry["name"], "--json")[0]))
+            text = self.freeplay("describe", entry["name"])[0]
+            self.assertTrue(text.startswith("%s: %s\n" % (entry["name"], entry["summary"])))
+            for heading in ("formula", "validity", "references"):
+                self.assertEqual(bool(entry[heading]), "\n%s\n" % heading in text)
+            for parameter in entry["parameters"]:
+                self.assertRegex(text, r"\n  %s +\S" % re.escape(parameter["name"]))
+
+    def test_describe_tells_default_and_range(self):
+        text = self.freeplay("describe", "lankarani-nikravesh")[0]
+        self.assertRegex(text, r"\n  name +unit +default +range +meaning\n")
+        self.assertRegex(text, r"\n  restitution +1 +\S+ +\S.*")
+
+    def test_unknown_type_suggests_the_nearest(self):
+        self.assertEqual("freeplay: error: there is no type 'revolut' [unknown-name]\n      = did you mean 'revolute'?\n",
+                         self.freeplay("describe", "revolut", code=2)[1])
+
+    def test_channels_of_a_model(self):
+        out, _ = self.freeplay("list", "channels", mechanism("pendulum"), "--json")
+        channels = json.loads(out)
+        self.assertEqual({"name": "time", "unit": "s"}, channels[0])
+        self.assertIn({"name": "energy.residual", "unit": "J"}, channels)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,112 @@
+#include "component/instances.h"
+
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace freeplay {
+namespace {
+
+int living = 0;
+
+struct Counted {
+  Counted() { ++living; }
+  ~Counted() { --living; }
+  Counted(const Counted&) = delete;
+};
+
+class Law final : public ContactLaw, Counted {
+ public:
+  Law(const Parameters& p, const ContactPair& pair) : k_(p.number("K") * pair.length) {
+    if (p.word("mood") == 1) throw BadParameter("K", "out-of-range", "too soft");
+  }
+  ContactForce evaluate(const ContactState&) const override { return {k_, 0, 0, 0}; }
+
+ private:
+  double k_;
+};
+
+class Bearing final : public Joint, Counted {
+ public:
+  explicit Bearing(const Parameters& p) : law_(p.contact_law("block.law", pair(p))) {
+    if (p.given("typo")) p.number("nonsense");
+  }
+  static ContactPair pair(const Parameters& p) {
+    ContactPair pair{};
+    pair.length = p.vector("size")[1];
+    return pair;
+  }
+  void declare(JointLayout& layout) const override { layout.clearance = law_.evaluate({}).normal; }
+
+ private:
+  ContactLawRef law_;
+};
+
+const Component law_component = contact_law<Law>({.name = "law"});
+const Component host_component = joint<Bearing>({.name = "host"});
+
+ParameterBlock block(int mood, bool typo = false) {
+  auto law = std::make_shared<ParameterBlock>();
+  law->component = &law_component;
+  law->values["K"].number = 3.0;
+  law->values["mood"].word = mood;
+  ParameterBlock host;
+  host.component = &host_component;
+  host.values["block.law"].law = law;
+  host.values["size"].vector = {1.0, 2.0, 0.0};
+  host.values["typo"].given = typo;
+  return host;
+}
+
+TEST(Instances, ServeParametersAndCreateLawsForAJoint) {
+  {
+    Instances instances;
+    CreationFault fault;
+    const JointRef joint = instances.create_joint(block(0), fault);
+    ASSERT_TRUE(joint) << fault.text;
+    JointLayout layout;
+    Message message;
+    ASSERT_TRUE(joint.declare(layout, message));
+    EXPECT_DOUBLE_EQ(layout.clearance, 6.0);
+    EXPECT_EQ(living, 2);
+    const Instances moved = std::move(instances);
+    EXPECT_TRUE(joint.declare(layout, message));
+  }
+  EXPECT_EQ(living, 0);
+}
+
+TEST(Instances, ComposeThePathOfALawsFault) {
+  Instances instances;
+  CreationFault fault;
+  EXPECT_FALSE(instances.create_joint(block(1), fault));
+  EXPECT_TRUE(fault.bad_parameter);
+  EXPECT_EQ(fault.path, "block.law.K");
+  EXPECT_EQ(fault.id, "out-of-range");
+  EXPECT_EQ(fault.text, "too soft");
+}
+
+TEST(Instances, TellAPluginsOwnFailureApart) {
+  Instances instances;
+  CreationFault fault;
+  EXPECT_FALSE(instances.create_joint(block(0, true), fault));
+  EXPECT_FALSE(fault.bad_parameter);
+  EXPECT_EQ(fault.id, "plugin-failed");
+  EXPECT_NE(fault.text.find("nonsense"), std::string::npos);
+}
+
+TEST(Instances, KeepTheFunctionsOfTimeAlive) {
+  const auto owner = std::make_shared<const int>(1);
+  ParameterBlock host = block(0);
+  host.values["function"].function_owner = owner;
+  {
+    Instances instances;
+    CreationFault fault;
+    instances.create_joint(host, fault);
+    host = {};
+    EXPECT_EQ(owner.use_count(), 2);
+  }
+  EXPECT_EQ(owner.use_count(), 1);
+}
+
+}  // namespace
+}  // namespace freeplay
