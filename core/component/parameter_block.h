@@ -21,7 +21,7 @@ struct ParameterValue {
   std::array<double, 3> vector{};
   TimeFunction function;
   std::shared_ptr<const void> function_owner;  ///< keeps what `function` points at
-  std::shared_ptr<const ParameterBlock> law;  ///< contact_law, friction_law
+  std::shared_ptr<const ParameterBlock> law;   ///< contact_law, friction_law
 };
 
 /// Values by the names of the component's table.

@@ -1,10 +1,12 @@
 // Registry: the types that a model file may name, from the tables of all loaded libraries.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "component/plugin_table.h"
 #include "freeplay/plugin.h"
 
 namespace freeplay {
@@ -13,6 +15,12 @@ namespace freeplay {
 struct RegisteredComponent {
   const Component* component;
   std::string library;  ///< "built-in" or the path of the shared object
+};
+
+/// A library that has been asked for its types.
+struct RegisteredLibrary {
+  std::string path;  ///< "built-in" or the path of the shared object
+  std::shared_ptr<const PluginTable> table;
 };
 
 /// All known types in order of registration. Names are unique within a kind.
@@ -26,6 +34,7 @@ class Registry {
   void add(PluginEntry entry, const std::string& library);
 
   const std::vector<RegisteredComponent>& components() const { return components_; }
+  const std::vector<RegisteredLibrary>& libraries() const { return libraries_; }
   /// Null when there is no such type.
   const Component* find(ComponentKind kind, std::string_view name) const;
   /// The type used where a model names none; null when the kind has none.
@@ -36,6 +45,7 @@ class Registry {
 
  private:
   std::vector<RegisteredComponent> components_;
+  std::vector<RegisteredLibrary> libraries_;
 };
 
 }  // namespace freeplay

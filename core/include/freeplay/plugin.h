@@ -65,11 +65,24 @@ Component integrator(const Description& d) {
           reinterpret_cast<void (*)()>(&abi::create_integrator<T>), d};
 }
 
+/// Sizes of the structs that cross the boundary, in this order. They only ever grow at their end, so that a library
+/// built with smaller ones runs in a newer host; the host refuses a library that knows larger ones than itself.
+inline constexpr std::uint32_t struct_sizes[] = {
+    sizeof(Message),      sizeof(TimeFunction),  sizeof(abi::ParameterTable),   sizeof(ContactPair),
+    sizeof(ContactState), sizeof(ContactForce),  sizeof(FrictionState),         sizeof(FrictionForce),
+    sizeof(JointLayout),  sizeof(JointInput),    sizeof(ConstraintRows),        sizeof(CoordinateRow),
+    sizeof(JointForces),  sizeof(InitialOffset), sizeof(MarkerAccelerations),   sizeof(StateView),
+    sizeof(Stage),        sizeof(StageResult),   sizeof(abi::StageSolverTable), sizeof(IntegratorLayout),
+    sizeof(Attempt)};
+/// Structs that stand in arrays or inside others: their sizes are fixed for an ABI version.
+inline constexpr std::uint32_t fixed_sizes[] = {sizeof(Event), sizeof(Channel), sizeof(MarkerKinematics), sizeof(Pose)};
+
 /// Given by the host. A newer host may have a larger struct; fields are only ever appended.
 struct Host {
   std::uint32_t size;
   std::uint32_t abi_version;
   const char* fingerprint;
+  Span<const std::uint32_t> struct_sizes;
 };
 
 /// Filled by the plugin. All pointers are to static storage.
@@ -82,13 +95,14 @@ struct Manifest {
   const char* name;
   const char* version;
   Span<const Component> components;
+  Span<const std::uint32_t> struct_sizes, fixed_sizes;
 };
 
 /// Answers the host. Fails when host and plugin cannot understand each other.
 inline Status publish(const Host& host, Manifest& manifest, const char* name, const char* version,
                       Span<const Component> components) noexcept {
-  manifest = {sizeof(Manifest), abi_version, sizeof(Component), sizeof(Parameter), abi_fingerprint,
-              __VERSION__,      name,        version,           components};
+  manifest = {sizeof(Manifest), abi_version, sizeof(Component), sizeof(Parameter), abi_fingerprint, __VERSION__, name,
+              version,          components,  struct_sizes,      fixed_sizes};
   const bool match = host.abi_version == abi_version && std::strcmp(host.fingerprint, abi_fingerprint) == 0;
   return match ? Status::ok : Status::failed;
 }

@@ -1,0 +1,47 @@
+// GuardedNumbers: an array with marked numbers before and after it, so that a write beside it is seen.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "freeplay/span.h"
+
+namespace freeplay {
+
+class GuardedNumbers {
+ public:
+  explicit GuardedNumbers(std::size_t count, double fill = 0.0) : numbers_(count + 2 * margin, guard()), count_(count) {
+    for (double& number : span()) number = fill;
+  }
+  explicit GuardedNumbers(const std::vector<double>& values) : GuardedNumbers(values.size()) {
+    for (std::size_t i = 0; i < count_; ++i) span()[i] = values[i];
+  }
+
+  Span<double> span() { return {numbers_.data() + margin, count_}; }
+  std::vector<double> values() const { return {numbers_.data() + margin, numbers_.data() + margin + count_}; }
+  bool intact() const {
+    const double mark = guard();
+    for (std::size_t i = 0; i < margin; ++i) {
+      if (std::memcmp(&numbers_[i], &mark, sizeof mark) != 0) return false;
+      if (std::memcmp(&numbers_[margin + count_ + i], &mark, sizeof mark) != 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  // Two rows of a joint's Jacobian, so that an index that is one row off is caught and harms nothing else.
+  // A NaN that no arithmetic makes.
+  static double guard() { return std::bit_cast<double>(std::uint64_t{0x7ff8c0ffee15600d}); }
+  std::vector<double> numbers_;
+  std::size_t count_;
+};
+
+/// Equal bit for bit, so that NaN equals itself and 0 differs from -0.
+inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,334 @@
+#include "contract/sample_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "base/expression_error.h"
+#include "base/unit.h"
+#include "component/instances.h"
+#include "model/parameter_tree.h"
+
+namespace freeplay {
+namespace {
+
+bool is_number(const Parameter& p) { return p.kind == ParameterKind::number || p.kind == ParameterKind::integer; }
+bool is_law(const Parameter& p) {
+  return p.kind == ParameterKind::contact_law || p.kind == ParameterKind::friction_law;
+}
+bool is_required(const Parameter& p) { return std::isnan(p.default_value); }
+bool is_optional(const Parameter& p) { return p.default_value == optional; }
+ComponentKind law_kind(const Parameter& p) {
+  return p.kind == ParameterKind::contact_law ? ComponentKind::contact_law : ComponentKind::friction_law;
+}
+
+/// How the numbers of one unit are told apart: constructors compare lengths or speeds with each other.
+enum class Order { rising, falling, equal };
+
+/// What a block says beyond its defaults.
+struct Plan {
+  std::set<std::string> given{};                                ///< optional parameters
+  std::map<std::string, int> words{};                           ///< choices, and words in the place of numbers
+  std::map<std::string, double> numbers{};                      ///< SI
+  std::map<std::string, std::shared_ptr<const ParameterBlock>> laws{};
+  Order order = Order::rising;
+};
+
+/// f(t) = c (1 + sin(2 t)/2): a function whose three values differ from each other.
+struct SampleFunction {
+  double size;
+};
+Status evaluate_sample(const void* self, double t, TimeValue* out, Message*) noexcept {
+  const double c = static_cast<const SampleFunction*>(self)->size;
+  *out = {c * (1.0 + 0.5 * std::sin(2.0 * t)), c * std::cos(2.0 * t), -2.0 * c * std::sin(2.0 * t)};
+  return Status::ok;
+}
+
+/// A size that occurs in mechanisms [SI].
+double usual_size(const Dimension& d) {
+  const struct {
+    Dimension dimension;
+    double size;
+  } table[] = {{dimension::length, 0.01}, {dimension::pressure, 2e11}, {dimension::velocity, 0.01},
+               {dimension::time, 0.01},   {dimension::stiffness, 1e5}, {dimension::damping, 10.0},
+               {dimension::force, 10.0},  {dimension::torque, 1.0},    {dimension::none, 0.3}};
+  for (const auto& row : table) {
+    if (row.dimension == d) return row.size;
+  }
+  // Contact stiffness N/m^n: what carries 100 N at 10 micrometres.
+  if (d.kg == 1.0 && d.s == -2.0 && d.m <= 0.5) return 100.0 * std::pow(1e5, 1.0 - d.m);
+  return 1.0;
+}
+
+/// The number nearest to `wish` that lies within the bounds.
+double within(const Parameter& p, double factor, double wish) {
+  const double low = p.minimum * factor, high = p.maximum * factor;
+  const auto opens = [&](Open end) { return p.open == end || p.open == Open::both; };
+  if (std::isfinite(low) && std::isfinite(high)) {
+    const double margin = 0.1 * (high - low);
+    if (wish <= low) return opens(Open::minimum) ? low + margin : low;
+    if (wish >= high) return opens(Open::maximum) ? high - margin : high;
+    return wish;
+  }
+  if (wish < low || (wish == low && opens(Open::minimum))) return low + std::max(std::abs(low), 1.0);
+  if (wish > high || (wish == high && opens(Open::maximum))) return high - std::max(std::abs(high), 1.0);
+  return wish;
+}
+
+class Sampler {
+ public:
+  Sampler(const Component& component, const Registry& registry) : component_(component), registry_(registry) {}
+
+  ParameterSamples run() {
+    for (const Plan& laws : law_plans()) {
+      const std::optional<Plan> few = fewest(laws);
+      if (!few) continue;
+      add(name_of_laws(laws), *few);
+      if (found_.accepted.size() > 1) continue;  // the rest does not depend on the laws
+      add("as many as possible", most(*few));
+      add_words(*few);
+      add_ends(*few);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  const Span<const Parameter>& table() const { return component_.description.parameters; }
+
+  std::optional<Unit> unit_of(const Parameter& p, const ParameterBlock& block) const {
+    const auto exponent = [&](std::string_view name) -> std::optional<double> {
+      const auto found = block.values.find(name);
+      if (found == block.values.end() || !std::isfinite(found->second.number)) return std::nullopt;
+      return found->second.number;
+    };
+    try {
+      return parse_unit(p.unit, exponent);
+    } catch (const ExpressionError&) {
+      return std::nullopt;
+    }
+  }
+
+  std::shared_ptr<const ParameterBlock> make(const Plan& plan) const {
+    auto block = std::make_shared<ParameterBlock>();
+    block->component = &component_;
+    for (const Parameter& p : table()) block->values[p.name];
+    // Exponents are dimensionless: they come first, and the units that name them after.
+    for (const bool last : {false, true}) {
+      int same_unit = 0;
+      for (const Parameter& p : table()) {
+        const std::optional<Unit> unit = unit_of(p, *block);
+        if (unit && std::string_view(p.unit).find_first_of("^") == std::string_view::npos) ++same_unit;
+        if (!unit && !last) continue;
+        fill(p, unit.value_or(Unit{}), plan, same_unit, block->values[p.name]);
+      }
+    }
+    mark_branches(*block);
+    return block;
+  }
+
+  void fill(const Parameter& p, const Unit& unit, const Plan& plan, int place, ParameterValue& value) const {
+    value.given = is_required(p) || plan.given.contains(p.name) || plan.words.contains(p.name) ||
+                  plan.numbers.contains(p.name) || plan.laws.contains(p.name);
+    if (is_law(p)) {
+      if (const auto law = plan.laws.find(p.name); law != plan.laws.end()) value.law = law->second;
+      return;
+    }
+    if (const auto word = plan.words.find(p.name); word != plan.words.end()) {
+      value.word = word->second;
+      value.number = std::numeric_limits<double>::quiet_NaN();
+      return;
+    }
+    if (!value.given && is_optional(p)) return;
+    const double tilt = plan.order == Order::equal ? 0.0 : plan.order == Order::rising ? 0.07 : -0.03;
+    const double usual = usual_size(unit.dimension) * (1.0 + tilt * place);
+    const bool by_default = !is_required(p) && !is_optional(p);
+    const double size = by_default ? p.default_value * unit.factor : usual;
+    if (p.kind == ParameterKind::choice) {
+      value.word = by_default ? static_cast<int>(p.default_value) : 0;
+    } else if (p.kind == ParameterKind::vector) {
+      value.vector = {0.5 * size, -0.3 * size, 0.0};
+    } else if (p.kind == ParameterKind::function) {
+      const auto function = std::make_shared<const SampleFunction>(SampleFunction{size});
+      value.function = {&evaluate_sample, function.get()};
+      value.function_owner = function;
+    } else {
+      const auto number = plan.numbers.find(p.name);
+      value.number = number != plan.numbers.end() ? number->second : by_default ? size : within(p, unit.factor, size);
+      if (p.kind == ParameterKind::integer && !by_default) value.number = std::max(std::round(value.number), p.minimum);
+    }
+  }
+
+  /// A map that stands in the place of a word: the word is not written.
+  void mark_branches(ParameterBlock& block) const {
+    for (const Parameter& branch : table()) {
+      const std::string prefix = std::string(branch.name) + ".";
+      for (const Parameter& inner : table()) {
+        if (!std::string_view(inner.name).starts_with(prefix) || !block.values[inner.name].given) continue;
+        block.values[branch.name].given = true;
+        block.values[branch.name].word = -1;
+      }
+    }
+  }
+
+  bool accepts(const std::shared_ptr<const ParameterBlock>& block) {
+    Instances instances;
+    CreationFault fault;
+    switch (component_.kind) {
+      case ComponentKind::joint: instances.create_joint(*block, fault); break;
+      case ComponentKind::integrator: instances.create_integrator(*block, fault); break;
+      case ComponentKind::friction_law: instances.create_friction_law(*block, fault); break;
+      case ComponentKind::contact_law: instances.create_contact_law(*block, sample_contact_pair(), fault); break;
+    }
+    if (!fault.id.empty() && found_.refusal.empty()) {
+      found_.refusal = fault.path.empty() ? fault.text : "'" + fault.path + "': " + fault.text;
+    }
+    return fault.id.empty();
+  }
+  bool accepts(const Plan& plan) { return accepts(make(plan)); }
+
+  void add(const std::string& name, const Plan& plan) {
+    const std::shared_ptr<const ParameterBlock> block = make(plan);
+    if (accepts(block)) found_.accepted.push_back({name, block});
+  }
+
+  std::vector<std::string> left_open(const Plan& plan) const {
+    std::vector<std::string> names;
+    for (const Parameter& p : table()) {
+      if (is_optional(p) && !is_law(p) && !plan.given.contains(p.name)) names.emplace_back(p.name);
+    }
+    return names;
+  }
+
+  /// The laws that fit into the table: for each law parameter the preferred or first one, then every other in turn.
+  std::vector<Plan> law_plans() const {
+    std::vector<Plan> plans(1);
+    std::vector<std::pair<std::string, std::vector<std::shared_ptr<const ParameterBlock>>>> all;
+    for (const Parameter& p : table()) {
+      if (!is_law(p)) continue;
+      all.emplace_back(p.name, law_blocks(law_kind(p)));
+      if (!all.back().second.empty()) plans[0].laws[p.name] = all.back().second.front();
+    }
+    const Plan first = plans[0];
+    for (const auto& [name, blocks] : all) {
+      for (std::size_t i = 1; i < blocks.size(); ++i) {
+        plans.push_back(first);
+        plans.back().laws[name] = blocks[i];
+      }
+    }
+    return plans;
+  }
+
+  std::vector<std::shared_ptr<const ParameterBlock>> law_blocks(ComponentKind kind) const {
+    std::vector<std::shared_ptr<const ParameterBlock>> blocks;
+    const Component* preferred = registry_.preferred(kind);
+    const auto add_samples = [&](const Component& law) {
+      const ParameterSamples samples = sample_parameters(law, registry_);
+      // The one with all keys asks least of the joint; the one with fewest asks for radii and material.
+      const std::size_t count = std::min<std::size_t>(samples.accepted.size(), 2);
+      for (std::size_t i = count; i-- > 0;) blocks.push_back(samples.accepted[i].block);
+    };
+    if (preferred != nullptr) add_samples(*preferred);
+    for (const RegisteredComponent& entry : registry_.components()) {
+      if (entry.component->kind == kind && entry.component != preferred) add_samples(*entry.component);
+    }
+    return blocks;
+  }
+
+  static std::string name_of_laws(const Plan& plan) {
+    std::string words;
+    for (const auto& [name, block] : plan.laws) words += (words.empty() ? "" : ", ") + name + " " + block->component->description.name;
+    return words.empty() ? "as few as possible" : words;
+  }
+
+  /// The smallest set of optional parameters with which the constructor is content.
+  std::optional<Plan> fewest(Plan plan) {
+    // Lengths and speeds that a constructor compares may have to rise or to fall along the table.
+    for (const Order order : {Order::rising, Order::falling, Order::equal}) {
+      plan.order = order;
+      if (const std::optional<Plan> found = with_more(plan, 3)) return found;
+    }
+    return std::nullopt;
+  }
+  std::optional<Plan> with_more(const Plan& plan, int most_more) {
+    if (accepts(plan)) return plan;
+    const std::vector<std::string> open = left_open(plan);
+    for (int more = 1; more <= most_more; ++more) {
+      if (const std::optional<Plan> found = with_exactly(plan, open, 0, more)) return found;
+    }
+    return std::nullopt;
+  }
+  std::optional<Plan> with_exactly(const Plan& plan, const std::vector<std::string>& open, std::size_t from, int more) {
+    for (std::size_t i = from; i < open.size(); ++i) {
+      Plan next = plan;
+      next.given.insert(open[i]);
+      if (more == 1 && accepts(next)) return next;
+      if (more == 1) continue;
+      if (const std::optional<Plan> found = with_exactly(next, open, i + 1, more - 1)) return found;
+    }
+    return std::nullopt;
+  }
+
+  /// Everything that the constructor takes in addition, alone or in pairs.
+  Plan most(Plan plan) {
+    for (const std::string& name : left_open(plan)) {
+      Plan next = plan;
+      next.given.insert(name);
+      if (accepts(next)) plan = next;
+    }
+    const std::vector<std::string> open = left_open(plan);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      for (std::size_t k = i + 1; k < open.size(); ++k) {
+        Plan next = plan;
+        next.given.insert(open[i]);
+        next.given.insert(open[k]);
+        if (accepts(next)) plan = next;
+      }
+    }
+    return plan;
+  }
+
+  void add_words(const Plan& plan) {
+    for (const Parameter& p : table()) {
+      if (is_law(p)) continue;
+      const std::vector<std::string> words = words_of(p);
+      for (std::size_t i = 0; i < words.size(); ++i) {
+        Plan next = plan;
+        next.words[p.name] = static_cast<int>(i);
+        add("'" + std::string(p.name) + "' is '" + words[i] + "'", next);
+      }
+    }
+  }
+
+  /// The ends of the ranges of dimensionless numbers: there formulas divide by zero.
+  void add_ends(const Plan& plan) {
+    for (const Parameter& p : table()) {
+      if (p.kind != ParameterKind::number || std::string_view(p.unit) != "1") continue;
+      const auto closed = [&](Open end) { return p.open != end && p.open != Open::both; };
+      const auto add_end = [&](double number) {
+        Plan next = plan;
+        next.numbers[p.name] = number;
+        add("'" + std::string(p.name) + "' at the end of its range", next);
+      };
+      if (std::isfinite(p.minimum) && closed(Open::minimum)) add_end(p.minimum);
+      if (std::isfinite(p.maximum) && closed(Open::maximum)) add_end(p.maximum);
+    }
+  }
+
+  const Component& component_;
+  const Registry& registry_;
+  ParameterSamples found_;
+};
+
+}  // namespace
+
+ContactPair sample_contact_pair() {
+  const Material steel{2.07e11, 0.3};
+  return {0.01, 0.0099, 0.0001, 0.02, steel, steel};
+}
+
+ParameterSamples sample_parameters(const Component& component, const Registry& registry) {
+  return Sampler(component, registry).run();
+}
+
+}  // namespace freeplay

@@ -1,0 +1,57 @@
+// Slope: the derivative of a vector of functions of one number, found by differences, with an estimate of its error.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace freeplay {
+
+struct Slope {
+  std::vector<double> value, error;
+};
+
+/// Derivative at 0 of `f(x)`, which returns a vector of a fixed size or an empty one when it fails; `largest` is the
+/// largest step tried. Central differences for a sequence of steps, each a quarter of the last; of neighbours that agree
+/// best the extrapolation is taken. So neither the scale of f nor a kink at some distance has to be known. `error`
+/// counts the disagreement and the rounding of f; at a kink it is large.
+template <class Function>
+Slope slope(Function&& f, double largest) {
+  constexpr int steps = 15;
+  const auto difference = [&f](double h, std::vector<double>& size) {
+    const std::vector<double> high = f(h), low = f(-h);
+    std::vector<double> d(std::min(high.size(), low.size()));
+    size.assign(d.size(), 0.0);
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      d[i] = (high[i] - low[i]) / (2.0 * h);
+      size[i] = std::max(std::abs(high[i]), std::abs(low[i]));
+    }
+    return d;
+  };
+  std::vector<double> size, fine_size;
+  double h = largest;
+  std::vector<double> coarse = difference(h, size);
+  Slope best{coarse, std::vector<double>(coarse.size(), std::numeric_limits<double>::infinity())};
+  for (int k = 1; k < steps; ++k) {
+    h *= 0.25;
+    const std::vector<double> fine = difference(h, fine_size);
+    for (std::size_t i = 0; i < std::min(fine.size(), best.value.size()); ++i) {
+      const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * fine_size[i] / h;
+      const double error = std::abs(fine[i] - coarse[i]) + rounding;
+      if (!(error <= best.error[i])) continue;
+      best.value[i] = (16.0 * fine[i] - coarse[i]) / 15.0;
+      best.error[i] = error;
+    }
+    coarse = fine;
+  }
+  return best;
+}
+
+/// Does a derivative that a component gives agree with its slope? `scale`: size of the numbers it is one of.
+inline bool agrees(double given, double value, double error, double scale) {
+  // 1e-6 is what differences of functions with cancellation reach; a wrong term is far above.
+  return std::abs(given - value) <= 1e-6 * scale + 20.0 * error;
+}
+
+}  // namespace freeplay
