@@ -1,10 +1,11 @@
-// Stiffness of the Hertz type laws: the elastic part F_s = K delta^n that they share, and what they damp it with.
+// Stiffness of the Hertz type laws: the elastic part F_s = K delta^n that they share.
 #pragma once
 
 #include <cmath>
 #include <string>
 
-#include "freeplay/contact_law.h"
+#include "loss_law.h"
+#include "pair_data.h"
 
 namespace freeplay {
 
@@ -21,38 +22,25 @@ inline constexpr Parameter exponent_parameter{.name = "exponent",
                                               .minimum = 1.0,
                                               .maximum = 3.0,
                                               .summary = "Exponent n of the penetration; 1.5 for a point contact."};
-inline constexpr Parameter restitution_parameter{.name = "restitution",
-                                                 .minimum = 0.0,
-                                                 .maximum = 1.0,
-                                                 .open = Open::minimum,
-                                                 .summary = "Coefficient of restitution."};
 
 /// What has to be in `pair` for hertz_stiffness() and is not, as words for a message; "" when all is there.
 inline std::string missing_for_hertz(const ContactPair& pair) {
-  std::string words;
-  const auto need = [&words](bool known, const char* name) {
-    if (!known) words += (words.empty() ? "" : ", ") + std::string(name);
-  };
-  const auto known = [](const Material& m) { return !std::isnan(m.youngs_modulus) && !std::isnan(m.poisson_ratio); };
-  need(!std::isnan(pair.bearing_radius) && !std::isnan(pair.journal_radius), "the radii");
-  need(known(pair.bearing), "the material of the bearing");
-  need(known(pair.journal), "the material of the journal");
-  return words;
+  return MissingData()
+      .need(known(pair.bearing_radius) && known(pair.journal_radius), "the radii")
+      .need_materials(pair)
+      .words();
 }
 
 /// Stiffness [N/m^1.5] of a sphere (journal) in a spherical cavity (bearing):
 ///   K = 4/(3 (h_b + h_j)) sqrt(R_b R_j/(R_b - R_j)),  h = (1 - nu^2)/E
 /// with radii R [m], Young's modulus E [Pa], Poisson's ratio nu. Hertz 1881; Lankarani and Nikravesh 1990.
 inline double hertz_stiffness(const ContactPair& pair) {
-  const auto compliance = [](const Material& m) {
-    return (1.0 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
-  };
   const double radius = pair.bearing_radius * pair.journal_radius / pair.radial_clearance;
-  return 4.0 / (3.0 * (compliance(pair.bearing) + compliance(pair.journal))) * std::sqrt(radius);
+  return 4.0 / (3.0 * contact_compliance(pair)) * std::sqrt(radius);
 }
 
-/// F_N = max(0, K delta^n (1 + chi delta'/v_0)), the form of all laws with a loss factor chi. v_0 is the approach
-/// speed; v_0 = 0 leaves the elastic part. The potential is K delta^(n+1)/(n+1).
+/// F_N = max(0, K delta^n (1 + chi delta'/v_0)), the form of all laws with a loss factor chi (loss_law.h). The
+/// potential is K delta^(n+1)/(n+1).
 class HertzSpring {
  public:
   /// Reads K and exponent. Throws BadParameter "missing-key" when K is absent and does not follow from the pair.
@@ -73,12 +61,10 @@ class HertzSpring {
     const double power = exponent_ == point_contact ? state.penetration * std::sqrt(state.penetration)
                                                     : std::pow(state.penetration, exponent_);
     const double elastic = stiffness_ * power;
-    const double slope = exponent_ * elastic / state.penetration;
-    const double potential = elastic * state.penetration / (exponent_ + 1.0);
-    const double damping = state.approach_speed > 0.0 ? chi / state.approach_speed : 0.0;
-    const double factor = 1.0 + damping * state.rate;
-    if (factor <= 0.0) return {0.0, 0.0, 0.0, potential};
-    return {elastic * factor, slope * factor, elastic * damping, potential};
+    return with_loss({.force = elastic,
+                      .slope = exponent_ * elastic / state.penetration,
+                      .potential = elastic * state.penetration / (exponent_ + 1.0)},
+                     chi, state);
   }
 
   /// A static sentence when the penetration is too deep for the computed K.

@@ -3,10 +3,13 @@
 
 namespace freeplay {
 Component bathe();
+Component newmark();
+Component hht();
+Component generalized_alpha();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(solvers) {
   using namespace freeplay;
-  static const Component components[] = {bathe()};
+  static const Component components[] = {bathe(), newmark(), hht(), generalized_alpha()};
   return publish(*host, *manifest, "solvers", "0.1.0", components);
 }

@@ -33,6 +33,7 @@ class GuardedNumbers {
 
  private:
   // Two rows of a joint's Jacobian, so that an index that is one row off is caught and harms nothing else.
+  static constexpr std::size_t margin = 24;
   // A NaN that no arithmetic makes.
   static double guard() { return std::bit_cast<double>(std::uint64_t{0x7ff8c0ffee15600d}); }
   std::vector<double> numbers_;

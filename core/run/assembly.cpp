@@ -3,9 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "linear/dense_solve.h"
 #include "run/newton_stage_solver.h"
 #include "run/placing.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -26,29 +26,6 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
   throw Error(Error::Category::plugin, "plugin-failed",
               fmt::format("joint '{}' failed while the model was assembled: {}", joint.name, fault.message.text),
               joint.location);
-}
-
-Decomposition decompose(const MatrixXd& matrix) {
-  Decomposition decomposition;
-  decomposition.setThreshold(RowRank::tolerance);
-  decomposition.compute(matrix);
-  return decomposition;
-}
-
-// Orthonormal basis of the null space of a matrix with `columns` columns.
-MatrixXd null_space(const MatrixXd& matrix, int columns) {
-  if (matrix.rows() == 0) return MatrixXd::Identity(columns, columns);
-  const Decomposition d = decompose(matrix.transpose());
-  const MatrixXd q = d.householderQ() * MatrixXd::Identity(columns, columns);
-  return q.rightCols(columns - d.rank());
-}
-
-int rank(const MatrixXd& matrix) {
-  if (matrix.rows() == 0 || matrix.cols() == 0) return 0;
-  const VectorXd sigma = Eigen::BDCSVD<MatrixXd>(matrix).singularValues();
-  int count = 0;
-  while (count < sigma.size() && sigma[count] > 1e-9 * sigma[0] && sigma[count] > 0.0) ++count;
-  return count;
 }
 
 // The closed mechanism at the start time and the rows that hold it there.
@@ -209,7 +186,7 @@ class Assembler {
     for (int iteration = 0; iteration < model_.settings.assembly_iterations; ++iteration) {
       const double before = now.residual.norm();
       if (before == 0.0) break;
-      const VectorXd step = decompose(now.matrix).solve(-now.residual);
+      const VectorXd step = least_norm_solution(now.matrix, -now.residual);
       const std::vector<double> q(state_.q().begin(), state_.q().end());
       double length = 1.0, after = before;
       for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
@@ -296,7 +273,7 @@ class Assembler {
         planar::body_row(g, arm, row);
         for (int c = 0; c < 3; ++c) with(without.rows() + i, 3 * body + c) = row[c];
       }
-      const int free = rank(without), prescribed = rank(with);
+      const int free = numerical_rank(without), prescribed = numerical_rank(with);
       if (prescribed < nv) {
         throw Error(Error::Category::input, "ik-underdetermined",
                     fmt::format("with its frame on the path of '{}' the mechanism still has {} freedom(s)", entry.name,
@@ -329,12 +306,12 @@ class Assembler {
     for (int pass = 0; pass < 3; ++pass) {
       const Rows now = rows(true);
       if (now.row.empty()) return;
-      VectorXd change = decompose(now.matrix).solve(-now.residual);
+      VectorXd change = least_norm_solution(now.matrix, -now.residual);
       if (pass == 0) {
         const MatrixXd n = null_space(now.matrix, nv);
         const MatrixXd reduced = n.transpose() * mass.asDiagonal() * n;
         if (n.cols() > 0) {
-          change -= n * decompose(reduced).solve(VectorXd(n.transpose() * VectorXd(mass.cwiseProduct(change))));
+          change -= n * least_norm_solution(reduced, n.transpose() * mass.cwiseProduct(change));
         }
       }
       for (int i = 0; i < nv; ++i) state_.v()[at(i)] += change[i];
@@ -434,9 +411,9 @@ class Assembler {
     system_.dense_jacobian(e, {jacobian.data(), at(nc * nv)});
     const MatrixXd n = null_space(jacobian, nv);
     if (n.cols() == 0) return;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(n.transpose() * mass.asDiagonal() * n);
-    if (eigen.eigenvalues()[0] > 1e-12 * mass.maxCoeff()) return;
-    const VectorXd motion = n * eigen.eigenvectors().col(0);
+    const SmallestEigenpair lightest = smallest_eigenpair(n.transpose() * mass.asDiagonal() * n);
+    if (lightest.value > 1e-12 * mass.maxCoeff()) return;
+    const VectorXd motion = n * lightest.vector;
     Eigen::Index worst = 0;
     motion.cwiseAbs().maxCoeff(&worst);
     throw Error(
@@ -457,7 +434,7 @@ class Assembler {
     const int nc = system.layout().nc(), nv = system.layout().nv(), joints = system.layout().first_driver_row();
     RowMajor jacobian(nc, nv);
     system.dense_jacobian(e, {jacobian.data(), at(nc * nv)});
-    const int all = rank(jacobian), own = rank(jacobian.topRows(joints));
+    const int all = numerical_rank(jacobian), own = numerical_rank(jacobian.topRows(joints));
     return {joints, own, joints - own, nv - own, nv - all, nc - all - (joints - own)};
   }
 

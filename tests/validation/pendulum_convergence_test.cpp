@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                                  {0.0090225, 0.0022354, 0.00055505, 0.00013821, 3.4481e-05},
                                  {0.03299, 0.0085278, 0.0021642, 0.00054489, 0.00013669},
                                  {0.1672, 0.042147, 0.010551, 0.0026376, 0.0006593}}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& made) { return std::string(made.param.name); });
 
 // DOP853 in minimal coordinates, rtol 1e-13, at 1 s.
 TEST(RodChainReference, OneRodEqualsAnIndependentIntegration) {
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
                                   two_rods + std::string("initial: {joints: {first: -0.5707963267948966, second: 0}}\n"),
                                   0.01,
                                   {-0.00059288, -0.0012775, -0.0024589, -0.0055712}}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& made) { return std::string(made.param.name); });
 
 }  // namespace
 }  // namespace freeplay::test

@@ -1,0 +1,40 @@
+#include <cmath>
+
+#include "freeplay/plugin.h"
+#include "friction_coefficient.h"
+
+namespace freeplay {
+namespace {
+
+/// Coulomb friction, smooth everywhere; mu is reached slowly, with a rest of 2 vs/(pi |v|):
+///   F_T = -mu (2/pi) atan(v/vs) F_N
+/// with slip speed v [m/s], normal force F_N [N], coefficient mu, smoothing speed vs [m/s].
+class CoulombAtan final : public FrictionLaw {
+ public:
+  explicit CoulombAtan(const Parameters& p) : mu_(p.number("mu")), vs_(p.number("vs")) {}
+
+  FrictionForce evaluate(const FrictionState& state, Span<double>) const override {
+    constexpr double two_over_pi = 0.636619772367581343;
+    const double ratio = state.slip_speed / vs_, top = mu_ * two_over_pi;
+    return friction_force({top * std::atan(ratio), top / (vs_ * (1.0 + ratio * ratio))}, state);
+  }
+
+ private:
+  double mu_, vs_;
+};
+
+constexpr Parameter parameters[] = {coefficient_parameter, smoothing_parameter};
+
+}  // namespace
+
+Component coulomb_atan() {
+  return friction_law<CoulombAtan>(
+      {.name = "coulomb-atan",
+       .summary = "Coulomb friction with an arc tangent at low slip.",
+       .formula = "F_T = -mu (2/pi) atan(v/vs) F_N.",
+       .validity = "Sliding at many times vs; under load the surfaces creep, as the force of rest takes a slip speed.",
+       .references = "",
+       .parameters = parameters});
+}
+
+}  // namespace freeplay

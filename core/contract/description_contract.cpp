@@ -1,0 +1,131 @@
+#include "contract/description_contract.h"
+
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/expression_error.h"
+#include "base/unit.h"
+#include "model/parameter_tree.h"
+
+namespace freeplay {
+namespace {
+
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Lower-case words of letters and digits, joined by `joint`; the first begins with a letter or digit.
+bool is_joined_words(const char* text, char joint) {
+  if (text == nullptr || text[0] == '\0') return false;
+  const std::string_view word(text);
+  if (word.front() == joint || word.back() == joint) return false;
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    const bool good = is_lower(word[i]) || is_digit(word[i]) || (word[i] == joint && word[i - 1] != joint);
+    if (!good) return false;
+  }
+  return true;
+}
+
+/// Letters, digits and underscores in parts joined by dots. Capitals are symbols, such as that of Young's modulus.
+bool is_path(std::string_view path) {
+  bool begins = true;
+  for (const char c : path) {
+    const bool letter = is_lower(c) || (c >= 'A' && c <= 'Z');
+    if (begins ? !letter : !(letter || is_digit(c) || c == '_' || c == '.')) return false;
+    begins = c == '.';
+  }
+  return !begins;
+}
+
+bool says_something(const char* text) { return text != nullptr && text[0] != '\0'; }
+
+std::optional<std::string> unit_fault(const char* unit, Span<const Parameter> table) {
+  const auto exponent = [&](std::string_view name) -> std::optional<double> {
+    for (const Parameter& p : table) {
+      if (name == p.name && p.kind == ParameterKind::number) return 1.5;
+    }
+    return std::nullopt;
+  };
+  try {
+    parse_unit(unit, exponent);
+  } catch (const ExpressionError& e) {
+    return fmt::format("'{}': {}", unit, e.message);
+  }
+  return std::nullopt;
+}
+
+void check_value(const Parameter& p, Findings& findings) {
+  const bool numeric = p.kind == ParameterKind::number || p.kind == ParameterKind::integer;
+  const bool closed = p.open == Open::none;
+  findings.expect("parameter-bounds", p.minimum < p.maximum || (closed && p.minimum == p.maximum),
+                  [&] { return fmt::format("'{}' lies between {} and {}", p.name, p.minimum, p.maximum); });
+  const std::vector<std::string> words = words_of(p);
+  const double given = p.default_value;
+  if (p.kind == ParameterKind::choice) {
+    const std::set<std::string> different(words.begin(), words.end());
+    findings.expect("parameter-choices", !words.empty() && different.size() == words.size() && !different.contains(""),
+                    [&] { return fmt::format("'{}' has the words '{}'", p.name, p.choices ? p.choices : ""); });
+  }
+  if (std::isnan(given) || given == optional) return;
+  bool good = true;
+  if (p.kind == ParameterKind::choice) {
+    good = given == std::floor(given) && given >= 0.0 && given < static_cast<double>(words.size());
+  } else if (numeric) {
+    const bool above = p.open == Open::minimum || p.open == Open::both ? given > p.minimum : given >= p.minimum;
+    const bool below = p.open == Open::maximum || p.open == Open::both ? given < p.maximum : given <= p.maximum;
+    good = above && below && (p.kind == ParameterKind::number || given == std::floor(given));
+  }
+  findings.expect("parameter-defaults", good, [&] { return fmt::format("'{}' has the default {}", p.name, given); });
+}
+
+}  // namespace
+
+Findings check_description(const Component& component) {
+  const Description& d = component.description;
+  Findings findings;
+  findings.expect("name", is_joined_words(d.name, '-'), [&] { return fmt::format("'{}'", d.name); });
+  findings.expect("summary", says_something(d.summary), [] { return std::string("is empty"); });
+  std::set<std::string> names;
+  for (const Parameter& p : d.parameters) {
+    findings.expect("parameter-names", is_path(p.name), [&] { return fmt::format("'{}'", p.name); });
+    findings.expect("parameter-names", names.insert(p.name).second, [&] { return fmt::format("'{}' stands twice", p.name); });
+    findings.expect("summary", says_something(p.summary),
+                    [&] { return fmt::format("that of parameter '{}' is empty", p.name); });
+    const std::optional<std::string> fault = unit_fault(p.unit, d.parameters);
+    findings.expect("parameter-units", !fault, [&] { return fmt::format("of '{}': {}", p.name, *fault); });
+    check_value(p, findings);
+  }
+  return findings;
+}
+
+Findings check_joint_names(const JointNames& joint) {
+  Findings findings;
+  std::set<std::string> events, channels;
+  const auto check = [&](const char* rule, const char* name, std::set<std::string>& known) {
+    findings.expect(rule, is_joined_words(name, '_'), [&] { return fmt::format("'{}'", name ? name : ""); });
+    findings.expect(rule, name == nullptr || known.insert(name).second, [&] { return fmt::format("'{}' stands twice", name); });
+  };
+  const auto check_unit = [&](const char* rule, const Channel& channel) {
+    const std::optional<std::string> fault = channel.unit == nullptr ? "none" : unit_fault(channel.unit, {});
+    findings.expect(rule, !fault, [&] { return fmt::format("unit of '{}': {}", channel.name, *fault); });
+  };
+  for (const Channel& channel : joint.channels) {
+    check("channel-names", channel.name, channels);
+    check_unit("channel-units", channel);
+  }
+  for (const Event& event : joint.events) {
+    check("event-names", event.name, events);
+    std::set<std::string> fields;
+    for (const Channel& field : event.fields) {
+      check("event-names", field.name, fields);
+      check_unit("channel-units", field);
+    }
+  }
+  return findings;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "contract/guarded_numbers.h"
+#include "contract/law_contract.h"
+#include "contract/slope.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double speeds[] = {1e-6, 3e-5, 2.3e-4, 7e-4, 3e-3, 0.02, 0.13, 1.1};
+constexpr double loads[] = {0.0, 0.7, 25.0, 900.0};
+
+class FrictionLawCheck {
+ public:
+  FrictionLawCheck(const FrictionLawSubject& subject, const Conditions& conditions)
+      : subject_(subject), conditions_(conditions) {
+    try {
+      const int count = subject.law.internal_variables();
+      findings_.expect("answers", count >= 0, [&] { return fmt::format("{} internal variables", count); });
+      count_ = static_cast<std::size_t>(std::max(count, 0));
+    } catch (const std::exception& e) {
+      const std::string text = e.what();
+      findings_.expect("answers", false, [&] { return "internal_variables() fails: " + text; });
+    }
+  }
+
+  Findings run() {
+    for (const double load : loads) {
+      for (const double speed : speeds) {
+        check_sign(load, speed);
+        for (const double sign : {-1.0, 1.0}) check_derivatives(load, sign * speed);
+        check_memory(load, speed);
+      }
+    }
+    check_cycle(25.0);
+    return std::move(findings_);
+  }
+
+ private:
+  struct Answer {
+    FrictionForce force{};
+    std::vector<double> z_rate;
+  };
+
+  Answer ask(const FrictionLawRef& law, double load, double slip, const std::vector<double>& z) {
+    GuardedNumbers internal(z), rate(count_);
+    Answer answer;
+    std::string text;
+    const long before = conditions_.allocations ? conditions_.allocations() : 0;
+    try {
+      answer.force = law.evaluate({load, slip, internal.span()}, rate.span());
+    } catch (const std::exception& e) {
+      text = e.what();
+    }
+    const long after = conditions_.allocations ? conditions_.allocations() : 0;
+    answer.z_rate = rate.values();
+    const auto where = [&] { return fmt::format("at {:.3g} N, {:.3g} m/s", load, slip); };
+    findings_.expect("answers", text.empty(), [&] { return "evaluate() fails " + where() + ": " + text; });
+    if (conditions_.allocations && text.empty()) {
+      findings_.expect("allocation", after == before, [&] { return "evaluate() allocates " + where(); });
+    }
+    findings_.expect("stays-in-span", rate.intact() && internal.intact(),
+                     [&] { return "evaluate() writes beside the rates of the internal variables"; });
+    bool finite = std::isfinite(answer.force.tangential) && std::isfinite(answer.force.d_normal) &&
+                  std::isfinite(answer.force.d_slip);
+    for (const double r : answer.z_rate) finite = finite && std::isfinite(r);
+    findings_.expect("finite", finite, [&] { return "a result is not finite " + where(); });
+    return answer;
+  }
+  Answer ask(double load, double slip, const std::vector<double>& z) { return ask(subject_.law, load, slip, z); }
+
+  /// z <- z + dz with a rule that is implicit in each variable by itself: bristles are stiff and do not couple.
+  std::vector<double> advanced(double load, double slip, std::vector<double> z, double dt) {
+    const std::vector<double> rate = ask(load, slip, z).z_rate;
+    std::vector<double> next = z;
+    for (std::size_t k = 0; k < count_; ++k) {
+      std::vector<double> there = z;
+      const double small = 1e-6 * std::max(std::abs(z[k]), 1e-9);
+      there[k] += small;
+      const double decay = (ask(load, slip, there).z_rate[k] - rate[k]) / small;
+      next[k] += dt * rate[k] / (1.0 - dt * std::min(decay, 0.0));
+    }
+    return next;
+  }
+  std::vector<double> settled(double load, double slip) {
+    std::vector<double> z(count_, 0.0);
+    for (int i = 0; count_ > 0 && i < 400; ++i) z = advanced(load, slip, z, 1e-2);
+    return z;
+  }
+
+  void check_sign(double load, double speed) {
+    const std::vector<double> z = settled(load, speed);
+    std::vector<double> turned = z;
+    for (double& x : turned) x = -x;
+    const double there = ask(load, speed, z).force.tangential, back = ask(load, -speed, turned).force.tangential;
+    findings_.expect("opposes-slip", there <= 0.0 && back >= 0.0, [&] {
+      return fmt::format("the force is {:.6g} N for a slip of {:.3g} m/s and {:.6g} N for its opposite", there, speed, back);
+    });
+    // Rounding of a few operations.
+    findings_.expect("odd", std::abs(there + back) <= 1e-12 * std::abs(there), [&] {
+      return fmt::format("a slip of {:.3g} m/s gives {:.9g} N, its opposite {:.9g} N", speed, there, back);
+    });
+    if (load == 0.0) {
+      findings_.expect("unloaded", there == 0.0 && back == 0.0,
+                       [&] { return fmt::format("without normal force the friction is {:.6g} N", there); });
+    }
+  }
+
+  void check_derivatives(double load, double slip) {
+    std::vector<double> z = settled(load, slip);
+    for (double& x : z) x *= 0.6;  // off the steady state, where more terms count
+    const FrictionForce f = ask(load, slip, z).force;
+    const auto compare = [&](const char* name, double given, const Slope& d) {
+      findings_.expect("derivatives", agrees(given, d.value[0], d.error[0], 10.0 * std::abs(d.value[0])), [&] {
+        return fmt::format("{} is {:.9g}, differences give {:.9g} at {:.3g} N, {:.3g} m/s", name, given, d.value[0], load, slip);
+      });
+    };
+    compare("d_slip", f.d_slip,
+            slope([&](double x) { return std::vector<double>{ask(load, slip + x, z).force.tangential}; },
+                  0.05 * std::abs(slip)));
+    if (load == 0.0) return;
+    compare("d_normal", f.d_normal,
+            slope([&](double x) { return std::vector<double>{ask(load + x, slip, z).force.tangential}; }, 0.05 * load));
+  }
+
+  void check_memory(double load, double speed) {
+    const std::vector<double> z(count_, 1e-7);
+    const auto numbers = [&](const FrictionLawRef& law) {
+      const Answer a = ask(law, load, speed, z);
+      std::vector<double> all{a.force.tangential, a.force.d_normal, a.force.d_slip};
+      all.insert(all.end(), a.z_rate.begin(), a.z_rate.end());
+      return all;
+    };
+    const std::vector<double> first = numbers(subject_.law);
+    ask(2.0 * load + 1.0, -3.0 * speed, z);
+    findings_.expect("no-hidden-state", same_bits(first, numbers(subject_.law)),
+                     [] { return std::string("the same state gives another force after a call with another state"); });
+    findings_.expect("same-twin", same_bits(first, numbers(subject_.twin)),
+                     [] { return std::string("two objects with equal parameters differ"); });
+  }
+
+  /// Slip to and fro; the first time lets internal variables settle.
+  void check_cycle(double load) {
+    constexpr int around = 2000;
+    const double dt = 0.1 / around;
+    std::vector<double> z(count_, 0.0);
+    double work = 0.0, moved = 0.0;
+    for (int i = 0; i < 2 * around; ++i) {
+      const double slip = 0.02 * std::sin(2.0 * M_PI * (i + 0.5) / around);
+      z = advanced(load, slip, z, dt);
+      const double power = ask(load, slip, z).force.tangential * slip;
+      if (i < around) continue;
+      work += power * dt;
+      moved += std::abs(power) * dt;
+    }
+    findings_.expect("passive", work <= 1e-9 * moved,
+                     [&] { return fmt::format("{:.6g} J come out of a cycle of slip", work); });
+  }
+
+  const FrictionLawSubject& subject_;
+  const Conditions& conditions_;
+  std::size_t count_ = 0;
+  Findings findings_;
+};
+
+}  // namespace
+
+Findings check_friction_law(const FrictionLawSubject& subject, const Conditions& conditions) {
+  return FrictionLawCheck(subject, conditions).run();
+}
+
+}  // namespace freeplay

@@ -1,0 +1,42 @@
+// The contract of joints: what joint.h asks of every one of them.
+#pragma once
+
+#include "contract/joint_probe.h"
+
+namespace freeplay {
+
+/// Two objects made from equal parameters; handles only.
+struct JointSubject {
+  JointRef joint, twin;
+  Space space = Space::planar;  ///< planar or spatial
+  bool passive = true;          ///< false: a parameter is a function of time, which may bring energy
+};
+
+/// All rules for one joint. At random moments, in the plane or in space:
+///
+///   jacobian, nu, gamma               rows against differences of phi along poses, in time, along accelerated motion
+///   coordinate, coordinate-bias       the same for the coordinate
+///   constraint-balance                moving both markers as one body changes neither rows nor coordinate, so that
+///                                     the multipliers' forces are a pair; with `jacobian` they do no work on motions
+///                                     that satisfy the constraints
+///   rows-independent                  of one joint
+///   balance                           the wrenches have no resultant force and no moment about any point
+///   energy, energy-cycle              stored energy and dissipation account for the work, at once and over a cycle
+///   derivatives, unused-derivatives   of apply() against differences
+///   event-rate                        rates of the event functions against differences
+///   place                             satisfies the rows and gives the coordinate
+///   initial-offset                    of a joint with play is a finite place within reach
+///   no-hidden-state, same-twin        answers depend on the input alone, bit for bit, and not on the object
+///   rollback                          history and internal variables are all there is to put back
+///   answers, finite, stays-in-span, step-limit, allocation, declares-sanely    of every call
+Findings check_joint(const JointSubject& subject, const Conditions& conditions);
+
+// The parts, each on moments of its own choice.
+void check_rows(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
+                Findings& findings);
+void check_forces(const JointProbe& probe, bool passive, const std::vector<JointMoment>& moments, Findings& findings);
+void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, Findings& findings);
+void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
+                  RandomNumbers& random, Findings& findings);
+
+}  // namespace freeplay

@@ -1,0 +1,162 @@
+// Rules of apply(): balance, energy and derivatives.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include "contract/joint_contract.h"
+#include "contract/slope.h"
+#include "freeplay/eigen.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::Vector3d;
+
+double power(const ForceValues& f, const MarkerPair& markers) {
+  const Twelve v = twists(markers);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i) sum += f.wrench[i] * v[i];
+  return sum;
+}
+double power_size(const ForceValues& f, const MarkerPair& markers) {
+  const Twelve v = twists(markers);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i) sum += std::abs(f.wrench[i] * v[i]);
+  return sum;
+}
+
+/// The wrenches of a planar joint are what the host reads of them.
+void keep_moving(Space space, std::vector<double>& wrench) {
+  const std::vector<std::size_t> kept = moving_components(space);
+  for (std::size_t i = 0; i < wrench.size(); ++i) {
+    if (std::find(kept.begin(), kept.end(), i) == kept.end()) wrench[i] = 0.0;
+  }
+}
+
+void check_balance(const JointProbe& probe, const JointMoment& moment, ForceValues f, Findings& findings) {
+  keep_moving(probe.space(), f.wrench);
+  const Eigen::Map<const Vector3d> fa(&f.wrench[0]), ma(&f.wrench[3]), fb(&f.wrench[6]), mb(&f.wrench[9]);
+  const Vector3d pa = vector3(moment.markers.a.position), pb = vector3(moment.markers.b.position);
+  const double force = fa.norm() + fb.norm();
+  const double torque = force * (pa.norm() + pb.norm()) + ma.norm() + mb.norm();
+  const Vector3d resultant = fa + fb, moment_at_origin = pa.cross(fa) + ma + pb.cross(fb) + mb;
+  // Arms may be found as differences of radii, which loses a few digits.
+  findings.expect("balance", resultant.norm() <= 1e-12 * force,
+                  [&] { return fmt::format("the forces leave a resultant of {:.3g} N", resultant.norm()); });
+  findings.expect("balance", moment_at_origin.norm() <= 1e-10 * torque,
+                  [&] { return fmt::format("the pair leaves a moment of {:.3g} N m", moment_at_origin.norm()); });
+}
+
+/// Work done on the bodies comes out of the stored energy: P + dU/dt <= 0, the difference is dissipated.
+void check_energy(const JointProbe& probe, const JointMoment& moment, const ForceValues& f, Findings& findings) {
+  // Internal variables store energy that no joint reports; over a cycle it does not count (check_cycle).
+  if (probe.layout().internal_variables > 0) return;
+  const MarkerPath path{moment.markers, {}};
+  const Slope stored = slope(
+      [&](double x) {
+        JointMoment there = moment;
+        there.markers = path.at(x);
+        const ForceValues values = probe.forces(there);
+        return values.wrench.empty() ? std::vector<double>{} : std::vector<double>{values.potential};
+      },
+      0.01);
+  if (stored.value.empty()) return;
+  const double gain = power(f, moment.markers) + stored.value[0];
+  // The speed of the surfaces and that of the point of action differ by a penetration times an angular velocity.
+  const double tolerance = 1e-4 * power_size(f, moment.markers) + 20.0 * stored.error[0];
+  findings.expect("energy", gain <= tolerance, [&] {
+    return fmt::format("the wrenches do work at {:.6g} W while the stored energy changes at {:.6g} W",
+                       power(f, moment.markers), stored.value[0]);
+  });
+}
+
+/// Flat list of what the derivatives are of: wrenches and z'.
+std::vector<double> outputs(const ForceValues& f) {
+  std::vector<double> all = f.wrench;
+  all.insert(all.end(), f.z_rate.begin(), f.z_rate.end());
+  return all;
+}
+
+class DerivativeCheck {
+ public:
+  DerivativeCheck(const JointProbe& probe, const JointMoment& moment, const ForceValues& f, Findings& findings)
+      : probe_(probe), moment_(moment), given_(f.derivatives), nz_(f.z_rate.size()), findings_(findings) {}
+
+  void run() {
+    for (const std::size_t i : moving_components(probe_.space())) {
+      column(i, 0.02, [&](double x, JointMoment& there) {
+        Twelve by{};
+        by[i] = x;
+        there.markers = moved(moment_.markers, by);
+      });
+      column(12 + i, 0.5, [&](double x, JointMoment& there) {
+        Twelve v = twists(moment_.markers);
+        v[i] += x;
+        there.markers = with_twists(moment_.markers, v);
+      });
+    }
+    for (std::size_t k = 0; k < nz_; ++k) {
+      column(24 + k, 0.1, [&](double x, JointMoment& there) { there.z[k] += x; });
+    }
+  }
+
+ private:
+  /// `largest`: first step tried, in m, rad, m/s or rad/s.
+  template <class Move>
+  void column(std::size_t c, double largest, Move&& move) {
+    const Slope d = slope(
+        [&](double x) {
+          JointMoment there = moment_;
+          move(x, there);
+          return outputs(probe_.forces(there));
+        },
+        largest);
+    const std::size_t width = 24 + nz_;
+    const auto group = [](std::size_t row) { return row >= 12 ? 2u : row % 6 < 3 ? 0u : 1u; };
+    double size[3] = {0.0, 0.0, 0.0};  // forces, moments, rates
+    for (std::size_t r = 0; r < d.value.size(); ++r) size[group(r)] = std::max(size[group(r)], std::abs(d.value[r]));
+    for (std::size_t r = 0; r < d.value.size(); ++r) {
+      if (r < 12 && !moves(r)) continue;
+      const double given = given_[r * width + c];
+      findings_.expect("derivatives", agrees(given, d.value[r], d.error[r], 10.0 * size[group(r)]), [&] {
+        return fmt::format("row {}, column {} is {:.9g}, differences give {:.9g}", r, c, given, d.value[r]);
+      });
+    }
+  }
+  bool moves(std::size_t row) const {
+    const std::vector<std::size_t> kept = moving_components(probe_.space());
+    return std::find(kept.begin(), kept.end(), row) != kept.end();
+  }
+
+  const JointProbe& probe_;
+  const JointMoment& moment_;
+  const std::vector<double>& given_;
+  std::size_t nz_;
+  Findings& findings_;
+};
+
+}  // namespace
+
+void check_forces(const JointProbe& probe, bool passive, const std::vector<JointMoment>& moments, Findings& findings) {
+  for (const JointMoment& fresh : moments) {
+    JointMoment moment = fresh;
+    if (probe.layout().coordinate != Coordinate::none) moment.coordinate = probe.coordinate(moment).value;
+    const ForceValues f = probe.forces(moment, probe.layout().analytic_derivatives != 0);
+    if (f.wrench.empty()) return;
+    if (probe.layout().forces == 0) {
+      const bool silent = std::all_of(f.wrench.begin(), f.wrench.end(), [](double x) { return x == 0.0; });
+      findings.expect("declares-sanely", silent, [] { return std::string("apply() acts, but `forces` is zero"); });
+      continue;
+    }
+    check_balance(probe, moment, f, findings);
+    if (passive) check_energy(probe, moment, f, findings);
+    if (probe.layout().analytic_derivatives != 0) DerivativeCheck(probe, moment, f, findings).run();
+    const ForceValues bare = probe.forces(moment);
+    findings.expect("unused-derivatives", same_bits(outputs(bare), outputs(f)),
+                    [] { return std::string("the forces depend on whether derivatives are asked for"); });
+  }
+}
+
+}  // namespace freeplay

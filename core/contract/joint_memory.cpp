@@ -1,0 +1,132 @@
+// Rules about what a joint remembers, and about work over a closed motion.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "contract/joint_contract.h"
+#include "contract/joint_walk.h"
+#include "contract/slope.h"
+
+namespace freeplay {
+namespace {
+
+/// The numbers that a walk of `steps` steps leaves behind.
+std::vector<double> trace(const JointProbe& probe, const ClosedPath& path, JointMoment& moment, int from, int steps) {
+  constexpr int around = 60;
+  const double dt = path.period() / around;
+  std::vector<double> numbers;
+  JointWalk walk(probe, moment);
+  for (int i = from; i < from + steps; ++i) {
+    walk.step(path.at((i + 1) * dt), path.acceleration(i * dt), dt);
+    const std::vector<double> all = probe.all(walk.now());
+    numbers.insert(numbers.end(), all.begin(), all.end());
+    numbers.insert(numbers.end(), walk.now().z.begin(), walk.now().z.end());
+    numbers.insert(numbers.end(), walk.now().h.begin(), walk.now().h.end());
+  }
+  moment = walk.now();
+  return numbers;
+}
+
+void check_rollback(const JointProbe& probe, const JointProbe& twin, RandomNumbers& random, Findings& findings) {
+  const ClosedPath path(probe, random);
+  JointMoment moment = probe.start(path.at(0.0), 0.0);
+  trace(probe, path, moment, 0, 25);
+  const JointMoment saved = moment;
+  const std::vector<double> straight = trace(probe, path, moment, 25, 30);
+  const auto again = [&](const JointProbe& object) {
+    JointMoment restored = saved;
+    return same_bits(straight, trace(object, path, restored, 25, 30));
+  };
+  findings.expect("rollback", again(probe) && again(twin),
+                  [] { return std::string("a walk that starts from saved z and h differs from the first one"); });
+  // The host begins a step again after a failed attempt.
+  JointMoment first = saved, second = saved;
+  const double dt = path.period() / 60.0;
+  probe.begin_step(saved, path.acceleration(0.0), dt, first);
+  JointMoment failed = saved;
+  probe.begin_step(saved, path.acceleration(0.0), 0.5 * dt, failed);
+  probe.begin_step(saved, path.acceleration(0.0), dt, second);
+  findings.expect("rollback", same_bits(first.h, second.h),
+                  [] { return std::string("a repeated begin_step() prepares another history"); });
+}
+
+/// Event functions of position alone: their rates against differences along the present twists.
+void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findings& findings) {
+  const EventValues here = probe.events(moment);
+  const auto g_of = [&](double x, bool turn_twists) {
+    JointMoment there = moment;
+    there.markers = MarkerPath{moment.markers, {}}.at(x);
+    if (turn_twists) there.markers = with_twists(moment.markers, {});
+    return probe.events(there).g;
+  };
+  const std::vector<double> at_rest = g_of(0.0, true);
+  const Slope d = slope([&](double x) { return g_of(x, false); }, 0.01);
+  for (std::size_t i = 0; i < std::min(here.g.size(), d.value.size()); ++i) {
+    // A function of speed has a rate that depends on accelerations, which the joint is not told.
+    if (std::isnan(here.g[i]) || here.g[i] != at_rest[i]) continue;
+    findings.expect("event-rate", agrees(here.rate[i], d.value[i], d.error[i], std::max(1.0, std::abs(here.rate[i]))),
+                    [&] {
+                      return fmt::format("event {} changes at {:.9g}, differences give {:.9g}", i, here.rate[i],
+                                         d.value[i]);
+                    });
+  }
+}
+
+}  // namespace
+
+void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, Findings& findings) {
+  if (!passive || probe.layout().forces == 0) return;
+  constexpr int around = 4000;
+  const ClosedPath path(probe, random);
+  const double dt = path.period() / around;
+  JointWalk walk(probe, probe.start(path.at(0.0), 0.0));
+  const auto power_of = [](const ForceValues& f, const MarkerPair& markers, double& size) {
+    const Twelve v = twists(markers);
+    double power = 0.0;
+    size = 0.0;
+    for (std::size_t i = 0; i < 12 && i < f.wrench.size(); ++i) {
+      power += f.wrench[i] * v[i];
+      size += std::abs(f.wrench[i] * v[i]);
+    }
+    return power;
+  };
+  double work = 0.0, total = 0.0, stored = 0.0, size = 0.0;
+  double before = 0.0;
+  // The first time around lets internal variables settle; the second is a cycle.
+  for (int i = 0; i < 2 * around; ++i) {
+    walk.step(path.at((i + 1) * dt), path.acceleration(i * dt), dt);
+    const ForceValues f = probe.forces(walk.now());
+    const double power = power_of(f, walk.now().markers, size);
+    if (i + 1 == around) stored = f.potential;
+    if (i >= around) {
+      work += 0.5 * dt * (before + power);
+      total += dt * size;
+    }
+    before = power;
+    if (i + 1 == 2 * around) stored = f.potential - stored;
+  }
+  // Sums over 4000 points: the step in which a contact begins is known to one part in a thousand of the work.
+  findings.expect("energy-cycle", work + stored <= 1e-3 * total, [&] {
+    return fmt::format("{:.6g} J come out of a closed motion in which {:.6g} J are moved", work + stored, total);
+  });
+}
+
+void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
+                  RandomNumbers& random, Findings& findings) {
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const JointMoment& here = moments[i];
+    const JointMoment& elsewhere = moments[(i + 1) % moments.size()];
+    const std::vector<double> first = probe.all(here);
+    probe.all(elsewhere);
+    const std::vector<double> second = probe.all(here);
+    findings.expect("no-hidden-state", same_bits(first, second),
+                    [] { return std::string("the same input gives other numbers after a call with another input"); });
+    findings.expect("same-twin", same_bits(first, twin.all(here)),
+                    [] { return std::string("two objects with equal parameters give different numbers"); });
+    if (probe.layout().events.size > 0) check_event_rates(probe, here, findings);
+  }
+  check_rollback(probe, twin, random, findings);
+}
+
+}  // namespace freeplay

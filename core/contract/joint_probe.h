@@ -1,0 +1,81 @@
+// JointProbe: calls a joint as the host does and watches what it writes.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "component/joint_ref.h"
+#include "contract/conditions.h"
+#include "contract/finding.h"
+#include "contract/guarded_numbers.h"
+#include "contract/marker_states.h"
+
+namespace freeplay {
+
+/// All that a joint may depend on.
+struct JointMoment {
+  double t = 0.0;
+  MarkerPair markers;
+  double coordinate = 0.0;  ///< last known value, for angles over more than a turn
+  std::vector<double> z, h;
+};
+
+struct RowValues {
+  std::vector<double> phi, jacobian, nu, gamma;
+};
+struct CoordinateValues {
+  double value = 0.0, bias = 0.0;
+  std::vector<double> jacobian;
+};
+struct ForceValues {
+  std::vector<double> wrench;  ///< on a and on b, 12 numbers
+  double potential = 0.0;
+  std::vector<double> z_rate, derivatives;
+};
+struct EventValues {
+  std::vector<double> g, rate;
+};
+
+/// One object of a joint type. What is wrong with a call itself is noted under the rules "answers", "stays-in-span",
+/// "finite" and "allocation"; a call that fails gives empty vectors.
+class JointProbe {
+ public:
+  JointProbe(const JointRef& joint, Space space, const Conditions& conditions, Findings& findings);
+
+  const JointLayout& layout() const { return layout_; }
+  Space space() const { return space_; }
+  const JointRef& joint() const { return joint_; }
+
+  RowValues rows(const JointMoment& at) const;
+  CoordinateValues coordinate(const JointMoment& at) const;
+  ForceValues forces(const JointMoment& at, bool derivatives = false) const;
+  EventValues events(const JointMoment& at) const;
+  std::vector<double> observe(const JointMoment& at) const;
+  double step_limit(const JointMoment& at) const;
+
+  // These change z and h of the moment.
+  void initialize(JointMoment& at) const;
+  void begin_step(const JointMoment& accepted, const Twelve& acceleration, double dt, JointMoment& trial) const;
+  std::vector<double> on_event(int index, JointMoment& at) const;
+  void commit(JointMoment& at) const;
+
+  /// Every number that the joint gives at a moment, in one list.
+  std::vector<double> all(const JointMoment& at) const;
+  /// A moment with z and h as initialize() leaves them.
+  JointMoment start(const MarkerPair& markers, double t) const;
+
+ private:
+  struct Fed;  // a JointInput and the numbers that it refers to
+  using Call = std::function<bool(Message&)>;
+  bool run(const char* function, const Call& call) const;
+  void watch(const char* function, std::initializer_list<const GuardedNumbers*> written, bool nan_allowed = false) const;
+
+  JointRef joint_;
+  Space space_;
+  Conditions conditions_;
+  Findings& findings_;
+  JointLayout layout_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,179 @@
+// Rules of constraint rows and of the coordinate.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include "contract/joint_contract.h"
+#include "contract/slope.h"
+
+namespace freeplay {
+namespace {
+
+/// A row of a joint seen from outside: constraint rows first, then the coordinate.
+struct AllRows {
+  std::vector<double> value, jacobian, nu, gamma;
+  std::size_t size() const { return value.size(); }
+  double times(std::size_t row, const Twelve& v) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 12; ++i) sum += jacobian[12 * row + i] * v[i];
+    return sum;
+  }
+};
+
+AllRows all_rows(const JointProbe& probe, const JointMoment& moment) {
+  RowValues rows = probe.rows(moment);
+  AllRows all{rows.phi, rows.jacobian, rows.nu, rows.gamma};
+  if (probe.layout().coordinate == Coordinate::none) return all;
+  const CoordinateValues c = probe.coordinate(moment);
+  if (c.jacobian.empty()) return all;
+  // s'' = G dV/dt + bias: a row with gamma = -bias.
+  all.value.push_back(c.value);
+  all.jacobian.insert(all.jacobian.end(), c.jacobian.begin(), c.jacobian.end());
+  all.nu.push_back(0.0);
+  all.gamma.push_back(-c.bias);
+  return all;
+}
+
+/// Checks one moment; knows which rows are constraints and which is the coordinate.
+class RowCheck {
+ public:
+  RowCheck(const JointProbe& probe, const JointMoment& moment, Findings& findings)
+      : probe_(probe), moment_(moment), findings_(findings), here_(all_rows(probe, moment)) {
+    moment_.coordinate = probe.layout().coordinate == Coordinate::none || here_.size() == 0 ? 0.0 : here_.value.back();
+  }
+
+  void jacobian() {
+    for (const std::size_t component : moving_components(probe_.space())) {
+      const auto along = [&](double x) {
+        Twelve by{};
+        by[component] = x;
+        JointMoment there = moment_;
+        there.markers = moved(moment_.markers, by);
+        return turned_near(all_rows(probe_, there).value);
+      };
+      const Slope d = slope(along, 0.05);
+      for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
+        const double given = here_.jacobian[12 * r + component];
+        findings_.expect(name(r, "jacobian", "coordinate"), agrees(given, d.value[r], d.error[r], 1.0), [&] {
+          return fmt::format("row {}, column {} is {:.9g}, differences give {:.9g}", r, component, given, d.value[r]);
+        });
+      }
+    }
+  }
+
+  void partial_time() {
+    const Slope d = slope(
+        [&](double x) {
+          JointMoment there = moment_;
+          there.t += x;
+          return turned_near(all_rows(probe_, there).value);
+        },
+        0.05);
+    for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
+      findings_.expect(name(r, "nu", "coordinate"), agrees(here_.nu[r], -d.value[r], d.error[r], 1.0), [&] {
+        return fmt::format("nu of row {} is {:.9g}, differences give {:.9g}", r, here_.nu[r], -d.value[r]);
+      });
+    }
+  }
+
+  /// d(G V - nu)/dt = G dV/dt - gamma along an accelerated motion.
+  void gamma(const Twelve& acceleration) {
+    const MarkerPath path{moment_.markers, acceleration};
+    const Slope d = slope(
+        [&](double x) {
+          JointMoment there = moment_;
+          there.t += x;
+          there.markers = path.at(x);
+          const AllRows rows = all_rows(probe_, there);
+          std::vector<double> rate(rows.size());
+          for (std::size_t r = 0; r < rate.size(); ++r) rate[r] = rows.times(r, twists(there.markers)) - rows.nu[r];
+          return rate;
+        },
+        0.02);
+    for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
+      const double given = here_.times(r, acceleration) - here_.gamma[r];
+      // Accelerations of 3 m/s^2 and speeds of 1.5 m/s: terms of order 10.
+      findings_.expect(name(r, "gamma", "coordinate-bias"), agrees(given, d.value[r], d.error[r], 10.0), [&] {
+        return fmt::format("row {} promises a second rate of {:.9g}, differences give {:.9g}", r, given, d.value[r]);
+      });
+    }
+  }
+
+  /// G V = 0 for both markers moving as one rigid body: the pair of forces that a multiplier stands for is balanced.
+  void balance() {
+    const bool planar = probe_.space() == Space::planar;
+    for (int motion = 0; motion < 6; ++motion) {
+      if (planar && (motion == 2 || motion == 3 || motion == 4)) continue;
+      Twelve v{};
+      for (const bool second : {false, true}) {
+        const MarkerKinematics& m = second ? moment_.markers.b : moment_.markers.a;
+        double* twist = v.data() + (second ? 6 : 0);
+        twist[motion] = 1.0;
+        if (motion < 3) continue;
+        const int x = (motion + 1) % 3, y = (motion + 2) % 3;  // e_k x P
+        twist[y] = m.position[x];
+        twist[x] = -m.position[y];
+      }
+      for (std::size_t r = 0; r < here_.size(); ++r) {
+        const double rate = here_.times(r, v);
+        // Rounding of lengths below 2 m times entries of order 1.
+        findings_.expect("constraint-balance", std::abs(rate) <= 1e-12, [&] {
+          return fmt::format("row {} changes at a rate of {:.3g} when both markers move as one body", r, rate);
+        });
+      }
+    }
+  }
+
+  void independent() {
+    const std::size_t n = static_cast<std::size_t>(probe_.layout().constraint_rows);
+    if (n == 0 || here_.size() < n) return;
+    const std::vector<std::size_t> columns = moving_components(probe_.space());
+    Eigen::MatrixXd g(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        g(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = here_.jacobian[12 * r + columns[c]];
+      }
+    }
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(g);
+    qr.setThreshold(1e-9);
+    findings_.expect("rows-independent", qr.rank() == g.rows(),
+                     [&] { return fmt::format("{} rows have the rank {}", n, qr.rank()); });
+  }
+
+ private:
+  const char* name(std::size_t row, const char* of_row, const char* of_coordinate) const {
+    return static_cast<int>(row) < probe_.layout().constraint_rows ? of_row : of_coordinate;
+  }
+  /// Rows that hold an angle jump by a whole turn somewhere; no length jumps by metres over these steps.
+  std::vector<double> turned_near(std::vector<double> values) const {
+    for (std::size_t r = 0; r < std::min(values.size(), here_.size()); ++r) {
+      const double jump = values[r] - here_.value[r];
+      if (std::abs(jump) > 3.0) values[r] -= 2.0 * M_PI * std::round(jump / (2.0 * M_PI));
+    }
+    return values;
+  }
+
+  const JointProbe& probe_;
+  JointMoment moment_;
+  Findings& findings_;
+  AllRows here_;
+};
+
+}  // namespace
+
+void check_rows(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
+                Findings& findings) {
+  if (probe.layout().constraint_rows == 0 && probe.layout().coordinate == Coordinate::none) return;
+  for (const JointMoment& moment : moments) {
+    RowCheck check(probe, moment, findings);
+    check.jacobian();
+    check.partial_time();
+    check.gamma(random_twelve(probe.space(), random, 3.0));
+    check.balance();
+    check.independent();
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,125 @@
+// Newmark step: the single stage that the methods of Newmark's family have in common.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "freeplay/integrator.h"
+
+namespace freeplay {
+
+/// What tells the methods of the family from each other.
+struct NewmarkWeights {
+  double alpha_m, alpha_f, beta, gamma;
+};
+
+/// Newmark's rule with an auxiliary acceleration A in place of a (h: step, n: start, 1: end of the step, d: increment):
+///
+///   v_1 = v_n + h [(1 - gamma) A_n + gamma A_1]      d_1 = h v_n + h^2 [(1/2 - beta) A_n + beta A_1]
+///   (1 - alpha_m) A_1 + alpha_m A_n = (1 - alpha_f) a_1 + alpha_f a_n,  so that  A_1 = k0 + k1 a_1
+///   k0 = (alpha_f a_n - alpha_m A_n)/(1 - alpha_m)   k1 = (1 - alpha_f)/(1 - alpha_m)
+///
+/// Internal variables z follow the rule of v with an auxiliary rate Z. Constraints hold at position level; then v is
+/// projected and a, lambda are solved again at the accepted state, which is the a_n of the next step. A keeps the
+/// acceleration of the stage, and with it the damping of the method; where alpha_m = alpha_f = 0 it is a itself, as
+/// otherwise a disturbance across the constraints would alternate for ever. A restart sets A = a. Order 2 where gamma =
+/// 1/2 - alpha_m + alpha_f. Arnold and Bruls 2007.
+class NewmarkStep : public Integrator {
+ public:
+  void declare(IntegratorLayout& layout) const final {
+    const Sizes& n = layout.sizes;
+    layout.memory = n.nv + 2 * n.nz;
+    layout.scratch = n.nq + 2 * n.nv + n.nz;
+    layout.order = std::abs(weights_.gamma - 0.5 + weights_.alpha_m - weights_.alpha_f) < 1e-12 ? 2 : 1;
+    layout.newton_tolerance = tolerance_;
+    layout.newton_max_iterations = iterations_;
+  }
+
+  void restart(StateView& state, StageSolver& solver) const final {
+    const Memory m(state);
+    if (!state.z.empty()) solver.accelerate(state, m.z_rate);
+    take_over(state, m);
+  }
+
+  Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const final {
+    const Known n(to, scratch);
+    const Memory m(to);
+    const double beta_v = weights_.gamma * k1_ * dt, beta_q = weights_.beta * k1_ * dt * dt;
+    predict(dt, to, n, m);
+    const Stage stage{.t = *to.t + dt,
+                      .q_base = n.q,
+                      .increment_known = n.increment,
+                      .v_known = n.v,
+                      .z_known = n.z,
+                      .beta_q = beta_q,
+                      .beta_v = beta_v,
+                      .beta_z = beta_v,
+                      .level = ConstraintLevel::position};
+    if (solver.solve(stage, to).converged == 0) return {.converged = 0, .error = 0.0};
+    for (std::size_t i = 0; i < m.a.size; ++i) m.a[i] += k1_ * to.a[i];
+    for (std::size_t i = 0; i < m.z.size; ++i) m.z[i] += k1_ * (to.z[i] - n.z[i]) / beta_v;
+    solver.project_velocity(to);
+    solver.accelerate(to, m.z_rate);
+    if (!auxiliary_) take_over(to, m);
+    return {.converged = 1, .error = 0.0};
+  }
+
+ protected:
+  /// Reads the parameters of Newton's method.
+  NewmarkStep(const Parameters& p, const NewmarkWeights& weights)
+      : weights_(weights),
+        k1_((1.0 - weights.alpha_f) / (1.0 - weights.alpha_m)),
+        auxiliary_(weights.alpha_m != 0.0 || weights.alpha_f != 0.0),
+        tolerance_(p.number("newton.tolerance")),
+        iterations_(p.integer("newton.max_iterations")) {}
+
+ private:
+  /// A, Z and the z' that goes with the accepted state, in slices of the state's memory.
+  struct Memory {
+    explicit Memory(const StateView& s)
+        : a(s.memory.part(0, s.v.size)),
+          z(s.memory.part(s.v.size, s.z.size)),
+          z_rate(s.memory.part(s.v.size + s.z.size, s.z.size)) {}
+    Span<double> a, z, z_rate;
+  };
+  /// The base and the known terms of the stage, in slices of the scratch.
+  struct Known {
+    Known(const StateView& s, Span<double> scratch)
+        : q(scratch.part(0, s.q.size)),
+          v(scratch.part(s.q.size, s.v.size)),
+          increment(scratch.part(s.q.size + s.v.size, s.v.size)),
+          z(scratch.part(s.q.size + 2 * s.v.size, s.z.size)) {
+      std::copy(s.q.begin(), s.q.end(), q.begin());
+    }
+    Span<double> q, v, increment, z;
+  };
+
+  static void take_over(const StateView& state, const Memory& m) {
+    std::copy(state.a.begin(), state.a.end(), m.a.begin());
+    std::copy(m.z_rate.begin(), m.z_rate.end(), m.z.begin());
+  }
+
+  /// Fills the known terms from the start of the step; leaves k0 in place of A and Z.
+  void predict(double dt, const StateView& start, const Known& n, const Memory& m) const {
+    const auto [alpha_m, alpha_f, beta, gamma] = weights_;
+    for (std::size_t i = 0; i < start.v.size; ++i) {
+      const double before = m.a[i];
+      m.a[i] = (alpha_f * start.a[i] - alpha_m * before) / (1.0 - alpha_m);
+      n.v[i] = start.v[i] + dt * ((1.0 - gamma) * before + gamma * m.a[i]);
+      n.increment[i] = dt * (start.v[i] + dt * ((0.5 - beta) * before + beta * m.a[i]));
+    }
+    for (std::size_t i = 0; i < start.z.size; ++i) {
+      const double before = m.z[i];
+      m.z[i] = (alpha_f * m.z_rate[i] - alpha_m * before) / (1.0 - alpha_m);
+      n.z[i] = start.z[i] + dt * ((1.0 - gamma) * before + gamma * m.z[i]);
+    }
+  }
+
+  NewmarkWeights weights_;
+  double k1_;
+  bool auxiliary_;
+  double tolerance_;
+  int iterations_;
+};
+
+}  // namespace freeplay
