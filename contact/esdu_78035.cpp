@@ -19,8 +19,9 @@ Component esdu_78035() {
   return contact_law<Esdu78035>(
       {.name = "esdu-78035",
        .summary = "Line contact of a pin in a hole, the softest of the three.",
-       .formula = "delta = F_s/(pi E* L) [ln(B/F_s) + k], B = 4 pi E* L c, k = +1, 1/E* = h_b + h_j, h = (1 - nu^2)/E; "
-                  "F_N = max(0, F_s (1 + chi delta'/v_0)), chi of the law named by damping.",
+       .formula = "delta = F_s/(pi E* L) [ln(B/F_s) + k], B = 4 pi E* L c, k = +1, L: length, c: radial clearance, L: "
+                  "length, c: radial clearance, 1/E* = h_b + h_j, h = (1 - nu^2)/E; F_N = max(0, F_s (1 + chi "
+                  "delta'/v_0)), chi of the law named by damping.",
        .validity = "Axial length, material and clearance known; fails where delta reaches 4 c, as the slope of the "
                    "force has no bound there.",
        .references = "ESDU 78035, 1978; Pereira, Ramalho and Ambrosio 2011, Nonlinear Dyn 63",

@@ -18,8 +18,9 @@ Component johnson() {
   return contact_law<Johnson>(
       {.name = "johnson",
        .summary = "Line contact of a pin in a hole, for given axial length.",
-       .formula = "delta = F_s/(pi E* L) [ln(B/F_s) + k], B = 4 pi E* L c, k = -1, 1/E* = h_b + h_j, h = (1 - nu^2)/E; "
-                  "F_N = max(0, F_s (1 + chi delta'/v_0)), chi of the law named by damping.",
+       .formula = "delta = F_s/(pi E* L) [ln(B/F_s) + k], B = 4 pi E* L c, k = -1, L: length, c: radial clearance, L: "
+                  "length, c: radial clearance, 1/E* = h_b + h_j, h = (1 - nu^2)/E; F_N = max(0, F_s (1 + chi "
+                  "delta'/v_0)), chi of the law named by damping.",
        .validity = "Axial length, material and clearance known; fails where delta reaches 0.541 c, as the slope of the "
                    "force has no bound there.",
        .references = "Johnson 1985, Contact Mechanics, Cambridge; Pereira, Ramalho and Ambrosio 2011, Nonlinear Dyn 63",

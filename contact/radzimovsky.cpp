@@ -19,8 +19,9 @@ Component radzimovsky() {
   return contact_law<Radzimovsky>(
       {.name = "radzimovsky",
        .summary = "Line contact of a pin in a hole, from the stress in cylinders pressed together.",
-       .formula = "delta = F_s/(pi E* L) [ln(B/F_s) + k], B = 3.125 E* L c, k = 2/3, 1/E* = h_b + h_j, h = (1 - "
-                  "nu^2)/E; F_N = max(0, F_s (1 + chi delta'/v_0)), chi of the law named by damping.",
+       .formula =
+           "delta = F_s/(pi E* L) [ln(B/F_s) + k], B = 3.125 E* L c, k = 2/3, L: length, c: radial clearance, 1/E* = "
+           "h_b + h_j, h = (1 - nu^2)/E; F_N = max(0, F_s (1 + chi delta'/v_0)), chi of the law named by damping.",
        .validity = "Axial length, material and clearance known; fails where delta reaches 0.713 c, as the slope of the "
                    "force has no bound there.",
        .references = "Radzimovsky 1953, Univ Illinois Bull 408; Pereira, Ramalho and Ambrosio 2011, Nonlinear Dyn 63",

@@ -19,7 +19,7 @@ class Threlfall final : public FrictionLaw {
     if (speed > v_r_) return friction_force({std::copysign(mu_, state.slip_speed), 0.0}, state);
     const double top = -mu_ / std::expm1(-3.0), decay = -3.0 * speed / v_r_;
     return friction_force(
-        {-std::copysign(top * std::expm1(decay), state.slip_speed), 3.0 * top / v_r_ * std::exp(decay)}, state);
+        {std::copysign(top * std::expm1(decay), state.slip_speed), 3.0 * top / v_r_ * std::exp(decay)}, state);
   }
 
  private:

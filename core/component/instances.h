@@ -23,8 +23,14 @@ struct CreationFault {
 class Instances {
  public:
   Instances() = default;
+  /// Keeps the tables of a registry's libraries alive as long as what was created from them.
+  void keep(std::shared_ptr<const void> tables) { tables_.push_back(std::move(tables)); }
   Instances(Instances&&) = default;
-  Instances& operator=(Instances&&) = default;
+  Instances& operator=(Instances&& other) noexcept {
+    objects_ = std::move(other.objects_);  // what is replaced goes before its tables
+    tables_ = std::move(other.tables_);
+    return *this;
+  }
 
   /// Empty handle and a filled `fault` when the component cannot be made.
   JointRef create_joint(const ParameterBlock& parameters, CreationFault& fault);
@@ -37,6 +43,7 @@ class Instances {
   using Owned = std::unique_ptr<void, std::function<void(void*)>>;
   template <class Table, class Make>
   void* create(const ParameterBlock& parameters, Make make, CreationFault& fault);
+  std::vector<std::shared_ptr<const void>> tables_;  // outlive the objects below
   std::vector<Owned> objects_;
 };
 

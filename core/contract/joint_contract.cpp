@@ -11,16 +11,17 @@ namespace {
 // Angles in any turn: what is left after the nearest whole turn.
 double without_turns(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
-/// Moments at which a joint is asked: anywhere, near where it places a body, and around the end of its play; and in
-/// each of the states that its history can be in after a step has begun and after an event.
+/// Moments at which a joint is asked: anywhere, near where it places a body, or around the end of its play; and in each of the states that its history can be in after a step has begun and after an event.
 std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& random) {
   std::vector<JointMoment> moments;
+  const double play = probe.layout().clearance;
   const auto add = [&](const MarkerPair& markers) {
     const double t = random.between(0.1, 1.0);
     const JointMoment fresh = probe.start(markers, t);
     moments.push_back(fresh);
     // History from elsewhere, with a step begun from there.
-    const JointMoment other = probe.start(random_pair(probe.space(), random), t);
+    const JointMoment other = probe.start(play > 0.0 ? distant_pair(probe.space(), 0.99 * play, random)
+                                                     : random_pair(probe.space(), random), t);
     JointMoment begun = fresh;
     begun.h = other.h;
     const double dt = 1e-4;
@@ -32,13 +33,14 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
       moments.push_back(told);
     }
   };
-  for (int i = 0; i < 6; ++i) add(random_pair(probe.space(), random));
+  // A joint with play is no model of anything where its parts have left each other's reach.
+  for (int i = 0; i < 6 && !(play > 0.0); ++i) add(random_pair(probe.space(), random));
   Pose pose{};
   Message message;
   for (int i = 0; i < 4; ++i) {
     if (probe.joint().place(random.between(-1.0, 1.0), pose, message)) add(placed_pair(probe.space(), pose, random));
   }
-  if (const double play = probe.layout().clearance; play > 0.0) {
+  if (play > 0.0) {
     for (const double beyond : {-0.4, 0.001, 0.004, 0.013, 0.05}) {
       for (int i = 0; i < 3; ++i) add(distant_pair(probe.space(), play * (1.0 + beyond), random));
     }

@@ -87,7 +87,8 @@ CoordinateValues JointProbe::coordinate(const JointMoment& moment) const {
   Fed fed(*this, moment);
   CoordinateRow row{};
   if (!run("coordinate", [&](Message& m) { return joint_.coordinate(fed.in, row, m); })) return {};
-  const GuardedNumbers numbers(std::vector<double>(row.jacobian, row.jacobian + 12)), pair({row.value, row.bias});
+  const GuardedNumbers numbers(std::vector<double>(row.jacobian, row.jacobian + 12)),
+      pair(std::vector<double>{row.value, row.bias});
   watch("coordinate", {&numbers, &pair, &fed.z, &fed.h});
   double value = row.value;
   if (layout_.coordinate == Coordinate::angle) {
@@ -106,7 +107,7 @@ ForceValues JointProbe::forces(const JointMoment& moment, bool derivatives) cons
   if (!run("apply", [&](Message& m) { return joint_.apply(fed.in, out, m); })) return {};
   std::vector<double> wrench(out.wrench_a, out.wrench_a + 6);
   wrench.insert(wrench.end(), out.wrench_b, out.wrench_b + 6);
-  const GuardedNumbers given(wrench), potential({out.potential});
+  const GuardedNumbers given(wrench), potential(std::vector<double>{out.potential});
   watch("apply", {&rate, &table, &given, &potential, &fed.z, &fed.h});
   return {wrench, out.potential, rate.values(), table.values()};
 }

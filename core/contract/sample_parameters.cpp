@@ -13,7 +13,6 @@
 namespace freeplay {
 namespace {
 
-bool is_number(const Parameter& p) { return p.kind == ParameterKind::number || p.kind == ParameterKind::integer; }
 bool is_law(const Parameter& p) {
   return p.kind == ParameterKind::contact_law || p.kind == ParameterKind::friction_law;
 }
@@ -52,7 +51,8 @@ double usual_size(const Dimension& d) {
     double size;
   } table[] = {{dimension::length, 0.01}, {dimension::pressure, 2e11}, {dimension::velocity, 0.01},
                {dimension::time, 0.01},   {dimension::stiffness, 1e5}, {dimension::damping, 10.0},
-               {dimension::force, 10.0},  {dimension::torque, 1.0},    {dimension::none, 0.3}};
+               {dimension::force, 10.0},  {dimension::torque, 1.0},    {dimension::none, 0.3},
+               {{0.0, -1.0, 0.0}, 1e5}};  // 1/m: a surface that yields by 10 micrometres
   for (const auto& row : table) {
     if (row.dimension == d) return row.size;
   }
@@ -224,9 +224,8 @@ class Sampler {
     const Component* preferred = registry_.preferred(kind);
     const auto add_samples = [&](const Component& law) {
       const ParameterSamples samples = sample_parameters(law, registry_);
-      // The one with all keys asks least of the joint; the one with fewest asks for radii and material.
-      const std::size_t count = std::min<std::size_t>(samples.accepted.size(), 2);
-      for (std::size_t i = count; i-- > 0;) blocks.push_back(samples.accepted[i].block);
+      // The one with as many keys as possible asks least of the joint.
+      if (!samples.accepted.empty()) blocks.push_back(samples.accepted[samples.accepted.size() > 1 ? 1 : 0].block);
     };
     if (preferred != nullptr) add_samples(*preferred);
     for (const RegisteredComponent& entry : registry_.components()) {

@@ -38,7 +38,7 @@ inline void expect_slopes(const std::string& name, const Numbers& numbers, std::
     EXPECT_NEAR(at(slip).d_slip, slope, 1e-6 * std::abs(slope) + 1e-14 / h) << slip;
     EXPECT_EQ(at(slip).d_slip, at(-slip).d_slip);
   }
-  EXPECT_NEAR(at(0.0).d_slip, at(1e-12).tangential / 1e-12, 1e-6 * std::abs(at(0.0).d_slip));
+  EXPECT_NEAR(at(0.0).d_slip, at(1e-18).tangential / 1e-18, 1e-6 * std::abs(at(0.0).d_slip));
 }
 
 }  // namespace freeplay::test

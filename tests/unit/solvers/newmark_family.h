@@ -61,7 +61,7 @@ inline double spectral_radius(const std::string& name, const Numbers& numbers, d
   return amplification.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// log2 of the ratio of the errors of 100 and 200 steps for the damped oscillator and for z.
+/// log2 of the ratio of the largest errors of 400 and 800 steps for the damped oscillator and for z.
 inline void expect_order(const std::string& name, const Numbers& numbers, double order) {
   const auto errors = [&](int steps) {
     OscillatorRun run = family_run(name, numbers, {.omega = 2.0, .zeta = 0.1, .decay = 1.5}, 1.0, 0.0, 1.0);
@@ -75,8 +75,8 @@ inline void expect_order(const std::string& name, const Numbers& numbers, double
     }
     return std::pair(in_q, in_z);
   };
-  const auto [coarse_q, coarse_z] = errors(100);
-  const auto [fine_q, fine_z] = errors(200);
+  const auto [coarse_q, coarse_z] = errors(400);
+  const auto [fine_q, fine_z] = errors(800);
   EXPECT_NEAR(std::log2(coarse_q / fine_q), order, 0.05);
   EXPECT_NEAR(std::log2(coarse_z / fine_z), order, 0.05);
   OscillatorRun run = family_run(name, numbers, {}, 1.0, 0.0);

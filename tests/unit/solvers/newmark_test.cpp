@@ -19,9 +19,10 @@ TEST(Newmark, IsOfSecondOrderWithoutDampingElseOfFirst) {
   expect_order("newmark", {{"beta", 0.36}, {"gamma", 0.7}}, 1.0);
 }
 
-// For h -> infinity and beta = (gamma + 1/2)^2/4 the eigenvalues are -(3/2 - gamma)/(1/2 + gamma): 2/3 for gamma = 0.7.
+// For h -> infinity and beta = (gamma + 1/2)^2/4 there is the double eigenvalue -(3/2 - gamma)/(1/2 + gamma), which a
+// step of 1e6 radians reaches to the root of its inverse.
 TEST(Newmark, DampsLargeStepsWithGammaAboveOneHalf) {
-  EXPECT_NEAR(spectral_radius("newmark", {{"beta", 0.36}, {"gamma", 0.7}}, 1e5), 0.8 / 1.2, 1e-4);
+  EXPECT_NEAR(spectral_radius("newmark", {{"beta", 0.36}, {"gamma", 0.7}}, 1e5), 0.8 / 1.2, 2e-3);
 }
 
 // z' = -z by the trapezoidal rule: R(x) = (1 + x/2)/(1 - x/2) at x = -h.

@@ -1,0 +1,151 @@
+// Descriptions, sample parameters and the whole of a component's contract.
+#include "contract/component_contract.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "contract/description_contract.h"
+#include "contract/sample_parameters.h"
+#include "findings_text.h"
+
+namespace freeplay::test {
+namespace {
+
+/// Needs `wide` above `narrow`, either `hardness` or both `young` and `poisson`, and no more than that.
+class Picky final : public FrictionLaw {
+ public:
+  explicit Picky(const Parameters& p) {
+    if (!(p.number("wide") > p.number("narrow"))) throw BadParameter("wide", "out-of-range", "must be above 'narrow'");
+    const bool young = p.given("young"), poisson = p.given("poisson");
+    if (p.given("hardness") == (young || poisson)) throw BadParameter("", "missing-key", "give one or the other");
+    if (young != poisson) throw BadParameter("", "missing-key", "give both");
+    if (std::isnan(p.number("share")) == (p.word("share") < 0)) throw std::logic_error("neither number nor word");
+  }
+  FrictionForce evaluate(const FrictionState&, Span<double>) const override { return {}; }
+};
+constexpr Parameter picky_parameters[] = {
+    {.name = "wide", .unit = "m/s", .minimum = 0.0, .open = Open::minimum, .summary = "Above."},
+    {.name = "narrow", .unit = "m/s", .minimum = 0.0, .open = Open::minimum, .summary = "Below."},
+    {.name = "hardness", .unit = "N/m^power", .default_value = optional, .summary = "One way."},
+    {.name = "power", .default_value = 1.5, .minimum = 1.0, .maximum = 2.0, .summary = "Of the unit."},
+    {.name = "young", .unit = "Pa", .default_value = optional, .minimum = 0.0, .summary = "Other way."},
+    {.name = "poisson", .default_value = optional, .minimum = 0.0, .maximum = 0.5, .summary = "With it."},
+    {.name = "share", .default_value = 0.5, .minimum = 0.0, .maximum = 1.0, .open = Open::both,
+     .choices = "half|most", .summary = "A number or a word."},
+};
+
+class Never final : public FrictionLaw {
+ public:
+  explicit Never(const Parameters&) { throw BadParameter("mu", "out-of-range", "I like no number"); }
+  FrictionForce evaluate(const FrictionState&, Span<double>) const override { return {}; }
+};
+
+Status publish_samples(const Host* host, Manifest* manifest) noexcept {
+  static const Component components[] = {
+      friction_law<Picky>({.name = "picky", .summary = "Hard to please.", .parameters = picky_parameters}),
+      friction_law<Never>({.name = "never", .summary = "Impossible to please."})};
+  return publish(*host, *manifest, "samples", "1", components);
+}
+Registry samples() {
+  Registry registry;
+  registry.add(publish_samples, "samples");
+  return registry;
+}
+
+TEST(SampleParameters, AreFoundForAPickyConstructor) {
+  const Registry registry = samples();
+  const ParameterSamples found = sample_parameters(*registry.find(ComponentKind::friction_law, "picky"), registry);
+  ASSERT_FALSE(found.accepted.empty()) << found.refusal;
+  const auto& few = found.accepted[0].block->values;
+  EXPECT_GT(few.at("wide").number, few.at("narrow").number);
+  EXPECT_TRUE(few.at("hardness").given);
+  EXPECT_FALSE(few.at("young").given);
+  // Both words, and both ends of the one range that has ends.
+  int words = 0, ends = 0;
+  for (const ParameterSample& sample : found.accepted) {
+    const auto& values = sample.block->values;
+    if (values.at("share").word >= 0) ++words;
+    if (values.at("power").number == 1.0 || values.at("power").number == 2.0) ++ends;
+  }
+  EXPECT_EQ(words, 2);
+  EXPECT_EQ(ends, 2);
+}
+
+TEST(SampleParameters, StayWithinBounds) {
+  const Registry registry = Registry::with_builtins();
+  for (const RegisteredComponent& entry : registry.components()) {
+    const ParameterSamples found = sample_parameters(*entry.component, registry);
+    EXPECT_FALSE(found.accepted.empty()) << entry.component->description.name << ": " << found.refusal;
+    for (const ParameterSample& sample : found.accepted) {
+      for (const Parameter& p : entry.component->description.parameters) {
+        const double number = sample.block->values.at(p.name).number;
+        if (p.kind != ParameterKind::number || std::string_view(p.unit) != "1" || std::isnan(number)) continue;
+        EXPECT_GE(number, p.minimum) << entry.component->description.name << " " << p.name;
+        EXPECT_LE(number, p.maximum) << entry.component->description.name << " " << p.name;
+      }
+    }
+  }
+}
+
+TEST(ComponentContract, FindsAConstructorThatRefusesEverything) {
+  const Registry registry = samples();
+  const Findings findings = check_component(*registry.find(ComponentKind::friction_law, "never"), registry, {});
+  EXPECT_TRUE(findings.broken("accepts-parameters"));
+  EXPECT_NE(broken_rules(findings).find("I like no number"), std::string::npos);
+}
+
+Findings describe(const Description& description) { return check_description(friction_law<Never>(description)); }
+Findings describe_with(const Parameter& parameter) {
+  return describe(Description{.name = "some-law", .summary = "Some.", .parameters = {&parameter, 1}});
+}
+
+TEST(DescriptionContract, FindsWrongNames) {
+  EXPECT_TRUE(describe({.name = "some-law2", .summary = "Some."}).held());
+  for (const char* name : {"", "Some-law", "some_law", "-law", "law-", "some--law"}) {
+    EXPECT_TRUE(describe({.name = name, .summary = "Some."}).broken("name")) << name;
+  }
+  EXPECT_TRUE(describe({.name = "law"}).broken("summary"));
+}
+
+TEST(DescriptionContract, FindsWrongParameters) {
+  const Parameter good{.name = "block.share_of_E", .default_value = 0.5, .minimum = 0.0, .maximum = 1.0, .summary = "S."};
+  EXPECT_TRUE(describe_with(good).held()) << broken_rules(describe_with(good));
+  const auto with = [&](auto change) {
+    Parameter changed = good;
+    change(changed);
+    return describe_with(changed);
+  };
+  EXPECT_TRUE(with([](Parameter& p) { p.name = "block..share"; }).broken("parameter-names"));
+  EXPECT_TRUE(with([](Parameter& p) { p.name = "a-b"; }).broken("parameter-names"));
+  EXPECT_TRUE(with([](Parameter& p) { p.summary = ""; }).broken("summary"));
+  EXPECT_TRUE(with([](Parameter& p) { p.unit = "furlong"; }).broken("parameter-units"));
+  EXPECT_TRUE(with([](Parameter& p) { p.unit = "N/m^nothing"; }).broken("parameter-units"));
+  EXPECT_TRUE(with([](Parameter& p) { p.minimum = 2.0; }).broken("parameter-bounds"));
+  EXPECT_TRUE(with([](Parameter& p) { p.default_value = 1.5; }).broken("parameter-defaults"));
+  EXPECT_TRUE(with([](Parameter& p) { p.default_value = 1.0, p.open = Open::maximum; }).broken("parameter-defaults"));
+  EXPECT_TRUE(with([](Parameter& p) { p.kind = ParameterKind::integer; }).broken("parameter-defaults"));
+  const auto choice = [&](const char* words, double index) {
+    return with([&](Parameter& p) { p.kind = ParameterKind::choice, p.choices = words, p.default_value = index; });
+  };
+  EXPECT_TRUE(choice("one|two", 1.0).held());
+  EXPECT_TRUE(choice("one|two", 2.0).broken("parameter-defaults"));
+  EXPECT_TRUE(choice("one|one", 0.0).broken("parameter-choices"));
+  EXPECT_TRUE(choice(nullptr, 0.0).broken("parameter-choices"));
+  const Parameter twice[] = {good, good};
+  EXPECT_TRUE(describe({.name = "law", .summary = "Some.", .parameters = twice}).broken("parameter-names"));
+}
+
+TEST(DescriptionContract, FindsWrongNamesOfEventsAndChannels) {
+  constexpr Channel good[] = {{"depth", "m"}, {"max_fn", "N"}}, twice[] = {{"depth", "m"}, {"depth", "m"}},
+                    capital[] = {{"Depth", "m"}}, unit[] = {{"depth", "furlong"}};
+  const Event event[] = {{"touch", Crossing::rising, 0, good}}, blank[] = {{"", Crossing::rising, 0, {}}};
+  EXPECT_TRUE(check_joint_names({event, good}).held());
+  EXPECT_TRUE(check_joint_names({{}, twice}).broken("channel-names"));
+  EXPECT_TRUE(check_joint_names({{}, capital}).broken("channel-names"));
+  EXPECT_TRUE(check_joint_names({{}, unit}).broken("channel-units"));
+  EXPECT_TRUE(check_joint_names({blank, {}}).broken("event-names"));
+}
+
+}  // namespace
+}  // namespace freeplay::test

@@ -1,0 +1,108 @@
+// The joint suite finds what is wrong with a joint, and nothing in one that is right.
+#include "contract/joint_contract.h"
+
+#include <gtest/gtest.h>
+
+#include "allocation_counter.h"
+#include "broken_joints.h"
+#include "findings_text.h"
+
+namespace freeplay::test {
+namespace {
+
+const Conditions conditions{.seed = 3, .allocations = &allocations};
+
+template <class J>
+Findings judge(const J& joint, const J& twin) {
+  return check_joint({handle(joint), handle(twin), Space::planar, true}, conditions);
+}
+
+struct Case {
+  Flaw flaw;
+  const char* rule;
+};
+
+template <class J>
+void expect_found(std::initializer_list<Case> cases) {
+  for (const auto& [flaw, rule] : cases) {
+    const J joint(flaw), twin(flaw);
+    const Findings findings = judge(joint, twin);
+    EXPECT_TRUE(findings.broken(rule)) << rule << " is not reported, but\n" << broken_rules(findings);
+  }
+}
+
+TEST(JointContract, HoldsForSoundJoints) {
+  EXPECT_TRUE(judge(Tether(), Tether()).held()) << broken_rules(judge(Tether(), Tether()));
+  EXPECT_TRUE(judge(Swivel(), Swivel()).held()) << broken_rules(judge(Swivel(), Swivel()));
+  EXPECT_TRUE(judge(Cage(), Cage()).held()) << broken_rules(judge(Cage(), Cage()));
+  const Cage relaxing(Flaw::none, true);
+  EXPECT_TRUE(judge(relaxing, relaxing).held()) << broken_rules(judge(relaxing, relaxing));
+}
+
+TEST(JointContract, GivesEqualFindingsForEqualSeeds) {
+  const Cage cage(Flaw::derivative_entry);
+  EXPECT_EQ(broken_rules(judge(cage, cage)), broken_rules(judge(cage, cage)));
+}
+
+TEST(JointContract, FindsWrongRows) {
+  expect_found<Tether>({{Flaw::jacobian_entry, "jacobian"},
+                        {Flaw::jacobian_lever, "jacobian"},
+                        {Flaw::jacobian_lever, "constraint-balance"},
+                        {Flaw::nu, "nu"},
+                        {Flaw::gamma, "gamma"},
+                        {Flaw::coordinate_row, "coordinate"},
+                        {Flaw::coordinate_bias, "coordinate-bias"},
+                        {Flaw::twice_the_same_row, "rows-independent"},
+                        {Flaw::writes_beside_rows, "stays-in-span"},
+                        {Flaw::negative_rows, "declares-sanely"}});
+}
+
+TEST(JointContract, FindsWrongPlaces) {
+  expect_found<Swivel>({{Flaw::place_off_the_rows, "place"}, {Flaw::place_off_the_coordinate, "place"}});
+}
+
+TEST(JointContract, FindsWrongForces) {
+  expect_found<Cage>({{Flaw::no_reaction, "balance"},
+                      {Flaw::no_moment, "balance"},
+                      {Flaw::negative_damping, "energy"},
+                      {Flaw::negative_damping, "energy-cycle"},
+                      {Flaw::silent_potential, "energy"},
+                      {Flaw::derivative_entry, "derivatives"},
+                      {Flaw::derivative_by_speed, "derivatives"},
+                      {Flaw::force_with_derivatives, "unused-derivatives"},
+                      {Flaw::undeclared_forces, "declares-sanely"}});
+}
+
+TEST(JointContract, FindsWrongInternalVariables) {
+  const Cage slope(Flaw::derivative_by_z, true), push(Flaw::bristle_pushes, true);
+  EXPECT_TRUE(judge(slope, slope).broken("derivatives")) << broken_rules(judge(slope, slope));
+  EXPECT_TRUE(judge(push, push).broken("energy-cycle")) << broken_rules(judge(push, push));
+}
+
+TEST(JointContract, FindsHiddenState) {
+  expect_found<Cage>({{Flaw::counts_calls, "no-hidden-state"},
+                      {Flaw::keeps_contact, "rollback"},
+                      {Flaw::event_rate, "event-rate"}});
+  const Cage soft(Flaw::none, false, 2e4), stiff(Flaw::none, false, 3e4);
+  EXPECT_TRUE(judge(soft, stiff).broken("same-twin"));
+}
+
+TEST(JointContract, FindsWrongCalls) {
+  expect_found<Cage>({{Flaw::not_a_number, "finite"},
+                      {Flaw::throws, "answers"},
+                      {Flaw::allocates, "allocation"},
+                      {Flaw::writes_beside_rates, "stays-in-span"},
+                      {Flaw::writes_beside_history, "stays-in-span"},
+                      {Flaw::step_limit_zero, "step-limit"},
+                      {Flaw::offset_nowhere, "initial-offset"}});
+}
+
+TEST(JointContract, LetsDrivenJointsBringEnergy) {
+  const Cage cage(Flaw::negative_damping);
+  const Findings findings = check_joint({handle(cage), handle(cage), Space::planar, false}, conditions);
+  EXPECT_FALSE(findings.broken("energy"));
+  EXPECT_FALSE(findings.broken("energy-cycle"));
+}
+
+}  // namespace
+}  // namespace freeplay::test

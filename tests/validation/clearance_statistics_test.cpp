@@ -1,0 +1,56 @@
+#include "run_model.h"
+
+namespace freeplay::test {
+namespace {
+
+/// Means over twelve runs in quadruple precision whose starts differ by multiples of 1e-12 m, 0.1 s < t < 0.5 s.
+struct Means {
+  const char* model;
+  double position_max, position_rms, angle_rms;  ///< of the platform against its path [m, m, rad]
+  double torque_rms;                             ///< over all motors [N m]
+  double force_rms;                              ///< over all joints with play [N]
+};
+class ClearanceStatisticsLong : public ::testing::TestWithParam<Means> {};
+
+// Motions with many impacts are chaotic: only statistics can be compared. Their spread between the twelve runs is
+// 0.05 % in position, 0.1 % in angle, 0.4 % in torque and force; the limits are those that the program promises.
+TEST_P(ClearanceStatisticsLong, AreThoseOfTheReference) {
+  const Means& want = GetParam();
+  const ModelRun run(mechanism(want.model), {.set = {}, .ideal = {}, .end = 0.5, .step = 2e-6, .integrator = {}},
+                     {"time"});
+  ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  const PathStatistics path = run.statistics().path(0);
+  double torque = 0.0, force = 0.0;
+  int drivers = 0, joints = 0;
+  for (int d = 0; d < static_cast<int>(run.model().drivers.size()); ++d, ++drivers) {
+    torque += std::pow(run.statistics().driver(d).rms, 2);
+  }
+  for (int j = 0; j < static_cast<int>(run.model().joints.size()); ++j) {
+    if (!run.model().joints[static_cast<std::size_t>(j)].has_play) continue;
+    force += std::pow(run.statistics().joint(j).rms_force, 2);
+    ++joints;
+  }
+  torque = std::sqrt(torque / drivers);
+  force = std::sqrt(force / joints);
+  record("position_max", path.max_position / want.position_max - 1.0);
+  record("position_rms", path.rms_position / want.position_rms - 1.0);
+  record("angle_rms", path.rms_angle / want.angle_rms - 1.0);
+  record("torque_rms", torque / want.torque_rms - 1.0);
+  record("force_rms", force / want.force_rms - 1.0);
+  record("contacts", static_cast<double>(run.statistics().contacts_total()));
+  EXPECT_NEAR(path.max_position, want.position_max, 5e-3 * want.position_max);
+  EXPECT_NEAR(path.rms_position, want.position_rms, 5e-3 * want.position_rms);
+  EXPECT_NEAR(path.rms_angle, want.angle_rms, 2e-2 * want.angle_rms);
+  EXPECT_NEAR(torque, want.torque_rms, 2e-2 * want.torque_rms);
+  EXPECT_NEAR(force, want.force_rms, 2e-2 * want.force_rms);
+  EXPECT_LT(run.statistics().position_residual(), 1e-10);
+  EXPECT_LT(run.statistics().velocity_residual(), 1e-8);
+}
+void PrintTo(const Means& means, std::ostream* out) { *out << means.model; }
+
+INSTANTIATE_TEST_SUITE_P(Models, ClearanceStatisticsLong,
+                         ::testing::Values(Means{"3-rrr", 306.30e-6, 275.86e-6, 0.9097e-3, 1.527, 5.646},
+                                           Means{"4-rrr", 285.09e-6, 261.33e-6, 0.2565e-3, 1.1978, 4.215}));
+
+}  // namespace
+}  // namespace freeplay::test
