@@ -92,7 +92,8 @@ Findings check_description(const Component& component) {
   std::set<std::string> names;
   for (const Parameter& p : d.parameters) {
     findings.expect("parameter-names", is_path(p.name), [&] { return fmt::format("'{}'", p.name); });
-    findings.expect("parameter-names", names.insert(p.name).second, [&] { return fmt::format("'{}' stands twice", p.name); });
+    findings.expect("parameter-names", names.insert(p.name).second,
+                    [&] { return fmt::format("'{}' stands twice", p.name); });
     findings.expect("summary", says_something(p.summary),
                     [&] { return fmt::format("that of parameter '{}' is empty", p.name); });
     const std::optional<std::string> fault = unit_fault(p.unit, d.parameters);
@@ -107,10 +108,11 @@ Findings check_joint_names(const JointNames& joint) {
   std::set<std::string> events, channels;
   const auto check = [&](const char* rule, const char* name, std::set<std::string>& known) {
     findings.expect(rule, is_joined_words(name, '_'), [&] { return fmt::format("'{}'", name ? name : ""); });
-    findings.expect(rule, name == nullptr || known.insert(name).second, [&] { return fmt::format("'{}' stands twice", name); });
+    findings.expect(rule, name == nullptr || known.insert(name).second,
+                    [&] { return fmt::format("'{}' stands twice", name); });
   };
   const auto check_unit = [&](const char* rule, const Channel& channel) {
-    const std::optional<std::string> fault = channel.unit == nullptr ? "none" : unit_fault(channel.unit, {});
+    const std::optional<std::string> fault = channel.unit == nullptr ? "missing" : unit_fault(channel.unit, {});
     findings.expect(rule, !fault, [&] { return fmt::format("unit of '{}': {}", channel.name, *fault); });
   };
   for (const Channel& channel : joint.channels) {

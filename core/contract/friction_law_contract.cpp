@@ -99,7 +99,8 @@ class FrictionLawCheck {
     for (double& x : turned) x = -x;
     const double there = ask(load, speed, z).force.tangential, back = ask(load, -speed, turned).force.tangential;
     findings_.expect("opposes-slip", there <= 0.0 && back >= 0.0, [&] {
-      return fmt::format("the force is {:.6g} N for a slip of {:.3g} m/s and {:.6g} N for its opposite", there, speed, back);
+      return fmt::format("the force is {:.6g} N for a slip of {:.3g} m/s and {:.6g} N for its opposite", there, speed,
+                         back);
     });
     // Rounding of a few operations.
     findings_.expect("odd", std::abs(there + back) <= 1e-12 * std::abs(there), [&] {
@@ -117,7 +118,8 @@ class FrictionLawCheck {
     const FrictionForce f = ask(load, slip, z).force;
     const auto compare = [&](const char* name, double given, const Slope& d) {
       findings_.expect("derivatives", agrees(given, d.value[0], d.error[0], 10.0 * std::abs(d.value[0])), [&] {
-        return fmt::format("{} is {:.9g}, differences give {:.9g} at {:.3g} N, {:.3g} m/s", name, given, d.value[0], load, slip);
+        return fmt::format("{} is {:.9g}, differences give {:.9g} at {:.3g} N, {:.3g} m/s", name, given, d.value[0],
+                           load, slip);
       });
     };
     compare("d_slip", f.d_slip,

@@ -130,10 +130,10 @@ class IntegratorCheck {
     for (int good = 0; good < std::min(stages, 8); ++good) {
       bool gave_result = false;
       drive.attempt(dt, 0.0, good, gave_result, unused_stages);
-      findings_.expect("reports-failure", !gave_result, [&] {
-        return fmt::format("stage {} does not converge, but the attempt does", good + 1);
-      });
-      expect_same("repeatable", drive.attempt(dt, 0.0, -1, converged, unused_stages), "a step differs after one that failed");
+      findings_.expect("reports-failure", !gave_result,
+                       [&] { return fmt::format("stage {} does not converge, but the attempt does", good + 1); });
+      expect_same("repeatable", drive.attempt(dt, 0.0, -1, converged, unused_stages),
+                  "a step differs after one that failed");
     }
     expect_same("same-twin", twin.attempt(dt, 0.0, -1, converged, unused_stages),
                 "two objects with equal parameters give different numbers");
@@ -156,7 +156,8 @@ class IntegratorCheck {
     }
     // Methods of order 2 that swing around the true energy do so by less; growth in every step passes it long before.
     findings_.expect("energy", highest - start <= 1e-2 * swing, [&] {
-      return fmt::format("the energy of a free pendulum grows by {:.3g} of its swing in 1000 steps", (highest - start) / swing);
+      return fmt::format("the energy of a free pendulum grows by {:.3g} of its swing in 1000 steps",
+                         (highest - start) / swing);
     });
   }
 
@@ -168,7 +169,8 @@ class IntegratorCheck {
     double off = 0.0;
     for (int i = 0; i < 100; ++i) {
       if (!drive.step(0.01)) return;
-      off = std::max({off, distance(still.q, drive.accepted().q.values()), distance(still.v, drive.accepted().v.values())});
+      off = std::max(
+          {off, distance(still.q, drive.accepted().q.values()), distance(still.v, drive.accepted().v.values())});
     }
     // 100 steps of rounding.
     findings_.expect("rest", off <= 1e-12,

@@ -20,7 +20,8 @@ struct IntegratorSubject {
 ///   rest                   stays rest
 ///   constraints            hold after every step, in position and velocity
 ///   time                   an attempt ends at t + dt
-///   repeatable             an attempt from a copied state gives the same bits after other attempts, one that failed among
+///   repeatable             an attempt from a copied state gives the same bits after other attempts, one that failed
+///   among
 ///                          them, and from any contents of the scratch
 ///   same-twin              with another object of the same parameters, too
 ///   reports-failure        a stage that does not converge makes the attempt one that has not converged

@@ -58,7 +58,8 @@ bool GuardedState::finite() const {
 
 FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int good_stages)
     : inner_(inner),
-      table_{sizeof(abi::StageSolverTable), this,
+      table_{sizeof(abi::StageSolverTable),
+             this,
              [](void* self, const Stage* stage, StateView* out, StageResult* result, Message* m) noexcept {
                auto& me = *static_cast<FailingStageSolver*>(self);
                if (me.stages_++ != me.good_stages_) return me.inner_.solve(me.inner_.self, stage, out, result, m);
@@ -125,8 +126,8 @@ bool IntegratorDrive::call_attempt(double dt, GuardedState& to, GuardedNumbers& 
   }
   findings_.expect("stays-in-span", to.intact() && scratch.intact(),
                    [] { return std::string("attempt() writes beside the state, its memory or the scratch"); });
-  const bool sane = std::isfinite(attempt.error) && attempt.error >= 0.0 &&
-                    (layout_.error_estimate != 0 || attempt.error == 0.0);
+  const bool sane =
+      std::isfinite(attempt.error) && attempt.error >= 0.0 && (layout_.error_estimate != 0 || attempt.error == 0.0);
   findings_.expect("error-estimate", !good || attempt.converged == 0 || sane, [&] {
     return fmt::format("the error is {}, declared with{} estimate", attempt.error, layout_.error_estimate ? "" : "out");
   });
@@ -150,8 +151,7 @@ bool IntegratorDrive::step(double dt) {
   return true;
 }
 
-std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good_stages, bool& converged,
-                                             int& stages) {
+std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good_stages, bool& converged, int& stages) {
   NewtonStageSolver fresh(reference_.system(), options_);
   FailingStageSolver solver(fresh.table(), good_stages);
   GuardedState to = accepted_;

@@ -11,7 +11,8 @@ namespace {
 // Angles in any turn: what is left after the nearest whole turn.
 double without_turns(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
-/// Moments at which a joint is asked: anywhere, near where it places a body, or around the end of its play; and in each of the states that its history can be in after a step has begun and after an event.
+/// Moments at which a joint is asked: anywhere, near where it places a body, or around the end of its play; and in each
+/// of the states that its history can be in after a step has begun and after an event.
 std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& random) {
   std::vector<JointMoment> moments;
   const double play = probe.layout().clearance;
@@ -20,8 +21,8 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
     const JointMoment fresh = probe.start(markers, t);
     moments.push_back(fresh);
     // History from elsewhere, with a step begun from there.
-    const JointMoment other = probe.start(play > 0.0 ? distant_pair(probe.space(), 0.99 * play, random)
-                                                     : random_pair(probe.space(), random), t);
+    const JointMoment other = probe.start(
+        play > 0.0 ? distant_pair(probe.space(), 0.99 * play, random) : random_pair(probe.space(), random), t);
     JointMoment begun = fresh;
     begun.h = other.h;
     const double dt = 1e-4;

@@ -67,9 +67,10 @@ void check_energy(const JointProbe& probe, const JointMoment& moment, const Forc
   // The speed of the surfaces and that of the point of action differ by a penetration times an angular velocity.
   const double tolerance = 1e-4 * power_size(f, moment.markers) + 20.0 * stored.error[0];
   findings.expect("energy", gain <= tolerance, [&] {
-    return fmt::format("the wrenches do work at {:.6g} W while the stored energy changes at {:.6g} W (error {:.3g} W, "
-                       "largest power {:.6g} W)",
-                       power(f, moment.markers), stored.value[0], stored.error[0], power_size(f, moment.markers));
+    return fmt::format(
+        "the wrenches do work at {:.6g} W while the stored energy changes at {:.6g} W (error {:.3g} W, "
+        "largest power {:.6g} W)",
+        power(f, moment.markers), stored.value[0], stored.error[0], power_size(f, moment.markers));
   });
 }
 

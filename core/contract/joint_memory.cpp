@@ -65,11 +65,10 @@ void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findi
   for (std::size_t i = 0; i < std::min(here.g.size(), d.value.size()); ++i) {
     // A function of speed has a rate that depends on accelerations, which the joint is not told.
     if (std::isnan(here.g[i]) || here.g[i] != at_rest[i]) continue;
-    findings.expect("event-rate", agrees(here.rate[i], d.value[i], d.error[i], std::max(1.0, std::abs(here.rate[i]))),
-                    [&] {
-                      return fmt::format("event {} changes at {:.9g}, differences give {:.9g}", i, here.rate[i],
-                                         d.value[i]);
-                    });
+    findings.expect(
+        "event-rate", agrees(here.rate[i], d.value[i], d.error[i], std::max(1.0, std::abs(here.rate[i]))), [&] {
+          return fmt::format("event {} changes at {:.9g}, differences give {:.9g}", i, here.rate[i], d.value[i]);
+        });
   }
 }
 
@@ -81,27 +80,23 @@ void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, F
   const ClosedPath path(probe, random);
   const double dt = path.period() / around;
   JointWalk walk(probe, probe.start(path.at(0.0), 0.0));
-  const auto power_of = [](const ForceValues& f, const MarkerPair& markers, double& size) {
+  const auto power_of = [](const ForceValues& f, const MarkerPair& markers) {
     const Twelve v = twists(markers);
     double power = 0.0;
-    size = 0.0;
-    for (std::size_t i = 0; i < 12 && i < f.wrench.size(); ++i) {
-      power += f.wrench[i] * v[i];
-      size += std::abs(f.wrench[i] * v[i]);
-    }
+    for (std::size_t i = 0; i < 12 && i < f.wrench.size(); ++i) power += f.wrench[i] * v[i];
     return power;
   };
-  double work = 0.0, total = 0.0, stored = 0.0, size = 0.0;
+  double work = 0.0, total = 0.0, stored = 0.0;
   double before = 0.0;
   // The first time around lets internal variables settle; the second is a cycle.
   for (int i = 0; i < 2 * around; ++i) {
     walk.step(path.at((i + 1) * dt), path.acceleration(i * dt), dt);
     const ForceValues f = probe.forces(walk.now());
-    const double power = power_of(f, walk.now().markers, size);
+    const double power = power_of(f, walk.now().markers);
     if (i + 1 == around) stored = f.potential;
     if (i >= around) {
       work += 0.5 * dt * (before + power);
-      total += dt * size;
+      total += dt * std::abs(power);
     }
     before = power;
     if (i + 1 == 2 * around) stored = f.potential - stored;

@@ -14,8 +14,7 @@ constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(c
 }  // namespace
 
 struct JointProbe::Fed {
-  Fed(const JointProbe& probe, const JointMoment& moment)
-      : markers(moment.markers), z(moment.z), h(moment.h) {
+  Fed(const JointProbe& probe, const JointMoment& moment) : markers(moment.markers), z(moment.z), h(moment.h) {
     in = {moment.t, &markers.a, &markers.b, 0.0, 0.0, z.span(), h.span()};
     if (probe.layout_.coordinate == Coordinate::none) return;
     CoordinateRow row{};

@@ -69,7 +69,8 @@ class JointProbe {
   struct Fed;  // a JointInput and the numbers that it refers to
   using Call = std::function<bool(Message&)>;
   bool run(const char* function, const Call& call) const;
-  void watch(const char* function, std::initializer_list<const GuardedNumbers*> written, bool nan_allowed = false) const;
+  void watch(const char* function, std::initializer_list<const GuardedNumbers*> written,
+             bool nan_allowed = false) const;
 
   JointRef joint_;
   Space space_;

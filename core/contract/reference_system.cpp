@@ -103,7 +103,12 @@ std::vector<double> ReferenceSystem::rate(const std::vector<double>& y, double t
     return {y[1], -mass * gravity * arm * std::sin(y[0]) / (inertia + mass * arm * arm)};
   }
   const double force = -stiffness * y[0] - relaxing * (y[0] - y[6]) + drive * std::sin(drive_frequency * t);
-  return {y[3],        y[4], y[5], force / mass, -stiffness * y[1] / mass, -turning_stiffness * y[2] / inertia,
+  return {y[3],
+          y[4],
+          y[5],
+          force / mass,
+          -stiffness * y[1] / mass,
+          -turning_stiffness * y[2] / inertia,
           (y[0] - y[6]) / relaxation_time};
 }
 

@@ -27,9 +27,9 @@ enum class Order { rising, falling, equal };
 
 /// What a block says beyond its defaults.
 struct Plan {
-  std::set<std::string> given{};                                ///< optional parameters
-  std::map<std::string, int> words{};                           ///< choices, and words in the place of numbers
-  std::map<std::string, double> numbers{};                      ///< SI
+  std::set<std::string> given{};            ///< optional parameters
+  std::map<std::string, int> words{};       ///< choices, and words in the place of numbers
+  std::map<std::string, double> numbers{};  ///< SI
   std::map<std::string, std::shared_ptr<const ParameterBlock>> laws{};
   Order order = Order::rising;
 };
@@ -175,10 +175,18 @@ class Sampler {
     Instances instances;
     CreationFault fault;
     switch (component_.kind) {
-      case ComponentKind::joint: instances.create_joint(*block, fault); break;
-      case ComponentKind::integrator: instances.create_integrator(*block, fault); break;
-      case ComponentKind::friction_law: instances.create_friction_law(*block, fault); break;
-      case ComponentKind::contact_law: instances.create_contact_law(*block, sample_contact_pair(), fault); break;
+      case ComponentKind::joint:
+        instances.create_joint(*block, fault);
+        break;
+      case ComponentKind::integrator:
+        instances.create_integrator(*block, fault);
+        break;
+      case ComponentKind::friction_law:
+        instances.create_friction_law(*block, fault);
+        break;
+      case ComponentKind::contact_law:
+        instances.create_contact_law(*block, sample_contact_pair(), fault);
+        break;
     }
     if (!fault.id.empty() && found_.refusal.empty()) {
       found_.refusal = fault.path.empty() ? fault.text : "'" + fault.path + "': " + fault.text;
@@ -236,7 +244,8 @@ class Sampler {
 
   static std::string name_of_laws(const Plan& plan) {
     std::string words;
-    for (const auto& [name, block] : plan.laws) words += (words.empty() ? "" : ", ") + name + " " + block->component->description.name;
+    for (const auto& [name, block] : plan.laws)
+      words += (words.empty() ? "" : ", ") + name + " " + block->component->description.name;
     return words.empty() ? "as few as possible" : words;
   }
 

@@ -13,9 +13,9 @@ struct Slope {
 };
 
 /// Derivative at 0 of `f(x)`, which returns a vector of a fixed size or an empty one when it fails; `largest` is the
-/// largest step tried. Central differences for a sequence of steps, each a quarter of the last; of neighbours that agree
-/// best the extrapolation is taken. So neither the scale of f nor a kink at some distance has to be known. `error`
-/// counts the disagreement and the rounding of f; at a kink it is large.
+/// largest step tried. Central differences for a sequence of steps, each a quarter of the last; of neighbours that
+/// agree best the extrapolation is taken. So neither the scale of f nor a kink at some distance has to be known.
+/// `error` counts the disagreement and the rounding of f; at a kink it is large.
 template <class Function>
 Slope slope(Function&& f, double largest) {
   constexpr int steps = 15;

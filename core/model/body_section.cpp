@@ -59,6 +59,7 @@ void add_bodies(Draft& draft, const Part& part) {
     if (!draft.bodies.add(name)) continue;  // only after an instance name was refused
     Body& body = draft.model.bodies.emplace_back();
     body.name = name;
+    body.location = entry.key_location();
     body.gravity = draft.model.gravity;
     read_body(entry, body);
     const int id = static_cast<int>(draft.model.bodies.size()) - 1;

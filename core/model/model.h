@@ -21,6 +21,7 @@ inline constexpr BodyId ground = -1;
 
 struct Body {
   std::string name;
+  Location location;                    ///< of the entry
   double mass = 0.0;                    ///< [kg]
   std::array<double, 9> inertia{};      ///< about the centre of mass, body axes [kg m^2]; planar: the last entry
   Vector3 com{};                        ///< centre of mass in the body frame [m]

@@ -416,10 +416,10 @@ class Assembler {
     const VectorXd motion = n * lightest.vector;
     Eigen::Index worst = 0;
     motion.cwiseAbs().maxCoeff(&worst);
-    throw Error(
-        Error::Category::input, "singular-mass",
-        fmt::format("body '{}' can move without moving any mass", model_.bodies[at(static_cast<int>(worst) / 3)].name),
-        {}, "give it inertia, or hold that motion by a joint");
+    const Body& body = model_.bodies[at(static_cast<int>(worst) / 3)];
+    throw Error(Error::Category::input, "singular-mass",
+                fmt::format("body '{}' can move without moving any mass", body.name), body.location,
+                "give it inertia, or hold that motion by a joint");
   }
 
   ConstraintFacts facts_of(const System& system) {

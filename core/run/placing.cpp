@@ -149,6 +149,8 @@ void throw_motion_fault(const Model& model, const MotionFault& fault, Error::Cat
     location = model.kinematics[at(fault.kinematics)].path_location;
   } else if (fault.driver >= 0) {
     location = model.drivers[at(fault.driver)].location;
+  } else if (fault.force >= 0) {
+    location = model.forces[at(fault.force)].location;
   }
   throw Error(category, fault.id, fault.text, location);
 }

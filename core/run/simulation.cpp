@@ -115,6 +115,7 @@ bool Simulation::Impl::fail_with(const Fault& fault, double t) {
     const MotionFault& motion = fault.motion;
     std::string who;
     if (motion.driver >= 0) who = fmt::format("driver '{}': ", model.drivers[at(motion.driver)].name);
+    if (motion.force >= 0) who = fmt::format("force '{}': ", model.forces[at(motion.force)].name);
     if (motion.kinematics >= 0) who = fmt::format("driver '{}': ", model.kinematics[at(motion.kinematics)].name);
     return fail(4, fmt::format("t = {:.9g} s: {}{} [{}]", t, who, motion.text, motion.id));
   }

@@ -11,10 +11,11 @@
 
 namespace freeplay {
 
-/// Why a driver or a path has no value at some time.
+/// Why a driver, a path or an applied force has no value at some time.
 struct MotionFault {
   int driver = -1;      ///< index into Model::drivers, or -1
   int kinematics = -1;  ///< index into Model::kinematics, or -1
+  int force = -1;       ///< index into Model::forces, or -1
   const char* id = "";  ///< "ik-unreachable", "bad-expression", "bad-number"
   char text[256] = "";
 };

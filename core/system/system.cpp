@@ -425,6 +425,7 @@ bool System::evaluate_applied(const Point& point, Evaluation& e) const {
       if (!force.value[i].evaluate(point.t, jet, failure)) {
         e.fault.kind = Fault::Kind::motion;
         e.fault.motion = MotionFault{};
+        e.fault.motion.force = static_cast<int>(f);
         e.fault.motion.id = failure.id;
         abi::copy_text(e.fault.motion.text, sizeof e.fault.motion.text, failure.reason);
         return false;

@@ -177,15 +177,13 @@ class Cage final : public Joint {
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     channels[0] = flaw_ == Flaw::keeps_contact ? deepest_ : Gap(in).delta;
   }
-  double step_limit(const JointInput&) const override {
-    return flaw_ == Flaw::step_limit_zero ? 0.0 : unbounded;
-  }
+  double step_limit(const JointInput&) const override { return flaw_ == Flaw::step_limit_zero ? 0.0 : unbounded; }
   void initial_offset(Span<const double>, InitialOffset& out) const override {
     out.position[0] = flaw_ == Flaw::offset_nowhere ? std::numeric_limits<double>::quiet_NaN() : 0.001;
   }
 
  private:
-  static constexpr double clearance_ = 0.01, damping_ = 5.0, relaxing_stiffness_ = 8e3, tau_ = 0.02;
+  static constexpr double clearance_ = 0.01, damping_ = 0.5, relaxing_stiffness_ = 8e3, tau_ = 0.02;
 
   struct Gap {
     explicit Gap(const JointInput& in)

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <new>
 
 #include "broken_joints.h"
 
@@ -22,11 +23,13 @@ void Cage::declare(JointLayout& layout) const {
 void Cage::apply(const JointInput& in, JointForces& out) const {
   const Gap gap(in);
   const bool touches = gap.delta > 0.0;
+  if (relaxing_ && !out.derivatives.empty()) out.derivatives[12 * 25 + 24] = -1.0 / tau_;
   if (relaxing_) out.internal_rate[0] = ((touches ? gap.delta : 0.0) - in.internal[0]) / tau_;
   if (touches) {
     const double damping = flaw_ == Flaw::negative_damping ? -damping_ : damping_;
     double force = k_ * gap.delta + damping * gap.rate;
-    if (relaxing_) force += (flaw_ == Flaw::bristle_pushes ? -1.0 : 1.0) * relaxing_stiffness_ * (gap.delta - in.internal[0]);
+    if (relaxing_)
+      force += (flaw_ == Flaw::bristle_pushes ? -1.0 : 1.0) * relaxing_stiffness_ * (gap.delta - in.internal[0]);
     for (int i = 0; i < 2; ++i) {
       out.wrench_b[i] = -force * gap.n[i];
       out.wrench_a[i] = force * gap.n[i];
@@ -40,7 +43,9 @@ void Cage::apply(const JointInput& in, JointForces& out) const {
 void Cage::break_forces(const JointInput& in, JointForces& out) const {
   const bool asked = !out.derivatives.empty();
   switch (flaw_) {
-    case Flaw::no_reaction: std::fill_n(out.wrench_a, 6, 0.0); break;
+    case Flaw::no_reaction:
+      std::fill_n(out.wrench_a, 6, 0.0);
+      break;
     case Flaw::no_moment:
       // A force across the line of the origins needs a moment.
       out.wrench_b[0] += 1.0;
@@ -58,16 +63,23 @@ void Cage::break_forces(const JointInput& in, JointForces& out) const {
     case Flaw::force_with_derivatives:
       if (asked) out.wrench_b[5] += 1e-12, out.wrench_a[5] -= 1e-12;
       break;
-    case Flaw::counts_calls: out.potential += ++calls_ % 3; break;
+    case Flaw::counts_calls:
+      out.potential += ++calls_ % 3;
+      break;
     case Flaw::not_a_number:
       if (in.t > 0.5) out.potential = std::numeric_limits<double>::quiet_NaN();
       break;
     case Flaw::throws:
       if (in.t > 0.5) throw std::runtime_error("the cage is broken");
       break;
-    case Flaw::allocates: out.potential += 0.0 * *std::make_unique<double>(in.t); break;
-    case Flaw::writes_beside_rates: out.internal_rate.data[out.internal_rate.size] = 1.0; break;
-    default: break;
+    case Flaw::allocates:
+      ::operator delete(::operator new(8));
+      break;
+    case Flaw::writes_beside_rates:
+      out.internal_rate.data[out.internal_rate.size] = 1.0;
+      break;
+    default:
+      break;
   }
 }
 
@@ -98,7 +110,6 @@ void Cage::differentiate(const Gap& gap, double force, Span<double> table) const
     row[c] = -gap.n[c] / tau_;
     row[6 + c] = gap.n[c] / tau_;
   }
-  row[24] = -1.0 / tau_;
 }
 
 }  // namespace freeplay::test

@@ -31,8 +31,13 @@ constexpr Parameter picky_parameters[] = {
     {.name = "power", .default_value = 1.5, .minimum = 1.0, .maximum = 2.0, .summary = "Of the unit."},
     {.name = "young", .unit = "Pa", .default_value = optional, .minimum = 0.0, .summary = "Other way."},
     {.name = "poisson", .default_value = optional, .minimum = 0.0, .maximum = 0.5, .summary = "With it."},
-    {.name = "share", .default_value = 0.5, .minimum = 0.0, .maximum = 1.0, .open = Open::both,
-     .choices = "half|most", .summary = "A number or a word."},
+    {.name = "share",
+     .default_value = 0.5,
+     .minimum = 0.0,
+     .maximum = 1.0,
+     .open = Open::both,
+     .choices = "half|most",
+     .summary = "A number or a word."},
 };
 
 class Never final : public FrictionLaw {
@@ -109,7 +114,8 @@ TEST(DescriptionContract, FindsWrongNames) {
 }
 
 TEST(DescriptionContract, FindsWrongParameters) {
-  const Parameter good{.name = "block.share_of_E", .default_value = 0.5, .minimum = 0.0, .maximum = 1.0, .summary = "S."};
+  const Parameter good{
+      .name = "block.share_of_E", .default_value = 0.5, .minimum = 0.0, .maximum = 1.0, .summary = "S."};
   EXPECT_TRUE(describe_with(good).held()) << broken_rules(describe_with(good));
   const auto with = [&](auto change) {
     Parameter changed = good;

@@ -17,6 +17,34 @@ Findings judge(const J& joint, const J& twin) {
   return check_joint({handle(joint), handle(twin), Space::planar, true}, conditions);
 }
 
+/// In space: the x axis of a stands at a right angle to the y axis of b, Phi = x_a.y_b.
+class Square final : public Joint {
+ public:
+  explicit Square(double centripetal = 1.0) : centripetal_(centripetal) {}
+  void declare(JointLayout& layout) const override { layout.constraint_rows = 1; }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    const Eigen::Vector3d x = rotation(*in.a).col(0), y = rotation(*in.b).col(1);
+    const Eigen::Vector3d wa = vector3(in.a->angular_velocity), wb = vector3(in.b->angular_velocity);
+    rows.phi[0] = x.dot(y);
+    Eigen::Map<Eigen::Vector3d>(rows.jacobian.data + 3) = x.cross(y);
+    Eigen::Map<Eigen::Vector3d>(rows.jacobian.data + 9) = y.cross(x);
+    rows.gamma[0] = -centripetal_ * (wa.cross(wa.cross(x)).dot(y) + x.dot(wb.cross(wb.cross(y)))) -
+                    2.0 * wa.cross(x).dot(wb.cross(y));
+  }
+
+ private:
+  double centripetal_;
+};
+
+TEST(JointContract, JudgesMotionInSpace) {
+  const Square sound, flat(0.0);
+  const auto findings = [](const Square& joint) {
+    return check_joint({handle(joint), handle(joint), Space::spatial, true}, conditions);
+  };
+  EXPECT_TRUE(findings(sound).held()) << broken_rules(findings(sound));
+  EXPECT_TRUE(findings(flat).broken("gamma")) << broken_rules(findings(flat));
+}
+
 struct Case {
   Flaw flaw;
   const char* rule;
@@ -80,9 +108,8 @@ TEST(JointContract, FindsWrongInternalVariables) {
 }
 
 TEST(JointContract, FindsHiddenState) {
-  expect_found<Cage>({{Flaw::counts_calls, "no-hidden-state"},
-                      {Flaw::keeps_contact, "rollback"},
-                      {Flaw::event_rate, "event-rate"}});
+  expect_found<Cage>(
+      {{Flaw::counts_calls, "no-hidden-state"}, {Flaw::keeps_contact, "rollback"}, {Flaw::event_rate, "event-rate"}});
   const Cage soft(Flaw::none, false, 2e4), stiff(Flaw::none, false, 3e4);
   EXPECT_TRUE(judge(soft, stiff).broken("same-twin"));
 }

@@ -38,6 +38,7 @@ LIBRARIES = {
     "urdf_model": {"io"},
     "hdf5.h": {"io"},
     "openssl": {"io"},
+    "dlfcn.h": {"component"},
     "nlohmann": {"io", "cli"},
     "CLI": {"cli"},
     "fmt": EVERY_ROOM,

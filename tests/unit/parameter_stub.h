@@ -15,7 +15,7 @@ namespace freeplay::test {
 
 /// The row named `name` of a plugin's table.
 inline const Component& component(PluginEntry entry, const std::string& name) {
-  static const Host host{sizeof(Host), abi_version, abi_fingerprint};
+  static const Host host{sizeof(Host), abi_version, abi_fingerprint, struct_sizes};
   Manifest manifest{};
   if (entry(&host, &manifest) != Status::ok) throw std::runtime_error("the plugin refuses the host");
   for (const Component& row : manifest.components)

@@ -1,0 +1,139 @@
+#include "linear/row_rank.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace freeplay {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::span<const double> numbers(const RowMajor& m) { return {m.data(), static_cast<std::size_t>(m.size())}; }
+
+RowMajor random_matrix(int rows, int columns, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  RowMajor m(rows, columns);
+  for (Eigen::Index i = 0; i < m.size(); ++i) m.data()[i] = uniform(engine);
+  return m;
+}
+/// Product of random factors: rank `rank`.
+RowMajor of_rank(int rank, int rows, int columns, unsigned seed) {
+  return random_matrix(rows, rank, seed) * random_matrix(rank, columns, seed + 1);
+}
+long dependent(const RowRank& rank) { return std::ranges::count(rank.dependent(), char{1}); }
+
+TEST(RowRank, IndependentRowsAreAllKept) {
+  RowRank rank(4, 7);
+  EXPECT_EQ(rank.analyse(numbers(random_matrix(4, 7, 1))), 4);
+  EXPECT_EQ(rank.rank(), 4);
+  EXPECT_EQ(dependent(rank), 0);
+}
+
+TEST(RowRank, OneOfTwoEqualRowsIsDependent) {
+  RowMajor j = random_matrix(4, 6, 2);
+  j.row(3) = j.row(1);
+  RowRank rank(4, 6);
+  EXPECT_EQ(rank.analyse(numbers(j)), 3);
+  EXPECT_EQ(dependent(rank), 1);
+  EXPECT_EQ(rank.dependent()[1] + rank.dependent()[3], 1);
+}
+
+TEST(RowRank, KeptRowsSpanTheOthers) {
+  const RowMajor j = of_rank(3, 7, 9, 3);
+  RowRank rank(7, 9);
+  ASSERT_EQ(rank.analyse(numbers(j)), 3);
+  EXPECT_EQ(dependent(rank), 4);
+  RowMajor kept(3, 9);
+  int next = 0;
+  for (int r = 0; r < 7; ++r) {
+    if (!rank.dependent()[static_cast<std::size_t>(r)]) kept.row(next++) = j.row(r);
+  }
+  EXPECT_EQ(Eigen::FullPivLU<Eigen::MatrixXd>(kept).rank(), 3);
+}
+
+TEST(RowRank, MoreRowsThanColumnsAndZeroRows) {
+  RowRank many(6, 3), none(0, 3), zero(2, 3);
+  EXPECT_EQ(many.analyse(numbers(random_matrix(6, 3, 4))), 3);
+  EXPECT_EQ(dependent(many), 3);
+  EXPECT_EQ(none.analyse({}), 0);
+  EXPECT_EQ(zero.analyse(numbers(RowMajor::Zero(2, 3))), 0);
+  EXPECT_EQ(dependent(zero), 2);
+}
+
+// The threshold is 1e-10 of the largest pivot.
+TEST(RowRank, ToleranceIsRelativeToTheLargestPivot) {
+  for (const double scale : {1.0, 1e-6, 1e6}) {
+    RowMajor j(2, 3);
+    j << 1.0, 0.0, 0.0, 1.0, 1e-12, 0.0;
+    RowRank rank(2, 3);
+    EXPECT_EQ(rank.analyse(numbers(RowMajor(scale * j))), 1);
+    j(1, 1) = 1e-8;
+    EXPECT_EQ(rank.analyse(numbers(RowMajor(scale * j))), 2);
+  }
+}
+
+TEST(RowRank, CanBeUsedAgainAfterTheRankHasChanged) {
+  RowRank rank(3, 4);
+  EXPECT_EQ(rank.analyse(numbers(of_rank(2, 3, 4, 5))), 2);
+  EXPECT_EQ(rank.analyse(numbers(random_matrix(3, 4, 6))), 3);
+  EXPECT_EQ(dependent(rank), 0);
+  EXPECT_EQ(rank.analyse(numbers(of_rank(1, 3, 4, 7))), 1);
+  EXPECT_EQ(dependent(rank), 2);
+}
+
+/// Least-norm multipliers, judged by the conditions of a minimum on a null space that another decomposition gives.
+void expect_least_norm(const RowMajor& j, int first_driver, unsigned seed) {
+  const int rows = static_cast<int>(j.rows());
+  RowRank rank(rows, static_cast<int>(j.cols()));
+  rank.analyse(numbers(j));
+  const Eigen::VectorXd before = random_matrix(rows, 1, seed);
+  Eigen::VectorXd after = before;
+  rank.least_norm({after.data(), static_cast<std::size_t>(rows)}, first_driver);
+  // What the bodies feel is the same.
+  EXPECT_LT((j.transpose() * (after - before)).norm(), 1e-12 * j.norm());
+
+  const Eigen::MatrixXd null = Eigen::FullPivLU<Eigen::MatrixXd>(j.transpose()).kernel();
+  ASSERT_EQ(null.cols(), rows - rank.rank());
+  const int drivers = rows - first_driver;
+  const Eigen::MatrixXd null_drivers = null.bottomRows(drivers);
+  EXPECT_LT((null_drivers.transpose() * after.tail(drivers)).norm(), 1e-11) << "driver efforts";
+  // Directions that leave the drivers alone.
+  Eigen::FullPivLU<Eigen::MatrixXd> free(null_drivers);
+  free.setThreshold(1e-9);
+  if (free.dimensionOfKernel() == 0) return;
+  const Eigen::MatrixXd joints = (null * free.kernel()).topRows(first_driver);
+  EXPECT_LT((joints.transpose() * after.head(first_driver)).norm(), 1e-11) << "joint reactions";
+}
+
+TEST(LeastNorm, DriversComeBeforeJoints) {
+  expect_least_norm(of_rank(4, 7, 6, 10), 5, 11);  // three free directions, two drivers
+  expect_least_norm(of_rank(6, 7, 6, 12), 3, 13);  // one free direction, four drivers
+  expect_least_norm(of_rank(3, 8, 9, 14), 4, 15);  // five free directions, four drivers
+}
+
+TEST(LeastNorm, WithoutDriversJointsAloneAreLeast) {
+  const RowMajor j = of_rank(2, 4, 3, 16);
+  RowRank rank(4, 3);
+  rank.analyse(numbers(j));
+  Eigen::VectorXd lambda = random_matrix(4, 1, 17);
+  const Eigen::VectorXd want =
+      Eigen::MatrixXd(j.transpose()).completeOrthogonalDecomposition().solve(Eigen::VectorXd(j.transpose() * lambda));
+  rank.least_norm({lambda.data(), 4}, 4);
+  EXPECT_LT((lambda - want).norm(), 1e-12);
+}
+
+TEST(LeastNorm, FullRankIsLeftAlone) {
+  RowRank rank(3, 5);
+  rank.analyse(numbers(random_matrix(3, 5, 18)));
+  std::vector<double> lambda{1.0, -2.0, 3.0};
+  rank.least_norm(lambda, 2);
+  EXPECT_EQ(lambda, (std::vector<double>{1.0, -2.0, 3.0}));
+}
+
+}  // namespace
+}  // namespace freeplay
