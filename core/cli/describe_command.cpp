@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/suggestion.h"
 #include "cli/component_entry.h"
+#include "cli/plugins.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 
@@ -59,7 +60,7 @@ std::string component_text(const RegisteredComponent& entry, const Registry& reg
 
 int describe(const std::string& name, const CommonOptions& common) {
   if (name.empty()) throw Error(Error::Category::usage, "missing-argument", "describe needs the name of a type");
-  const Registry registry = Registry::with_builtins();
+  const Registry registry = load_registry(common, nullptr);
   // Names are unique within a kind only.
   const std::vector<RegisteredComponent> found = named(registry, name);
   if (found.empty()) unknown(registry, name);

@@ -4,6 +4,7 @@
 
 #include "base/suggestion.h"
 #include "cli/failure.h"
+#include "cli/plugins.h"
 #include "io/channel_selection.h"
 #include "io/yaml_document.h"
 #include "model/model_builder.h"
@@ -64,14 +65,17 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
 
 }  // namespace
 
-LoadedModel load_model(const std::string& file, const BuildOptions& build, const Registry& registry, bool strict) {
-  LoadedModel loaded{Diagnostics(strict), {}, {}, 0};
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
+  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
   loaded.document = read_yaml(file, loaded.diagnostics);
   try {
-    if (loaded.document) loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics);
+    if (loaded.document) {
+      const Registry registry = load_registry(common, &*loaded.document);
+      loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics);
+    }
     if (loaded.model) check_channels(*loaded.model, *loaded.document, loaded.diagnostics);
   } catch (const Error& error) {
-    keep(error, loaded, strict);
+    keep(error, loaded, common.strict);
   }
   if (loaded.diagnostics.has_errors() || !loaded.model) {
     loaded.model.reset();

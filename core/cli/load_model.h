@@ -7,7 +7,6 @@
 
 #include "base/diagnostics.h"
 #include "cli/options.h"
-#include "component/registry.h"
 #include "model/document.h"
 #include "model/model.h"
 #include "run/assembly.h"
@@ -22,8 +21,9 @@ struct LoadedModel {
   int exit_code = 0;  ///< 3 or 5 when something is wrong
 };
 
-/// Reads and checks `file`. Throws Error{usage} for what the options ask for and the model does not have.
-LoadedModel load_model(const std::string& file, const BuildOptions& build, const Registry& registry, bool strict);
+/// Reads and checks `file`, with the plugins that it and the options name. Throws Error{usage} for what the options ask
+/// for and the model does not have.
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common);
 
 /// A model that is ready to move. The system refers to the model.
 struct AssembledModel {

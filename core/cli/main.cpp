@@ -54,7 +54,6 @@ int execute(int argc, char** argv, CommonOptions& common) {
     throw Error(Error::Category::usage, "bad-usage", error.what());
   }
   refuse_unknown_words(program);
-  refuse_later_options(common);
   if (version) return print_version(common);
   for (const Command& command : commands) {
     if (command.app->parsed()) return command.execute();

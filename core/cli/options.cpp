@@ -44,7 +44,7 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
       })
       ->group(common_group);
   app.add_flag("--strict", options.strict, "Warnings in input files are errors")->group(common_group);
-  add_repeatable(app, "--plugin", options.plugins, "Load a plugin (not in this release)")
+  add_repeatable(app, "--plugin", options.plugins, "Load one more plugin, a path or a name; repeatable")
       ->type_name("LIB")
       ->group(common_group);
 }
@@ -57,10 +57,6 @@ void add_model_options(CLI::App& app, ModelOptions& options) {
                  "Close the clearance of a joint: name, pattern with * or all; repeatable")
       ->type_name("JOINT")
       ->group(model_group);
-}
-
-void refuse_later_options(const CommonOptions& options) {
-  if (!options.plugins.empty()) not_in_this_release("--plugin");
 }
 
 BuildOptions build_options(const ModelOptions& options) {

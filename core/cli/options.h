@@ -38,9 +38,6 @@ void add_model_options(CLI::App& app, ModelOptions& options);
 CLI::Option* add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
                             const std::string& help);
 
-/// Throws Error{usage} for an option that a later release will have.
-void refuse_later_options(const CommonOptions& options);
-
 /// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
 BuildOptions build_options(const ModelOptions& options);
 

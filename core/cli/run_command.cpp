@@ -206,7 +206,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
 int run(const RunOptions& options, const CommonOptions& common) {
   if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
   refuse_later_options(options);
-  LoadedModel loaded = load_model(options.model, build_options(options), Registry::with_builtins(), common.strict);
+  LoadedModel loaded = load_model(options.model, build_options(options), common);
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (!options.dry_run) check_result_directory(path, options.force);

@@ -29,8 +29,8 @@ struct Verdict {
   bool ok() const { return loaded.exit_code == 0; }
 };
 
-Verdict judge(const std::string& file, const ValidateOptions& options, const Registry& registry, bool strict) {
-  Verdict verdict{file, load_model(file, build_options(options.model), registry, strict), {}, {}};
+Verdict judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
+  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}};
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);
@@ -59,11 +59,10 @@ void print_verdict(const Verdict& verdict, const CommonOptions& common) {
 
 int validate(const ValidateOptions& options, const CommonOptions& common) {
   if (options.models.empty()) throw Error(Error::Category::usage, "missing-argument", "validate needs a model file");
-  const Registry registry = Registry::with_builtins();
   Json list = Json::array();
   int exit_code = 0;
   for (const std::string& file : options.models) {
-    const Verdict verdict = judge(file, options, registry, common.strict);
+    const Verdict verdict = judge(file, options, common);
     print_verdict(verdict, common);
     list.push_back(verdict_json(verdict, common.max_errors));
     exit_code = std::max(exit_code, verdict.loaded.exit_code);

@@ -84,7 +84,7 @@ class ModelBuilder {
     const auto name = top.find("name"), description = top.find("description"), space = top.find("space");
     if (name) model.name = name->string().value_or(model.name);
     if (description) description->string();
-    refuse_plugins(top.find("plugins"));
+    if (const auto plugins = top.find("plugins")) check_plugins(*plugins);
     top.refuse("urdf");
     if (space) {
       const std::optional<int> word = space->word({"planar", "spatial"});
@@ -99,14 +99,12 @@ class ModelBuilder {
     return true;
   }
 
-  static void refuse_plugins(const std::optional<CheckedValue>& plugins) {
-    if (!plugins || plugins->node().is_null()) return;
-    const auto items = plugins->list();
-    if (!items || items->empty()) return;
-    const CheckedValue& first = items->front();
-    const std::string word = first.string().value_or("");
-    throw Error(Error::Category::plugin, "plugin-not-found", "plugin '" + word + "' cannot be loaded", first.location(),
-                "not in this release");
+  // They were loaded before types are looked up; here only the words are checked.
+  static void check_plugins(const CheckedValue& plugins) {
+    if (plugins.node().is_null()) return;
+    if (const auto items = plugins.list()) {
+      for (const CheckedValue& item : *items) item.string();
+    }
   }
 
   void read_parameters(MapReader& top) {
@@ -218,6 +216,16 @@ class ModelBuilder {
 };
 
 }  // namespace
+
+std::vector<NamedPlugin> named_plugins(const Document& document) {
+  std::vector<NamedPlugin> plugins;
+  const Node* list = document.root().is_map() ? document.root().find("plugins") : nullptr;
+  if (list == nullptr || !list->is_list()) return plugins;
+  for (const Node* item : list->items) {
+    if (item->is_scalar()) plugins.push_back({item->text, item->location()});
+  }
+  return plugins;
+}
 
 std::unique_ptr<Model> build_model(const Document& document, const Registry& registry, const BuildOptions& options,
                                    Diagnostics& diagnostics) {

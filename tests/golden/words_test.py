@@ -66,7 +66,7 @@ class Words(ProgramTest):
     def test_later_options(self):
         model = mechanism("pendulum")
         for option in (["--accuracy", "1um"], ["--verify"], ["--profile"], ["--resume"], ["--format", "hdf5"],
-                       ["--format", "both"], ["--plugin", "x.so"]):
+                       ["--format", "both"]):
             _, err = self.freeplay("run", model, *option, code=2)
             self.assertIn("not in this release", err)
         self.assertEqual([], os.listdir(self.folder))

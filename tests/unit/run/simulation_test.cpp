@@ -1,0 +1,169 @@
+#include "run/simulation.h"
+
+#include <atomic>
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "faulty_joints.h"
+#include "validation/run_model.h"
+
+namespace freeplay {
+namespace {
+
+using ::testing::HasSubstr;
+using test::mechanism;
+using test::ModelRun;
+using test::replaced;
+
+std::string pendulum(const std::string& simulation) {
+  return replaced(mechanism("pendulum"), "simulation: {end: 2 s, step: 1 ms}", "simulation: " + simulation);
+}
+
+TEST(Simulation, RowsStandAtTheOutputInstants) {
+  const ModelRun run(pendulum("{start: 0.1 s, end: 0.15 s, step: 1 ms, output: {interval: 3.7 ms}}"));
+  ASSERT_EQ(run.rows(), 15u);  // 0.1 s, thirteen instants, the end
+  for (std::size_t k = 0; k + 1 < run.rows(); ++k) {
+    EXPECT_EQ(run.at(k, "time"), 0.1 + static_cast<double>(k) * 0.0037);
+  }
+  EXPECT_EQ(run.last("time"), 0.15);
+  EXPECT_EQ(run.outcome().rows, 15);
+  EXPECT_EQ(run.outcome().steps, 13 * 4 + 2);
+}
+
+TEST(Simulation, AnIntervalOfManyStepsCutsNone) {
+  const ModelRun run(pendulum("{end: 0.5 s, step: 0.1 ms, output: {interval: 1 ms}}"));
+  EXPECT_EQ(run.outcome().steps, 5000);
+  EXPECT_EQ(run.rows(), 501u);
+}
+
+TEST(Simulation, AStepLongerThanTheIntervalIsShortened) {
+  const ModelRun run(pendulum("{end: 10 ms, step: 1 s, output: {interval: 1 ms}}"));
+  EXPECT_EQ(run.outcome().steps, 10);
+}
+
+// A condition is met after the first accepted step past it; that row is the last.
+TEST(StopCondition, EndsTheRunPastALimit) {
+  const ModelRun run(pendulum("{end: 2 s, step: 1 ms, stop: [{channel: body.rod.omega, below: -3}]}"));
+  EXPECT_EQ(run.outcome().status, RunStatus::stopped);
+  EXPECT_EQ(run.outcome().exit_code, 0);
+  EXPECT_THAT(run.outcome().reason, HasSubstr("body.rod.omega"));
+  EXPECT_LT(run.last("body.rod.omega"), -3.0);
+  EXPECT_GT(run.last("body.rod.omega"), -3.0 - 0.02);  // one step of 15 rad/s^2
+  EXPECT_EQ(run.last("time"), run.outcome().time);
+}
+
+TEST(StopCondition, TakesNoNoticeBeforeItsTime) {
+  const ModelRun run(
+      pendulum("{end: 2 s, step: 1 ms, stop: [{channel: energy.kinetic, above: -1, after: 0.25 s}]}"));
+  EXPECT_EQ(run.outcome().status, RunStatus::stopped);
+  EXPECT_NEAR(run.outcome().time, 0.25, 1.001e-3);
+  EXPECT_GE(run.outcome().time, 0.25);
+}
+
+TEST(StopCondition, OneThatIsNeverMetLetsTheRunComplete) {
+  const ModelRun run(pendulum("{end: 0.1 s, step: 1 ms, stop: [{channel: body.rod.omega, above: 100}]}"));
+  EXPECT_EQ(run.outcome().status, RunStatus::completed);
+  EXPECT_EQ(run.outcome().time, 0.1);
+  EXPECT_EQ(run.outcome().reason, "");
+}
+
+TEST(Simulation, AnInterruptEndsAfterTheStepAndKeepsItsRow) {
+  const std::atomic<int> interrupt{2};
+  RunHooks hooks;
+  hooks.interrupt = &interrupt;
+  const ModelRun run(pendulum("{end: 2 s, step: 1 ms}"), {}, {}, test::builtin_types(), hooks);
+  EXPECT_EQ(run.outcome().status, RunStatus::interrupted);
+  EXPECT_EQ(run.outcome().exit_code, 130);
+  EXPECT_EQ(run.outcome().steps, 1);
+  EXPECT_EQ(run.rows(), 2u);
+  EXPECT_EQ(run.last("time"), 1e-3);
+}
+
+void expect_sound_rows(const ModelRun& run, double last_time) {
+  ASSERT_GT(run.rows(), 10u);
+  EXPECT_LE(run.last("time"), last_time);
+  EXPECT_GT(run.last("time"), last_time - 2.001e-3);
+  for (const double number : run.kept().numbers()) EXPECT_TRUE(std::isfinite(number));
+}
+
+TEST(FailedRun, AForceWithoutValueEndsItAndKeepsEarlierRows) {
+  const ModelRun run(replaced(pendulum("{end: 1 s, step: 1 ms, output: {interval: 1 ms}}"), "initial:",
+                              "forces: {wind: {type: force, at: rod, value: [\"sqrt(0.5 - t)\", 0]}}\ninitial:"));
+  EXPECT_EQ(run.outcome().status, RunStatus::failed);
+  EXPECT_EQ(run.outcome().exit_code, 4);
+  EXPECT_THAT(run.outcome().reason, HasSubstr("t = 0.5"));
+  expect_sound_rows(run, 0.5);
+}
+
+ModelRun run_faulty(const std::string& fault) {
+  return ModelRun(replaced(pendulum("{end: 1 s, step: 1 ms, output: {interval: 1 ms}}"), "joints:\n",
+                           "joints:\n  bad: {type: faulty, between: [ground, rod], at: 0.25, fault: " + fault + "}\n"),
+                  {}, {}, types_with_faulty_joint());
+}
+
+TEST(FailedRun, ANumberThatIsNoneEndsItAndKeepsEarlierRows) {
+  const ModelRun run = run_faulty("nan");
+  EXPECT_EQ(run.outcome().status, RunStatus::failed);
+  EXPECT_EQ(run.outcome().exit_code, 4);
+  EXPECT_THAT(run.outcome().reason, HasSubstr("not finite"));
+  EXPECT_GT(run.outcome().rejected, 0);
+  expect_sound_rows(run, 0.25);
+}
+
+TEST(FailedRun, AJointThatThrowsEndsItAndIsNamed) {
+  const ModelRun run = run_faulty("throw");
+  EXPECT_EQ(run.outcome().exit_code, 5);
+  EXPECT_THAT(run.outcome().reason, HasSubstr("'bad'"));
+  EXPECT_THAT(run.outcome().reason, HasSubstr("out of order"));
+  expect_sound_rows(run, 0.25);
+}
+
+// Four iterations for a stage are too few for long steps: they are halved until they converge, and counted.
+TEST(Recovery, StepsThatDoNotConvergeAreHalvedAndCounted) {
+  const std::string text = pendulum(
+      "{end: 1 s, step: 0.1 s, output: {interval: 0.1 s}, integrator: {type: bathe, newton: {max_iterations: 4}}}");
+  const ModelRun run(text);
+  EXPECT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  EXPECT_GT(run.outcome().rejected, 0);
+  EXPECT_GT(run.outcome().steps, 10);
+  EXPECT_EQ(run.rows(), 11u);
+  for (std::size_t k = 0; k < run.rows(); ++k) EXPECT_NEAR(run.at(k, "time"), 0.1 * static_cast<double>(k), 1e-15);
+  EXPECT_LT(run.statistics().position_residual(), 1e-10);
+}
+
+/// Cannot write from its third row on.
+class FullSink final : public Sink {
+ public:
+  void row(std::span<const double>) override { ++rows_; }
+  void event(const EventRecord&) override {}
+  bool ok() const override { return rows_ < 3; }
+
+ private:
+  int rows_ = 0;
+};
+
+TEST(FailedRun, ASinkThatCannotWriteEndsIt) {
+  const auto model = test::load(pendulum("{end: 1 s, step: 1 ms, output: {interval: 1 ms}}"));
+  System system(*model);
+  const Start start = assemble(system);
+  const Channels channels(*model);
+  FullSink sink;
+  Sink* const sinks[] = {&sink};
+  Simulation simulation(system, start, channels, sinks);
+  const Outcome outcome = simulation.run({});
+  EXPECT_EQ(outcome.status, RunStatus::failed);
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_LT(outcome.time, 5e-3);
+}
+
+TEST(Simulation, CountsItsWork) {
+  const ModelRun run(pendulum("{end: 0.1 s, step: 1 ms, output: {interval: 1 ms}}"));
+  EXPECT_EQ(run.outcome().steps, 100);
+  EXPECT_EQ(run.outcome().rejected, 0);
+  EXPECT_GE(run.outcome().iterations, 400);  // two stages, two iterations at least
+  EXPECT_GE(run.outcome().factorizations, 1);
+}
+
+}  // namespace
+}  // namespace freeplay
