@@ -98,6 +98,7 @@ struct Simulation::Impl {
   std::vector<int> stop_columns, with_history;
   std::vector<std::string> warnings;
   Outcome outcome;
+  Fault plugin_fault;  // of the last attempt
   Clock::time_point started;
   double last_progress = 0.0;
   static constexpr unsigned all_terms = term_position | term_velocity | term_force | term_coordinate;
@@ -189,13 +190,17 @@ bool Simulation::Impl::prepare_trial(double dt) {
 
 bool Simulation::Impl::step(double dt, bool& converged) {
   converged = false;
+  plugin_fault.kind = Fault::Kind::none;
   if (!prepare_trial(dt)) return false;
   solver.use_history(trial.h());
   StateView view = trial.view();
   Attempt attempt{};
   Message message;
   if (!settings.integrator.attempt(dt, view, {scratch.data(), scratch.size()}, solver.table(), attempt, message)) {
-    if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), *view.t);
+    // A joint may fail at a trial state that a shorter step does not meet; a driver fails by its time alone.
+    plugin_fault = solver.fault();
+    if (plugin_fault.kind == Fault::Kind::plugin) return true;
+    if (plugin_fault.kind == Fault::Kind::motion) return fail_with(plugin_fault, *view.t);
     if (!*solver.trouble()) {
       return fail(5, fmt::format("t = {:.9g} s: the integrator failed: {}", accepted.t(), message.text));
     }
@@ -307,6 +312,7 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
       if (!converged) {
         ++outcome.rejected;
         dt *= 0.5;
+        if (dt < smallest && plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());
         if (dt < smallest) return fail(4, why_not_converged(dt));
         continue;
       }

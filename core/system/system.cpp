@@ -20,6 +20,18 @@ double rate_of(const double* row, const MarkerKinematics& a, const MarkerKinemat
   return rate;
 }
 
+// A sum is finite only if every term is; differences of infinities are not finite either.
+bool is_finite(const JointForces& f) {
+  double sum = f.potential;
+  for (int i = 0; i < 6; ++i) sum += f.wrench_a[i] + f.wrench_b[i];
+  return std::isfinite(sum);
+}
+bool is_finite(const MarkerKinematics& k) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += k.position[i] + k.velocity[i] + k.angular_velocity[i];
+  return std::isfinite(sum);
+}
+
 // Largest distance between anything that the model places: bodies are as far apart as their markers let them be.
 double model_size(const Model& model) {
   double size = 0.0;
@@ -328,6 +340,13 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     double* wrench = &e.wrench[12 * at(j)];
     std::copy_n(out.wrench_a, 6, wrench);
     std::copy_n(out.wrench_b, 6, wrench + 6);
+    if (!is_finite(out) && is_finite(*in.a) && is_finite(*in.b)) {
+      abi::copy_text(e.fault.message.text, sizeof e.fault.message.text,
+                     "it returned a force that is not a finite number");
+      e.fault.kind = Fault::Kind::plugin;
+      e.fault.joint = j;
+      return false;
+    }
     e.potential[at(j)] = out.potential;
     const JointElement& element = model_.joints[at(j)];
     if (block.a != ground) planar::add_wrench(wrench, e.arms[at(element.marker_a)], &e.force[3 * at(block.a)]);
