@@ -5,11 +5,15 @@ namespace freeplay {
 Component revolute();
 Component prismatic();
 Component fixed();
+Component point_on_line();
+Component distance();
+Component spring_damper();
 Component revolute_clearance();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
   using namespace freeplay;
-  static const Component components[] = {revolute(), prismatic(), fixed(), revolute_clearance()};
+  static const Component components[] = {revolute(),      prismatic(),         fixed(), point_on_line(), distance(),
+                                         spring_damper(), revolute_clearance()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

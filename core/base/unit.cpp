@@ -244,7 +244,14 @@ std::string si_unit(const Dimension& dimension) {
 }
 
 Unit parse_unit(std::string_view text, const ExponentLookup& exponents) {
-  return UnitReader(text, 0, exponents).read(true);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos || !exponents) return UnitReader(text, 0, exponents).read(true);
+  const std::optional<double> index = exponents(text.substr(0, colon));
+  std::string_view rest = text.substr(colon + 1);
+  for (double i = 0.0; i < index.value_or(0.0) && rest.find('|') != std::string_view::npos; ++i) {
+    rest.remove_prefix(rest.find('|') + 1);
+  }
+  return UnitReader(rest.substr(0, rest.find('|')), 0, exponents).read(true);
 }
 
 Unit parse_unit_at(std::string_view text, std::size_t& position) {

@@ -51,11 +51,12 @@ struct Unit {
   Dimension dimension;
 };
 
-/// Value of a name that stands as an exponent, or nothing when there is no such name.
+/// Value of a name that stands as an exponent or chooses among units, or nothing when it has none.
 using ExponentLookup = std::function<std::optional<double>(std::string_view name)>;
 
 /// Reads a whole unit such as "kg*m^2", "N/m^1.5", "rad/s"; "1" is dimensionless and may begin a quotient ("1/s").
-/// With `exponents`, an exponent may be a name, as in "N/m^exponent".
+/// With `exponents`, an exponent may be a name, as in "N/m^exponent"; "NAME: UNIT | UNIT" is the unit at the index that
+/// NAME has as its value, the first when it has none.
 /// Throws ExpressionError `bad-unit`.
 Unit parse_unit(std::string_view text, const ExponentLookup& exponents = {});
 

@@ -76,8 +76,11 @@ ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(pa
 }
 
 void ResultDirectory::write(std::string_view name, std::string_view text) const {
-  const fs::path temporary = path_ / fmt::format(".{}.part", name);
+  const fs::path target = path_ / name;
+  const fs::path temporary = target.parent_path() / fmt::format(".{}.part", target.filename().string());
   std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  require(error, "make the directory", target.parent_path());
   try {
     GrowingFile file(temporary);
     file.line() += text;
@@ -86,8 +89,8 @@ void ResultDirectory::write(std::string_view name, std::string_view text) const 
     fs::remove(temporary, error);
     throw;
   }
-  fs::rename(temporary, path_ / name, error);
-  require(error, "write", path_ / name);
+  fs::rename(temporary, target, error);
+  require(error, "write", target);
 }
 
 std::vector<std::string> ResultDirectory::files() const {

@@ -24,7 +24,8 @@ class ResultDirectory {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(std::string_view name) const { return path_ / name; }
-  /// Writes a whole file under a temporary name and renames it, so that it is there complete or not at all.
+  /// Writes a whole file under a temporary name and renames it, so that it is there complete or not at all. A name such
+  /// as "inputs/motor.csv" stands in a folder of the directory.
   /// Throws Error{file}.
   void write(std::string_view name, std::string_view text) const;
   /// Sorted names of what is there.

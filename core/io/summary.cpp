@@ -125,6 +125,7 @@ Json joints_part(const RunRecord& record) {
   Json part = Json::object();
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     const JointElement& joint = record.model.joints[i];
+    if (joint.is_force) continue;
     const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
     const bool touches = has_contact_statistics(record.channels.joints[i]);
     const auto contact = [&](double value) { return touches ? json_number(value) : Json(nullptr); };

@@ -301,22 +301,22 @@ class TreeBuilder : public YAML::EventHandler {
   void describe_scalar(Node& node, std::size_t begin, std::string_view value) {
     node.text = value;
     const char first = begin < text_.size() ? text_[begin] : '\0';
-    const std::size_t line_end = std::min(text_.find_first_of("\r\n", begin), text_.size());
     if (first == '|' || first == '>') {
       node.quoted = true;
       refuse_if(find_block_scalar_fault(text_, begin, block_indent()));
       return;
     }
-    std::size_t end = line_end;
+    // Only as far as the scalar goes: a line may hold a whole file.
+    std::size_t end = begin + value.size();
     if (first == '"' || first == '\'') {
       node.quoted = true;
       refuse_if(find_quoted_fault(text_, begin, block_indent()));
-      end = std::min(line_end, quoted_end(text_, begin));
+      end = quoted_end(text_, begin);
       node.verbatim = end > begin + 1 && text_.substr(begin + 1, end - begin - 2) == value;
-    } else if (text_.substr(begin, value.size()) == value) {
-      node.verbatim = true;
-      end = begin + value.size();
+    } else {
+      node.verbatim = text_.substr(begin, value.size()) == value;
     }
+    end = begin + std::min(text_.substr(begin, end - begin).find_first_of("\r\n"), end - begin);
     if (node.verbatim) require_colon(begin, end);
     node.length = std::max(1, character_count(text_.substr(begin, end - begin)));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "component/registry.h"
 #include "model/build_options.h"
+#include "model/csv_text.h"
 #include "model/map_reader.h"
 #include "model/name_table.h"
 #include "model/part.h"
@@ -36,6 +38,11 @@ struct Draft {
   NameTable bodies, joints, drivers, forces;
   std::vector<bool> joint_usable;   ///< false: its own mistakes were reported, its coordinate is unknown
   std::vector<bool> ideal_matched;  ///< by index of options.ideal
+
+  std::map<std::string, std::unique_ptr<const CsvText>> tables;  ///< files with tables, by path
+  std::unordered_map<BodyId, std::string> own_gravity;           ///< bodies that a force gives theirs, and its name
+  /// Inverse-kinematics entries that say `elbow`, and where.
+  std::vector<std::pair<int, CheckedValue>> elbows;
 
   std::unordered_map<int, std::string> prescribed;  ///< joints whose coordinate a driver prescribes, and its name
 

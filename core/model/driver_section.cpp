@@ -3,6 +3,8 @@
 #include <array>
 
 #include "model/kinematics_keys.h"
+#include "model/leg.h"
+#include "model/table_keys.h"
 
 namespace freeplay {
 namespace {
@@ -55,8 +57,10 @@ class DriverEntry {
     if (!map_.good()) return;
     if (map_.has("inverse_kinematics")) {
       map_.conflict("joint", "inverse_kinematics");
-      for (const char* key : {"joint", "kind", "value"}) map_.find(key);
-      if (!map_.has("joint")) map_.conflict("inverse_kinematics", "value");
+      for (const char* key : {"joint", "kind", "value", "table"}) map_.find(key);
+      if (!map_.has("joint")) {
+        for (const char* key : {"value", "table"}) map_.conflict("inverse_kinematics", key);
+      }
       read_kinematics(*map_.find("inverse_kinematics"));
     } else {
       map_.refuse("inverse_kinematics", "");
@@ -74,7 +78,7 @@ class DriverEntry {
   void read_driver() {
     const auto joint_value = map_.require("joint");
     const auto kind_value = map_.require("kind");
-    const auto value = read_value_key();
+    const auto value = read_function_key();
     const std::optional<int> joint = joint_value ? draft_.joint(*joint_value, part_) : std::nullopt;
     const std::optional<int> word = kind_value ? kind_value->word(kind_words) : std::nullopt;
     add_name();
@@ -94,22 +98,24 @@ class DriverEntry {
     driver.kind = kind;
     if (prescribes(kind)) claim(*joint, entry_, driver.name);
     if (!value) return;
-    std::optional<Expression> expression = value->time_function(dimension_of(kind, coordinate));
-    if (!expression) return;
-    driver.value = std::move(*expression);
+    const Dimension dimension = dimension_of(kind, coordinate);
+    if (value->key() == "table") {
+      driver.table = read_table(draft_, *value, dimension);
+      if (!driver.table) return;
+    } else {
+      std::optional<Expression> expression = value->time_function(dimension);
+      if (!expression) return;
+      driver.value = std::move(*expression);
+    }
     draft_.model.drivers.push_back(std::move(driver));
   }
 
-  std::optional<CheckedValue> read_value_key() {
-    const auto value = map_.find("value");
-    if (map_.conflict("value", "table")) {
-      map_.find("table");
-    } else if (map_.has("table")) {
-      map_.refuse("table", "not in this release");
-    } else if (!value) {
-      map_.report_missing("value");
-    }
-    return value;
+  /// `value` or `table`; the key tells which.
+  std::optional<CheckedValue> read_function_key() {
+    const auto value = map_.find("value"), table = map_.find("table");
+    if (map_.conflict("value", "table")) return std::nullopt;
+    if (!value && !table) map_.report_missing("value");
+    return value ? value : table;
   }
 
   void add_name() {
@@ -165,7 +171,8 @@ class DriverEntry {
     kinematics.path = *components;
     kinematics.first_driver = static_cast<int>(draft_.model.drivers.size());
     kinematics.driver_count = static_cast<int>(count);
-    for (std::size_t i = 0; i < count; ++i) expand((*driven)[i], (*modes)[i], elbow.has_value(), joints->location());
+    for (std::size_t i = 0; i < count; ++i) expand((*driven)[i], (*modes)[i], joints->location());
+    if (elbow) draft_.elbows.emplace_back(static_cast<int>(draft_.model.kinematics.size()), *elbow);
     draft_.model.kinematics.push_back(std::move(kinematics));
   }
 
@@ -185,7 +192,7 @@ class DriverEntry {
     return good;
   }
 
-  void expand(int joint, int mode, bool given, const Location& place) {
+  void expand(int joint, int mode, const Location& place) {
     Driver driver;
     driver.name = element(joint).name;
     driver.location = place;
@@ -194,7 +201,6 @@ class DriverEntry {
         element(joint).ideal_layout.coordinate == Coordinate::angle ? DriverKind::angle : DriverKind::position;
     driver.kinematics = static_cast<int>(draft_.model.kinematics.size());
     driver.elbow = mode;
-    driver.elbow_given = given;
     draft_.model.drivers.push_back(std::move(driver));
   }
 
@@ -212,6 +218,19 @@ void add_drivers(Draft& draft, const Part& part) {
   for (const CheckedValue& entry : entries_of(*section)) {
     Draft::check_name(entry);
     DriverEntry(draft, part, entry).read();
+  }
+}
+
+void warn_ignored_elbows(const Draft& draft) {
+  const Model& model = draft.model;
+  for (const auto& [index, place] : draft.elbows) {
+    const InverseKinematics& entry = model.kinematics[static_cast<std::size_t>(index)];
+    for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
+      if (closed_form_leg(model, d)) continue;
+      place.warn_at_key("elbow-ignored", "joint '" + model.drivers[static_cast<std::size_t>(d)].name +
+                                             "' does not move a crank and a coupler that carry the frame; it follows "
+                                             "the start, not 'elbow'");
+    }
   }
 }
 

@@ -1,11 +1,10 @@
 #include "model/force_section.h"
 
+#include "model/joint_section.h"
 #include "model/name_rule.h"
 
 namespace freeplay {
 namespace {
-
-const std::vector<std::string> type_words = {"force", "torque", "gravity"};
 
 /// Reads one entry of `forces`.
 class ForceEntry {
@@ -24,10 +23,7 @@ class ForceEntry {
     } else if (*word == "gravity") {
       read_gravity();
     } else {
-      const std::string suggested = nearest(*word, type_words);
-      type->fail("unknown-type", "unknown type '" + *word + "' in '" + type->path() + "'", suggested,
-                 suggested.empty() ? "not in this release, which has " + either(type_words) : "");
-      return;
+      return add_force_joint(draft_, part_, entry_);
     }
     map_.finish();
   }
@@ -48,7 +44,7 @@ class ForceEntry {
     if (!good) return;
     force.marker = *marker;
     force.frame_axes = *word == 1;
-    draft_.model.forces.push_back(std::move(force));
+    add(std::move(force));
   }
 
   void read_torque() {
@@ -59,7 +55,12 @@ class ForceEntry {
     const bool good = value && append(*value, dimension::torque, torque);
     if (!good || !body) return;
     torque.marker = draft_.marker(draft_.body_name(*body) + (*body == ground ? "/origin" : "/com"));
-    draft_.model.forces.push_back(std::move(torque));
+    add(std::move(torque));
+  }
+
+  void add(AppliedForce force) {
+    draft_.model.force_elements.push_back({static_cast<int>(draft_.model.forces.size()), -1});
+    draft_.model.forces.push_back(std::move(force));
   }
 
   void read_gravity() {
@@ -70,9 +71,21 @@ class ForceEntry {
     if (!items) return;
     for (const CheckedValue& item : *items) {
       for (const BodyId body : bodies(item)) {
-        if (acceleration && body != ground) draft_.model.bodies[static_cast<std::size_t>(body)].gravity = *acceleration;
+        if (acceleration && body != ground && claim(body, item)) {
+          draft_.model.bodies[static_cast<std::size_t>(body)].gravity = *acceleration;
+        }
       }
     }
+  }
+
+  /// Order has no meaning, so of two entries for one body neither could win.
+  bool claim(BodyId body, const CheckedValue& item) {
+    const std::string name = part_.full(entry_.key());
+    const auto [owner, fresh] = draft_.own_gravity.emplace(body, name);
+    if (fresh || owner->second == name) return true;
+    item.fail("duplicate-name",
+              "body '" + draft_.body_name(body) + "' has its gravity from '" + owner->second + "' already");
+    return false;
   }
 
   std::vector<BodyId> bodies(const CheckedValue& item) const {

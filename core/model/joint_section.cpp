@@ -1,5 +1,6 @@
 #include "model/joint_section.h"
 
+#include "model/gear.h"
 #include "model/name_rule.h"
 #include "model/parameter_check.h"
 
@@ -12,7 +13,7 @@ bool serves(Space space, Space model_space) {
   return (static_cast<unsigned>(space) & static_cast<unsigned>(model_space)) != 0;
 }
 
-/// Reads one entry of `joints`.
+/// Reads one entry of `joints`, or one of `forces` that is a joint.
 class JointEntry {
  public:
   JointEntry(Draft& draft, const Part& part, const CheckedValue& entry, std::size_t index)
@@ -21,17 +22,35 @@ class JointEntry {
   void read() {
     if (!map_.good()) return;
     const auto type = map_.require("type");
-    const Component* named = type ? find_type(draft_.registry, ComponentKind::joint, *type) : nullptr;
+    if (!element().is_force && type && type->node().is_scalar() && type->node().text == gear_word) {
+      make_gear(element());
+      draft_.joint_usable[index_] = true;
+      return;
+    }
+    const Component* named = type ? find_type(draft_.registry, ComponentKind::joint, *type, other_words()) : nullptr;
     read_ends(named);
     // Without a type nobody knows which keys are allowed.
     if (named == nullptr || !serves_space(*named, *type)) return;
     choose_twins(*named);
     create();
     map_.finish();
+    if (element().is_force) require_force(*type);
   }
 
  private:
   JointElement& element() { return draft_.model.joints[index_]; }
+
+  /// Words that are not in the registry and that this section knows.
+  std::vector<std::string> other_words() const {
+    if (draft_.model.joints[index_].is_force) return {"force", "torque", "gravity"};
+    return {gear_word};
+  }
+
+  void require_force(const CheckedValue& type) {
+    if (component_ == ideal_ && (!draft_.joint_usable[index_] || element().layout.constraint_rows == 0)) return;
+    type.fail("unknown-type", "the type '" + type.node().text + "' is a joint, not a force", {},
+              "write it under 'joints'");
+  }
 
   bool serves_space(const Component& named, const CheckedValue& type) {
     const Space space = draft_.model.space;
@@ -185,6 +204,17 @@ void add_joints(Draft& draft, const Part& part) {
     draft.joint_usable.push_back(false);
     JointEntry(draft, part, entry, draft.model.joints.size() - 1).read();
   }
+}
+
+void add_force_joint(Draft& draft, const Part& part, const CheckedValue& entry) {
+  const int index = static_cast<int>(draft.model.joints.size());
+  JointElement& element = draft.model.joints.emplace_back();
+  element.name = part.full(entry.key());
+  element.location = entry.key_location();
+  element.is_force = true;
+  draft.joint_usable.push_back(false);
+  draft.model.force_elements.push_back({-1, index});
+  JointEntry(draft, part, entry, static_cast<std::size_t>(index)).read();
 }
 
 void require_ideal_matches(const Draft& draft) {

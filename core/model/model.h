@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "base/error.h"
 #include "base/expression.h"
 #include "component/instances.h"
+#include "model/time_table.h"
 
 namespace freeplay {
 
@@ -21,39 +23,49 @@ inline constexpr BodyId ground = -1;
 
 struct Body {
   std::string name;
-  Location location;                    ///< of the entry
-  double mass = 0.0;                    ///< [kg]
-  std::array<double, 9> inertia{};      ///< about the centre of mass, body axes [kg m^2]; planar: the last entry
-  Vector3 com{};                        ///< centre of mass in the body frame [m]
-  Vector3 gravity{};                    ///< acceleration of free fall [m/s^2]
-  std::optional<Vector3> position;      ///< starting guess of the body frame [m]
-  std::optional<double> angle;          ///< planar starting guess [rad]
-  Vector3 velocity{};                   ///< starting guess for the body frame's origin [m/s]
-  Vector3 angular_velocity{};           ///< [rad/s]; planar: z
+  Location location;                ///< of the entry
+  double mass = 0.0;                ///< [kg]
+  std::array<double, 9> inertia{};  ///< about the centre of mass, body axes [kg m^2]; planar: the last entry
+  Vector3 com{};                    ///< centre of mass in the body frame [m]
+  Vector3 gravity{};                ///< acceleration of free fall [m/s^2]
+  std::optional<Vector3> position;  ///< starting guess of the body frame [m]
+  std::optional<double> angle;      ///< planar starting guess [rad]
+  Vector3 velocity{};               ///< starting guess for the body frame's origin [m/s]
+  Vector3 angular_velocity{};       ///< [rad/s]; planar: z
 };
 
 /// Point with axes fixed on a body ("frame" in model files).
 struct Marker {
   BodyId body = ground;
-  std::string name;      ///< BODY/FRAME
-  Vector3 position{};    ///< in the body frame [m]
-  double angle = 0.0;    ///< planar [rad]
+  std::string name;    ///< BODY/FRAME
+  Vector3 position{};  ///< in the body frame [m]
+  double angle = 0.0;  ///< planar [rad]
 };
 
-/// A joint or a force between two markers.
+/// A joint or a force between two markers; a gear has rows but no markers of its own.
 struct JointElement {
   std::string name;
-  Location location;                    ///< of the entry
-  const Component* component = nullptr; ///< the type that runs
+  Location location;                     ///< of the entry
+  const Component* component = nullptr;  ///< the type that runs
   JointRef joint;
   JointLayout layout;
-  int marker_a = 0, marker_b = 0;       ///< indices into Model::markers
+  int marker_a = 0, marker_b = 0;  ///< indices into Model::markers
   // The ideal twin of a joint with play; equal to the above for all others.
   const Component* ideal_component = nullptr;
   JointRef ideal;
   JointLayout ideal_layout;
   bool has_play = false;
+  bool is_force = false;                                ///< an entry of `forces`
+  int gear = -1;                                        ///< index into Model::gears
   std::optional<double> start_coordinate, start_speed;  ///< held exactly while assembling (`initial`)
+};
+
+/// coordinate(second) = ratio coordinate(first) + offset.
+struct Gear {
+  int joint = 0;                 ///< index into Model::joints of the gear itself
+  int first = 0, second = 0;     ///< joints that it couples
+  double ratio = 1.0;            ///< plain, m/rad or rad/m
+  std::optional<double> offset;  ///< [rad or m]; empty: what the assembled start has
 };
 
 enum class DriverKind { angle, position, velocity, torque, force };
@@ -65,10 +77,10 @@ struct Driver {
   Location location;
   int joint = 0;
   DriverKind kind = DriverKind::angle;
-  Expression value;             ///< of time; unused when `kinematics` is set
-  int kinematics = -1;          ///< index into Model::kinematics: motion by inverse kinematics
-  int elbow = 1;                ///< working mode of the leg, 1 or -1
-  bool elbow_given = false;
+  Expression value;  ///< of time; unused when `table` or `kinematics` is set
+  std::shared_ptr<const TimeTable> table;
+  int kinematics = -1;  ///< index into Model::kinematics: motion by inverse kinematics
+  int elbow = 1;        ///< working mode of the leg, 1 or -1
 };
 
 /// The frame of an inverse-kinematics entry and its path. Its drivers are neighbours in Model::drivers.
@@ -87,9 +99,21 @@ struct AppliedForce {
   std::string name;
   Location location;
   ForceKind kind = ForceKind::force;
-  int marker = 0;                   ///< torque: the marker `com` of the body
-  bool frame_axes = false;          ///< force: components in the marker's axes instead of world axes
-  std::vector<Expression> value;    ///< force: 2 or 3 [N]; torque: 1 or 3 [N m]
+  int marker = 0;                 ///< torque: the marker `com` of the body
+  bool frame_axes = false;        ///< force: components in the marker's axes instead of world axes
+  std::vector<Expression> value;  ///< force: 2 or 3 [N]; torque: 1 or 3 [N m]
+};
+
+/// An entry of `forces` that reports results: an applied force, or a joint without rows.
+struct ForceElement {
+  int applied = -1;  ///< index into Model::forces
+  int joint = -1;    ///< index into Model::joints
+};
+
+/// A file that the model was read from besides its own.
+struct InputFile {
+  std::string name;  ///< without folder, unique
+  std::string text;  ///< byte for byte
 };
 
 /// Ends a run, successfully.
@@ -106,12 +130,12 @@ struct Settings {
   double step = 1e-4;             ///< [s]
   ParameterBlock integrator_parameters;
   IntegratorRef integrator;
-  double interval = 0.0;                      ///< of output rows [s]
-  double discard = 0.0;                       ///< left out of statistics, from the start [s]
-  std::vector<std::string> channels{"*"};     ///< patterns of result columns
-  std::vector<int> frames;                    ///< markers to report
+  double interval = 0.0;                   ///< of output rows [s]
+  double discard = 0.0;                    ///< left out of statistics, from the start [s]
+  std::vector<std::string> channels{"*"};  ///< patterns of result columns
+  std::vector<int> frames;                 ///< markers to report
   std::vector<StopCondition> stop;
-  double assembly_tolerance = 1e-10;          ///< [m, rad]
+  double assembly_tolerance = 1e-10;  ///< [m, rad]
   int assembly_iterations = 50;
 };
 
@@ -121,10 +145,13 @@ struct Model {
   Vector3 gravity{};
   std::vector<Body> bodies;
   std::vector<Marker> markers;
-  std::vector<JointElement> joints;
+  std::vector<JointElement> joints;  ///< joints and gears as declared, then forces between markers
+  std::vector<Gear> gears;
   std::vector<Driver> drivers;
   std::vector<InverseKinematics> kinematics;
   std::vector<AppliedForce> forces;
+  std::vector<ForceElement> force_elements;  ///< in declaration order
+  std::vector<InputFile> inputs;
   Settings settings;
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set, name and text
   std::vector<std::string> ideal;                              ///< --ideal, as asked for

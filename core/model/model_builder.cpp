@@ -10,6 +10,7 @@
 #include "model/driver_section.h"
 #include "model/force_section.h"
 #include "model/frame_section.h"
+#include "model/gear.h"
 #include "model/initial_section.h"
 #include "model/joint_section.h"
 #include "model/name_rule.h"
@@ -54,6 +55,7 @@ class ModelBuilder {
     read_sections();
     top.finish();
     if (!diagnostics_.has_errors()) require_ideal_matches(draft_);
+    if (!diagnostics_.has_errors()) warn_ignored_elbows(draft_);
     warn_unused();
     if (diagnostics_.has_errors()) return nullptr;
     return std::make_unique<Model>(std::move(draft_.model));
@@ -154,6 +156,7 @@ class ModelBuilder {
     for (const Part& part : draft_.parts) add_bodies(draft_, part);
     for (const Part& part : draft_.parts) add_frames(draft_, part);
     for (const Part& part : draft_.parts) add_joints(draft_, part);
+    for (const Part& part : draft_.parts) add_gears(draft_, part);
     for (const Part& part : draft_.parts) add_drivers(draft_, part);
     for (const Part& part : draft_.parts) add_forces(draft_, part);
     if (initial_) read_initial(draft_, *initial_);

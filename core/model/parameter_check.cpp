@@ -1,5 +1,6 @@
 #include "model/parameter_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -29,6 +30,9 @@ class ParameterCheck {
     const ParameterTree tree(component_.description.parameters);
     bind_children(tree, entry, "");
     std::vector<Binding> waiting = std::move(bindings_);
+    // Words come first: they choose units.
+    std::stable_partition(waiting.begin(), waiting.end(),
+                          [](const Binding& b) { return b.parameter->kind == ParameterKind::choice; });
     // A unit whose exponent is a parameter waits until that one is known.
     for (const bool last : {false, true}) {
       std::vector<Binding> later;
@@ -107,6 +111,7 @@ class ParameterCheck {
     const auto exponent = [&](std::string_view name) -> std::optional<double> {
       const auto found = block_.values.find(name);
       if (found != block_.values.end() && std::isfinite(found->second.number)) return found->second.number;
+      if (found != block_.values.end() && found->second.word >= 0) return found->second.word;
       // The exponent itself was in error: its unit is a guess, but the mistake has been reported.
       return last && !good_ ? std::optional<double>(1.0) : std::nullopt;
     };
@@ -243,12 +248,14 @@ CheckedParameters check_parameters(const Component& component, MapReader& entry,
   return ParameterCheck(component, registry).run(entry);
 }
 
-const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value) {
+const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,
+                           const std::vector<std::string>& others) {
   const std::optional<std::string> word = value.string();
   if (!word) return nullptr;
   const Component* found = registry.find(kind, *word);
   if (found != nullptr) return found;
-  const std::vector<std::string> names = registry.names(kind);
+  std::vector<std::string> names = registry.names(kind);
+  names.insert(names.end(), others.begin(), others.end());
   const std::string suggested = nearest(*word, names);
   value.fail("unknown-type", "unknown type '" + *word + "' in '" + value.path() + "'", suggested,
              suggested.empty() ? "not in this release, which has " + either(names) : "");

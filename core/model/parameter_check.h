@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "component/instances.h"
 #include "component/registry.h"
@@ -21,8 +22,9 @@ struct CheckedParameters {
 /// entry. Maps within it are finished here.
 CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry);
 
-/// The type `word` of this kind, or null after `unknown-type` at `value`.
-const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value);
+/// The type `word` of this kind, or null after `unknown-type` at `value`, which may suggest one of `others` too.
+const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,
+                           const std::vector<std::string>& others = {});
 
 /// Reports a constructor's complaint at the place in `entry` that it names. Throws Error{plugin} when the constructor
 /// failed for another reason.

@@ -1,5 +1,6 @@
 #include "run/assembly.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 #include "linear/dense_solve.h"
 #include "run/newton_stage_solver.h"
 #include "run/placing.h"
+#include "system/path_follower.h"
 
 namespace freeplay {
 namespace {
@@ -42,6 +44,7 @@ class Assembler {
     choose_held_coordinates();
     place_bodies(closed_, held_, state_.q());
     remember_turns();
+    if (std::ranges::any_of(followed_, [](char yes) { return yes != 0; })) follow_paths();
     set_offsets({});
     solve_positions();
     check_paths();
@@ -92,7 +95,14 @@ class Assembler {
       const Driver& driver = model_.drivers[at(d)];
       if (!prescribes(driver.kind) || driver.kind == DriverKind::velocity) continue;
       driven[at(driver.joint)] = 1;
+      if (closed_.motions().follows(d)) continue;
       held_[at(driver.joint)] = motion[at(d)].value;
+    }
+    for (const Gear& gear : model_.gears) {
+      if (!gear.offset) held_row_[at(closed_.layout().rows(gear.joint).offset)] = 0;
+    }
+    for (int k = 0; k < static_cast<int>(model_.kinematics.size()); ++k) {
+      followed_.push_back(closed_.motions().entry_follows(k) ? 1 : 0);
     }
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       if (model_.joints[at(j)].start_coordinate && !driven[at(j)]) leads_.push_back(j);
@@ -104,6 +114,31 @@ class Assembler {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const int turn = closed_.layout().turn(j);
       if (turn >= 0) state_.h()[at(turn)] = std::isnan(held_[at(j)]) ? 0.0 : held_[at(j)];
+    }
+  }
+
+  // Driven joints without a closed form: the ideal mechanism stands on the paths, which tells where the joints are now
+  // and, followed from here, at any time.
+  void follow_paths() {
+    hold_followed_drivers(false);
+    solve_positions();
+    check_paths();
+    system_.motions().follow(std::make_shared<const PathFollower>(closed_, state_.q(), state_.h()));
+    hold_followed_drivers(true);
+    e_.motion_time = nan;
+  }
+
+  // Either the drivers of these entries hold the mechanism, or the paths do.
+  void hold_followed_drivers(bool drivers) {
+    paths_.clear();
+    for (int k = 0; k < static_cast<int>(model_.kinematics.size()); ++k) {
+      if (!followed_[at(k)]) continue;
+      const InverseKinematics& entry = model_.kinematics[at(k)];
+      for (int d = 0; d < entry.driver_count; ++d) {
+        held_row_[at(closed_.layout().driver_row(entry.first_driver + d))] = drivers ? 1 : 0;
+      }
+      const std::vector<PathRow> rows = path_rows(model_, k);
+      if (!drivers) paths_.insert(paths_.end(), rows.begin(), rows.end());
     }
   }
 
@@ -129,11 +164,26 @@ class Assembler {
   struct Rows {
     MatrixXd matrix;
     VectorXd residual;
-    std::vector<int> row;   // of the closed system, -1 for a leading joint
+    std::vector<int> row;   // of the closed system, -1 for a leading joint or a path
     std::vector<int> lead;  // joint that leads, -1
+    std::vector<int> path;  // index into paths_, -1
+    void add(int of_system, int of_lead, int of_path) {
+      row.push_back(of_system);
+      lead.push_back(of_lead);
+      path.push_back(of_path);
+    }
   };
 
-  // Rows of the closed mechanism and its drivers, then those of leading joints. Speeds: Phi_q v - nu.
+  double path_value(const PathRow& path) const {
+    PathPose pose;
+    MotionFault fault;
+    if (!closed_.motions().path(path.kinematics, state_.t(), pose, fault)) {
+      throw_motion_fault(model_, fault, Error::Category::input);
+    }
+    return pose[at(path.component)].value;
+  }
+
+  // Rows of the closed mechanism and its drivers, then those of leading joints and paths. Speeds: Phi_q v - nu.
   Rows rows(bool speeds) {
     evaluate(term_position | term_velocity);
     const int nc = closed_.layout().nc(), nv = closed_.layout().nv();
@@ -148,9 +198,10 @@ class Assembler {
       if (speeds ? joint.start_speed.has_value() : std::ranges::count(leads_, j) > 0) leads.push_back(j);
     }
     for (int r = 0; r < nc; ++r) {
-      if (speeds || held_row_[at(r)]) out.row.push_back(r), out.lead.push_back(-1);
+      if (speeds || held_row_[at(r)]) out.add(r, -1, -1);
     }
-    for (const int j : leads) out.row.push_back(-1), out.lead.push_back(j);
+    for (const int j : leads) out.add(-1, j, -1);
+    for (std::size_t p = 0; p < paths_.size(); ++p) out.add(-1, -1, static_cast<int>(p));
     const auto count = static_cast<Eigen::Index>(out.row.size());
     out.matrix = MatrixXd::Zero(count, nv);
     out.residual = VectorXd::Zero(count);
@@ -159,6 +210,14 @@ class Assembler {
       if (r >= 0) {
         out.matrix.row(i) = jacobian.row(r);
         out.residual[i] = speeds ? flow[r] - e_.nu[at(r)] : e_.phi[at(r)];
+        continue;
+      }
+      if (const int p = out.path[static_cast<std::size_t>(i)]; p >= 0) {
+        const PathRow& path = paths_[at(p)];
+        double entries[3];
+        path.entries(e_, entries);
+        for (int c = 0; c < 3 && path.body != ground; ++c) out.matrix(i, 3 * path.body + c) = entries[c];
+        out.residual[i] = path.residual(closed_, point(state_), e_, path_value(path));
         continue;
       }
       CoordinateRow marker_row;
@@ -205,7 +264,11 @@ class Assembler {
       // Past the tolerance go on while it pays: later steps start from rounding, not from here.
       if (largest(now.residual) <= 1e-3 * tolerance && after > 0.1 * before) break;
     }
-    if (!(largest(now.residual) <= tolerance)) report_gap(now);
+    if (!(largest(now.residual) <= tolerance)) {
+      if (!paths_.empty()) check_paths();
+      report_gap(now);
+    }
+    keep_gear_offsets();
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
       const Driver& driver = model_.drivers[at(d)];
       if (driver.kind == DriverKind::velocity && !model_.joints[at(driver.joint)].start_coordinate) {
@@ -214,6 +277,19 @@ class Assembler {
       }
     }
   }
+
+  // A gear without an offset of its own keeps the one that it finds.
+  void keep_gear_offsets() {
+    for (int g = 0; g < static_cast<int>(model_.gears.size()); ++g) {
+      const Gear& gear = model_.gears[at(g)];
+      if (gear.offset) continue;
+      const double offset = e_.coordinate[at(gear.second)] - gear.ratio * e_.coordinate[at(gear.first)];
+      closed_.set_gear_offset(g, offset);
+      system_.set_gear_offset(g, offset);
+    }
+  }
+
+  double worst_allowed() const { return model_.settings.assembly_tolerance; }
 
   [[noreturn]] void report_gap(const Rows& rows) const {
     double worst = -1.0;
@@ -224,10 +300,19 @@ class Assembler {
     };
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice slice = closed_.layout().rows(j);
+      if (slice.size > 0 && !held_row_[at(slice.offset)]) continue;
       double gap = 0.0;
       for (int r = 0; r < slice.size; ++r) gap = std::hypot(gap, e_.phi[at(slice.offset + r)]);
       consider(gap, fmt::format("joint '{}' stays open by {:.6g} m", model_.joints[at(j)].name, gap),
                model_.joints[at(j)].location);
+    }
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      if (rows.path[i] < 0 || std::abs(rows.residual[static_cast<Eigen::Index>(i)]) <= worst_allowed()) continue;
+      const InverseKinematics& entry = model_.kinematics[at(paths_[at(rows.path[i])].kinematics)];
+      throw Error(Error::Category::input, "ik-unreachable",
+                  fmt::format("the mechanism cannot bring the frame of '{}' to its path at the start time {} s",
+                              entry.name, state_.t()),
+                  entry.path_location, "if it can, give the bodies a `pose` closer to the wanted one");
     }
     for (std::size_t i = 0; i < rows.row.size(); ++i) {
       const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
@@ -263,14 +348,13 @@ class Assembler {
       const BodyId body = model_.markers[at(entry.marker)].body;
       MatrixXd without(static_cast<Eigen::Index>(kept.size()), nv);
       for (std::size_t i = 0; i < kept.size(); ++i) without.row(static_cast<Eigen::Index>(i)) = jacobian.row(kept[i]);
-      MatrixXd with = MatrixXd::Zero(without.rows() + 3, nv);
+      const std::vector<PathRow> paths = path_rows(model_, static_cast<int>(&entry - model_.kinematics.data()));
+      const int given = static_cast<int>(paths.size());
+      MatrixXd with = MatrixXd::Zero(without.rows() + given, nv);
       with.topRows(without.rows()) = without;
-      const planar::Arm& arm = e_.arms[at(entry.marker)];
-      for (int i = 0; i < 3 && body != ground; ++i) {
-        double g[6] = {};
-        g[planar::components[i]] = 1.0;
+      for (int i = 0; i < given && body != ground; ++i) {
         double row[3];
-        planar::body_row(g, arm, row);
+        paths[at(i)].entries(e_, row);
         for (int c = 0; c < 3; ++c) with(without.rows() + i, 3 * body + c) = row[c];
       }
       const int free = numerical_rank(without), prescribed = numerical_rank(with);
@@ -278,13 +362,15 @@ class Assembler {
         throw Error(Error::Category::input, "ik-underdetermined",
                     fmt::format("with its frame on the path of '{}' the mechanism still has {} freedom(s)", entry.name,
                                 nv - prescribed),
-                    entry.path_location);
+                    entry.frame_location);
       }
-      if (prescribed < free + 3) {
-        throw Error(Error::Category::input, "ik-unreachable",
-                    fmt::format("the frame of '{}' cannot follow x, y and angle: the mechanism leaves it {} freedom(s)",
-                                entry.name, prescribed - free),
-                    entry.path_location);
+      if (prescribed < free + given) {
+        throw Error(
+            Error::Category::input, "ik-unreachable",
+            fmt::format(
+                "the frame of '{}' cannot follow {} component(s) of a path: the mechanism leaves it {} freedom(s)",
+                entry.name, given, prescribed - free),
+            entry.path_location);
       }
     }
   }
@@ -446,6 +532,8 @@ class Assembler {
   std::vector<double> held_;    // by joint
   std::vector<int> leads_;      // joints that lead and are not driven
   std::vector<char> held_row_;  // rows of the closed system that hold positions
+  std::vector<char> followed_;  // inverse-kinematics entries with drivers without a closed form
+  std::vector<PathRow> paths_;  // that hold positions in place of their drivers
 };
 
 }  // namespace
@@ -453,7 +541,7 @@ class Assembler {
 ModelFacts count_facts(const Model& model) {
   ModelFacts facts;
   facts.bodies = static_cast<int>(model.bodies.size());
-  facts.joints = static_cast<int>(model.joints.size());
+  facts.joints = static_cast<int>(std::ranges::count(model.joints, false, &JointElement::is_force));
   facts.clearance_joints = model.clearance_joints();
   facts.drivers = static_cast<int>(model.drivers.size());
   const auto count = [&](Variant variant, ConstraintFacts& out) {

@@ -17,30 +17,64 @@ Channels::Channels(const Model& model) {
     return first;
   };
   for (const Body& body : model.bodies) bodies.push_back(pose("body." + body.name));
-  for (const JointElement& joint : model.joints) {
-    const std::string prefix = "joint." + joint.name;
-    JointColumns columns;
-    if (joint.layout.coordinate != Coordinate::none) {
-      const bool angle = joint.layout.coordinate == Coordinate::angle;
-      columns.coordinate = add(prefix + (angle ? ".angle" : ".position"), angle ? "rad" : "m");
-      columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
-    }
-    columns.force_x = add(prefix + ".fx", "N");
-    columns.force_y = add(prefix + ".fy", "N");
-    columns.torque = add(prefix + ".torque", "N*m");
-    columns.own = static_cast<int>(all_.size());
-    for (const Channel& channel : joint.layout.channels) {
-      const int index = add(prefix + "." + channel.name, channel.unit);
-      const std::string_view name = channel.name;
-      // The names that the contract gives a meaning in summaries, whatever type publishes them.
-      if (name == "ex") columns.eccentricity_x = index;
-      if (name == "ey") columns.eccentricity_y = index;
-      if (name == "delta") columns.penetration = index;
-      if (name == "fn") columns.normal_force = index;
-      if (name == "contact") columns.contact = index;
-    }
-    joints.push_back(columns);
+  joints.resize(model.joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!model.joints[j].is_force) joints[j] = add_joint(model.joints[j], "joint." + model.joints[j].name);
   }
+  add_drivers(model);
+  forces.resize(model.forces.size());
+  for (const ForceElement& element : model.force_elements) {
+    if (element.joint >= 0) {
+      const std::size_t j = static_cast<std::size_t>(element.joint);
+      joints[j] = add_joint(model.joints[j], "force." + model.joints[j].name);
+      continue;
+    }
+    const std::size_t f = static_cast<std::size_t>(element.applied);
+    const std::string prefix = "force." + model.forces[f].name;
+    forces[f] = {add(prefix + ".fx", "N"), add(prefix + ".fy", "N"), add(prefix + ".torque", "N*m"),
+                 add(prefix + ".power", "W")};
+  }
+  for (const int frame : model.settings.frames) {
+    frames.push_back(pose("frame." + model.markers[static_cast<std::size_t>(frame)].name));
+  }
+  energy.kinetic = add("energy.kinetic", "J");
+  energy.potential = add("energy.potential", "J");
+  energy.dissipated = add("energy.dissipated", "J");
+  energy.work = add("energy.work", "J");
+  energy.residual = add("energy.residual", "J");
+}
+
+JointColumns Channels::add_joint(const JointElement& joint, const std::string& prefix) {
+  JointColumns columns;
+  const auto add_coordinate = [&] {
+    if (joint.layout.coordinate == Coordinate::none) return;
+    const bool angle = joint.layout.coordinate == Coordinate::angle;
+    columns.coordinate = add(prefix + (angle ? ".angle" : ".position"), angle ? "rad" : "m");
+    columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
+  };
+  if (!joint.is_force) add_coordinate();
+  columns.force_x = add(prefix + ".fx", "N");
+  columns.force_y = add(prefix + ".fy", "N");
+  columns.torque = add(prefix + ".torque", "N*m");
+  if (joint.is_force) {
+    columns.power = add(prefix + ".power", "W");
+    add_coordinate();
+  }
+  columns.own = static_cast<int>(all_.size());
+  for (const Channel& channel : joint.layout.channels) {
+    const int index = add(prefix + "." + channel.name, channel.unit);
+    const std::string_view name = channel.name;
+    // The names that the contract gives a meaning in summaries, whatever type publishes them.
+    if (name == "ex") columns.eccentricity_x = index;
+    if (name == "ey") columns.eccentricity_y = index;
+    if (name == "delta") columns.penetration = index;
+    if (name == "fn") columns.normal_force = index;
+    if (name == "contact") columns.contact = index;
+  }
+  return columns;
+}
+
+void Channels::add_drivers(const Model& model) {
   for (const Driver& driver : model.drivers) {
     const std::string prefix = "driver." + driver.name;
     const bool angle = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
@@ -58,19 +92,6 @@ Channels::Channels(const Model& model) {
     const std::string path = "driver." + entry.name;
     paths[index] = {add(path + ".ex", "m"), add(path + ".ey", "m"), add(path + ".eangle", "rad")};
   }
-  for (const AppliedForce& force : model.forces) {
-    const std::string prefix = "force." + force.name;
-    forces.push_back({add(prefix + ".fx", "N"), add(prefix + ".fy", "N"), add(prefix + ".torque", "N*m"),
-                      add(prefix + ".power", "W")});
-  }
-  for (const int frame : model.settings.frames) {
-    frames.push_back(pose("frame." + model.markers[static_cast<std::size_t>(frame)].name));
-  }
-  energy.kinetic = add("energy.kinetic", "J");
-  energy.potential = add("energy.potential", "J");
-  energy.dissipated = add("energy.dissipated", "J");
-  energy.work = add("energy.work", "J");
-  energy.residual = add("energy.residual", "J");
 }
 
 int Channels::add(std::string name, const char* unit) {

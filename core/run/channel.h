@@ -17,6 +17,7 @@ struct ChannelInfo {
 /// Where the columns of one joint stand in a row; -1 where it has none.
 struct JointColumns {
   int coordinate = -1, speed = -1, force_x = -1, force_y = -1, torque = -1;
+  int power = -1;  ///< of an entry of `forces`
   int penetration = -1, normal_force = -1, contact = -1, eccentricity_x = -1, eccentricity_y = -1;
   int own = -1;  ///< first of the type's own channels
 };
@@ -49,11 +50,13 @@ class Channels {
   std::vector<JointColumns> joints;
   std::vector<DriverColumns> drivers;
   std::vector<PathColumns> paths;
-  std::vector<ForceColumns> forces;
-  std::vector<int> frames;  ///< first of six columns, as for bodies
+  std::vector<ForceColumns> forces;  ///< of applied forces
+  std::vector<int> frames;           ///< first of six columns, as for bodies
   EnergyColumns energy;
 
  private:
+  void add_drivers(const Model& model);
+  JointColumns add_joint(const JointElement& joint, const std::string& prefix);
   int add(std::string name, const char* unit);
   std::vector<ChannelInfo> all_;
 };

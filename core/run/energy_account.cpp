@@ -3,13 +3,13 @@
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
 
 double power(const double* wrench, const MarkerKinematics& k) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) sum += wrench[i] * k.velocity[i] + wrench[3 + i] * k.angular_velocity[i];
   return sum;
 }
-}  // namespace
 
 EnergyAccount::EnergyAccount(const System& system)
     : driver_work_(system.model().drivers.size(), 0.0),

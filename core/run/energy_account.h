@@ -9,6 +9,9 @@
 
 namespace freeplay {
 
+/// Power of a wrench (force and moment) at a marker [W].
+double power(const double* wrench, const MarkerKinematics& k);
+
 /// Powers are integrated over accepted steps by the trapezoidal rule. Booked are work of drivers and applied forces and
 /// the loss of joints: minus the power of their wrenches, less what they store. What an integrator or a projection
 /// loses is never booked; it is the residual.

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "run/energy_account.h"
+#include "system/path_row.h"
+
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -45,6 +48,11 @@ bool Observer::observe_joint(int index, const Point& point, const Evaluation& e,
   row[at(columns.force_x)] = wrench[0];
   row[at(columns.force_y)] = wrench[1];
   row[at(columns.torque)] = wrench[2];
+  if (columns.power >= 0) {
+    const JointElement& joint = system_.model().joints[at(index)];
+    row[at(columns.power)] = power(&e.wrench[12 * at(index)], e.markers[at(joint.marker_a)]) +
+                             power(&e.wrench[12 * at(index) + 6], e.markers[at(joint.marker_b)]);
+  }
   const std::size_t own = system_.joint_layout(index).channels.size;
   if (own == 0) return true;
   const Slice rows = system_.layout().rows(index);
@@ -71,11 +79,6 @@ void Observer::observe_driver(int index, const Evaluation& e, std::span<const do
   row[at(columns.power)] = effort * e.coordinate_rate[joint];
 }
 
-double Observer::marker_angle(int marker, const Point& point) const {
-  const Marker& m = system_.model().markers[at(marker)];
-  return m.angle + (m.body == ground ? 0.0 : point.q[3 * at(m.body) + 2]);
-}
-
 bool Observer::observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row,
                             Fault& fault) const {
   PathPose wanted;
@@ -85,7 +88,7 @@ bool Observer::observe_path(int index, const Point& point, const Evaluation& e, 
   }
   const int marker = system_.model().kinematics[at(index)].marker;
   const PathColumns& columns = channels_.paths[at(index)];
-  const double turned = marker_angle(marker, point) - wanted[2].value;
+  const double turned = marker_angle(system_.model(), marker, point.q) - wanted[2].value;
   row[at(columns.error_x)] = e.markers[at(marker)].position[0] - wanted[0].value;
   row[at(columns.error_y)] = e.markers[at(marker)].position[1] - wanted[1].value;
   row[at(columns.error_angle)] = turned - 2.0 * M_PI * std::round(turned / (2.0 * M_PI));
@@ -105,7 +108,7 @@ void Observer::observe_force(int index, const Evaluation& e, std::span<double> r
 void Observer::observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const {
   const int marker = system_.model().settings.frames[at(index)];
   const MarkerKinematics& k = e.markers[at(marker)];
-  const double values[6] = {k.position[0], k.position[1], marker_angle(marker, point),
+  const double values[6] = {k.position[0], k.position[1], marker_angle(system_.model(), marker, point.q),
                             k.velocity[0], k.velocity[1], k.angular_velocity[2]};
   std::copy_n(values, 6, row.begin() + channels_.frames[at(index)]);
 }

@@ -25,7 +25,6 @@ class Observer {
   bool observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault) const;
   void observe_force(int index, const Evaluation& e, std::span<double> row) const;
   void observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const;
-  double marker_angle(int marker, const Point& point) const;
 
   const System& system_;
   const Channels& channels_;

@@ -65,15 +65,19 @@ class Walk {
       if (!system_.motions().path(k, model_.settings.start, path, fault)) {
         throw_motion_fault(model_, fault, Error::Category::input);
       }
-      if (const BodyId body = marker(entry.marker).body; body != ground) {
-        put(body, PlanarPose{path[0].value, path[1].value, path[2].value} * inverse(mount(entry.marker)));
+      const BodyId body = marker(entry.marker).body;
+      if (body != ground && entry.path[0] && entry.path[1]) {
+        const double guess = model_.bodies[at(body)].angle.value_or(0.0) + marker(entry.marker).angle;
+        const double angle = entry.path[2] ? path[2].value : guess;
+        put(body, PlanarPose{path[0].value, path[1].value, angle} * inverse(mount(entry.marker)));
       }
       for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) place_leg(d);
     }
   }
 
   void place_leg(int driver) {
-    const Leg& leg = system_.motions().leg(driver);
+    if (system_.motions().leg(driver) == nullptr) return;
+    const Leg& leg = *system_.motions().leg(driver);
     LegPose pose;
     MotionFault fault;
     if (!system_.motions().leg_pose(driver, model_.settings.start, pose, fault)) {

@@ -20,42 +20,58 @@ Motions::Motions(const Model& model)
     : model_(model),
       legs_(model.drivers.size()),
       antiderivatives_(model.drivers.size()),
-      starts_(model.drivers.size(), 0.0) {
+      starts_(model.drivers.size(), 0.0),
+      table_starts_(model.drivers.size(), 0.0) {
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
-    if (driver.kind == DriverKind::velocity) {
+    legs_[d] = closed_form_leg(model, static_cast<int>(d));
+    if (driver.kind != DriverKind::velocity) continue;
+    if (!driver.table) {
       antiderivatives_[d] = Antiderivative(driver.value, model.settings.start, model.settings.end, driver.location);
+      continue;
     }
-    if (driver.kinematics < 0) continue;
-    const InverseKinematics& kinematics = model.kinematics[static_cast<std::size_t>(driver.kinematics)];
-    for (const auto& component : kinematics.path) {
-      if (!component) {
-        throw Error(Error::Category::input, "ik-underdetermined",
-                    "the path of '" + kinematics.name + "' must give x, y and angle of its frame",
-                    kinematics.path_location);
-      }
+    EvaluationFailure failure;
+    if (!driver.table->integral(model.settings.start, table_starts_[d], failure)) {
+      throw Error(Error::Category::input, failure.id, failure.reason, driver.location);
     }
-    const auto leg = find_leg(model, driver.joint, kinematics.marker);
-    if (!leg) {
-      throw Error(Error::Category::input, "ik-underdetermined",
-                  "joint '" + driver.name + "' is not the ground pin of a crank and a coupler that carry the frame",
-                  driver.location, "other driven chains are not in this release");
-    }
-    legs_[d] = *leg;
-    legs_[d].elbow = driver.elbow;
   }
+}
+
+bool Motions::follows(int driver) const {
+  const std::size_t d = static_cast<std::size_t>(driver);
+  return model_.drivers[d].kinematics >= 0 && !legs_[d];
+}
+
+bool Motions::entry_follows(int kinematics) const {
+  const InverseKinematics& entry = model_.kinematics[static_cast<std::size_t>(kinematics)];
+  for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
+    if (follows(d)) return true;
+  }
+  return false;
+}
+
+const Leg* Motions::leg(int driver) const {
+  const std::optional<Leg>& leg = legs_[static_cast<std::size_t>(driver)];
+  return leg ? &*leg : nullptr;
 }
 
 void Motions::set_start(int driver, double coordinate) { starts_[static_cast<std::size_t>(driver)] = coordinate; }
 
 bool Motions::modulo_turns(int driver) const {
-  return model_.drivers[static_cast<std::size_t>(driver)].kinematics >= 0;
+  const Driver& driven = model_.drivers[static_cast<std::size_t>(driver)];
+  return driven.kinematics >= 0 && driven.kind == DriverKind::angle;
 }
 
 bool Motions::path(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept {
   const InverseKinematics& entry = model_.kinematics[static_cast<std::size_t>(kinematics)];
+  const bool whole = entry.path[0] && entry.path[1] && entry.path[2];
+  if (!whole) {
+    pose = {};
+    if (followed_ && !followed_->frame(kinematics, t, pose, fault)) return false;
+  }
   for (std::size_t i = 0; i < pose.size(); ++i) {
     EvaluationFailure failure;
+    if (!entry.path[i]) continue;
     if (!entry.path[i]->evaluate(t, pose[i], failure)) {
       fault.kinematics = kinematics;
       fail(fault, failure.id, failure.reason);
@@ -71,7 +87,7 @@ bool Motions::leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) 
   if (!path(kinematics, t, frame, fault)) return false;
   const double turn =
       model_.markers[static_cast<std::size_t>(model_.kinematics[static_cast<std::size_t>(kinematics)].marker)].angle;
-  const Leg& leg = legs_[static_cast<std::size_t>(driver)];
+  const Leg& leg = *legs_[static_cast<std::size_t>(driver)];
   pose = solve_leg(leg, frame[0], frame[1], frame[2] - Jet::constant(turn));
   if (pose.reachable) return true;
   fault.driver = driver;
@@ -86,31 +102,40 @@ bool Motions::leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) 
   return false;
 }
 
+bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailure& failure) const noexcept {
+  const Driver& driver = model_.drivers[d];
+  Jet value;
+  if (!(driver.table ? driver.table->evaluate(t, value, failure) : driver.value.evaluate(t, value, failure))) {
+    return false;
+  }
+  out = {value.value, value.rate, value.acceleration};
+  if (driver.kind != DriverKind::velocity) return true;
+  double integral = 0.0;
+  if (!(driver.table ? driver.table->integral(t, integral, failure)
+                     : antiderivatives_[d].evaluate(t, integral, failure))) {
+    return false;
+  }
+  out = {starts_[d] + (integral - table_starts_[d]), value.value, value.rate};
+  return true;
+}
+
 bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept {
   for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
-    const Driver& driver = model_.drivers[d];
-    if (driver.kinematics >= 0) {
+    if (model_.drivers[d].kinematics >= 0) {
+      out[d] = {};
+      if (!legs_[d]) continue;
       LegPose pose;
       if (!leg_pose(static_cast<int>(d), t, pose, fault)) return false;
-      out[d] = {pose.crank.value + legs_[d].coordinate_offset, pose.crank.rate, pose.crank.acceleration};
+      out[d] = {pose.crank.value + legs_[d]->coordinate_offset, pose.crank.rate, pose.crank.acceleration};
       continue;
     }
-    Jet value;
     EvaluationFailure failure;
-    bool good = driver.value.evaluate(t, value, failure);
-    out[d] = {value.value, value.rate, value.acceleration};
-    if (good && driver.kind == DriverKind::velocity) {
-      double integral = 0.0;
-      good = antiderivatives_[d].evaluate(t, integral, failure);
-      out[d] = {starts_[d] + integral, value.value, value.rate};
-    }
-    if (!good) {
-      fault.driver = static_cast<int>(d);
-      fail(fault, failure.id, failure.reason);
-      return false;
-    }
+    if (function(d, t, out[d], failure)) continue;
+    fault.driver = static_cast<int>(d);
+    fail(fault, failure.id, failure.reason);
+    return false;
   }
-  return true;
+  return !followed_ || followed_->evaluate(t, out, fault);
 }
 
 }  // namespace freeplay

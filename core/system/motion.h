@@ -2,12 +2,13 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "freeplay/parameter.h"
+#include "model/leg.h"
 #include "system/antiderivative.h"
-#include "system/leg.h"
 
 namespace freeplay {
 
@@ -23,31 +24,53 @@ struct MotionFault {
 /// Pose that an inverse-kinematics frame is asked for: x, y [m], angle [rad].
 using PathPose = std::array<Jet, 3>;
 
+/// Drivers that follow a path through the whole mechanism instead of a leg of their own.
+class FollowedMotion {
+ public:
+  virtual ~FollowedMotion() = default;
+  /// Fills the entries of these drivers.
+  virtual bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept = 0;
+  /// Pose of the frame of an inverse-kinematics entry, components that the path leaves open included.
+  virtual bool frame(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept = 0;
+};
+
 /// All driver motions of a model. Stateless: values depend on t alone.
 class Motions {
  public:
-  /// Throws Error{input} "ik-underdetermined" when a path cannot be followed by closed-form legs.
   explicit Motions(const Model& model);
   Motions(const Motions&) = delete;
   Motions& operator=(const Motions&) = delete;
 
   /// Start value of the coordinate of a driver that prescribes a speed [rad or m].
   void set_start(int driver, double coordinate);
+  void take_starts_of(const Motions& other) { starts_ = other.starts_; }
+
+  /// Does a driver, or one of the drivers of an inverse-kinematics entry, lack a closed form? Until follow() is called
+  /// such drivers are 0.
+  bool follows(int driver) const;
+  bool entry_follows(int kinematics) const;
+  void follow(std::shared_ptr<const FollowedMotion> followed) { followed_ = std::move(followed); }
 
   /// f, f', f'' of every driver: coordinates for prescribing ones, the effort for the others. Does not allocate.
   bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept;
+  /// Components that the path leaves open are those of the ideal mechanism, and 0 before follow().
   bool path(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept;
   /// True if values of the driver are angles known up to whole turns.
   bool modulo_turns(int driver) const;
+  /// The closed form of a driver by inverse kinematics, or null.
+  const Leg* leg(int driver) const;
   /// Poses of the bodies of a driver's leg at time t; false when out of reach.
   bool leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) const noexcept;
-  const Leg& leg(int driver) const { return legs_[static_cast<std::size_t>(driver)]; }
 
  private:
+  bool function(std::size_t driver, double t, TimeValue& out, EvaluationFailure& failure) const noexcept;
+
   const Model& model_;
-  std::vector<Leg> legs_;                        ///< by driver; empty name: none
+  std::vector<std::optional<Leg>> legs_;         ///< by driver
   std::vector<Antiderivative> antiderivatives_;  ///< by driver
   std::vector<double> starts_;                   ///< by driver
+  std::vector<double> table_starts_;             ///< by driver: integral of its table up to the start time
+  std::shared_ptr<const FollowedMotion> followed_;
 };
 
 }  // namespace freeplay

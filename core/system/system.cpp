@@ -74,7 +74,8 @@ System::System(const Model& model, Variant variant)
     return static_cast<int>(blocks_.size()) - 1;
   };
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const Slice rows = layout_.rows(j);
+    const bool is_gear = model.joints[at(j)].gear >= 0;
+    const Slice rows = is_gear ? Slice{} : layout_.rows(j);
     row_block_a_.push_back(add_block(body_a(j), rows.offset, rows.size));
     row_block_b_.push_back(add_block(body_b(j), rows.offset, rows.size));
     if (joint_layout(j).forces != 0) {
@@ -85,6 +86,13 @@ System::System(const Model& model, Variant variant)
       if (joint_layout(j).coordinate != Coordinate::none) needs_coordinate_[at(j)] = 1;
     }
   }
+  for (const Gear& gear : model.gears) {
+    const int row = layout_.rows(gear.joint).offset;
+    needs_coordinate_[at(gear.first)] = needs_coordinate_[at(gear.second)] = 1;
+    gear_blocks_.push_back({add_block(body_a(gear.first), row, 1), add_block(body_b(gear.first), row, 1),
+                            add_block(body_a(gear.second), row, 1), add_block(body_b(gear.second), row, 1)});
+    gear_offsets_.push_back(gear.offset.value_or(0.0));
+  }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int joint = model.drivers[at(d)].joint;
     needs_coordinate_[at(joint)] = 1;
@@ -92,6 +100,11 @@ System::System(const Model& model, Variant variant)
     driver_block_a_.push_back(row < 0 ? -1 : add_block(body_a(joint), row, 1));
     driver_block_b_.push_back(row < 0 ? -1 : add_block(body_b(joint), row, 1));
   }
+}
+
+void System::take_start_of(const System& other) {
+  motions_->take_starts_of(*other.motions_);
+  gear_offsets_ = other.gear_offsets_;
 }
 
 InternalDerivatives::InternalDerivatives(const ForceBlock& block, std::span<double> all) {
@@ -191,7 +204,10 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
     e.motion_time = point.t;
   }
   if (!evaluate_coordinates(point, (terms & term_coordinate) != 0, e)) return false;
-  if ((terms & term_position) != 0 && !(evaluate_rows(point, e) && evaluate_driver_rows(point, e))) return false;
+  if ((terms & term_position) != 0 &&
+      !(evaluate_rows(point, e) && evaluate_gear_rows(point, e) && evaluate_driver_rows(point, e))) {
+    return false;
+  }
   if ((terms & term_force) != 0) {
     return evaluate_forces(point, (terms & term_derivative) != 0, e) && evaluate_applied(point, e);
   }
@@ -248,7 +264,7 @@ double System::row_velocity_product(int joint, const double* marker_row, const E
 bool System::evaluate_rows(const Point& point, Evaluation& e) const {
   for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
     const Slice rows = layout_.rows(j);
-    if (rows.size == 0) continue;
+    if (rows.size == 0 || model_.joints[at(j)].gear >= 0) continue;
     const auto part = [&](std::vector<double>& all) {
       std::fill_n(all.begin() + rows.offset, rows.size, 0.0);
       return Span<double>(all.data() + rows.offset, at(rows.size));
@@ -286,6 +302,29 @@ bool System::coordinate_row(int index, const Point& point, Evaluation& e, Coordi
   }
   map_row(index, marker_row.jacobian, e, row);
   bias = marker_row.bias + row_velocity_product(index, marker_row.jacobian, e);
+  return true;
+}
+
+// Phi = s2 - ratio s1 - offset.
+bool System::evaluate_gear_rows(const Point& point, Evaluation& e) const {
+  for (std::size_t g = 0; g < model_.gears.size(); ++g) {
+    const Gear& gear = model_.gears[g];
+    const int joints[2] = {gear.first, gear.second};
+    const double factors[2] = {-gear.ratio, 1.0};
+    const std::size_t r = at(layout_.rows(gear.joint).offset);
+    e.phi[r] = e.coordinate[at(gear.second)] - gear.ratio * e.coordinate[at(gear.first)] - gear_offsets_[g];
+    e.nu[r] = e.gamma[r] = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      CoordinateRow marker_row;
+      double row[6], bias = 0.0;
+      if (!coordinate_row(joints[i], point, e, marker_row, row, bias)) return false;
+      e.gamma[r] -= factors[i] * bias;
+      for (std::size_t c = 0; c < 6; ++c) {
+        const int block = gear_blocks_[g][2 * i + c / 3];
+        if (block >= 0) e.jacobian[at(blocks_[at(block)].offset) + c % 3] = factors[i] * row[c];
+      }
+    }
+  }
   return true;
 }
 
@@ -507,9 +546,12 @@ void System::reaction(int index, const Evaluation& e, std::span<const double> la
   // Rows hold the marker's columns in body form: the moment about the marker is that about the centre less s x F.
   double body_force[3] = {0.0, 0.0, 0.0};
   const Slice rows = layout_.rows(index);
-  const bool second = row_block_b_[at(index)] >= 0;
-  const int block = second ? row_block_b_[at(index)] : row_block_a_[at(index)];
-  const JointElement& element = model_.joints[at(index)];
+  const int gear = model_.joints[at(index)].gear;
+  const int block_a = gear >= 0 ? gear_blocks_[at(gear)][2] : row_block_a_[at(index)];
+  const int block_b = gear >= 0 ? gear_blocks_[at(gear)][3] : row_block_b_[at(index)];
+  const bool second = block_b >= 0;
+  const int block = second ? block_b : block_a;
+  const JointElement& element = model_.joints[at(gear >= 0 ? model_.gears[at(gear)].second : index)];
   if (block >= 0) {
     const double* entries = &e.jacobian[at(blocks_[at(block)].offset)];
     for (int r = 0; r < rows.size; ++r) {

@@ -6,6 +6,7 @@
 // -Phi_q^T lambda.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -78,6 +79,10 @@ class System {
   const Motions& motions() const { return *motions_; }
   /// Drivers move as those of another system of the same model do.
   void share_motions(const System& other) { motions_ = other.motions_; }
+  /// Start values of drivers of speeds and offsets of gears are those of another system of the same model.
+  void take_start_of(const System& other);
+  /// Offset of a gear that keeps the one it finds at the start [rad or m].
+  void set_gear_offset(int gear, double offset) { gear_offsets_[static_cast<std::size_t>(gear)] = offset; }
   /// Diagonal of M: mass, mass, inertia of every body.
   std::span<const double> mass() const { return mass_; }
   /// Largest distance that matters: unit of position tolerances [m].
@@ -105,7 +110,8 @@ class System {
   /// Value, row and bias of a joint's coordinate in the columns of its two bodies (6 numbers).
   bool coordinate_row(int index, const Point& point, Evaluation& e, CoordinateRow& marker_row, double* row,
                       double& bias) const;
-  /// Force and torque (Fx, Fy, Mz) on the second body at its marker: constraint and applied parts together.
+  /// Force and torque (Fx, Fy, Mz) on the second body at its marker: constraint and applied parts together. Of a gear:
+  /// what it exerts on the second body of its second joint at that joint.
   void reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const;
   /// Accelerations of a joint's two markers.
   void marker_accelerations(int index, const Evaluation& e, std::span<const double> a, MarkerAccelerations& out) const;
@@ -116,6 +122,7 @@ class System {
  private:
   bool evaluate_coordinates(const Point& point, bool all, Evaluation& e) const;
   bool evaluate_rows(const Point& point, Evaluation& e) const;
+  bool evaluate_gear_rows(const Point& point, Evaluation& e) const;
   bool evaluate_driver_rows(const Point& point, Evaluation& e) const;
   bool evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const;
   bool evaluate_applied(const Point& point, Evaluation& e) const;
@@ -137,6 +144,8 @@ class System {
   std::vector<JacobianBlock> blocks_;
   std::vector<int> row_block_a_, row_block_b_;  // by joint: index into blocks_ of its rows, -1 on ground
   std::vector<int> driver_block_a_, driver_block_b_;
+  std::vector<std::array<int, 4>> gear_blocks_;  // by gear: of the bodies of its first and of its second joint
+  std::vector<double> gear_offsets_;
   std::vector<ForceBlock> force_blocks_;
   double size_ = 1.0;
   friend struct Evaluation;

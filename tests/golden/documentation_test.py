@@ -40,6 +40,14 @@ class Documentation(ProgramTest):
     def test_getting_started(self):
         self.run_page(os.path.join("docs", "getting-started.md"))
 
+    def test_pieces_of_the_model_page_are_a_model(self):
+        with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
+            pieces = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)
+        with open(self.path("page.yaml"), "w", encoding="utf-8") as file:
+            file.write("".join(pieces))
+        done = subprocess.run([PROGRAM, "run", "page.yaml"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(("", 0), (done.stderr, done.returncode))
+
     def test_links_lead_somewhere(self):
         for page in ("README.md", os.path.join("docs", "getting-started.md")):
             with open(os.path.join(ROOT, page), encoding="utf-8") as file:

@@ -89,8 +89,8 @@ long allocations_of(const Stepping& what, long& events) {
   } else {
     text = replaced(text, "step: 1 ms}", "step: 1 ms, output: {interval: " + number(what.step) + "}}");
   }
-  BuildOptions options{.set = {}, .ideal = {}, .end = what.step * static_cast<double>(what.steps), .step = what.step,
-                       .integrator = {}};
+  BuildOptions options{
+      .set = {}, .ideal = {}, .end = what.step * static_cast<double>(what.steps), .step = what.step, .integrator = {}};
   if (what.ideal) options.ideal = {"all"};
   const auto model = load(text, options);
   System system(*model);
@@ -117,12 +117,12 @@ TEST_P(SteppingLoop, AllocatesNothing) {
   EXPECT_EQ(count, 0);
   EXPECT_EQ(events > 0, GetParam().touches);  // contacts begin and end on the way
 }
-INSTANTIATE_TEST_SUITE_P(Models, SteppingLoop,
-                         ::testing::Values(Stepping{"3-rrr", false, 2e-6, 5000, true}, Stepping{"4-rrr", false, 2e-6, 5000, true},
-                                           Stepping{"3-rrr", true, 2e-6, 1000, false}, Stepping{"4-rrr", true, 2e-6, 1000, false},
-                                           Stepping{"slider-crank", false, 1e-6, 2000, true},
-                                           Stepping{"pendulum", false, 1e-3, 2000, false},
-                                           Stepping{"four-bar", false, 1e-3, 2000, false}));
+INSTANTIATE_TEST_SUITE_P(
+    Models, SteppingLoop,
+    ::testing::Values(Stepping{"3-rrr", false, 2e-6, 5000, true}, Stepping{"4-rrr", false, 2e-6, 5000, true},
+                      Stepping{"3-rrr", true, 2e-6, 1000, false}, Stepping{"4-rrr", true, 2e-6, 1000, false},
+                      Stepping{"slider-crank", false, 1e-6, 2000, true}, Stepping{"pendulum", false, 1e-3, 2000, false},
+                      Stepping{"four-bar", false, 1e-3, 2000, false}));
 
 TEST(AllocationCounter, SeesNewAndMalloc) {
   allocations = 0;

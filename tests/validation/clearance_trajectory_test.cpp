@@ -53,12 +53,10 @@ TEST(ClearanceTrajectory, ThreeRrrFollowsTheReferenceForTwentyMilliseconds) {
   EXPECT_LT(run.statistics().velocity_residual(), 1e-8);
 
   // Quadruple precision, contacts located: time [s] and rate of penetration [m/s].
-  const std::map<std::string, std::array<double, 2>> known = {{"leg1.B", {0.00548333785509636, 0.0363891332871}},
-                                                              {"leg3.B", {0.00590306015414261, 0.0344726453761}},
-                                                              {"leg1.C", {0.0067390359026056, 0.0751708758559}},
-                                                              {"leg3.C", {0.00744866421410308, 0.0755453855636}},
-                                                              {"leg2.B", {0.00844143722135433, 0.0246816867264}},
-                                                              {"leg2.C", {0.00851851940436134, 0.0612186877896}}};
+  const std::map<std::string, std::array<double, 2>> known = {
+      {"leg1.B", {0.00548333785509636, 0.0363891332871}}, {"leg3.B", {0.00590306015414261, 0.0344726453761}},
+      {"leg1.C", {0.0067390359026056, 0.0751708758559}},  {"leg3.C", {0.00744866421410308, 0.0755453855636}},
+      {"leg2.B", {0.00844143722135433, 0.0246816867264}}, {"leg2.C", {0.00851851940436134, 0.0612186877896}}};
   const auto first = first_contacts(run);
   double late = 0.0, speed = 0.0;
   for (const auto& [joint, numbers] : known) {
@@ -114,8 +112,8 @@ TEST(ClearanceTrajectory, SliderCrankTouchesAndLosesTouchAsTheReference) {
                               "      friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}");
   text = replaced(text, "output: {interval: 20 us, discard: 12 ms}", "output: {interval: 1 ms}");
   const ModelRun run(text, {.set = {}, .ideal = {}, .end = 2.6e-3, .step = 0.1e-6, .integrator = {}});
-  const double begins[] = {0.000227286032039783, 0.00050974654116297,  0.000723129497430007, 0.00109907930099612,
-                           0.00123185996437583,  0.0014767498789248,   0.00171999102836693,  0.00191665388614583,
+  const double begins[] = {0.000227286032039783, 0.00050974654116297, 0.000723129497430007, 0.00109907930099612,
+                           0.00123185996437583,  0.0014767498789248,  0.00171999102836693,  0.00191665388614583,
                            0.00220903805839532,  0.00247739939196768};
   const double ends[] = {0.000281147931823485, 0.000556379565886364, 0.000783654294514244, 0.00116269661290457,
                          0.00130257844123677,  0.00153663203112261,  0.00179905136710703,  0.00200219886073809,

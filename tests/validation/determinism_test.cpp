@@ -71,8 +71,15 @@ class Refusing final : public Integrator {
     std::copy(to.v.begin(), to.v.end(), v.begin());
     std::copy(to.z.begin(), to.z.end(), z.begin());
     for (std::size_t i = 0; i < nv; ++i) increment[i] = dt * one * v[i];
-    const Stage stage{.t = *to.t + dt, .q_base = q, .increment_known = increment, .v_known = v, .z_known = z,
-                      .beta_q = dt * dt, .beta_v = dt, .beta_z = dt, .level = ConstraintLevel::position};
+    const Stage stage{.t = *to.t + dt,
+                      .q_base = q,
+                      .increment_known = increment,
+                      .v_known = v,
+                      .z_known = z,
+                      .beta_q = dt * dt,
+                      .beta_v = dt,
+                      .beta_z = dt,
+                      .level = ConstraintLevel::position};
     if (solver.solve(stage, to).converged == 0) return {.converged = 0, .error = 0.0};
     solver.project_velocity(to);
     solver.accelerate(to, {});
@@ -88,9 +95,9 @@ const Registry& types_with_refusing() {
   static const Component components[] = {integrator<Refusing>({.name = "refusing", .parameters = parameters})};
   static const Registry registry = [] {
     Registry all = Registry::with_builtins();
-    all.add([](const Host* host, Manifest* manifest) noexcept {
-      return publish(*host, *manifest, "refusing", "1", components);
-    }, "test");
+    all.add([](const Host* host,
+               Manifest* manifest) noexcept { return publish(*host, *manifest, "refusing", "1", components); },
+            "test");
     return all;
   }();
   return registry;
@@ -134,8 +141,8 @@ TEST(RejectedAttempt, LeavesMultipliersAndTurnsAsTheyWere) {
 }
 
 TEST(RejectedAttempt, StepsThatNeverSucceedEndTheRunAndKeepItsRows) {
-  const ModelRun run = run_refusing(
-      replaced(mechanism("pendulum"), "{end: 2 s, step: 1 ms}", "{end: 2 s, step: 0}"), 1e-3, 1e-9);
+  const ModelRun run =
+      run_refusing(replaced(mechanism("pendulum"), "{end: 2 s, step: 1 ms}", "{end: 2 s, step: 0}"), 1e-3, 1e-9);
   EXPECT_EQ(run.outcome().status, RunStatus::failed);
   EXPECT_EQ(run.outcome().exit_code, 4);
   EXPECT_EQ(run.rows(), 1u);

@@ -4,15 +4,15 @@ namespace freeplay::test {
 namespace {
 
 const std::vector<std::string>& positions() {
-  static const std::vector<std::string> names = {
-      "body.crank.x", "body.crank.y", "body.crank.angle", "body.coupler.x", "body.coupler.y", "body.coupler.angle",
-      "body.rocker.x", "body.rocker.y", "body.rocker.angle"};
+  static const std::vector<std::string> names = {"body.crank.x",   "body.crank.y",   "body.crank.angle",
+                                                 "body.coupler.x", "body.coupler.y", "body.coupler.angle",
+                                                 "body.rocker.x",  "body.rocker.y",  "body.rocker.angle"};
   return names;
 }
 const std::vector<std::string>& velocities() {
-  static const std::vector<std::string> names = {
-      "body.crank.vx", "body.crank.vy", "body.crank.omega", "body.coupler.vx", "body.coupler.vy", "body.coupler.omega",
-      "body.rocker.vx", "body.rocker.vy", "body.rocker.omega"};
+  static const std::vector<std::string> names = {"body.crank.vx",   "body.crank.vy",   "body.crank.omega",
+                                                 "body.coupler.vx", "body.coupler.vy", "body.coupler.omega",
+                                                 "body.rocker.vx",  "body.rocker.vy",  "body.rocker.omega"};
   return names;
 }
 const std::vector<std::string>& forces() {
@@ -88,14 +88,13 @@ TEST(FourBar, DrivenAtConstantSpeedPositionsAreTheClosedForm) {
 
 // Torque of the motor in closed form: power of the drive is the rate of kinetic energy (no gravity, no loss).
 TEST(FourBar, DrivenAtConstantSpeedPowerIsTheRateOfEnergy) {
-  const std::string text = replaced(mechanism("four-bar"), "{end: 2 s, step: 1 ms}",
-                                    "{end: 1 s, step: 1 ms, output: {interval: 1 ms}}");
+  const std::string text =
+      replaced(mechanism("four-bar"), "{end: 2 s, step: 1 ms}", "{end: 1 s, step: 1 ms, output: {interval: 1 ms}}");
   const ModelRun run(text);
   double worst = 0.0, largest = 0.0;
   for (std::size_t i = 2; i + 2 < run.rows(); ++i) {
     const auto energy = [&](std::size_t row) { return run.at(row, "energy.kinetic"); };
-    const double rate =
-        (8.0 * (energy(i + 1) - energy(i - 1)) - (energy(i + 2) - energy(i - 2))) / 12.0e-3;
+    const double rate = (8.0 * (energy(i + 1) - energy(i - 1)) - (energy(i + 2) - energy(i - 2))) / 12.0e-3;
     worst = std::max(worst, std::abs(rate - run.at(i, "driver.motor.power")));
     largest = std::max(largest, std::abs(rate));
   }

@@ -48,30 +48,36 @@ void PrintTo(const Drop& drop, std::ostream* out) { *out << drop.name; }
 
 INSTANTIATE_TEST_SUITE_P(
     Drops, DroppedMass,
-    ::testing::Values(
-        Drop{"hertz", 0.2, 0.1, "hertz", 4.06450543819949e-06, 0.000119629579928, 1.0},
-        Drop{"hertz_heavy_and_fast", 1.0, 0.5, "hertz", 2.80395935612713e-05, 0.000165056479815, 1.0},
-        Drop{"hertz_light_and_slow", 0.05, 0.01, "hertz", 3.69984655189541e-07, 0.000108896665420031, 1.0},
-        Drop{"hertz_slow", 0.2, 0.01, "hertz", 6.44180699972355e-07, 0.000189600106844955, 1.0},
-        Drop{"hertz_fast", 0.2, 1.0, "hertz", 2.56452955791166e-05, 7.54811620726858e-05, 1.0},
-        Drop{"hertz_heavy", 1.0, 0.1, "hertz", 7.73741178636057e-06, 0.000227733321016965, 1.0},
-        Drop{"lankarani_nikravesh", 0.2, 0.1, "{law: lankarani-nikravesh, restitution: 0.9}", 3.92110659514316e-06,
-             0.000120812390093, 0.913176677805581}),
+    ::testing::Values(Drop{"hertz", 0.2, 0.1, "hertz", 4.06450543819949e-06, 0.000119629579928, 1.0},
+                      Drop{"hertz_heavy_and_fast", 1.0, 0.5, "hertz", 2.80395935612713e-05, 0.000165056479815, 1.0},
+                      Drop{"hertz_light_and_slow", 0.05, 0.01, "hertz", 3.69984655189541e-07, 0.000108896665420031,
+                           1.0},
+                      Drop{"hertz_slow", 0.2, 0.01, "hertz", 6.44180699972355e-07, 0.000189600106844955, 1.0},
+                      Drop{"hertz_fast", 0.2, 1.0, "hertz", 2.56452955791166e-05, 7.54811620726858e-05, 1.0},
+                      Drop{"hertz_heavy", 1.0, 0.1, "hertz", 7.73741178636057e-06, 0.000227733321016965, 1.0},
+                      Drop{"lankarani_nikravesh", 0.2, 0.1, "{law: lankarani-nikravesh, restitution: 0.9}",
+                           3.92110659514316e-06, 0.000120812390093, 0.913176677805581}),
     [](const auto& made) { return std::string(made.param.name); });
 
 // Root s of chi(1+s) = ln[(1+chi)/(1-chi s)], 34-digit bisection: whatever the mass, the speed and the stiffness.
 TEST(DissipativeContact, ReboundDependsOnTheRestitutionAlone) {
-  const double oracle[][2] = {{0.9, 0.913176677805581}, {0.7, 0.795972595365329}, {0.5, 0.725241114010197},
-                              {0.3, 0.684224605749448}, {0.1, 0.66526540675515}};
+  const double oracle[][2] = {{0.9, 0.913176677805581},
+                              {0.7, 0.795972595365329},
+                              {0.5, 0.725241114010197},
+                              {0.3, 0.684224605749448},
+                              {0.1, 0.66526540675515}};
   const double masses[] = {0.2, 1.0}, speeds[] = {0.1, 0.47};
   double worst = 0.0;
   for (const auto& [restitution, rebound] : oracle) {
     for (const double mass : masses) {
       for (const double approach : speeds) {
         // T_c = 3.218 (m^2/(K^2 v))^(1/5), a little more with damping.
-        const double elastic = 3.21806545971904 * std::pow(mass * mass / (7.50621044644181e10 * 7.50621044644181e10 * approach), 0.2);
-        const ModelRun run = falling(mass, approach, "{law: lankarani-nikravesh, restitution: " + number(restitution) + "}",
-                                     1.1 * elastic).run();
+        const double elastic =
+            3.21806545971904 * std::pow(mass * mass / (7.50621044644181e10 * 7.50621044644181e10 * approach), 0.2);
+        const ModelRun run =
+            falling(mass, approach, "{law: lankarani-nikravesh, restitution: " + number(restitution) + "}",
+                    1.1 * elastic)
+                .run();
         const auto all = contacts(run);
         ASSERT_EQ(all.size(), 1u);
         ASSERT_EQ(all[0].end.kind, "contact_end");
@@ -172,12 +178,22 @@ void PrintTo(const Flight& flight, std::ostream* out) { *out << flight.name; }
 
 INSTANTIATE_TEST_SUITE_P(
     Flights, FreeFlight,
-    ::testing::Values(Flight{"thrown", {0.0, 0.0}, {0.05, 0.0}, "[0, -9.81]", 0.00196388550299565, 0.0527417933072436,
-                             -0.00945891547441952},
-                      Flight{"blown", {3e-05, -4e-05}, {-0.02, 0.01}, "[12, -9.81]", 0.00421981293940259,
-                             0.042800093435473, 0.00962059152226299},
-                      Flight{"straight", {0.0, 9e-05}, {0.1, 0.3}, "[0, 0]", 3.31501278244824e-05, 0.303150127824482,
-                             -0.09}),
+    ::testing::Values(
+        Flight{"thrown",
+               {0.0, 0.0},
+               {0.05, 0.0},
+               "[0, -9.81]",
+               0.00196388550299565,
+               0.0527417933072436,
+               -0.00945891547441952},
+        Flight{"blown",
+               {3e-05, -4e-05},
+               {-0.02, 0.01},
+               "[12, -9.81]",
+               0.00421981293940259,
+               0.042800093435473,
+               0.00962059152226299},
+        Flight{"straight", {0.0, 9e-05}, {0.1, 0.3}, "[0, 0]", 3.31501278244824e-05, 0.303150127824482, -0.09}),
     [](const auto& made) { return std::string(made.param.name); });
 
 struct Journal {
@@ -225,25 +241,24 @@ TEST_P(JournalInBearing, FirstImpactsAreThoseOfAnIndependentRun) {
 }
 void PrintTo(const Journal& journal, std::ostream* out) { *out << journal.name; }
 
-INSTANTIATE_TEST_SUITE_P(
-    Frictions, JournalInBearing,
-    ::testing::Values(Journal{"rough",
-                              ", friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}",
-                              {0.0019638855, 0.00557391149},
-                              {0.0527417933, 0.0567693628},
-                              {0.002101307, 0.00570956069},
-                              {0.0481471625, 0.0517795321},
-                              {5.92654974e-05, 2.40996267e-05, 0.0137821414},
-                              {0.0305546994, 0.000788933102, 1.97564114}},
-                      Journal{"smooth",
-                              "",
-                              {0.0019638855, 0.00539791876},
-                              {0.0527417933, 0.0571883724},
-                              {0.00210133761, 0.00553345338},
-                              {0.0481241948, 0.0521410987},
-                              {3.6760409e-05, 4.6985317e-05, 0.0},
-                              {0.0230522114, 0.00539069399, 0.0}}),
-    [](const auto& made) { return std::string(made.param.name); });
+INSTANTIATE_TEST_SUITE_P(Frictions, JournalInBearing,
+                         ::testing::Values(Journal{"rough",
+                                                   ", friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}",
+                                                   {0.0019638855, 0.00557391149},
+                                                   {0.0527417933, 0.0567693628},
+                                                   {0.002101307, 0.00570956069},
+                                                   {0.0481471625, 0.0517795321},
+                                                   {5.92654974e-05, 2.40996267e-05, 0.0137821414},
+                                                   {0.0305546994, 0.000788933102, 1.97564114}},
+                                           Journal{"smooth",
+                                                   "",
+                                                   {0.0019638855, 0.00539791876},
+                                                   {0.0527417933, 0.0571883724},
+                                                   {0.00210133761, 0.00553345338},
+                                                   {0.0481241948, 0.0521410987},
+                                                   {3.6760409e-05, 4.6985317e-05, 0.0},
+                                                   {0.0230522114, 0.00539069399, 0.0}}),
+                         [](const auto& made) { return std::string(made.param.name); });
 
 }  // namespace
 }  // namespace freeplay::test

@@ -76,8 +76,8 @@ struct ErrorTable {
 };
 class RodPendulum : public ::testing::TestWithParam<ErrorTable> {};
 
-// Errors at steps of 0.04 s halved four times, by a small planar kernel of its own (full Newton, velocity projection and
-// post-solve), against DOP853 in minimal coordinates, rtol 1e-13. The factor of 1.5 leaves room for another Newton
+// Errors at steps of 0.04 s halved four times, by a small planar kernel of its own (full Newton, velocity projection
+// and post-solve), against DOP853 in minimal coordinates, rtol 1e-13. The factor of 1.5 leaves room for another Newton
 // iteration, not for another method.
 TEST_P(RodPendulum, ErrorsAndOrdersEqualThoseOfTheMethod) {
   const ErrorTable& table = GetParam();
@@ -97,17 +97,18 @@ TEST_P(RodPendulum, ErrorsAndOrdersEqualThoseOfTheMethod) {
 }
 void PrintTo(const ErrorTable& table, std::ostream* out) { *out << table.name; }
 
-INSTANTIATE_TEST_SUITE_P(
-    Splits, RodPendulum,
-    ::testing::Values(ErrorTable{"half", ", split: 0.5",
-                                 {0.0092229, 0.0022849, 0.00056732, 0.00014127, 3.5242e-05},
-                                 {0.033748, 0.0087198, 0.0022124, 0.00055698, 0.00013971},
-                                 {0.17097, 0.043075, 0.01078, 0.0026945, 0.00067347}},
-                      ErrorTable{"optimal", ", split: optimal",
-                                 {0.0090225, 0.0022354, 0.00055505, 0.00013821, 3.4481e-05},
-                                 {0.03299, 0.0085278, 0.0021642, 0.00054489, 0.00013669},
-                                 {0.1672, 0.042147, 0.010551, 0.0026376, 0.0006593}}),
-    [](const auto& made) { return std::string(made.param.name); });
+INSTANTIATE_TEST_SUITE_P(Splits, RodPendulum,
+                         ::testing::Values(ErrorTable{"half",
+                                                      ", split: 0.5",
+                                                      {0.0092229, 0.0022849, 0.00056732, 0.00014127, 3.5242e-05},
+                                                      {0.033748, 0.0087198, 0.0022124, 0.00055698, 0.00013971},
+                                                      {0.17097, 0.043075, 0.01078, 0.0026945, 0.00067347}},
+                                           ErrorTable{"optimal",
+                                                      ", split: optimal",
+                                                      {0.0090225, 0.0022354, 0.00055505, 0.00013821, 3.4481e-05},
+                                                      {0.03299, 0.0085278, 0.0021642, 0.00054489, 0.00013669},
+                                                      {0.1672, 0.042147, 0.010551, 0.0026376, 0.0006593}}),
+                         [](const auto& made) { return std::string(made.param.name); });
 
 // DOP853 in minimal coordinates, rtol 1e-13, at 1 s.
 TEST(RodChainReference, OneRodEqualsAnIndependentIntegration) {
@@ -152,7 +153,11 @@ Errors double_rod_errors(double step) {
     };
     const auto along = [&](const Point& p, std::size_t rod, long double r) {
       const long double c = r * std::cos(q[rod]), s = r * std::sin(q[rod]), rate = w[rod], second = a[rod];
-      return Point{p.x + c, p.y + s, p.vx - s * rate, p.vy + c * rate, p.ax - s * second - c * rate * rate,
+      return Point{p.x + c,
+                   p.y + s,
+                   p.vx - s * rate,
+                   p.vy + c * rate,
+                   p.ax - s * second - c * rate * rate,
                    p.ay + c * second - s * rate * rate};
     };
     const Point upper = along({}, 0, 0.5L), tip = along({}, 0, 1.0L), lower = along(tip, 1, 0.5L);
@@ -205,16 +210,15 @@ TEST_P(PendulumEnergy, NeverGrowsOverThousandsOfSteps) {
 }
 void PrintTo(const EnergyTable& table, std::ostream* out) { *out << table.name; }
 
-std::string rod_text() {
-  return replaced(mechanism("pendulum"), "simulation: {end: 2 s, step: 1 ms}\n", "");
-}
+std::string rod_text() { return replaced(mechanism("pendulum"), "simulation: {end: 2 s, step: 1 ms}\n", ""); }
 INSTANTIATE_TEST_SUITE_P(
     Pendulums, PendulumEnergy,
     ::testing::Values(EnergyTable{"rod", rod_text(), 0.02, {-0.010815, -0.017649, -0.033915, -0.043387}},
-                      EnergyTable{"double",
-                                  two_rods + std::string("initial: {joints: {first: -0.5707963267948966, second: 0}}\n"),
-                                  0.01,
-                                  {-0.00059288, -0.0012775, -0.0024589, -0.0055712}}),
+                      EnergyTable{
+                          "double",
+                          two_rods + std::string("initial: {joints: {first: -0.5707963267948966, second: 0}}\n"),
+                          0.01,
+                          {-0.00059288, -0.0012775, -0.0024589, -0.0055712}}),
     [](const auto& made) { return std::string(made.param.name); });
 
 }  // namespace

@@ -10,9 +10,9 @@ struct Puck {
   double mass = 0.2, inertia = 1e-4;
   std::string ring = "bearing_radius: 5 mm, radial_clearance: 0.1 mm, material: {E: 207 GPa, nu: 0.3}";
   std::string contact = "hertz";
-  std::string more = "";                          ///< of the block `clearance`, after a comma
-  double x = 0.0, y = 0.0, vx = 0.0, vy = 0.0;    ///< eccentricity and its rate at the start
-  std::string sections = "";                      ///< gravity, forces
+  std::string more = "";                        ///< of the block `clearance`, after a comma
+  double x = 0.0, y = 0.0, vx = 0.0, vy = 0.0;  ///< eccentricity and its rate at the start
+  std::string sections = "";                    ///< gravity, forces
   double end = 1e-3, step = 1e-7;
 
   std::string text() const {

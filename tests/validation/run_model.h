@@ -85,7 +85,9 @@ class RowKeeper final : public Sink {
   }
   void event(const EventRecord& record) override {
     const JointElement& joint = model_.joints[static_cast<std::size_t>(record.joint)];
-    events_.push_back({record.time, joint.name, joint.layout.events[static_cast<std::size_t>(record.event)].name,
+    events_.push_back({record.time,
+                       joint.name,
+                       joint.layout.events[static_cast<std::size_t>(record.event)].name,
                        {record.fields.begin(), record.fields.end()}});
   }
   bool ok() const override { return true; }

@@ -52,6 +52,16 @@ TEST(Unit, MultipliesDividesAndRaises) {
   expect_unit("1/s*m", 1.0, dimension::velocity);
 }
 
+TEST(Unit, TakesTheUnitThatAWordChooses) {
+  const char* text = "kind: N/mm | N*m/rad";
+  const auto word = [](double index) { return [index](std::string_view) { return std::optional(index); }; };
+  EXPECT_EQ(parse_unit(text, word(0.0)).dimension, dimension::stiffness);
+  EXPECT_NEAR(parse_unit(text, word(0.0)).factor, 1e3, 1e-10);
+  EXPECT_EQ(parse_unit(text, word(1.0)).dimension, dimension::torque);
+  EXPECT_EQ(parse_unit(text, [](std::string_view) { return std::optional<double>(); }).dimension, dimension::stiffness);
+  EXPECT_EQ(error_of(text).id, "bad-unit");  // in a model file there is no such thing
+}
+
 TEST(Unit, TakesAnExponentFromANamedParameter) {
   const auto lookup = [](std::string_view name) { return name == "exponent" ? std::optional(1.5) : std::nullopt; };
   const Unit unit = parse_unit("N/mm^exponent", lookup);

@@ -43,6 +43,14 @@ TEST(ResultDirectory, WritesWholeFiles) {
   EXPECT_EQ(std::vector<std::string>{"summary.json"}, directory.files());
 }
 
+TEST(ResultDirectory, WritesIntoAFolderOfItsOwn) {
+  const ScratchFolder folder;
+  const ResultDirectory directory(folder.file("a"), false);
+  directory.write("inputs/motor.csv", "t,x");
+  EXPECT_EQ("t,x", folder.read("a/inputs/motor.csv"));
+  EXPECT_EQ(std::vector<std::string>{"inputs"}, directory.files());
+}
+
 // FIPS 180-2, appendix B.1.
 TEST(Sha256, OfAbc) { EXPECT_EQ("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad", sha256("abc")); }
 

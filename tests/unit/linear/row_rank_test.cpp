@@ -1,10 +1,10 @@
 #include "linear/row_rank.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <random>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 namespace freeplay {

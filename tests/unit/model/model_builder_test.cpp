@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"misfit", "drivers:\n  m: {joint: a, kind: force, value: 1}\n", "6:23 wrong-type "},
         Mistake{"dimension", "drivers:\n  m: {joint: a, kind: angle, value: 1 mm}\n", "6:37 dimension-mismatch "},
         Mistake{"no value", "drivers:\n  m: {joint: a, kind: angle}\n", "6:3 missing-key "},
-        Mistake{"table", "drivers:\n  m: {joint: a, kind: angle, table: m.csv}\n", "6:30 unknown-key "},
+        Mistake{"table", "drivers:\n  m: {joint: a, kind: angle, table: m.csv}\n", "6:37 file-not-found "},
         Mistake{"both", "drivers:\n  m: {joint: a, kind: angle, value: 1, table: m.csv}\n", "6:40 conflicting-keys "},
         Mistake{"at the start", "drivers:\n  m: {joint: a, kind: angle, value: 1 + sqrt(t - 1)}\n",
                 "6:41 bad-expression "},
@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     OtherSections, MistakesAfterPin,
     testing::Values(
-        Mistake{"force type", "forces:\n  f: {type: spring, at: rod}\n", "6:13 unknown-type "},
+        Mistake{"force type", "forces:\n  f: {type: thrust, at: rod}\n", "6:13 unknown-type "},
         Mistake{"force dimension", "forces:\n  f: {type: force, at: rod, value: [1 N, 1 m]}\n",
                 "6:42 dimension-mismatch "},
         Mistake{"torque on nobody", "forces:\n  f: {type: torque, on: rood, value: 1}\n", "6:25 unknown-name "},
@@ -279,16 +279,20 @@ TEST(ModelBuilder, WarnsOfWhatIsNotUsed) {
   EXPECT_FALSE(build(text, {}, true).model);
 }
 
-TEST(ModelBuilder, EndsAtPlugins) {
-  try {
-    build(with_rod("plugins: [./mine.so]\njoints: 5\n"));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.exit_code(), 5);
-    EXPECT_EQ(error.id(), "plugin-not-found");
-    EXPECT_EQ(error.location().line, 4);
-    EXPECT_EQ(error.location().column, 11);
-  }
+TEST(NamedPlugins, AreToldWithTheirPlaces) {
+  Diagnostics diagnostics(false);
+  const auto document = parse_yaml("freeplay: 1\nplugins: [./mine.so, yours]\n", "model.yaml", diagnostics);
+  ASSERT_TRUE(document);
+  const std::vector<NamedPlugin> plugins = named_plugins(*document);
+  ASSERT_EQ(plugins.size(), 2u);
+  EXPECT_EQ(plugins[0].word, "./mine.so");
+  EXPECT_EQ(plugins[1].word, "yours");
+  EXPECT_EQ(plugins[1].location.line, 2);
+  EXPECT_EQ(plugins[1].location.column, 22);
+}
+
+TEST(ModelBuilder, RefusesPluginsThatAreNoList) {
+  EXPECT_NE(build(with_rod("plugins: mine\n")).report.find("[wrong-type]"), std::string::npos);
 }
 
 TEST(ModelBuilder, ReadsDriversForcesAndSimulation) {

@@ -53,6 +53,13 @@ class LoosePin final : public Joint {
   FrictionLawRef friction_;
 };
 
+/// A force without rows; the word chooses the unit.
+class Spring final : public Joint {
+ public:
+  explicit Spring(const Parameters&) {}
+  void declare(JointLayout& layout) const override { layout.forces = 1; }
+};
+
 class Ball final : public Joint {
  public:
   explicit Ball(const Parameters&) {}
@@ -103,6 +110,10 @@ inline constexpr Parameter rod_parameters[] = {
     {.name = "length", .unit = "mm", .default_value = 20.0, .minimum = 10.0, .open = Open::minimum},
     {.name = "load", .kind = ParameterKind::function, .unit = "N", .default_value = optional},
 };
+inline constexpr Parameter spring_parameters[] = {
+    {.name = "stiffness", .unit = "kind: N/m | N*m/rad", .default_value = 0.0},
+    {.name = "kind", .kind = ParameterKind::choice, .default_value = 0, .choices = "pull|twist"},
+};
 inline constexpr Parameter power_parameters[] = {
     {.name = "K", .unit = "N/m^exponent", .minimum = 0.0, .open = Open::minimum},
     {.name = "exponent", .default_value = 1.5, .minimum = 1.0, .maximum = 3.0},
@@ -119,6 +130,7 @@ inline Status publish_toys(const Host* host, Manifest* manifest) noexcept {
       joint<Pin>({.name = "pin", .space = Space::planar, .first_end = "ring", .second_end = "shaft"}),
       joint<Slide>({.name = "slide", .space = Space::planar}),
       joint<Rod>({.name = "rod", .parameters = rod_parameters}),
+      joint<Spring>({.name = "spring", .parameters = spring_parameters}),
       joint<LoosePin>({.name = "loose-pin",
                        .space = Space::planar,
                        .parameters = loose_pin_parameters,

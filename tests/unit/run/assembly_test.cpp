@@ -10,11 +10,11 @@
 namespace freeplay {
 namespace {
 
-using ::testing::HasSubstr;
 using test::load;
 using test::mechanism;
 using test::ModelRun;
 using test::replaced;
+using ::testing::HasSubstr;
 
 /// The error that putting a model together ends with.
 std::optional<Error> failure(const std::string& text) {

@@ -14,7 +14,8 @@ std::string slider(const std::string& output) {
   return "freeplay: 1\nbodies: {mass: {mass: 1, inertia: 1}}\n"
          "joints: {guide: {type: prismatic, between: [ground, mass]}}\n"
          "drivers: {push: {joint: guide, kind: force, value: \"2*t\"}}\n"
-         "simulation: {end: 1, step: 1 ms, output: {interval: 0.25" + output + "}}\n";
+         "simulation: {end: 1, step: 1 ms, output: {interval: 0.25" +
+         output + "}}\n";
 }
 
 // Effort 2 t over 1 s: greatest 2, mean square 4/3; speed t^2, work the integral of 2 t^3. The trapezoidal rule over
@@ -57,7 +58,7 @@ TEST(Statistics, CountContactsAndTheirShareOfTime) {
   EXPECT_NEAR(ring.max_normal_force, 615.080982917188, 1e-5 * 615.0);
   EXPECT_NEAR(ring.max_eccentricity, 1e-4 + 4.06450543819949e-06, 1e-10);
   EXPECT_NEAR(ring.contact_fraction, 0.000119629579928 / 4e-4, 1e-3);  // whole steps at both ends
-  EXPECT_NEAR(ring.dissipated, 0.0, 1e-8);  // of 1 mJ
+  EXPECT_NEAR(ring.dissipated, 0.0, 1e-8);                             // of 1 mJ
 }
 
 }  // namespace

@@ -43,9 +43,7 @@ TEST(Antiderivative, FollowsThousandsOfOscillations) {
 }
 
 TEST(Antiderivative, FindsKinksAndRamps) {
-  EXPECT_LE(worst_error("abs(t - 0.3)", 0.0, 1.0,
-                        [](double t) { return 0.5 * (t - 0.3) * std::abs(t - 0.3); }),
-            1e-12);
+  EXPECT_LE(worst_error("abs(t - 0.3)", 0.0, 1.0, [](double t) { return 0.5 * (t - 0.3) * std::abs(t - 0.3); }), 1e-12);
   const auto ramp = [](double t) {
     const double s = std::clamp((t - 0.2) / 0.3, 0.0, 1.0);
     return 0.3 * std::pow(s, 4) * (s * s - 3.0 * s + 2.5) + std::max(0.0, t - 0.5);

@@ -1,4 +1,4 @@
-#include "system/leg.h"
+#include "model/leg.h"
 
 #include <array>
 #include <cmath>
@@ -33,9 +33,8 @@ struct Path {
 };
 Path path_at(double t) {
   const double c = std::cos(3.0 * t), s = std::sin(3.0 * t);
-  return {{0.1 * c, -0.3 * s, -0.9 * c},
-          {0.05 + 0.1 * s, 0.3 * c, -0.9 * s},
-          {0.2 * t + 0.1 * t * t, 0.2 + 0.2 * t, 0.2}};
+  return {
+      {0.1 * c, -0.3 * s, -0.9 * c}, {0.05 + 0.1 * s, 0.3 * c, -0.9 * s}, {0.2 * t + 0.1 * t * t, 0.2 + 0.2 * t, 0.2}};
 }
 LegPose pose_at(const Leg& leg, double t) {
   const Path p = path_at(t);
@@ -54,8 +53,7 @@ TEST(Leg, EqualsTheIntersectionOfTwoCircles) {
       const double cx = p.x.value + c * leg.cx - s * leg.cy, cy = p.y.value + s * leg.cx + c * leg.cy;
       const double dx = cx - leg.ax, dy = cy - leg.ay, distance = std::hypot(dx, dy);
       EXPECT_NEAR(pose.distance, distance, 1e-15);
-      const double along =
-          (distance * distance + leg.crank * leg.crank - leg.coupler * leg.coupler) / (2.0 * distance);
+      const double along = (distance * distance + leg.crank * leg.crank - leg.coupler * leg.coupler) / (2.0 * distance);
       const double across = elbow * std::sqrt(leg.crank * leg.crank - along * along);
       const double bx = leg.ax + (along * dx - across * dy) / distance;
       const double by = leg.ay + (along * dy + across * dx) / distance;

@@ -30,6 +30,9 @@ struct Leg {
 /// The leg that drives joint `driven` under a path of marker `frame`; nothing when the chain has another shape.
 std::optional<Leg> find_leg(const Model& model, int driven, int frame);
 
+/// The leg of a driver by inverse kinematics whose path gives x, y and angle; nothing for other drivers.
+std::optional<Leg> closed_form_leg(const Model& model, int driver);
+
 /// Angles of the bodies of a leg [rad], principal values, with derivatives.
 struct LegPose {
   Jet crank, coupler;

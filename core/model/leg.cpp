@@ -1,4 +1,4 @@
-#include "system/leg.h"
+#include "model/leg.h"
 
 #include <cmath>
 
@@ -70,6 +70,18 @@ std::optional<Leg> find_leg(const Model& model, int driven, int frame) {
   leg.crank_pin_y = at(a.marker_b).y;
   leg.coupler_pin_x = at(b.far).x;
   leg.coupler_pin_y = at(b.far).y;
+  return leg;
+}
+
+std::optional<Leg> closed_form_leg(const Model& model, int driver) {
+  const Driver& driven = model.drivers[static_cast<std::size_t>(driver)];
+  if (driven.kinematics < 0) return std::nullopt;
+  const InverseKinematics& entry = model.kinematics[static_cast<std::size_t>(driven.kinematics)];
+  for (const auto& component : entry.path) {
+    if (!component) return std::nullopt;
+  }
+  std::optional<Leg> leg = find_leg(model, driven.joint, entry.marker);
+  if (leg) leg->elbow = driven.elbow;
   return leg;
 }
 

@@ -1,0 +1,67 @@
+#include "model/csv_text.h"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "base/text.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+}  // namespace
+
+CsvText::CsvText(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
+  std::string_view rest = text_;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  bool header = true;
+  for (lines_ = 1; !rest.empty(); ++lines_) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.starts_with('#')) continue;
+    if (!header) {
+      rows_.push_back({lines_, line});
+      continue;
+    }
+    header = false;
+    for (std::string_view names = line;;) {
+      const std::size_t comma = names.find(',');
+      names_.emplace_back(trimmed(names.substr(0, comma)));
+      if (comma == std::string_view::npos) break;
+      names.remove_prefix(comma + 1);
+    }
+  }
+}
+
+CsvText::Field CsvText::field(std::size_t row, std::size_t column) const {
+  const std::string_view line = rows_[row].text;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < column; ++i) {
+    const std::size_t comma = line.find(',', begin);
+    begin = comma == std::string_view::npos ? line.size() : comma + 1;
+  }
+  const std::string_view text = trimmed(line.substr(begin, line.find(',', begin) - begin));
+  if (!text.empty()) begin = static_cast<std::size_t>(text.data() - line.data());
+  return {text, {file_, rows_[row].line, character_count(line.substr(0, begin)) + 1}};
+}
+
+Location CsvText::body_location() const { return rows_.empty() ? Location{file_, lines_, 1} : field(0, 0).location; }
+
+std::optional<double> csv_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,49 @@
+// CsvText: a table of text with commas, comments and one header row, whose fields know their places.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace freeplay {
+
+/// Fields are separated by commas, lines that begin with '#' are comments, and the first other line names the columns.
+/// Blanks around a field and empty lines do not count; there are no quotes.
+class CsvText {
+ public:
+  CsvText(std::string file, std::string text);
+  CsvText(const CsvText&) = delete;
+  CsvText& operator=(const CsvText&) = delete;
+
+  /// A field of a row; its text is empty where the row is too short.
+  struct Field {
+    std::string_view text;
+    Location location;
+  };
+
+  const std::string& text() const { return text_; }
+  const std::vector<std::string>& names() const { return names_; }
+  std::size_t rows() const { return rows_.size(); }
+  Field field(std::size_t row, std::size_t column) const;
+  /// Of the first row of numbers, or of the end of the text.
+  Location body_location() const;
+
+ private:
+  struct Row {
+    int line;
+    std::string_view text;
+  };
+
+  std::string file_, text_;
+  std::vector<std::string> names_;
+  std::vector<Row> rows_;
+  int lines_ = 1;
+};
+
+/// A finite number with a decimal point, whatever the locale; nothing else may stand beside it.
+std::optional<double> csv_number(std::string_view text);
+
+}  // namespace freeplay

@@ -1,0 +1,253 @@
+#include "model/table_keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t largest_file = 16u << 20;
+
+/// Times and values in SI.
+struct Points {
+  std::vector<double> times, values;
+};
+
+/// Why the file cannot be read, or nothing and its text.
+std::optional<std::string> fault_of_file(const std::filesystem::path& path, std::string& text) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(status)) return "there is no such file";
+  if (!std::filesystem::is_regular_file(status)) return "it is not a regular file";
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return "it cannot be opened";
+  text.assign(largest_file + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) return "reading it failed";
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return std::nullopt;
+}
+
+/// The name, or NAME-2 and so on when it is taken.
+std::string free_name(const std::vector<InputFile>& inputs, const std::filesystem::path& path) {
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::find(inputs, name, &InputFile::name) != inputs.end();
+  };
+  std::string name = path.filename().string();
+  for (int i = 2; taken(name); ++i) {
+    name = fmt::format("{}-{}{}", path.stem().string(), i, path.extension().string());
+  }
+  return name;
+}
+
+class TableReader {
+ public:
+  TableReader(Draft& draft, const CheckedValue& value, const Dimension& dimension)
+      : draft_(draft), value_(value), dimension_(dimension) {}
+
+  std::shared_ptr<const TimeTable> read() {
+    const bool short_form = value_.node().is_scalar();
+    if (!short_form && !value_.node().is_map()) {
+      value_.wrong_type("the path of a file or a map");
+      return nullptr;
+    }
+    MapReader map = short_form ? MapReader::empty(value_) : MapReader(value_);
+    const auto file = short_form ? std::optional<CheckedValue>(value_) : map.find("file");
+    const auto points = map.find("points");
+    time_unit_ = unit(map.find("time_unit"), dimension::time);
+    unit_ = unit(map.find("unit"), dimension_);
+    const auto interpolation = word(map.find("interpolation"), {"cubic", "linear"});
+    const auto ends = word(map.find("ends"), {"natural", "clamped", "periodic"});
+    const auto outside = word(map.find("outside"), {"hold", "repeat", "error"});
+    const auto time_column = map.find("time"), value_column = map.find("value");
+    map.conflict("file", "points");
+    if (!file) {
+      for (const char* of_a_file : {"time", "value"}) map.conflict("points", of_a_file);
+    }
+    if (!file && !points && map.good()) map.report_missing("file");
+    map.finish();
+    if (!time_unit_ || !unit_ || !interpolation || !ends || !outside || file.has_value() == points.has_value()) {
+      return nullptr;
+    }
+    const bool periodic = *interpolation == 0 && *ends == 2;
+    Points table;
+    const bool good =
+        file ? read_file(*file, time_column, value_column, periodic, table) : read_points(*points, periodic, table);
+    if (!good) return nullptr;
+    auto made = std::make_shared<const TimeTable>(std::move(table.times), std::move(table.values),
+                                                  static_cast<Interpolation>(*interpolation),
+                                                  static_cast<SplineEnds>(*ends), static_cast<Outside>(*outside));
+    return tried(*made) ? made : nullptr;
+  }
+
+ private:
+  std::optional<double> unit(const std::optional<CheckedValue>& value, const Dimension& wanted) const {
+    if (!value) return 1.0;
+    const auto text = value->string();
+    if (!text) return std::nullopt;
+    try {
+      const Unit unit = parse_unit(*text);
+      if (unit.dimension == wanted) return unit.factor;
+      value->fail("dimension-mismatch", fmt::format("'{}' must be a unit of {}, not of {}", value->path(),
+                                                    dimension_name(wanted), dimension_name(unit.dimension)));
+    } catch (const ExpressionError& error) {
+      value->fail(error.id, error.message, error.suggestion, error.hint);
+    }
+    return std::nullopt;
+  }
+
+  static std::optional<int> word(const std::optional<CheckedValue>& value, const std::vector<std::string>& words) {
+    return value ? value->word(words) : std::optional<int>(0);
+  }
+
+  // --- in the model ----------------------------------------------------------------------------------------------
+
+  bool read_points(const CheckedValue& value, bool periodic, Points& table) const {
+    const auto items = value.list();
+    if (!items) return false;
+    bool good = true;
+    for (const CheckedValue& item : *items) {
+      const auto pair = item.list(2);
+      const auto time = pair ? number((*pair)[0], dimension::time, *time_unit_) : std::nullopt;
+      const auto number_there = pair ? number((*pair)[1], dimension_, *unit_) : std::nullopt;
+      good = good && time && number_there;
+      if (!good) continue;
+      if (!table.times.empty() && !(*time > table.times.back())) {
+        (*pair)[0].fail("bad-table", fmt::format("times must increase: {} s follows {} s", *time, table.times.back()));
+        return false;
+      }
+      table.times.push_back(*time);
+      table.values.push_back(*number_there);
+    }
+    if (!good) return false;
+    const std::string fault = fault_of(table, periodic);
+    if (fault.empty()) return true;
+    value.fail("bad-table", fault);
+    return false;
+  }
+
+  /// A number without a unit of its own has that of its column.
+  static std::optional<double> number(const CheckedValue& value, const Dimension& dimension, double factor) {
+    const auto quantity = value.quantity(dimension);
+    if (!quantity) return std::nullopt;
+    const bool bare = value.any_quantity()->kind != DimensionKind::dimensioned;
+    return bare ? *quantity * factor : *quantity;
+  }
+
+  static std::string fault_of(const Points& table, bool periodic) {
+    const std::size_t least = periodic ? 3 : 2;
+    if (table.times.size() < least) return fmt::format("a table needs at least {} rows", least);
+    if (!periodic) return {};
+    double largest = 0.0;
+    for (const double value : table.values) largest = std::max(largest, std::abs(value));
+    if (std::abs(table.values.front() - table.values.back()) <= 1e-9 * largest) return {};
+    return fmt::format("first and last value of a periodic table must agree: {} and {}", table.values.front(),
+                       table.values.back());
+  }
+
+  // --- in a file -------------------------------------------------------------------------------------------------
+
+  bool read_file(const CheckedValue& file, const std::optional<CheckedValue>& time_column,
+                 const std::optional<CheckedValue>& value_column, bool periodic, Points& table) {
+    const CsvText* text = open(file);
+    if (text == nullptr) return false;
+    const auto time = column(*text, file, time_column, 0), values = column(*text, file, value_column, 1);
+    if (!time || !values) return false;
+    for (std::size_t row = 0; row < text->rows(); ++row) {
+      const auto t = field(*text, row, *time), x = field(*text, row, *values);
+      if (!t || !x) return false;
+      table.times.push_back(*t * *time_unit_);
+      table.values.push_back(*x * *unit_);
+      if (row == 0 || table.times[row] > table.times[row - 1]) continue;
+      bad(*text, row, *time,
+          fmt::format("times must increase: {} s follows {} s", table.times[row], table.times[row - 1]));
+      return false;
+    }
+    const std::string fault = fault_of(table, periodic);
+    if (fault.empty()) return true;
+    draft_.diagnostics.error(text->body_location(), 1, "bad-table", fault);
+    return false;
+  }
+
+  const CsvText* open(const CheckedValue& file) const {
+    const auto name = file.string();
+    if (!name) return nullptr;
+    const std::filesystem::path path = std::filesystem::path(draft_.model.file).parent_path() / *name;
+    const auto known = draft_.tables.find(path.string());
+    if (known != draft_.tables.end()) return known->second.get();
+    std::string text;
+    if (const auto fault = fault_of_file(path, text)) {
+      file.fail("file-not-found", fmt::format("cannot read '{}': {}", path.string(), *fault));
+      return nullptr;
+    }
+    if (text.size() > largest_file) {
+      file.fail("too-large", fmt::format("the table '{}' is larger than 16 MiB", path.string()));
+      return nullptr;
+    }
+    draft_.diagnostics.add_source(path.string(), text);
+    draft_.model.inputs.push_back({free_name(draft_.model.inputs, path), text});
+    auto table = std::make_unique<CsvText>(path.string(), std::move(text));
+    return draft_.tables.emplace(path.string(), std::move(table)).first->second.get();
+  }
+
+  std::optional<std::size_t> column(const CsvText& text, const CheckedValue& file,
+                                    const std::optional<CheckedValue>& value, std::size_t standard) const {
+    const std::vector<std::string>& names = text.names();
+    if (value) {
+      const auto name = value->string();
+      if (!name) return std::nullopt;
+      const auto found = std::ranges::find(names, *name);
+      if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+      value->fail("unknown-name", fmt::format("'{}' has no column '{}'", file.node().text, *name),
+                  nearest(*name, names));
+      return std::nullopt;
+    }
+    if (standard < names.size()) return standard;
+    draft_.diagnostics.error(text.body_location(), 1, "bad-table", "a table needs two columns and a header row");
+    return std::nullopt;
+  }
+
+  std::optional<double> field(const CsvText& text, std::size_t row, std::size_t column) const {
+    const auto number = csv_number(text.field(row, column).text);
+    if (number) return number;
+    const std::string_view word = text.field(row, column).text;
+    bad(text, row, column, word.empty() ? "a number is missing" : fmt::format("'{}' is not a number", printable(word)));
+    return std::nullopt;
+  }
+
+  void bad(const CsvText& text, std::size_t row, std::size_t column, const std::string& message) const {
+    const CsvText::Field field = text.field(row, column);
+    draft_.diagnostics.error(field.location, std::max(1, character_count(field.text)), "bad-table", message);
+  }
+
+  // ---------------------------------------------------------------------------------------------------------------
+
+  bool tried(const TimeTable& table) const {
+    Jet jet;
+    EvaluationFailure failure;
+    const double start = value_.reading().start_time;
+    if (table.evaluate(start, jet, failure)) return true;
+    value_.fail(failure.id, fmt::format("{}: {} s", failure.reason, start));
+    return false;
+  }
+
+  Draft& draft_;
+  const CheckedValue& value_;
+  Dimension dimension_;
+  std::optional<double> time_unit_, unit_;  ///< factors to SI
+};
+
+}  // namespace
+
+std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& value, const Dimension& dimension) {
+  return TableReader(draft, value, dimension).read();
+}
+
+}  // namespace freeplay

@@ -1,0 +1,42 @@
+#include "system/path_row.h"
+
+#include <cmath>
+
+namespace freeplay {
+namespace {
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+double marker_angle(const Model& model, int marker, std::span<const double> q) {
+  const Marker& m = model.markers[at(marker)];
+  return m.angle + (m.body == ground ? 0.0 : q[3 * at(m.body) + 2]);
+}
+
+void PathRow::entries(const Evaluation& e, double* row) const {
+  double g[6] = {};
+  g[planar::components[component]] = 1.0;
+  planar::body_row(g, e.arms[at(marker)], row);
+}
+
+double PathRow::residual(const System& system, const Point& point, const Evaluation& e, double path) const {
+  if (component < 2) return e.markers[at(marker)].position[component] - path;
+  const double error = marker_angle(system.model(), marker, point.q) - path;
+  return error - 2.0 * M_PI * std::round(error / (2.0 * M_PI));
+}
+
+double PathRow::gamma(const Evaluation& e, double path_acceleration) const {
+  double g[6] = {};
+  g[planar::components[component]] = 1.0;
+  return path_acceleration - planar::velocity_product(g, e.arms[at(marker)]);
+}
+
+std::vector<PathRow> path_rows(const Model& model, int kinematics) {
+  const InverseKinematics& entry = model.kinematics[at(kinematics)];
+  std::vector<PathRow> rows;
+  for (int i = 0; i < 3; ++i) {
+    if (entry.path[at(i)]) rows.push_back({kinematics, i, entry.marker, model.markers[at(entry.marker)].body});
+  }
+  return rows;
+}
+
+}  // namespace freeplay

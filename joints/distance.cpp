@@ -1,0 +1,53 @@
+#include "freeplay/plugin.h"
+#include "planar_marker.h"
+
+namespace freeplay {
+namespace {
+
+using namespace planar;
+
+/// Massless rod between two origins, in the plane. With d = P_b - P_a [m], |d| > 0 and u = d/|d|:
+///
+///   Phi = |d| - length = 0        Phi' = u.d'        gamma = -(d'.d' - (u.d')^2)/|d|
+///
+/// Where the origins coincide the x axis of marker a stands for u, so that an assembly finds its way out.
+/// Nikravesh 1988; Haug 1989.
+class Distance final : public Joint {
+ public:
+  explicit Distance(const Parameters& parameters) : length_(parameters.number("length")) {}
+
+  void declare(JointLayout& layout) const override { layout.constraint_rows = 1; }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
+    const double distance = d.norm();
+    const bool apart = distance > 0.0;
+    const Eigen::Vector2d u = apart ? Eigen::Vector2d(d / distance) : x_axis(*in.a);
+    rows.phi[0] = distance - length_;
+    for (int i = 0; i < 2; ++i) {
+      rows.jacobian.data[velocity_a + i] = -u[i];
+      rows.jacobian.data[velocity_b + i] = u[i];
+    }
+    const double across = turned(u).dot(rate);
+    rows.gamma[0] = apart ? -across * across / distance : 0.0;
+  }
+
+ private:
+  double length_;
+};
+
+constexpr Parameter parameters[] = {
+    {.name = "length", .unit = "m", .minimum = 0.0, .open = Open::minimum, .summary = "Distance of the origins."}};
+
+}  // namespace
+
+Component distance() {
+  return joint<Distance>({.name = "distance",
+                          .space = Space::planar,
+                          .summary = "Massless rod: the origins of both frames stay a length apart.",
+                          .formula = "|P_b - P_a| = length.",
+                          .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, "
+                                        "Computer Aided Kinematics and Dynamics of Mechanical Systems",
+                          .parameters = parameters});
+}
+
+}  // namespace freeplay

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include "../io/scratch_folder.h"
+#include "model_text.h"
+
+namespace freeplay {
+namespace {
+
+/// A rod on a pin that a table drives; `table` stands on line 6 from column 41 on.
+Built driven(const std::string& table, const std::string& kind = "angle") {
+  return build(
+      with_rod("joints: {A: {type: pin, between: [ground, rod]}}\n"
+               "drivers:\n"
+               "  motor: {joint: A, kind: " +
+               kind + ", table: " + table + "}\n"));
+}
+
+double value_at(const Built& built, double t) {
+  Jet jet;
+  EvaluationFailure failure;
+  EXPECT_TRUE(built.model->drivers.front().table->evaluate(t, jet, failure));
+  return jet.value;
+}
+
+TEST(DriverTable, ReadsPointsWithUnits) {
+  const Built built = driven("{points: [[0, 0], [500 ms, 90 deg], [1, pi]], interpolation: linear}");
+  ASSERT_TRUE(built.model) << built.report;
+  EXPECT_NEAR(value_at(built, 0.25), M_PI / 4, 1e-15);
+  EXPECT_NEAR(value_at(built, 1.0), M_PI, 1e-15);
+}
+
+TEST(DriverTable, GivesBareNumbersTheUnitOfTheirColumn) {
+  const Built built =
+      driven("{points: [[0, 0], [1000, 90], [2 s, (pi) rad]], time_unit: ms, unit: deg, interpolation: linear}");
+  ASSERT_TRUE(built.model) << built.report;
+  EXPECT_NEAR(value_at(built, 1.0), M_PI / 2, 1e-15);
+  EXPECT_NEAR(value_at(built, 2.0), M_PI, 1e-15);
+}
+
+TEST(DriverTable, TimesMustIncrease) {
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2], [1, 3]]}").places, "6:68 bad-table ");
+}
+
+TEST(DriverTable, NeedsEnoughRows) {
+  EXPECT_EQ(driven("{points: [[0, 1]]}").places, "6:50 bad-table ");
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 1]], ends: periodic}").places, "6:50 bad-table ");
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2], [2, 3]], ends: periodic}").places, "6:50 bad-table ");
+}
+
+TEST(DriverTable, ChecksUnitsAgainstTheKind) {
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2]], unit: mm}").places, "6:74 dimension-mismatch ");
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2]], time_unit: m}").places, "6:79 dimension-mismatch ");
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2]], unit: furlong}").places, "6:74 bad-unit ");
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2 mm]]}").places, "6:63 dimension-mismatch ");
+}
+
+TEST(DriverTable, NeedsOneSourceOfPoints) {
+  EXPECT_EQ(driven("{ends: natural}").places, "6:34 missing-key ");
+  EXPECT_EQ(driven("{file: a.csv, points: [[0, 1], [1, 2]]}").places, "6:55 conflicting-keys ");
+  EXPECT_EQ(driven("{points: [[0, 1], [1, 2]], value: x}").places, "6:68 conflicting-keys ");
+  EXPECT_EQ(driven("[1, 2]").places, "6:41 wrong-type ");
+}
+
+TEST(DriverTable, IsTriedAtTheStart) {
+  EXPECT_EQ(driven("{points: [[1, 1], [2, 2]], outside: error}").places, "6:41 bad-table ");
+  EXPECT_TRUE(driven("{points: [[1, 1], [2, 2]]}").model);
+}
+
+TEST(DriverTable, ReadsColumnsOfAFileOnceAndKeepsItAsAnInput) {
+  const ScratchFolder folder;
+  folder.write("motor.csv", "# of the test bench\nt,speed,angle\n0,1,0\n1000,2,90\n");
+  const std::string file = folder.file("motor.csv").string();
+  const Built built = driven("{file: " + file + ", value: angle, time_unit: ms, unit: deg}");
+  ASSERT_TRUE(built.model) << built.report;
+  EXPECT_NEAR(value_at(built, 0.5), M_PI / 4, 1e-15);
+  ASSERT_EQ(built.model->inputs.size(), 1u);
+  EXPECT_EQ(built.model->inputs.front().name, "motor.csv");
+  EXPECT_EQ(built.model->inputs.front().text, folder.read("motor.csv"));
+}
+
+TEST(DriverTable, ReportsMistakesInTheFile) {
+  const ScratchFolder folder;
+  const std::string file = folder.file("motor.csv").string();
+  const auto report = [&](const std::string& text, const std::string& more = "") {
+    folder.write("motor.csv", text);
+    const Built built = driven("{file: " + file + more + "}");
+    return built.places;
+  };
+  EXPECT_EQ(report("t,x\n0,1\n1,two\n"), "3:3 bad-table ");
+  EXPECT_EQ(report("t,x\n0,1\n1\n"), "3:2 bad-table ");
+  EXPECT_EQ(report("t,x\n0,1\n 0,2\n"), "3:2 bad-table ");
+  EXPECT_EQ(report("t,x\n0,1\n"), "2:1 bad-table ");
+  EXPECT_EQ(report("t\n0\n1\n"), "2:1 bad-table ");
+  EXPECT_EQ(report(""), "1:1 bad-table ");
+  EXPECT_EQ(report("t,x\n0,1\n1,2\n", ", value: y").substr(0, 2), "6:");
+  EXPECT_EQ(driven(folder.file("none.csv").string()).places, "6:41 file-not-found ");
+  EXPECT_EQ(driven("/dev/zero").places, "6:41 file-not-found ");
+}
+
+}  // namespace
+}  // namespace freeplay
