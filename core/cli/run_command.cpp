@@ -74,6 +74,7 @@ class Recording {
         events_(directory_.file("events.csv"), model),
         advice_(model) {
     directory_.write("model.yaml", model.text);
+    for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
   }
 
   std::array<Sink*, 3> sinks() { return {&rows_, &events_, &advice_}; }

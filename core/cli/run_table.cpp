@@ -47,6 +47,7 @@ void add_joints(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "joint"), "max |F|", "contacts", "in contact", "max delta"});
   const bool any = has_statistics(record.model.settings, record.outcome);
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
+    if (record.model.joints[i].is_force) continue;
     const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
     const bool touches = any && has_contact_statistics(record.channels.joints[i]);
     table.add_row({record.model.joints[i].name, quantity(seen.max_force, "N"),
