@@ -36,12 +36,18 @@ class Error : public std::exception {
   /// Exit code of the command line for this category: internal 1, usage 2, input 3, numerical 4, plugin 5, file 6.
   int exit_code() const {
     switch (category_) {
-      case Category::usage: return 2;
-      case Category::input: return 3;
-      case Category::numerical: return 4;
-      case Category::plugin: return 5;
-      case Category::file: return 6;
-      case Category::internal: break;
+      case Category::usage:
+        return 2;
+      case Category::input:
+        return 3;
+      case Category::numerical:
+        return 4;
+      case Category::plugin:
+        return 5;
+      case Category::file:
+        return 6;
+      case Category::internal:
+        break;
     }
     return 1;
   }

@@ -11,8 +11,8 @@ Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& a, const Eigen::Vecto
 /// Orthonormal basis of {x : A x = 0} for a matrix with `columns` columns (which may have no rows).
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& a, int columns);
 
-/// Number of singular values above 1e-9 of the largest; above 300 rows pivots of a QR decomposition with column pivoting
-/// are counted instead, by the same threshold.
+/// Number of singular values above 1e-9 of the largest; above 300 rows pivots of a QR decomposition with column
+/// pivoting are counted instead, by the same threshold.
 int numerical_rank(const Eigen::MatrixXd& a);
 
 /// Smallest eigenvalue of a symmetric matrix and its unit eigenvector.
