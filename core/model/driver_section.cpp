@@ -178,6 +178,10 @@ class DriverEntry {
 
   bool claim_all(const std::vector<int>& driven, const CheckedValue& joints) {
     bool good = true;
+    if (driven.empty()) {
+      joints.fail("wrong-length", "at least one joint must be driven");
+      return false;
+    }
     for (const int joint : driven) {
       if (!usable(joint)) {
         good = false;

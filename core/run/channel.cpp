@@ -80,7 +80,9 @@ void Channels::add_drivers(const Model& model) {
     const bool angle = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
     const bool effort = !prescribes(driver.kind);
     DriverColumns columns;
-    columns.value = add(prefix + ".value", effort ? (angle ? "N*m" : "N") : (angle ? "rad" : "m"));
+    const bool speed = driver.kind == DriverKind::velocity;
+    const char* prescribed = speed ? (angle ? "rad/s" : "m/s") : (angle ? "rad" : "m");
+    columns.value = add(prefix + ".value", effort ? (angle ? "N*m" : "N") : prescribed);
     columns.effort = add(prefix + (angle ? ".torque" : ".force"), angle ? "N*m" : "N");
     columns.power = add(prefix + ".power", "W");
     drivers.push_back(columns);

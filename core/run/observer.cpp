@@ -74,7 +74,8 @@ void Observer::observe_driver(int index, const Evaluation& e, std::span<const do
   const double effort = r < 0 ? prescribed : -lambda[at(r)];
   // An angle from inverse kinematics is known up to whole turns; the joint counts them.
   const bool turns = r >= 0 && system_.motions().modulo_turns(index);
-  row[at(columns.value)] = turns ? e.coordinate[joint] - e.phi[at(r)] : prescribed;
+  const bool speed = system_.model().drivers[at(index)].kind == DriverKind::velocity;
+  row[at(columns.value)] = turns ? e.coordinate[joint] - e.phi[at(r)] : speed ? e.motion[at(index)].rate : prescribed;
   row[at(columns.effort)] = effort;
   row[at(columns.power)] = effort * e.coordinate_rate[joint];
 }

@@ -300,6 +300,10 @@ bool Simulation::Impl::check_interrupt(const RunHooks& hooks) {
 bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
   const double from = accepted.t(), size = settings.step;
   const double smallest = smallest_step * size;
+  // Beyond this the time itself could not be advanced: t + dt would round to t.
+  if (!((target - from) / size < 1e15)) {
+    return fail(4, fmt::format("t = {:.9g} s: a step of {:.3g} s is too small to advance the time", from, size));
+  }
   const long count = std::max(1L, std::lround(std::ceil((target - from) / size - 1e-6)));
   for (long i = 1; i <= count; ++i) {
     const double goal = i == count ? target : from + static_cast<double>(i) * size;
