@@ -142,5 +142,13 @@ frames:
         self.assertRegex(err, r"^apart\.yaml(:\d+:\d+)?: error: .*\[assembly-failed\]\n")
 
 
+class DrivenJointsTest(ProgramTest):
+    def test_an_inverse_kinematics_driver_must_drive_a_joint(self):
+        with open(mechanism("3-rrr"), encoding="utf-8") as file:
+            model = self.write("none.yaml", file.read().replace("joints: leg*.A", "joints: []"))
+        _, err = self.freeplay("validate", model, code=3)
+        self.assertIn("at least one joint must be driven [wrong-length]", err)
+
+
 if __name__ == "__main__":
     unittest.main()
