@@ -99,7 +99,7 @@ inline void expect_line_damping(const std::string& name) {
       return of.evaluate({1e-6, 0.06, 0.1}).normal / of.evaluate({1e-6, 0.06, 0.0}).normal;
     };
     EXPECT_NEAR(factor(law.law), factor(point.law), 1e-14) << word;
-    EXPECT_EQ(law.law.outside_range({1e-6, 0.0, 0.1}), point.law.outside_range({1e-6, 0.0, 0.1})) << word;
+    EXPECT_STREQ(law.law.outside_range({1e-6, 0.0, 0.1}), point.law.outside_range({1e-6, 0.0, 0.1})) << word;
     expect_derivatives(law.law, {1e-6, -0.05, 0.1});
     EXPECT_EQ(law.law.evaluate({1e-6, -10.0, 0.1}).normal, 0.0);
   }

@@ -65,7 +65,7 @@ TEST(GeneralizedAlpha, RestartForgetsTheAuxiliaryAcceleration) {
 }
 
 TEST(GeneralizedAlpha, TableHoldsDefaultAndRange) {
-  const Parameter& rho = parameter_of("generalized-alpha", "rho_inf");
+  const Parameter& rho = integrator_parameter("generalized-alpha", "rho_inf");
   EXPECT_EQ(rho.default_value, 0.8);
   EXPECT_EQ(rho.minimum, 0.0);
   EXPECT_EQ(rho.maximum, 1.0);

@@ -59,7 +59,7 @@ TEST(Hht, RestartForgetsTheAuxiliaryAcceleration) {
 }
 
 TEST(Hht, TableHoldsDefaultAndRange) {
-  const Parameter& alpha = parameter_of("hht", "alpha");
+  const Parameter& alpha = integrator_parameter("hht", "alpha");
   EXPECT_EQ(alpha.default_value, -0.05);
   EXPECT_EQ(alpha.minimum, -1.0 / 3.0);
   EXPECT_EQ(alpha.maximum, 0.0);

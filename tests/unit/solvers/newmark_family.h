@@ -117,7 +117,7 @@ inline void expect_newton_parameters(const std::string& name) {
 }
 
 /// The entry of a component's table.
-inline const Parameter& parameter_of(const std::string& component_name, const std::string& name) {
+inline const Parameter& integrator_parameter(const std::string& component_name, const std::string& name) {
   for (const Parameter& p : component(freeplay_plugin_v1_solvers, component_name).description.parameters)
     if (name == p.name) return p;
   throw std::runtime_error("no parameter " + name);

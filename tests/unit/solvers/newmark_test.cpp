@@ -44,8 +44,8 @@ TEST(Newmark, NextStepStartsFromTheAccelerationSolvedAtTheEnd) {
 }
 
 TEST(Newmark, TableHoldsTheTrapezoidalRule) {
-  EXPECT_EQ(parameter_of("newmark", "beta").default_value, 0.25);
-  EXPECT_EQ(parameter_of("newmark", "gamma").default_value, 0.5);
+  EXPECT_EQ(integrator_parameter("newmark", "beta").default_value, 0.25);
+  EXPECT_EQ(integrator_parameter("newmark", "gamma").default_value, 0.5);
 }
 
 TEST(Newmark, HasOneStageAndProjectsVelocities) { expect_one_projected_stage("newmark"); }
