@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "base/suggestion.h"
 #include "cli/component_entry.h"
 #include "cli/failure.h"
 #include "cli/load_model.h"
@@ -110,11 +109,7 @@ int list_channels(const ListOptions& options, const CommonOptions& common) {
 }
 
 int list(const ListOptions& options, const CommonOptions& common) {
-  if (!options.kind.empty() && std::ranges::find(kinds, options.kind) == kinds.end()) {
-    const auto nearest = suggestion(options.kind, kinds);
-    throw Error(Error::Category::usage, "unknown-name", fmt::format("there is no kind '{}' to list", options.kind), {},
-                nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
-  }
+  if (!options.kind.empty()) require_word("kind to list", options.kind, kinds);
   if (options.kind == "channels") return list_channels(options, common);
   if (!options.model.empty()) {
     throw Error(Error::Category::usage, "unexpected-argument", fmt::format("unexpected argument '{}'", options.model));

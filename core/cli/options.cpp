@@ -1,10 +1,13 @@
 #include "cli/options.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/expression.h"
+#include "base/suggestion.h"
 
 namespace freeplay {
 namespace {
@@ -81,6 +84,14 @@ double positive_quantity(const std::string& option, const std::string& text, con
   } catch (const ExpressionError& e) {
     bad_value(option, text, e.message, e.suggestion.empty() ? e.hint : fmt::format("did you mean '{}'?", e.suggestion));
   }
+}
+
+void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed) {
+  if (std::ranges::find(allowed, word) != allowed.end()) return;
+  const auto nearest = suggestion(word, allowed);
+  throw Error(
+      Error::Category::usage, "unknown-name", fmt::format("there is no {} '{}'", what, word), {},
+      nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(allowed, ", ")));
 }
 
 void not_in_this_release(const std::string& what) {

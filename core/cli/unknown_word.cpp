@@ -13,7 +13,7 @@
 namespace freeplay {
 namespace {
 
-const std::vector<std::string> later_commands{"show",   "schema", "init",    "convert",      "analyze", "sweep",
+const std::vector<std::string> later_commands{"show",   "schema", "convert", "analyze",      "sweep",
                                               "report", "export", "compare", "check-plugin", "doctor"};
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,

@@ -67,6 +67,21 @@ fs::path find_plugin(const std::string& word, const fs::path& base) {
               "give a path, or put its folder into FREEPLAY_PLUGIN_PATH");
 }
 
+PluginEntry open_plugin(const fs::path& file) {
+  dlerror();
+  void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    throw Error(Error::Category::plugin, "plugin-refused",
+                "plugin '" + file.string() + "' cannot be loaded: " + linker_words(file));
+  }
+  void* entry = dlsym(handle, "freeplay_plugin_v1");
+  if (entry == nullptr) {
+    throw Error(Error::Category::plugin, "plugin-refused",
+                "plugin '" + file.string() + "' has no entry point freeplay_plugin_v1");
+  }
+  return reinterpret_cast<PluginEntry>(entry);
+}
+
 void load_plugin(Registry& registry, const fs::path& file) {
   std::error_code error;
   const fs::path real = fs::canonical(file, error);
@@ -77,18 +92,7 @@ void load_plugin(Registry& registry, const fs::path& file) {
   for (const RegisteredLibrary& library : registry.libraries()) {
     if (library.path == real.string()) return;
   }
-  dlerror();
-  void* handle = dlopen(real.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) {
-    throw Error(Error::Category::plugin, "plugin-refused",
-                "plugin '" + real.string() + "' cannot be loaded: " + linker_words(real));
-  }
-  void* entry = dlsym(handle, "freeplay_plugin_v1");
-  if (entry == nullptr) {
-    throw Error(Error::Category::plugin, "plugin-refused",
-                "plugin '" + real.string() + "' has no entry point freeplay_plugin_v1");
-  }
-  registry.add(reinterpret_cast<PluginEntry>(entry), real.string());
+  registry.add(open_plugin(real), real.string());
 }
 
 std::vector<std::string> load_plugin_folders(Registry& registry) {

@@ -17,8 +17,12 @@ std::vector<std::filesystem::path> plugin_folders();
 /// or WORD.so in one of the folders. Throws Error{plugin} "plugin-not-found", which says where it was sought.
 std::filesystem::path find_plugin(const std::string& word, const std::filesystem::path& base);
 
-/// Opens a library (all symbols at once, none shared with others, never closed) and registers its types. A file that is
-/// there already is left alone. Throws Error{plugin}: "plugin-not-found", "plugin-refused", "plugin-clash".
+/// Opens a library (all symbols at once, none shared with others, never closed) and finds its entry point.
+/// Throws Error{plugin} "plugin-refused".
+PluginEntry open_plugin(const std::filesystem::path& file);
+
+/// Opens a library and registers its types. A file that is there already is left alone.
+/// Throws Error{plugin}: "plugin-not-found", "plugin-refused", "plugin-clash".
 void load_plugin(Registry& registry, const std::filesystem::path& file);
 
 /// Loads every *.so of plugin_folders() in order of name. A library that is refused is skipped; the reasons are

@@ -5,9 +5,9 @@ import os
 import shutil
 import unittest
 
-from program import ROOT, ProgramTest, mechanism
+from program import BUILD, ProgramTest, mechanism
 
-PLUGINS = os.environ.get("FREEPLAY_PLUGINS", os.path.join(ROOT, "build", "release", "plugins"))
+PLUGINS = os.path.join(BUILD, "plugins")
 EXAMPLE = os.path.join(PLUGINS, "example", "torsional_spring_damper.so")
 
 TWISTED = """freeplay: 1

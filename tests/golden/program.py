@@ -1,11 +1,12 @@
-"""Runs the program under test, whose path is in FREEPLAY, and keeps its files in a folder of their own."""
+"""Runs the program under test, whose path is in FREEPLAY (what was built with it in FREEPLAY_BUILD), and keeps its files in a folder of their own."""
 import os
 import subprocess
 import tempfile
 import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-PROGRAM = os.environ.get("FREEPLAY", os.path.join(ROOT, "build", "release", "freeplay"))
+BUILD = os.environ.get("FREEPLAY_BUILD", os.path.join(ROOT, "build", "release"))
+PROGRAM = os.environ.get("FREEPLAY", os.path.join(BUILD, "freeplay"))
 MECHANISMS = os.path.join(ROOT, "mechanisms")
 
 
