@@ -11,6 +11,10 @@
 #include "cli/plugins.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
+#include "component/instances.h"
+#include "contract/sample_parameters.h"
+#include "model/model.h"
+#include "run/channel.h"
 
 namespace freeplay {
 namespace {
@@ -47,6 +51,34 @@ std::string parameters_text(const Description& description, const Registry& regi
   return "\nparameters\n" + table.text("  ");
 }
 
+/// The result columns of a joint called NAME. What it declares may depend on its parameters: those of the first sample
+/// that its constructor accepts count.
+std::vector<ChannelInfo> channels_of(const RegisteredComponent& entry, const Registry& registry) {
+  if (entry.component->kind != ComponentKind::joint) return {};
+  const ParameterSamples samples = sample_parameters(*entry.component, registry);
+  if (samples.accepted.empty()) return {};
+  Instances instances;
+  CreationFault fault;
+  Message message;
+  Model model;
+  JointElement& joint = model.joints.emplace_back();
+  joint.name = "NAME";
+  joint.joint = instances.create_joint(*samples.accepted.front().block, fault);
+  joint.layout.space = entry.component->description.space == Space::spatial ? Space::spatial : Space::planar;
+  if (!joint.joint.declare(joint.layout, message)) return {};
+  const Channels all(model);
+  std::vector<ChannelInfo> channels(all.all().begin(), all.all().end());
+  std::erase_if(channels, [](const ChannelInfo& channel) { return !channel.name.starts_with("joint.NAME."); });
+  return channels;
+}
+
+std::string channels_text(const std::vector<ChannelInfo>& channels) {
+  if (channels.empty()) return "";
+  TextTable table;
+  for (const ChannelInfo& channel : channels) table.add_row({channel.name, channel.unit});
+  return "\nchannels\n" + table.text("  ");
+}
+
 std::string component_text(const RegisteredComponent& entry, const Registry& registry) {
   const Description& description = entry.component->description;
   std::string text = fmt::format("{}: {}\n", description.name, description.summary);
@@ -54,7 +86,7 @@ std::string component_text(const RegisteredComponent& entry, const Registry& reg
   facts.add_row({"kind", kind_word(entry.component->kind)});
   facts.add_row({"space", space_word(description.space)});
   facts.add_row({"source", entry.library});
-  text += facts.text("  ") + parameters_text(description, registry);
+  text += facts.text("  ") + parameters_text(description, registry) + channels_text(channels_of(entry, registry));
   text += section("formula", description.formula) + section("validity", description.validity);
   return text + section("references", description.references);
 }
@@ -67,7 +99,13 @@ int describe(const std::string& name, const CommonOptions& common) {
   if (found.empty()) unknown(registry, name);
   if (common.json) {
     Json list = Json::array();
-    for (const RegisteredComponent& entry : found) list.push_back(component_json(entry));
+    for (const RegisteredComponent& entry : found) {
+      Json& object = list.emplace_back(component_json(entry));
+      object["channels"] = Json::array();
+      for (const ChannelInfo& channel : channels_of(entry, registry)) {
+        object["channels"].push_back({{"name", channel.name}, {"unit", channel.unit}});
+      }
+    }
     print_json(list.size() == 1 ? list.front() : list);
     return 0;
   }
