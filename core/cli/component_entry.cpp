@@ -1,5 +1,6 @@
 #include "cli/component_entry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "io/number_text.h"
+#include "model/format_table.h"
 
 namespace freeplay {
 namespace {
@@ -49,55 +51,24 @@ const char* kind_word(ParameterKind kind) {
   return "friction law";
 }
 
-std::string default_text(const Parameter& parameter, const Registry& registry) {
-  if (is_required(parameter)) return "required";
+Json default_json(const Parameter& parameter, const std::vector<std::string>& choices, const Registry& registry) {
   if (is_law(parameter.kind)) {
     const bool contact = parameter.kind == ParameterKind::contact_law;
     const Component* law = registry.preferred(contact ? ComponentKind::contact_law : ComponentKind::friction_law);
-    return law == nullptr ? "-" : law->description.name;
+    return law == nullptr || is_required(parameter) ? Json(nullptr) : Json(law->description.name);
   }
-  if (parameter.default_value == optional) return "-";
-  const std::vector<std::string> choices = words(parameter.choices);
-  if (parameter.kind != ParameterKind::choice) return number_text(parameter.default_value);
-  const auto index = static_cast<std::size_t>(parameter.default_value);
-  return index < choices.size() ? choices[index] : "-";
+  if (parameter.kind != ParameterKind::choice) return json_number(parameter.default_value);
+  const auto index = static_cast<std::size_t>(std::max(parameter.default_value, 0.0));
+  return parameter.default_value >= 0.0 && index < choices.size() ? Json(choices[index]) : Json(nullptr);
 }
 
-std::string bounds_text(const Parameter& parameter) {
-  const bool from = std::isfinite(parameter.minimum), to = std::isfinite(parameter.maximum);
-  const std::string low = (is_open(parameter, Open::minimum) ? "> " : ">= ") + number_text(parameter.minimum);
-  const std::string high = (is_open(parameter, Open::maximum) ? "< " : "<= ") + number_text(parameter.maximum);
-  if (from && to && parameter.open == Open::none) {
-    return number_text(parameter.minimum) + " to " + number_text(parameter.maximum);
-  }
-  if (from && to) return low + ", " + high;
-  return from ? low : to ? high : "";
-}
-
-std::string range_text(const Parameter& parameter) {
+Json parameter_json(const Parameter& parameter, const Registry& registry) {
   const std::vector<std::string> choices = words(parameter.choices);
-  std::string text = bounds_text(parameter);
-  if (!choices.empty()) {
-    text += fmt::format("{}{}{}", text.empty() ? "" : " or ", choices.size() > 1 ? "one of " : "",
-                        fmt::join(choices, ", "));
-  }
-  return text.empty() ? "-" : text;
-}
-
-Json parameter_json(const Parameter& parameter) {
-  const std::vector<std::string> choices = words(parameter.choices);
-  Json default_value = nullptr;
-  if (parameter.kind == ParameterKind::choice && parameter.default_value >= 0.0) {
-    const auto index = static_cast<std::size_t>(parameter.default_value);
-    if (index < choices.size()) default_value = choices[index];
-  } else if (!is_law(parameter.kind)) {
-    default_value = json_number(parameter.default_value);
-  }
   return {{"name", parameter.name},
           {"kind", kind_word(parameter.kind)},
           {"unit", parameter.unit},
           {"required", is_required(parameter)},
-          {"default", default_value},
+          {"default", default_json(parameter, choices, registry)},
           {"minimum", json_number(parameter.minimum)},
           {"maximum", json_number(parameter.maximum)},
           {"exclusive_minimum", is_open(parameter, Open::minimum)},
@@ -134,14 +105,10 @@ const char* space_word(Space space) {
   return "both";
 }
 
-ParameterText parameter_text(const Parameter& parameter, const Registry& registry) {
-  return {default_text(parameter, registry), range_text(parameter)};
-}
-
-Json component_json(const RegisteredComponent& entry) {
+Json component_json(const RegisteredComponent& entry, const Registry& registry) {
   const Description& description = entry.component->description;
   Json parameters = Json::array();
-  for (const Parameter& parameter : description.parameters) parameters.push_back(parameter_json(parameter));
+  for (const Parameter& parameter : description.parameters) parameters.push_back(parameter_json(parameter, registry));
   return {{"name", description.name},
           {"kind", kind_word(entry.component->kind)},
           {"space", space_word(description.space)},
@@ -151,6 +118,92 @@ Json component_json(const RegisteredComponent& entry) {
           {"formula", description.formula},
           {"validity", description.validity},
           {"references", description.references}};
+}
+
+namespace {
+
+/// The words among the alternatives of the format table: "quantity | 'auto'" has one.
+Json words_in(std::string_view value) {
+  Json words = Json::array();
+  for (std::size_t at = value.find('\''); at != std::string_view::npos; at = value.find('\'', at)) {
+    const std::size_t end = value.find('\'', at + 1);
+    words.push_back(value.substr(at + 1, end - at - 1));
+    at = end + 1;
+  }
+  return words;
+}
+
+Json core_entry(const char* name, const char* kind, const FormatMap& map) {
+  Json parameters = Json::array();
+  for (const FormatKey& key : map.keys) {
+    if (key.name == "type" || key.name == "use") continue;
+    const bool required = key.fallback == "required";
+    const bool absent = required || key.fallback.empty();
+    parameters.push_back({{"name", key.name},
+                          {"kind", key.value},
+                          {"unit", key.unit.empty() ? "1" : key.unit},
+                          {"required", required},
+                          {"default", absent ? Json(nullptr) : Json(key.fallback)},
+                          {"minimum", nullptr},
+                          {"maximum", nullptr},
+                          {"exclusive_minimum", false},
+                          {"exclusive_maximum", false},
+                          {"choices", words_in(key.value)},
+                          {"summary", key.meaning}});
+  }
+  return {{"name", name},         {"kind", kind},           {"space", "planar"},
+          {"source", "built-in"}, {"summary", map.meaning}, {"parameters", parameters},
+          {"formula", ""},        {"validity", ""},         {"references", ""}};
+}
+
+std::string number_or_word(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : number_text(value.get<double>());
+}
+
+}  // namespace
+
+std::vector<Json> core_entries() {
+  return {core_entry("gear", "joint", format_map("gear")), core_entry("force", "force", format_map("force force")),
+          core_entry("torque", "force", format_map("force torque")),
+          core_entry("gravity", "force", format_map("force gravity"))};
+}
+
+std::vector<Json> all_entries(const Registry& registry) {
+  std::vector<Json> entries, own = core_entries();
+  // The gear stands with the joints, the forces after them.
+  const auto is_joint = [](const RegisteredComponent& entry) { return entry.component->kind == ComponentKind::joint; };
+  const auto& all = registry.components();
+  for (const RegisteredComponent& entry : all) {
+    if (is_joint(entry)) entries.push_back(component_json(entry, registry));
+  }
+  entries.insert(entries.end(), own.begin(), own.end());
+  for (const RegisteredComponent& entry : all) {
+    if (!is_joint(entry)) entries.push_back(component_json(entry, registry));
+  }
+  return entries;
+}
+
+std::string default_text(const Json& parameter) {
+  if (parameter["required"].get<bool>()) return "required";
+  return parameter["default"].is_null() ? "-" : number_or_word(parameter["default"]);
+}
+
+std::string range_text(const Json& parameter) {
+  const bool above = parameter["exclusive_minimum"].get<bool>(), below = parameter["exclusive_maximum"].get<bool>();
+  const bool from = !parameter["minimum"].is_null(), to = !parameter["maximum"].is_null();
+  std::string text;
+  if (from && to && !above && !below) {
+    text = number_or_word(parameter["minimum"]) + " to " + number_or_word(parameter["maximum"]);
+  } else {
+    if (from) text = (above ? "> " : ">= ") + number_or_word(parameter["minimum"]);
+    if (to) text += (from ? ", " : "") + std::string(below ? "< " : "<= ") + number_or_word(parameter["maximum"]);
+  }
+  const auto choices = parameter["choices"].get<std::vector<std::string>>();
+  if (!choices.empty()) {
+    text += fmt::format("{}{}{}", text.empty() ? "" : " or ", choices.size() > 1 ? "one of " : "",
+                        fmt::join(choices, ", "));
+  }
+  return text.empty() ? "-" : text;
 }
 
 }  // namespace freeplay

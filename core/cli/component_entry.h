@@ -2,26 +2,25 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "component/registry.h"
 #include "io/json_text.h"
 
 namespace freeplay {
 
-/// joint, contact, friction or integrator.
-const char* kind_word(ComponentKind kind);
+/// Fields name kind space source summary parameters formula validity references. `kind` is joint, contact, friction or
+/// integrator.
+Json component_json(const RegisteredComponent& entry, const Registry& registry);
 
-/// planar, spatial or both.
-const char* space_word(Space space);
+/// The same for what is no component: gears and applied forces (kind force), of the format table.
+std::vector<Json> core_entries();
 
-/// One parameter in words.
-struct ParameterText {
-  std::string default_value;  ///< "required", "-" where it may be absent
-  std::string range;          ///< "0 to 1", "> 0", "one of a, b"; "-" without a limit
-};
-ParameterText parameter_text(const Parameter& parameter, const Registry& registry);
+/// Everything that a model file may name as a type.
+std::vector<Json> all_entries(const Registry& registry);
 
-/// Fields name kind space source summary parameters formula validity references.
-Json component_json(const RegisteredComponent& entry);
+// A parameter of an entry in words.
+std::string default_text(const Json& parameter);  ///< "required"; "-" where it may be absent
+std::string range_text(const Json& parameter);    ///< "0 to 1", "> 0", "one of a, b"; "-" without a limit
 
 }  // namespace freeplay

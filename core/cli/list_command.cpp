@@ -12,6 +12,7 @@
 #include "cli/plugins.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
+#include "contract/sample_layout.h"
 #include "run/channel.h"
 
 namespace freeplay {
@@ -23,17 +24,15 @@ struct ListOptions {
 
 const std::vector<std::string> kinds{"joints", "laws", "forces", "integrators", "plugins", "channels"};
 
-bool belongs(const RegisteredComponent& entry, const std::string& kind) {
-  switch (entry.component->kind) {
-    case ComponentKind::joint:
-      return kind.empty() || kind == "joints";
-    case ComponentKind::contact_law:
-    case ComponentKind::friction_law:
-      return kind.empty() || kind == "laws";
-    case ComponentKind::integrator:
-      break;
-  }
-  return kind.empty() || kind == "integrators";
+/// Does an entry stand in the list of this kind?
+bool belongs(const Json& entry, const std::string& kind, const std::vector<std::string>& force_types) {
+  const std::string word = entry["kind"];
+  if (kind.empty()) return true;
+  if (kind == "laws") return word == "contact" || word == "friction";
+  if (kind == "integrators") return word == "integrator";
+  if (kind == "joints") return word == "joint";
+  const std::string name = entry["name"];
+  return kind == "forces" && (word == "force" || std::ranges::find(force_types, name) != force_types.end());
 }
 
 /// One object per library, with the number of its types.
@@ -58,9 +57,10 @@ Json plugins_json(const Registry& registry) {
 }
 
 Json entries_json(const Registry& registry, const std::string& kind) {
+  const std::vector<std::string> forces = kind == "forces" ? force_types(registry) : std::vector<std::string>();
   Json list = Json::array();
-  for (const RegisteredComponent& entry : registry.components()) {
-    if (belongs(entry, kind)) list.push_back(component_json(entry));
+  for (const Json& entry : all_entries(registry)) {
+    if (belongs(entry, kind, forces)) list.push_back(entry);
   }
   if (kind.empty() || kind == "plugins") {
     for (const Json& plugin : plugins_json(registry)) list.push_back(plugin);

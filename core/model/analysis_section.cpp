@@ -7,7 +7,7 @@ namespace freeplay {
 namespace {
 
 void check_grids(const CheckedValue& value) {
-  MapReader map(value);
+  MapReader map(value, "pose_grid");
   const auto x = map.find("x"), y = map.find("y"), angle = map.find("angle");
   if (x) check_grid(*x, dimension::length);
   if (y) check_grid(*y, dimension::length);
@@ -16,7 +16,7 @@ void check_grids(const CheckedValue& value) {
 }
 
 void check_error(const Draft& draft, const CheckedValue& value) {
-  MapReader map(value);
+  MapReader map(value, "error");
   const auto clearance = map.find("clearance");
   const auto input = map.find("input");
   if (clearance) {
@@ -34,7 +34,7 @@ void check_error(const Draft& draft, const CheckedValue& value) {
 }  // namespace
 
 void check_analysis(Draft& draft, const CheckedValue& section) {
-  MapReader map(section);
+  MapReader map(section, "analysis");
   const Part& top = draft.parts.front();
   const auto frame = map.find("frame"), joints = map.find("joints"), elbow = map.find("elbow");
   const auto path = map.find("path"), time = map.find("time"), grid = map.find("grid"), error = map.find("error");

@@ -4,7 +4,7 @@ namespace freeplay {
 namespace {
 
 void read_pose(const CheckedValue& value, Body& body) {
-  MapReader map(value);
+  MapReader map(value, "pose");
   const auto position = map.find("position");
   const auto angle = map.find("angle");
   if (position) body.position = position->vector(dimension::length);
@@ -14,7 +14,7 @@ void read_pose(const CheckedValue& value, Body& body) {
 }
 
 void read_velocity(const CheckedValue& value, Body& body) {
-  MapReader map(value);
+  MapReader map(value, "velocity");
   const auto linear = map.find("linear");
   const auto angular = map.find("angular");
   if (linear) body.velocity = linear->vector(dimension::velocity).value_or(Vector3{});
@@ -23,7 +23,7 @@ void read_velocity(const CheckedValue& value, Body& body) {
 }
 
 void read_body(const CheckedValue& entry, Body& body) {
-  MapReader map(entry, Uses::presets);
+  MapReader map(entry, "body");
   const auto mass = map.require("mass");
   const auto inertia = map.require("inertia");
   if (mass) body.mass = mass->quantity(dimension::mass, positive).value_or(1.0);
@@ -36,7 +36,7 @@ void read_body(const CheckedValue& entry, Body& body) {
 }
 
 void check_ground(const CheckedValue& entry) {
-  MapReader map(entry);
+  MapReader map(entry, "ground");
   map.find("frames");
   for (const char* key : {"mass", "inertia", "com", "pose", "velocity", "use"}) {
     map.refuse(key, "ground does not move; it carries frames only");

@@ -51,7 +51,7 @@ Dimension dimension_of(DriverKind kind, Coordinate coordinate) {
 class DriverEntry {
  public:
   DriverEntry(Draft& draft, const Part& part, const CheckedValue& entry)
-      : draft_(draft), part_(part), entry_(entry), map_(entry, Uses::presets) {}
+      : draft_(draft), part_(part), entry_(entry), map_(entry, "driver") {}
 
   void read() {
     if (!map_.good()) return;
@@ -149,7 +149,7 @@ class DriverEntry {
   // --- by inverse kinematics -------------------------------------------------------------------------------------
 
   void read_kinematics(const CheckedValue& value) {
-    MapReader map(value);
+    MapReader map(value, "inverse_kinematics");
     const auto frame = map.require("frame");
     const auto path = map.require("path");
     const auto joints = map.require("joints");

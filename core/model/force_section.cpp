@@ -10,20 +10,21 @@ namespace {
 class ForceEntry {
  public:
   ForceEntry(Draft& draft, const Part& part, const CheckedValue& entry)
-      : draft_(draft), part_(part), entry_(entry), map_(entry, Uses::presets) {}
+      : draft_(draft), part_(part), entry_(entry), map_(entry, "force") {}
 
   void read() {
     const auto type = map_.require("type");
     const auto word = type ? type->string() : std::nullopt;
     if (!word) return;
+    const bool applied = *word == "force" || *word == "torque" || *word == "gravity";
+    if (!applied) return add_force_joint(draft_, part_, entry_);
+    map_.follow("force " + *word);
     if (*word == "force") {
       read_force();
     } else if (*word == "torque") {
       read_torque();
-    } else if (*word == "gravity") {
-      read_gravity();
     } else {
-      return add_force_joint(draft_, part_, entry_);
+      read_gravity();
     }
     map_.finish();
   }

@@ -26,7 +26,7 @@ Draft::Frame read_frame(const CheckedValue& entry, BodyId body) {
     entry.wrong_type("a position or a map");
     return frame;
   }
-  MapReader map(entry);
+  MapReader map(entry, "frame");
   const auto position = map.find("position");
   const auto polar = map.find("polar");
   const auto angle = map.find("angle");
@@ -61,7 +61,7 @@ bool check_frame_name(const CheckedValue& entry, const std::string& name) {
 void add_body_frames(Draft& draft, const CheckedValue& body_entry, const Part& part) {
   if (!body_entry.node().is_map()) return;
   // The keys of the body have been checked by add_bodies().
-  MapReader body(body_entry, body_entry.key() == "ground" ? Uses::nothing : Uses::presets);
+  MapReader body(body_entry, body_entry.key() == "ground" ? "ground" : "body");
   const auto section = body.find("frames");
   const auto id = draft.find_body(body_entry.key(), part);
   if (!section || !id) return;

@@ -92,7 +92,7 @@ void add_gears(Draft& draft, const Part& part) {
   for (const CheckedValue& entry : entries_of(*section)) {
     const std::optional<int> joint = draft.joints.find(part.full(entry.key()));
     if (!joint || draft.model.joints[static_cast<std::size_t>(*joint)].component != &gear_component) continue;
-    MapReader map(entry, Uses::presets);
+    MapReader map(entry, "gear");
     GearEntry(draft, part, map, *joint).read();
   }
 }

@@ -50,7 +50,7 @@ std::optional<long> check_grid(const CheckedValue& value, const std::optional<Di
     value.wrong_type("a grid: a quantity, a list or a map");
     return std::nullopt;
   }
-  MapReader map(value);
+  MapReader map(value, "grid");
   const auto linear = map.find("linspace");
   const auto logarithmic = map.find("logspace");
   const auto list = map.find("list");

@@ -55,7 +55,7 @@ std::optional<double> read_tolerance(const CheckedValue& value) {
 }
 
 void read_assembly(Draft& draft, const CheckedValue& value) {
-  MapReader map(value);
+  MapReader map(value, "assembly");
   const auto tolerance = map.find("tolerance");
   const auto iterations = map.find("max_iterations");
   Settings& settings = draft.model.settings;
@@ -71,7 +71,7 @@ void read_assembly(Draft& draft, const CheckedValue& value) {
 }  // namespace
 
 void read_initial(Draft& draft, const CheckedValue& section) {
-  MapReader map(section);
+  MapReader map(section, "initial");
   if (const auto joints = map.find("joints")) {
     for (const CheckedValue& value : entries_of(*joints)) read_start_value(draft, value, StartValue::coordinate);
   }

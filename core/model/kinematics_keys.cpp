@@ -13,7 +13,7 @@ std::optional<int> read_mode(const CheckedValue& value) {
 }  // namespace
 
 std::optional<std::array<std::optional<Expression>, 3>> read_path(const CheckedValue& value) {
-  MapReader map(value);
+  MapReader map(value, "path");
   std::array<std::optional<Expression>, 3> path;
   constexpr std::array<const char*, 3> keys{"x", "y", "angle"};
   bool good = map.good(), any = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "model/name_rule.h"
 
 namespace freeplay {
@@ -27,7 +28,12 @@ MapReader::MapReader(const CheckedValue& map, Uses uses) : owner_(map), good_(ma
   }
 }
 
-MapReader MapReader::empty(const CheckedValue& owner) { return MapReader(owner, true); }
+MapReader::MapReader(const CheckedValue& map, std::string_view format)
+    : MapReader(map, format_map(format).find("use") == nullptr ? Uses::nothing : Uses::presets) {
+  format_ = &format_map(format);
+}
+
+MapReader MapReader::empty(const CheckedValue& owner) { return MapReader(owner, NoKeys{}); }
 
 std::optional<MapReader::Hit> MapReader::look_up(std::string_view key) const {
   for (const MapLayer& layer : layers_) {
@@ -53,6 +59,10 @@ bool MapReader::knows(std::string_view key) const {
 }
 
 std::optional<CheckedValue> MapReader::find(const std::string& key) {
+  if (format_ != nullptr && format_->find(key) == nullptr) {
+    throw Error(Error::Category::internal, "internal",
+                "the key '" + key + "' is not in the table of '" + std::string(format_->name) + "'");
+  }
   if (!knows(key)) known_.push_back(key);
   const std::optional<Hit> hit = look_up(key);
   if (!hit) return std::nullopt;

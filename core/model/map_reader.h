@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/checked_value.h"
+#include "model/format_table.h"
 #include "model/preset.h"
 
 namespace freeplay {
@@ -18,16 +19,22 @@ enum class Uses { nothing, presets };
 /// others.
 class MapReader {
  public:
-  /// Reports `wrong-type` when `map` is none; then nothing is found, nothing is missed, and good() is false.
+  /// A map of the format table. Reports `wrong-type` when `map` is none; then nothing is found, nothing is missed, and
+  /// good() is false.
+  MapReader(const CheckedValue& map, std::string_view format);
+  /// A map whose keys the table of a component names.
   explicit MapReader(const CheckedValue& map, Uses uses = Uses::nothing);
   /// A map without keys in the place of `owner`, such as a law that is given by its name alone.
   static MapReader empty(const CheckedValue& owner);
+  /// From here on the keys are those of another map of the format table: the type of the entry is known.
+  void follow(std::string_view format) { format_ = &format_map(format); }
 
   bool good() const { return good_; }
   const CheckedValue& owner() const { return owner_; }
 
   /// Is the key written? It does not become known.
   bool has(std::string_view key) const;
+  /// Throws Error{internal} for a key that the format table does not name.
   std::optional<CheckedValue> find(const std::string& key);
   /// Reports `missing-key`.
   std::optional<CheckedValue> require(const std::string& key);
@@ -41,7 +48,8 @@ class MapReader {
   void finish();
 
  private:
-  MapReader(const CheckedValue& owner, bool good) : owner_(owner), good_(good) {}
+  struct NoKeys {};
+  MapReader(const CheckedValue& owner, NoKeys) : owner_(owner), good_(true) {}
 
   struct Hit {
     const MapLayer* layer;
@@ -57,6 +65,7 @@ class MapReader {
   };
 
   CheckedValue owner_;
+  const FormatMap* format_ = nullptr;
   bool good_;
   std::vector<MapLayer> layers_;
   std::vector<std::string> known_;

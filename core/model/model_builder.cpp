@@ -47,7 +47,7 @@ class ModelBuilder {
       return nullptr;
     }
     const Node nothing{.kind = Node::Kind::map, .line = 1, .column = 1, .file = document_.root().file};
-    MapReader top(root.node().is_map() ? root : CheckedValue(reading_, nothing, nullptr, ""));
+    MapReader top(root.node().is_map() ? root : CheckedValue(reading_, nothing, nullptr, ""), "model");
     if (!read_version(top)) return nullptr;
     read_parameters(top);
     if (!read_header(top)) return nullptr;

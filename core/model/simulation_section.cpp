@@ -13,7 +13,7 @@ class SimulationSection {
   explicit SimulationSection(Draft& draft) : draft_(draft), settings_(draft.model.settings) {}
 
   void read(const CheckedValue& section) {
-    MapReader map(section);
+    MapReader map(section, "simulation");
     read_span(map);
     read_step(map);
     integrator_ = map.find("integrator");
@@ -64,7 +64,7 @@ class SimulationSection {
     if (!step) return;
     std::optional<double> size;
     if (step->node().is_map()) {
-      MapReader inner(*step);
+      MapReader inner(*step, "step");
       const auto value = inner.find("size");
       if (value) size = value->quantity(dimension::time, positive);
       for (const char* key : {"adaptive", "tolerance", "min", "max", "per_contact"}) inner.refuse(key);
@@ -76,7 +76,7 @@ class SimulationSection {
   }
 
   void read_output(const CheckedValue& value) {
-    MapReader map(value);
+    MapReader map(value, "output");
     const auto interval = map.find("interval");
     const auto channels = map.find("channels");
     const auto frames = map.find("frames");
@@ -122,7 +122,7 @@ class SimulationSection {
   }
 
   void read_condition(const CheckedValue& value) {
-    MapReader map(value);
+    MapReader map(value, "stop");
     const auto channel = map.require("channel");
     const auto above = map.find("above");
     const auto below = map.find("below");
@@ -204,7 +204,7 @@ class SimulationSection {
 
 double read_start_time(const CheckedValue& section) {
   if (!section.node().is_map()) return 0.0;  // reported by read_simulation()
-  const auto start = MapReader(section).find("start");
+  const auto start = MapReader(section, "simulation").find("start");
   return start ? start->quantity(dimension::time).value_or(0.0) : 0.0;
 }
 

@@ -40,7 +40,7 @@ void check_ideal(const Draft& draft, const CheckedValue& value) {
 
 void check_reducer(const CheckedValue& entry) {
   Draft::check_name(entry);
-  MapReader map(entry);
+  MapReader map(entry, "reducer");
   const auto channel = map.require("channel");
   const auto reduce = map.require("reduce");
   const auto from = map.find("from");
@@ -53,7 +53,7 @@ void check_reducer(const CheckedValue& entry) {
 }  // namespace
 
 void check_sweep(Draft& draft, const CheckedValue& section, const ParameterScope& parameters) {
-  MapReader map(section);
+  MapReader map(section, "sweep");
   const auto axes = map.require("parameters");
   const auto combine = map.find("combine");
   const auto ideal = map.find("ideal");

@@ -58,7 +58,7 @@ class TableReader {
       value_.wrong_type("the path of a file or a map");
       return nullptr;
     }
-    MapReader map = short_form ? MapReader::empty(value_) : MapReader(value_);
+    MapReader map = short_form ? MapReader::empty(value_) : MapReader(value_, "table");
     const auto file = short_form ? std::optional<CheckedValue>(value_) : map.find("file");
     const auto points = map.find("points");
     time_unit_ = unit(map.find("time_unit"), dimension::time);

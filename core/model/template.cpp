@@ -32,7 +32,7 @@ class InstanceExpansion {
 
   void expand(const CheckedValue& entry) {
     Draft::check_name(entry);
-    MapReader map(entry);
+    MapReader map(entry, "instance");
     const auto name = map.require("template");
     const auto count = map.find("count");
     const auto with = map.find("with");
@@ -98,7 +98,7 @@ class InstanceExpansion {
     inside.scope = &scope;
 
     const CheckedValue body(inside, content.node(), content.key_node(), content.path());
-    MapReader map(body);
+    MapReader map(body, "template");
     add_parameters(entry, map.find("parameters"), with, given, inside, scope);
     Part& part = draft_.parts.emplace_back();
     part.prefix = full + ".";

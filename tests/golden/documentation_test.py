@@ -3,6 +3,7 @@ import os
 import re
 import shlex
 import subprocess
+import sys
 import unittest
 
 from program import PROGRAM, ROOT, ProgramTest
@@ -29,7 +30,7 @@ class Documentation(ProgramTest):
         for line in lines:
             words = shlex.split(line)
             self.assertEqual("./dev", words[0], line)
-            if words[1] in ("test", "build", "format", "bench", "clean"):
+            if words[1] in ("test", "build", "format", "docs", "bench", "clean"):
                 continue
             done = subprocess.run([PROGRAM, *words[1:]], cwd=self.folder, capture_output=True, text=True)
             self.assertEqual(0, done.returncode, "%s\n%s" % (line, done.stderr))
@@ -48,8 +49,21 @@ class Documentation(ProgramTest):
         done = subprocess.run([PROGRAM, "run", "page.yaml"], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(("", 0), (done.stderr, done.returncode))
 
+    def test_reference_pages_are_what_the_program_says(self):
+        folder = os.path.join(ROOT, "docs", "reference")
+        subprocess.run([sys.executable, "-B", os.path.join(folder, "generate.py"), PROGRAM, self.folder], check=True)
+        pages = [name for name in os.listdir(folder) if name.endswith(".md")]
+        self.assertLess(4, len(pages))
+        for page in pages:
+            with open(os.path.join(folder, page), encoding="utf-8") as file:
+                self.assertEqual(self.read(page), file.read(), "%s is old: ./dev docs" % page)
+
     def test_links_lead_somewhere(self):
-        for page in ("README.md", os.path.join("docs", "getting-started.md")):
+        pages = ["README.md"] + [os.path.relpath(os.path.join(folder, name), ROOT)
+                                 for folder, _, names in os.walk(os.path.join(ROOT, "docs"))
+                                 for name in names if name.endswith(".md")]
+        self.assertLess(5, len(pages))
+        for page in pages:
             with open(os.path.join(ROOT, page), encoding="utf-8") as file:
                 for target in re.findall(r"\]\((?!https?:)([^)#]+)", file.read()):
                     self.assertTrue(os.path.exists(os.path.join(ROOT, os.path.dirname(page), target)), target)

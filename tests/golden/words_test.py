@@ -7,7 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, mechanism
 
-LATER_COMMANDS = ["show", "schema", "init", "convert", "analyze", "sweep", "report", "export", "compare",
+LATER_COMMANDS = ["show", "convert", "analyze", "sweep", "report", "export", "compare",
                   "check-plugin", "doctor"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
@@ -127,13 +127,25 @@ class Types(ProgramTest):
         for entry in json.loads(self.freeplay("list", "--json")[0]):
             if entry["kind"] == "plugin":
                 continue
-            self.assertEqual(entry, json.loads(self.freeplay("describe", entry["name"], "--json")[0]))
+            described = json.loads(self.freeplay("describe", entry["name"], "--json")[0])
+            channels = described.pop("channels")
+            self.assertEqual(entry, described)
+            self.assertTrue(all(channel["name"].startswith("joint.NAME.") for channel in channels))
             text = self.freeplay("describe", entry["name"])[0]
             self.assertTrue(text.startswith("%s: %s\n" % (entry["name"], entry["summary"])))
             for heading in ("formula", "validity", "references"):
                 self.assertEqual(bool(entry[heading]), "\n%s\n" % heading in text)
             for parameter in entry["parameters"]:
                 self.assertRegex(text, r"\n  %s +\S" % re.escape(parameter["name"]))
+
+    def test_a_description_names_the_columns_that_a_run_reports(self):
+        self.freeplay("run", mechanism("slider-crank"), "--end", "0.1 ms", "--out", "r")
+        columns = self.read("r", "results.csv").splitlines()[0].split(",")
+        summary = json.loads(self.read("r", "summary.json"))
+        for joint, facts in summary["joints"].items():
+            described = json.loads(self.freeplay("describe", facts["type"], "--json")[0])
+            self.assertEqual([name for name in columns if name.startswith("joint.%s." % joint)],
+                             [channel["name"].replace("NAME", joint) for channel in described["channels"]])
 
     def test_describe_tells_default_and_range(self):
         text = self.freeplay("describe", "lankarani-nikravesh")[0]

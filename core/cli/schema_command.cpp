@@ -1,0 +1,37 @@
+#include "cli/schema_command.h"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/plugins.h"
+#include "cli/terminal.h"
+#include "contract/sample_layout.h"
+#include "io/json_schema.h"
+
+namespace freeplay {
+namespace {
+
+int schema(const std::string& of, const CommonOptions& common) {
+  require_word("schema", of, {"model", "summary", "sweep"});
+  if (of == "sweep") not_in_this_release("the schema of sweep plans");
+  if (of == "summary") {
+    print_json(summary_schema());
+    return 0;
+  }
+  const Registry registry = load_registry(common, nullptr);
+  print_json(model_schema(registry, force_types(registry)));
+  return 0;
+}
+
+}  // namespace
+
+Command add_schema_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("schema", "Print the JSON Schema of the model file or of summary.json");
+  const auto of = std::make_shared<std::string>("model");
+  app->add_option("KIND", *of, "model (the default), summary or sweep")->type_name("");
+  add_common_options(*app, common);
+  return {app, [of, &common] { return schema(*of, common); }};
+}
+
+}  // namespace freeplay

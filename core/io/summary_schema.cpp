@@ -1,0 +1,114 @@
+#include "io/json_schema.h"
+#include "io/version.h"
+
+namespace freeplay {
+namespace {
+
+Json number() { return {{"type", "number"}}; }
+Json number_or_null() { return {{"type", {"number", "null"}}}; }
+Json integer() { return {{"type", "integer"}}; }
+Json integer_or_null() { return {{"type", {"integer", "null"}}}; }
+Json text() { return {{"type", "string"}}; }
+
+/// Exactly these fields, all there.
+Json record(Json fields) {
+  Json required = Json::array();
+  for (const auto& [name, schema] : fields.items()) required.push_back(name);
+  return {
+      {"type", "object"}, {"properties", std::move(fields)}, {"required", required}, {"additionalProperties", false}};
+}
+
+/// Names to something.
+Json by_name(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
+
+Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
+
+Json numbers(std::initializer_list<const char*> names) {
+  Json fields = Json::object();
+  for (const char* name : names) fields[name] = number_or_null();
+  return record(std::move(fields));
+}
+
+Json model_part() {
+  return record({{"name", text()},
+                 {"file", text()},
+                 {"sha256", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}},
+                 {"space", {{"enum", {"planar", "spatial"}}}},
+                 {"bodies", integer()},
+                 {"joints", integer()},
+                 {"clearance_joints", integer()},
+                 {"drivers", integer()},
+                 {"dof", integer_or_null()},
+                 {"dof_driven", integer_or_null()},
+                 {"redundant", integer_or_null()}});
+}
+
+Json settings_part() {
+  const Json step = {{"type", "object"},
+                     {"properties", {{"size", number()}, {"adaptive", {{"type", "boolean"}}}}},
+                     {"required", {"size", "adaptive"}}};
+  const Json integrator = {{"type", "object"}, {"properties", {{"type", text()}}}, {"required", {"type"}}};
+  return record({{"start", number()},
+                 {"end", number()},
+                 {"integrator", integrator},
+                 {"step", step},
+                 {"interval", number()},
+                 {"discard", number()},
+                 {"set", by_name(text())},
+                 {"ideal", list_of(text())}});
+}
+
+Json joint_part() {
+  Json fields = {{"type", text()}};
+  for (const char* name : {"max_force", "rms_force", "max_fn", "max_delta", "max_eccentricity"}) {
+    fields[name] = number_or_null();
+  }
+  fields["contacts"] = integer_or_null();
+  for (const char* name : {"contact_fraction", "dissipated"}) fields[name] = number_or_null();
+  return record(std::move(fields));
+}
+
+Json driver_part() {
+  return record({{"kind", {{"enum", {"angle", "position", "velocity", "torque", "force"}}}},
+                 {"max_abs", number_or_null()},
+                 {"rms", number_or_null()},
+                 {"work", number_or_null()}});
+}
+
+}  // namespace
+
+Json summary_schema() {
+  Json schema = record({{"freeplay", record({{"version", text()}, {"schema", {{"const", schema_version}}}})},
+                        {"model", model_part()},
+                        {"settings", settings_part()},
+                        {"status", {{"enum", {"completed", "stopped", "failed", "interrupted"}}}},
+                        {"stop_reason", {{"type", {"string", "null"}}}},
+                        {"exit_code", integer()},
+                        {"time", record({{"reached", number()}})},
+                        {"counts", record({{"rows", integer()},
+                                           {"steps", integer()},
+                                           {"rejected", integer()},
+                                           {"iterations", integer()},
+                                           {"factorizations", integer()},
+                                           {"contacts", integer()},
+                                           {"contacts_total", integer()}})},
+                        {"residuals", numbers({"position_max", "velocity_max", "energy_max"})},
+                        {"bodies", by_name({{"type", "object"}, {"additionalProperties", number_or_null()}})},
+                        {"joints", by_name(joint_part())},
+                        {"drivers", by_name(driver_part())},
+                        {"paths", by_name(numbers({"max_position", "rms_position", "max_angle", "rms_angle"}))},
+                        {"energy", numbers({"kinetic", "potential", "dissipated", "work", "residual"})},
+                        {"advice", record({{"under_resolved", integer()},
+                                           {"min_steps_per_contact", number_or_null()},
+                                           {"step", number_or_null()}})},
+                        {"verify", {{"type", {"object", "null"}}, {"additionalProperties", number_or_null()}}},
+                        {"agree_until", number_or_null()},
+                        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
+                        {"files", list_of(text())},
+                        {"warnings", list_of(text())}});
+  Json head = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Freeplay summary.json"}};
+  head.update(schema);
+  return head;
+}
+
+}  // namespace freeplay
