@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/check_plugin_command.h"
 #include "cli/describe_command.h"
 #include "cli/failure.h"
 #include "cli/init_command.h"
@@ -41,9 +42,9 @@ int execute(int argc, char** argv, CommonOptions& common) {
   bool version = false;
   program.add_flag("--version", version, "Print the version");
   add_common_options(program, common);
-  const Command commands[] = {add_run_command(program, common), add_validate_command(program, common),
+  const Command commands[] = {add_run_command(program, common),  add_validate_command(program, common),
                               add_list_command(program, common), add_describe_command(program, common),
-                              add_init_command(program, common)};
+                              add_init_command(program, common), add_check_plugin_command(program, common)};
   // Words that the parser does not know are left to unknown_word(), which suggests what was meant.
   program.require_subcommand(0, 1)->allow_extras();
   for (const Command& command : commands) command.app->allow_extras();

@@ -8,7 +8,7 @@ import unittest
 from program import PROGRAM, ProgramTest, mechanism
 
 LATER_COMMANDS = ["show", "schema", "init", "convert", "analyze", "sweep", "report", "export", "compare",
-                  "check-plugin", "doctor"]
+                  "doctor"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 
