@@ -9,8 +9,10 @@
 
 namespace freeplay {
 
-/// Fields name kind space source summary parameters formula validity references. `kind` is joint, contact, friction or
-/// integrator.
+/// joint, contact, friction or integrator.
+const char* kind_word(ComponentKind kind);
+
+/// Fields name kind space source summary parameters formula validity references.
 Json component_json(const RegisteredComponent& entry, const Registry& registry);
 
 /// The same for what is no component: gears and applied forces (kind force), of the format table.

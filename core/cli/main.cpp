@@ -4,10 +4,12 @@
 #include <exception>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/check_plugin_command.h"
 #include "cli/describe_command.h"
 #include "cli/failure.h"
 #include "cli/init_command.h"
@@ -42,9 +44,13 @@ int execute(int argc, char** argv, CommonOptions& common) {
   bool version = false;
   program.add_flag("--version", version, "Print the version");
   add_common_options(program, common);
-  const Command commands[] = {add_run_command(program, common),  add_validate_command(program, common),
-                              add_list_command(program, common), add_describe_command(program, common),
-                              add_init_command(program, common), add_schema_command(program, common)};
+  using Add = Command (*)(CLI::App&, CommonOptions&);
+  constexpr Add all[] = {
+      add_run_command,    add_validate_command, add_list_command,         add_describe_command,
+      add_schema_command, add_init_command,     add_check_plugin_command,
+  };
+  std::vector<Command> commands;
+  for (const Add add : all) commands.push_back(add(program, common));
   // Words that the parser does not know are left to unknown_word(), which suggests what was meant.
   program.require_subcommand(0, 1)->allow_extras();
   for (const Command& command : commands) command.app->allow_extras();

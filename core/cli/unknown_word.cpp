@@ -13,8 +13,17 @@
 namespace freeplay {
 namespace {
 
-const std::vector<std::string> later_commands{"show",   "convert", "analyze",      "sweep", "report",
-                                              "export", "compare", "check-plugin", "doctor"};
+// One a line, so that the release that brings one takes its line away.
+const std::vector<std::string> later_commands{
+    "show",     //
+    "convert",  //
+    "analyze",  //
+    "sweep",    //
+    "report",   //
+    "export",   //
+    "compare",  //
+    "doctor",   //
+};
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,
                          const std::vector<std::string>& known, const std::string& prefix = "") {

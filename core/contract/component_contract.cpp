@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "component/instances.h"
 #include "contract/description_contract.h"
 #include "contract/integrator_contract.h"
@@ -19,58 +21,104 @@ bool has_functions(const ParameterBlock& block) {
   return false;
 }
 
-Findings check_joint_sample(const ParameterBlock& block, const Conditions& conditions) {
+/// Notes the end of a component's objects, too.
+class Subjects {
+ public:
+  explicit Subjects(const Conditions& conditions) : conditions_(conditions) {}
+  ~Subjects() {
+    WatchedCall watched(conditions_, "its destructor");
+    instances_ = Instances();
+    watched.end();
+  }
+  Subjects(const Subjects&) = delete;
+  Subjects& operator=(const Subjects&) = delete;
+
+  /// `make(instances, fault)` with the constructor noted.
+  template <class Make>
+  auto make(Make&& make_one) {
+    CreationFault fault;
+    WatchedCall watched(conditions_, "its constructor");
+    auto made = make_one(instances_, fault);
+    watched.end();
+    return made;
+  }
+
+ private:
+  const Conditions& conditions_;
+  Instances instances_;
+};
+
+void say(const Conditions& conditions, const std::string& words) {
+  if (conditions.note != nullptr) conditions.note->say(words);
+}
+
+Findings check_joint_sample(const ParameterSample& sample, const Conditions& conditions) {
+  const ParameterBlock& block = *sample.block;
   Findings findings;
-  Instances instances;
-  CreationFault fault;
-  const JointRef joint = instances.create_joint(block, fault), twin = instances.create_joint(block, fault);
+  Subjects subjects(conditions);
+  const auto make = [&](Instances& instances, CreationFault& fault) { return instances.create_joint(block, fault); };
+  const JointRef joint = subjects.make(make), twin = subjects.make(make);
   for (const Space space : {Space::planar, Space::spatial}) {
     const auto bits = static_cast<std::uint32_t>(block.component->description.space);
     if ((bits & static_cast<std::uint32_t>(space)) == 0) continue;
+    const char* where = space == Space::planar ? "in the plane" : "in space";
+    say(conditions, fmt::format("{}, {}", sample.name, where));
     JointLayout layout;
     layout.space = space;
     Message message;
-    if (joint.declare(layout, message)) findings.merge(check_joint_names({layout.events, layout.channels}), "");
-    findings.merge(check_joint({joint, twin, space, !has_functions(block)}, conditions),
-                   space == Space::planar ? "in the plane" : "in space");
+    WatchedCall watched(conditions, "declare");
+    const bool declared = joint.declare(layout, message);
+    watched.end();
+    if (declared) findings.merge(check_joint_names({layout.events, layout.channels}), "");
+    findings.merge(check_joint({joint, twin, space, !has_functions(block)}, conditions), where);
   }
   return findings;
 }
 
-Findings check_sample(const ParameterBlock& block, const Conditions& conditions) {
-  Instances instances;
-  CreationFault fault;
+Findings check_sample(const ParameterSample& sample, const Conditions& conditions) {
+  const ParameterBlock& block = *sample.block;
+  if (block.component->kind == ComponentKind::joint) return check_joint_sample(sample, conditions);
+  say(conditions, sample.name);
+  Subjects subjects(conditions);
   const Description& description = block.component->description;
   switch (block.component->kind) {
     case ComponentKind::joint:
-      return check_joint_sample(block, conditions);
+      break;
     case ComponentKind::contact_law: {
       const ContactPair pair = sample_contact_pair();
       const bool may_jump = description.validity != nullptr && std::strstr(description.validity, "jump") != nullptr;
-      return check_contact_law({instances.create_contact_law(block, pair, fault),
-                                instances.create_contact_law(block, pair, fault), pair.radial_clearance, may_jump},
-                               conditions);
+      const auto make = [&](Instances& instances, CreationFault& fault) {
+        return instances.create_contact_law(block, pair, fault);
+      };
+      return check_contact_law({subjects.make(make), subjects.make(make), pair.radial_clearance, may_jump}, conditions);
     }
-    case ComponentKind::friction_law:
-      return check_friction_law(
-          {instances.create_friction_law(block, fault), instances.create_friction_law(block, fault)}, conditions);
-    case ComponentKind::integrator:
-      return check_integrator({instances.create_integrator(block, fault), instances.create_integrator(block, fault)},
-                              conditions);
+    case ComponentKind::friction_law: {
+      const auto make = [&](Instances& instances, CreationFault& fault) {
+        return instances.create_friction_law(block, fault);
+      };
+      return check_friction_law({subjects.make(make), subjects.make(make)}, conditions);
+    }
+    case ComponentKind::integrator: {
+      const auto make = [&](Instances& instances, CreationFault& fault) {
+        return instances.create_integrator(block, fault);
+      };
+      return check_integrator({subjects.make(make), subjects.make(make)}, conditions);
+    }
   }
-  return {};
+  return Findings();
 }
 
 }  // namespace
 
 Findings check_component(const Component& component, const Registry& registry, const Conditions& conditions) {
-  Findings findings = check_description(component);
+  Findings findings(conditions.found);
+  findings.merge(check_description(component), "");
   // A table that contradicts itself has no valid parameters.
   if (!findings.held()) return findings;
-  const ParameterSamples samples = sample_parameters(component, registry);
+  const ParameterSamples samples = sample_parameters(component, registry, conditions);
   findings.expect("accepts-parameters", !samples.accepted.empty(), [&] { return samples.refusal; });
   for (const ParameterSample& sample : samples.accepted) {
-    findings.merge(check_sample(*sample.block, conditions), sample.name);
+    findings.merge(check_sample(sample, conditions), sample.name);
   }
   return findings;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,9 +16,14 @@ struct Finding {
   std::string detail;
 };
 
+using FindingSink = std::function<void(const Finding&)>;
+
 /// What a suite found: one entry per rule that was examined, in order. Of a broken rule the first case is kept.
 class Findings {
  public:
+  /// `sink` is told of a rule when it is examined first and when it is first found broken.
+  explicit Findings(FindingSink sink = {}) : sink_(std::move(sink)) {}
+
   /// Notes one case of a rule; `detail` is called where the rule is broken for the first time, and returns text.
   template <class Detail>
   bool expect(const char* rule, bool held, Detail&& detail) {
@@ -25,6 +31,7 @@ class Findings {
     if (!held && finding.held) {
       finding.held = false;
       finding.detail = detail();
+      if (sink_) sink_(finding);
     }
     return held;
   }
@@ -51,9 +58,12 @@ class Findings {
     for (Finding& finding : all_) {
       if (finding.rule == rule) return finding;
     }
-    return all_.emplace_back(Finding{rule, true, {}});
+    Finding& fresh = all_.emplace_back(Finding{rule, true, {}});
+    if (sink_) sink_(fresh);
+    return fresh;
   }
   std::vector<Finding> all_;
+  FindingSink sink_;
 };
 
 }  // namespace freeplay

@@ -11,6 +11,12 @@
 
 namespace freeplay {
 
+/// One marked number: a NaN that no arithmetic makes.
+struct GuardMark {
+  std::uint64_t bits = 0x7ff8c0ffee15600d;
+  bool intact() const { return bits == GuardMark().bits; }
+};
+
 class GuardedNumbers {
  public:
   explicit GuardedNumbers(std::size_t count, double fill = 0.0) : numbers_(count + 2 * margin, guard()), count_(count) {
@@ -34,8 +40,7 @@ class GuardedNumbers {
  private:
   // Two rows of a joint's Jacobian, so that an index that is one row off is caught and harms nothing else.
   static constexpr std::size_t margin = 24;
-  // A NaN that no arithmetic makes.
-  static double guard() { return std::bit_cast<double>(std::uint64_t{0x7ff8c0ffee15600d}); }
+  static double guard() { return std::bit_cast<double>(GuardMark().bits); }
   std::vector<double> numbers_;
   std::size_t count_;
 };

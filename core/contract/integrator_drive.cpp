@@ -8,20 +8,30 @@
 namespace freeplay {
 namespace {
 
+// The reference systems have three coordinates: one that wants more has forgotten to set the number.
+constexpr int most_numbers = 1000000;
+
 constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
 
-IntegratorLayout declare(const IntegratorRef& integrator, const Layout& sizes, Findings& findings) {
+IntegratorLayout declare(const IntegratorRef& integrator, const Layout& sizes, const Conditions& conditions,
+                         Findings& findings) {
   IntegratorLayout layout;
   layout.sizes = {sizes.nq(), sizes.nv(), sizes.nc(), sizes.nz()};
   Message message;
+  WatchedCall watched(conditions, "declare");
   const bool good = integrator.declare(layout, message);
+  watched.end();
   findings.expect("answers", good, [&] { return fmt::format("declare() fails: {}", message.text); });
-  const bool sane = layout.memory >= 0 && layout.scratch >= 0 && layout.order >= 1 && layout.newton_tolerance > 0.0 &&
+  const bool sane = layout.memory >= 0 && layout.memory <= most_numbers && layout.scratch >= 0 &&
+                    layout.scratch <= most_numbers && layout.order >= 1 && layout.newton_tolerance > 0.0 &&
                     layout.newton_max_iterations >= 1;
   findings.expect("declares-sanely", sane, [&] {
     return fmt::format("memory {}, scratch {}, order {}, tolerance {}, {} iterations", layout.memory, layout.scratch,
                        layout.order, layout.newton_tolerance, layout.newton_max_iterations);
   });
+  // What follows must not trip over a wrong count.
+  layout.memory = std::clamp(layout.memory, 0, most_numbers);
+  layout.scratch = std::clamp(layout.scratch, 0, most_numbers);
   return layout;
 }
 
@@ -86,7 +96,7 @@ IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const Referenc
       reference_(reference),
       conditions_(conditions),
       findings_(findings),
-      layout_(declare(integrator, reference.system().layout(), findings)),
+      layout_(declare(integrator, reference.system().layout(), conditions, findings)),
       options_{std::min(tolerance, layout_.newton_tolerance), std::max(layout_.newton_max_iterations, 1)},
       solver_(std::make_unique<NewtonStageSolver>(reference.system(), options_)),
       accepted_(reference.system().layout(), layout_.memory),
@@ -103,7 +113,9 @@ bool IntegratorDrive::start() {
   std::vector<double> z_rate(known.z.size());
   if (!solver_->accelerate(view, {z_rate.data(), z_rate.size()})) return false;
   Message message;
+  WatchedCall watched(conditions_, "restart");
   const bool good = integrator_.restart(view, solver_->table(), message);
+  watched.end();
   findings_.expect("answers", good, [&] { return fmt::format("restart() fails: {}", message.text); });
   findings_.expect("stays-in-span", accepted_.intact(),
                    [] { return std::string("restart() writes beside the state or its memory"); });
@@ -116,13 +128,14 @@ bool IntegratorDrive::call_attempt(double dt, GuardedState& to, GuardedNumbers& 
                                    const abi::StageSolverTable& solver, bool watch_allocations, Attempt& attempt) {
   StateView view = to.view();
   Message message;
-  const long before = conditions_.allocations ? conditions_.allocations() : 0;
+  WatchedCall watched(conditions_, "attempt");
   const bool good = integrator_.attempt(dt, view, scratch.span(), solver, attempt, message);
-  const long after = conditions_.allocations ? conditions_.allocations() : 0;
+  const long allocated = watched.end();
   findings_.expect("answers", good, [&] { return fmt::format("attempt() fails: {}", message.text); });
   if (conditions_.allocations && watch_allocations) {
-    findings_.expect("allocation", after == before,
-                     [&] { return fmt::format("attempt() allocates {} times", after - before); });
+    findings_.expect("allocation", allocated == 0 || !good, [&] {
+      return fmt::format("{}: attempt() allocates, {} in one step", reference_.name(), allocated);
+    });
   }
   findings_.expect("stays-in-span", to.intact() && scratch.intact(),
                    [] { return std::string("attempt() writes beside the state, its memory or the scratch"); });

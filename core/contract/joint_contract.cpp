@@ -37,9 +37,8 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
   // A joint with play is no model of anything where its parts have left each other's reach.
   for (int i = 0; i < 6 && !(play > 0.0); ++i) add(random_pair(probe.space(), random));
   Pose pose{};
-  Message message;
   for (int i = 0; i < 4; ++i) {
-    if (probe.joint().place(random.between(-1.0, 1.0), pose, message)) add(placed_pair(probe.space(), pose, random));
+    if (probe.place(random.between(-1.0, 1.0), pose)) add(placed_pair(probe.space(), pose, random));
   }
   if (play > 0.0) {
     for (const double beyond : {-0.4, 0.001, 0.004, 0.013, 0.05}) {
@@ -54,11 +53,7 @@ void check_place(const JointProbe& probe, RandomNumbers& random, Findings& findi
   constexpr double tolerance = 1e-13;
   for (const double wanted : {0.0, 0.3, -0.8, 2.5}) {
     Pose pose{};
-    Message message;
-    const bool can = probe.joint().place(wanted, pose, message);
-    findings.expect("answers", can || message.text[0] == '\0',
-                    [&] { return fmt::format("place({}) fails: {}", wanted, message.text); });
-    if (!can) continue;
+    if (!probe.place(wanted, pose)) continue;
     const JointMoment placed = probe.start(placed_pair(probe.space(), pose, random), 0.0);
     for (const double phi : probe.rows(placed).phi) {
       findings.expect("place", std::abs(phi) <= tolerance,
@@ -77,10 +72,7 @@ void check_offset(const JointProbe& probe, Findings& findings) {
   if (!(play > 0.0)) return;
   for (const double load : {0.0, 1.0, 50.0}) {
     double reaction[3] = {0.6 * load, -0.8 * load, 0.0};
-    InitialOffset offset{};
-    Message message;
-    const bool good = probe.joint().initial_offset(reaction, offset, message);
-    findings.expect("answers", good, [&] { return fmt::format("initial_offset() fails: {}", message.text); });
+    const InitialOffset offset = probe.initial_offset(reaction);
     const double size = std::hypot(offset.position[0], offset.position[1], offset.position[2]);
     const double speed = std::hypot(offset.velocity[0], offset.velocity[1], offset.velocity[2]);
     findings.expect("initial-offset", std::isfinite(size) && std::isfinite(speed), [&] {
@@ -92,7 +84,7 @@ void check_offset(const JointProbe& probe, Findings& findings) {
 }  // namespace
 
 Findings check_joint(const JointSubject& subject, const Conditions& conditions) {
-  Findings findings;
+  Findings findings(conditions.found);
   RandomNumbers random(conditions.seed);
   const JointProbe probe(subject.joint, subject.space, conditions, findings);
   const JointProbe twin(subject.twin, subject.space, conditions, findings);

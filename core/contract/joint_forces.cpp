@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "contract/joint_contract.h"
+#include "contract/joint_words.h"
 #include "contract/slope.h"
 #include "freeplay/eigen.h"
 
@@ -43,10 +44,14 @@ void check_balance(const JointProbe& probe, const JointMoment& moment, ForceValu
   const double torque = force * (pa.norm() + pb.norm()) + ma.norm() + mb.norm();
   const Vector3d resultant = fa + fb, moment_at_origin = pa.cross(fa) + ma + pb.cross(fb) + mb;
   // Arms may be found as differences of radii, which loses a few digits.
-  findings.expect("balance", resultant.norm() <= 1e-12 * force,
-                  [&] { return fmt::format("the forces leave a resultant of {:.3g} N", resultant.norm()); });
-  findings.expect("balance", moment_at_origin.norm() <= 1e-10 * torque,
-                  [&] { return fmt::format("the pair leaves a moment of {:.3g} N m", moment_at_origin.norm()); });
+  findings.expect("balance", resultant.norm() <= 1e-12 * force, [&] {
+    return fmt::format("the forces on a and b leave a resultant of {:.3g} N (force {:.3g} N), {}", resultant.norm(),
+                       force, words_of(moment));
+  });
+  findings.expect("balance", moment_at_origin.norm() <= 1e-10 * torque, [&] {
+    return fmt::format("the forces and moments on a and b leave a moment of {:.3g} N m about the world's origin, {}",
+                       moment_at_origin.norm(), words_of(moment));
+  });
 }
 
 /// Work done on the bodies comes out of the stored energy: P + dU/dt <= 0, the difference is dissipated.
@@ -69,8 +74,8 @@ void check_energy(const JointProbe& probe, const JointMoment& moment, const Forc
   findings.expect("energy", gain <= tolerance, [&] {
     return fmt::format(
         "the wrenches do work at {:.6g} W while the stored energy changes at {:.6g} W (error {:.3g} W, "
-        "largest power {:.6g} W)",
-        power(f, moment.markers), stored.value[0], stored.error[0], power_size(f, moment.markers));
+        "largest power {:.6g} W), {}",
+        power(f, moment.markers), stored.value[0], stored.error[0], power_size(f, moment.markers), words_of(moment));
   });
 }
 
@@ -129,7 +134,8 @@ class DerivativeCheck {
       // A derivative that a joint finds by differences itself may be off by 1e-8 of the force, where it should be zero.
       const double scale = std::max(10.0 * size[group(r)], 1e-2 * given_size_[group(r)]);
       findings_.expect("derivatives", agrees(given, d.value[r], d.error[r], scale), [&] {
-        return fmt::format("row {}, column {} is {:.9g}, differences give {:.9g}", r, c, given, d.value[r]);
+        return fmt::format("{} by {} (row {}, column {}) is {:.9g}, differences give {:.9g}, {}", force_word(r),
+                           input_word(c), r, c, given, d.value[r], words_of(moment_));
       });
     }
   }
@@ -158,7 +164,8 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
     if (f.wrench.empty()) return;
     if (probe.layout().forces == 0) {
       const bool silent = std::all_of(f.wrench.begin(), f.wrench.end(), [](double x) { return x == 0.0; });
-      findings.expect("declares-sanely", silent, [] { return std::string("apply() acts, but `forces` is zero"); });
+      findings.expect("declares-sanely", silent,
+                      [&] { return "apply() acts, but `forces` is zero, " + words_of(moment); });
       continue;
     }
     check_balance(probe, moment, f, findings);
@@ -166,7 +173,7 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
     if (probe.layout().analytic_derivatives != 0) DerivativeCheck(probe, moment, f, findings).run();
     const ForceValues bare = probe.forces(moment);
     findings.expect("unused-derivatives", same_bits(outputs(bare), outputs(f)),
-                    [] { return std::string("the forces depend on whether derivatives are asked for"); });
+                    [&] { return "the forces depend on whether derivatives are asked for, " + words_of(moment); });
   }
 }
 

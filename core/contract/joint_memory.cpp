@@ -6,6 +6,7 @@
 
 #include "contract/joint_contract.h"
 #include "contract/joint_walk.h"
+#include "contract/joint_words.h"
 #include "contract/slope.h"
 
 namespace freeplay {
@@ -65,10 +66,11 @@ void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findi
   for (std::size_t i = 0; i < std::min(here.g.size(), d.value.size()); ++i) {
     // A function of speed has a rate that depends on accelerations, which the joint is not told.
     if (std::isnan(here.g[i]) || here.g[i] != at_rest[i]) continue;
-    findings.expect(
-        "event-rate", agrees(here.rate[i], d.value[i], d.error[i], std::max(1.0, std::abs(here.rate[i]))), [&] {
-          return fmt::format("event {} changes at {:.9g}, differences give {:.9g}", i, here.rate[i], d.value[i]);
-        });
+    findings.expect("event-rate", agrees(here.rate[i], d.value[i], d.error[i], std::max(1.0, std::abs(here.rate[i]))),
+                    [&] {
+                      return fmt::format("event '{}' changes at {:.9g} per second, differences give {:.9g}, {}",
+                                         probe.layout().events[i].name, here.rate[i], d.value[i], words_of(moment));
+                    });
   }
 }
 
@@ -115,10 +117,11 @@ void check_memory(const JointProbe& probe, const JointProbe& twin, const std::ve
     const std::vector<double> first = probe.all(here);
     probe.all(elsewhere);
     const std::vector<double> second = probe.all(here);
-    findings.expect("no-hidden-state", same_bits(first, second),
-                    [] { return std::string("the same input gives other numbers after a call with another input"); });
+    findings.expect("no-hidden-state", same_bits(first, second), [&] {
+      return "the same input gives other numbers after a call with another input, " + words_of(here);
+    });
     findings.expect("same-twin", same_bits(first, twin.all(here)),
-                    [] { return std::string("two objects with equal parameters give different numbers"); });
+                    [&] { return "two objects with equal parameters give different numbers, " + words_of(here); });
     if (probe.layout().events.size > 0) check_event_rates(probe, here, findings);
   }
   check_rollback(probe, twin, random, findings);

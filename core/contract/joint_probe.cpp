@@ -2,24 +2,46 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "contract/joint_words.h"
+
 namespace freeplay {
 namespace {
+
+/// A struct with marked numbers behind it, so that a write past its end is seen.
+template <class T>
+struct Fenced {
+  T inside{};
+  GuardMark mark[8];
+  bool intact() const {
+    return std::all_of(std::begin(mark), std::end(mark), [](const GuardMark& m) { return m.intact(); });
+  }
+};
+
+// A joint that wants more has forgotten to set the number.
+constexpr int most_numbers = 10000;
 
 constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
 
 }  // namespace
 
 struct JointProbe::Fed {
-  Fed(const JointProbe& probe, const JointMoment& moment) : markers(moment.markers), z(moment.z), h(moment.h) {
+  Fed(const JointProbe& probe, const JointMoment& given)
+      : moment(given), markers(given.markers), z(given.z), h(given.h) {
     in = {moment.t, &markers.a, &markers.b, 0.0, 0.0, z.span(), h.span()};
     if (probe.layout_.coordinate == Coordinate::none) return;
     CoordinateRow row{};
     Message message;
-    if (!probe.joint_.coordinate(in, row, message)) return;
+    WatchedCall watched(probe.conditions_, "coordinate");
+    const bool good = probe.joint_.coordinate(in, row, message);
+    watched.end();
+    if (!good) return;
     in.coordinate = row.value;
     if (probe.layout_.coordinate == Coordinate::angle) {
       in.coordinate += 2.0 * M_PI * std::round((moment.coordinate - row.value) / (2.0 * M_PI));
@@ -27,6 +49,11 @@ struct JointProbe::Fed {
     const Twelve twist = twists(markers);
     for (std::size_t i = 0; i < twist.size(); ++i) in.coordinate_rate += row.jacobian[i] * twist[i];
   }
+  bool untouched() const {
+    return z.intact() && h.intact() && same_bits(z.values(), moment.z) && same_bits(h.values(), moment.h) &&
+           std::memcmp(&markers, &moment.markers, sizeof markers) == 0;
+  }
+  JointMoment moment;
   MarkerPair markers;
   GuardedNumbers z, h;
   JointInput in{};
@@ -35,41 +62,61 @@ struct JointProbe::Fed {
 JointProbe::JointProbe(const JointRef& joint, Space space, const Conditions& conditions, Findings& findings)
     : joint_(joint), space_(space), conditions_(conditions), findings_(findings) {
   layout_.space = space;
-  run("declare", [&](Message& m) { return joint_.declare(layout_, m); });
+  run("declare", nullptr, [&](Message& m) { return joint_.declare(layout_, m); });
   const bool sane = layout_.constraint_rows >= 0 && layout_.constraint_rows <= (space == Space::planar ? 3 : 6) &&
-                    layout_.internal_variables >= 0 && layout_.history >= 0 && layout_.clearance >= 0.0;
+                    layout_.internal_variables >= 0 && layout_.internal_variables <= most_numbers &&
+                    layout_.history >= 0 && layout_.history <= most_numbers && layout_.clearance >= 0.0;
   findings_.expect("declares-sanely", sane, [&] {
     return fmt::format("{} rows, {} internal variables, {} history numbers, clearance {} m", layout_.constraint_rows,
                        layout_.internal_variables, layout_.history, layout_.clearance);
   });
   // What follows must not trip over a negative count.
   layout_.constraint_rows = std::clamp(layout_.constraint_rows, 0, 6);
+  layout_.internal_variables = std::clamp(layout_.internal_variables, 0, most_numbers);
+  layout_.history = std::clamp(layout_.history, 0, most_numbers);
 }
 
-bool JointProbe::run(const char* function, const Call& call) const {
+bool JointProbe::run(const char* function, const JointMoment* moment, const Call& call) const {
   Message message;
-  const long before = conditions_.allocations ? conditions_.allocations() : 0;
+  WatchedCall watched(conditions_, function);
   const bool good = call(message);
-  const long after = conditions_.allocations ? conditions_.allocations() : 0;
-  findings_.expect("answers", good, [&] { return fmt::format("{}() fails: {}", function, message.text); });
+  const long allocated = watched.end();
+  const auto where = [&] { return moment == nullptr ? std::string() : " " + words_of(*moment); };
+  findings_.expect("answers", good, [&] { return fmt::format("{}() fails{}: {}", function, where(), message.text); });
   const bool may_allocate = std::string_view(function) == "declare" || std::string_view(function) == "initialize";
   if (conditions_.allocations && !may_allocate) {
-    findings_.expect("allocation", after == before,
-                     [&] { return fmt::format("{}() allocates {} times", function, after - before); });
+    findings_.expect("allocation", allocated == 0 || !good,
+                     [&] { return fmt::format("{}() allocates{}: {} in one call", function, where(), allocated); });
   }
   return good;
 }
 
-void JointProbe::watch(const char* function, std::initializer_list<const GuardedNumbers*> written,
+bool JointProbe::watch(const char* function, const Fed& fed, std::initializer_list<const GuardedNumbers*> written,
                        bool nan_allowed) const {
+  bool all_finite = true;
+  findings_.expect("stays-in-span", fed.untouched(), [&] {
+    return fmt::format("{}() changes what it may only read, {}", function, words_of(fed.moment));
+  });
   for (const GuardedNumbers* numbers : written) {
-    findings_.expect("stays-in-span", numbers->intact(),
-                     [&] { return fmt::format("{}() writes beside the numbers it was given", function); });
+    findings_.expect("stays-in-span", numbers->intact(), [&] {
+      return fmt::format("{}() writes beside the {} numbers it was given, {}", function, numbers->values().size(),
+                         words_of(fed.moment));
+    });
     if (nan_allowed) continue;
     const std::vector<double> values = numbers->values();
     const bool finite = std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-    findings_.expect("finite", finite, [&] { return fmt::format("{}() gives a number that is not finite", function); });
+    findings_.expect("finite", finite, [&] {
+      return fmt::format("{}() gives a number that is not finite, {}", function, words_of(fed.moment));
+    });
+    all_finite = all_finite && finite;
   }
+  return all_finite;
+}
+
+void JointProbe::expect_fence(const char* function, bool intact, const JointMoment& moment) const {
+  findings_.expect("stays-in-span", intact, [&] {
+    return fmt::format("{}() writes past the end of the struct it was given, {}", function, words_of(moment));
+  });
 }
 
 RowValues JointProbe::rows(const JointMoment& moment) const {
@@ -77,18 +124,20 @@ RowValues JointProbe::rows(const JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers phi(n), jacobian(12 * n), nu(n), gamma(n);
   ConstraintRows out{phi.span(), jacobian.span(), nu.span(), gamma.span()};
-  if (!run("constrain", [&](Message& m) { return joint_.constrain(fed.in, out, m); })) return {};
-  watch("constrain", {&phi, &jacobian, &nu, &gamma, &fed.z, &fed.h});
+  if (!run("constrain", &moment, [&](Message& m) { return joint_.constrain(fed.in, out, m); })) return {};
+  if (!watch("constrain", fed, {&phi, &jacobian, &nu, &gamma})) return {};
   return {phi.values(), jacobian.values(), nu.values(), gamma.values()};
 }
 
 CoordinateValues JointProbe::coordinate(const JointMoment& moment) const {
   Fed fed(*this, moment);
-  CoordinateRow row{};
-  if (!run("coordinate", [&](Message& m) { return joint_.coordinate(fed.in, row, m); })) return {};
+  Fenced<CoordinateRow> fenced;
+  CoordinateRow& row = fenced.inside;
+  if (!run("coordinate", &moment, [&](Message& m) { return joint_.coordinate(fed.in, row, m); })) return {};
+  expect_fence("coordinate", fenced.intact(), moment);
   const GuardedNumbers numbers(std::vector<double>(row.jacobian, row.jacobian + 12)),
       pair(std::vector<double>{row.value, row.bias});
-  watch("coordinate", {&numbers, &pair, &fed.z, &fed.h});
+  if (!watch("coordinate", fed, {&numbers, &pair})) return {};
   double value = row.value;
   if (layout_.coordinate == Coordinate::angle) {
     value += 2.0 * M_PI * std::round((moment.coordinate - value) / (2.0 * M_PI));
@@ -100,14 +149,16 @@ ForceValues JointProbe::forces(const JointMoment& moment, bool derivatives) cons
   const std::size_t nz = at(layout_.internal_variables);
   Fed fed(*this, moment);
   GuardedNumbers rate(nz), table(derivatives ? (12 + nz) * (24 + nz) : 0);
-  JointForces out{};
+  Fenced<JointForces> fenced;
+  JointForces& out = fenced.inside;
   out.internal_rate = rate.span();
   if (derivatives) out.derivatives = table.span();
-  if (!run("apply", [&](Message& m) { return joint_.apply(fed.in, out, m); })) return {};
+  if (!run("apply", &moment, [&](Message& m) { return joint_.apply(fed.in, out, m); })) return {};
+  expect_fence("apply", fenced.intact() && out.internal_rate.data == rate.span().data, moment);
   std::vector<double> wrench(out.wrench_a, out.wrench_a + 6);
   wrench.insert(wrench.end(), out.wrench_b, out.wrench_b + 6);
   const GuardedNumbers given(wrench), potential(std::vector<double>{out.potential});
-  watch("apply", {&rate, &table, &given, &potential, &fed.z, &fed.h});
+  if (!watch("apply", fed, {&rate, &table, &given, &potential})) return {};
   return {wrench, out.potential, rate.values(), table.values()};
 }
 
@@ -115,8 +166,8 @@ EventValues JointProbe::events(const JointMoment& moment) const {
   const std::size_t count = layout_.events.size;
   Fed fed(*this, moment);
   GuardedNumbers g(count), rate(count);
-  if (!run("events", [&](Message& m) { return joint_.events(fed.in, g.span(), rate.span(), m); })) return {};
-  watch("events", {&g, &rate}, true);
+  if (!run("events", &moment, [&](Message& m) { return joint_.events(fed.in, g.span(), rate.span(), m); })) return {};
+  watch("events", fed, {&g, &rate}, true);
   return {g.values(), rate.values()};
 }
 
@@ -124,24 +175,44 @@ std::vector<double> JointProbe::observe(const JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers channels(layout_.channels.size);
   GuardedNumbers lambda(at(layout_.constraint_rows), 1.0);
-  if (!run("observe", [&](Message& m) { return joint_.observe(fed.in, lambda.span(), channels.span(), m); })) return {};
-  watch("observe", {&channels, &fed.z, &fed.h});
+  if (!run("observe", &moment, [&](Message& m) { return joint_.observe(fed.in, lambda.span(), channels.span(), m); }))
+    return {};
+  watch("observe", fed, {&channels});
   return channels.values();
 }
 
 double JointProbe::step_limit(const JointMoment& moment) const {
   Fed fed(*this, moment);
   double limit = unbounded;
-  if (!run("step_limit", [&](Message& m) { return joint_.step_limit(fed.in, limit, m); })) return unbounded;
+  if (!run("step_limit", &moment, [&](Message& m) { return joint_.step_limit(fed.in, limit, m); })) return unbounded;
   findings_.expect("step-limit", limit > 0.0, [&] { return fmt::format("step_limit() gives {} s", limit); });
   return limit;
+}
+
+bool JointProbe::place(double coordinate, Pose& b_in_a) const {
+  Fenced<Pose> fenced;
+  bool can = false;
+  run("place", nullptr, [&](Message& m) {
+    can = joint_.place(coordinate, fenced.inside, m);
+    return can || m.text[0] == '\0';
+  });
+  expect_fence("place", fenced.intact(), {});
+  b_in_a = fenced.inside;
+  return can;
+}
+
+InitialOffset JointProbe::initial_offset(Span<const double> reaction) const {
+  Fenced<InitialOffset> fenced;
+  run("initial_offset", nullptr, [&](Message& m) { return joint_.initial_offset(reaction, fenced.inside, m); });
+  expect_fence("initial_offset", fenced.intact(), {});
+  return fenced.inside;
 }
 
 void JointProbe::initialize(JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers z(moment.z), h(moment.h);
-  if (!run("initialize", [&](Message& m) { return joint_.initialize(fed.in, z.span(), h.span(), m); })) return;
-  watch("initialize", {&z, &h});
+  if (!run("initialize", &moment, [&](Message& m) { return joint_.initialize(fed.in, z.span(), h.span(), m); })) return;
+  watch("initialize", fed, {&z, &h});
   moment.z = z.values();
   moment.h = h.values();
 }
@@ -153,8 +224,9 @@ void JointProbe::begin_step(const JointMoment& accepted, const Twelve& accelerat
   std::copy_n(acceleration.begin(), 6, both.a);
   std::copy_n(acceleration.begin() + 6, 6, both.b);
   GuardedNumbers h(trial.h);
-  if (!run("begin_step", [&](Message& m) { return joint_.begin_step(fed.in, both, dt, h.span(), m); })) return;
-  watch("begin_step", {&h});
+  if (!run("begin_step", &accepted, [&](Message& m) { return joint_.begin_step(fed.in, both, dt, h.span(), m); }))
+    return;
+  watch("begin_step", fed, {&h});
   trial.h = h.values();
 }
 
@@ -162,12 +234,12 @@ std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers z(moment.z), h(moment.h);
   GuardedNumbers fields(layout_.events[at(index)].fields.size, std::numeric_limits<double>::quiet_NaN());
-  if (!run("on_event",
+  if (!run("on_event", &moment,
            [&](Message& m) { return joint_.on_event(index, fed.in, z.span(), h.span(), fields.span(), m); })) {
     return {};
   }
-  watch("on_event", {&z, &h});
-  watch("on_event", {&fields}, true);
+  watch("on_event", fed, {&z, &h});
+  watch("on_event", fed, {&fields}, true);
   moment.z = z.values();
   moment.h = h.values();
   return fields.values();
@@ -176,8 +248,8 @@ std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
 void JointProbe::commit(JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers h(moment.h), lambda(at(layout_.constraint_rows), 1.0);
-  if (!run("commit", [&](Message& m) { return joint_.commit(fed.in, lambda.span(), h.span(), m); })) return;
-  watch("commit", {&h, &lambda});
+  if (!run("commit", &moment, [&](Message& m) { return joint_.commit(fed.in, lambda.span(), h.span(), m); })) return;
+  watch("commit", fed, {&h, &lambda});
   moment.h = h.values();
 }
 

@@ -38,7 +38,7 @@ struct EventValues {
 };
 
 /// One object of a joint type. What is wrong with a call itself is noted under the rules "answers", "stays-in-span",
-/// "finite" and "allocation"; a call that fails gives empty vectors.
+/// "finite" and "allocation"; a call that fails or gives a number that is not finite gives empty vectors.
 class JointProbe {
  public:
   JointProbe(const JointRef& joint, Space space, const Conditions& conditions, Findings& findings);
@@ -53,6 +53,9 @@ class JointProbe {
   EventValues events(const JointMoment& at) const;
   std::vector<double> observe(const JointMoment& at) const;
   double step_limit(const JointMoment& at) const;
+  /// False when the type cannot place a body.
+  bool place(double coordinate, Pose& b_in_a) const;
+  InitialOffset initial_offset(Span<const double> reaction) const;
 
   // These change z and h of the moment.
   void initialize(JointMoment& at) const;
@@ -68,9 +71,11 @@ class JointProbe {
  private:
   struct Fed;  // a JointInput and the numbers that it refers to
   using Call = std::function<bool(Message&)>;
-  bool run(const char* function, const Call& call) const;
-  void watch(const char* function, std::initializer_list<const GuardedNumbers*> written,
+  bool run(const char* function, const JointMoment* moment, const Call& call) const;
+  /// False when a number is not finite.
+  bool watch(const char* function, const Fed& fed, std::initializer_list<const GuardedNumbers*> written,
              bool nan_allowed = false) const;
+  void expect_fence(const char* function, bool intact, const JointMoment& moment) const;
 
   JointRef joint_;
   Space space_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "contract/joint_contract.h"
+#include "contract/joint_words.h"
 #include "contract/slope.h"
 
 namespace freeplay {
@@ -57,7 +58,8 @@ class RowCheck {
       for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
         const double given = here_.jacobian[12 * r + component];
         findings_.expect(name(r, "jacobian", "coordinate"), agrees(given, d.value[r], d.error[r], 1.0), [&] {
-          return fmt::format("row {}, column {} is {:.9g}, differences give {:.9g}", r, component, given, d.value[r]);
+          return fmt::format("{}, {} (column {}) is {:.9g}, differences give {:.9g}, {}", row_word(r),
+                             twist_word(component), component, given, d.value[r], words_of(moment_));
         });
       }
     }
@@ -73,7 +75,8 @@ class RowCheck {
         0.05);
     for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
       findings_.expect(name(r, "nu", "coordinate"), agrees(here_.nu[r], -d.value[r], d.error[r], 1.0), [&] {
-        return fmt::format("nu of row {} is {:.9g}, differences give {:.9g}", r, here_.nu[r], -d.value[r]);
+        return fmt::format("nu of {} is {:.9g}, differences in time give {:.9g}, {}", row_word(r), here_.nu[r],
+                           -d.value[r], words_of(moment_));
       });
     }
   }
@@ -96,7 +99,9 @@ class RowCheck {
       const double given = here_.times(r, acceleration) - here_.gamma[r];
       // Accelerations of 3 m/s^2 and speeds of 1.5 m/s: terms of order 10.
       findings_.expect(name(r, "gamma", "coordinate-bias"), agrees(given, d.value[r], d.error[r], 10.0), [&] {
-        return fmt::format("row {} promises a second rate of {:.9g}, differences give {:.9g}", r, given, d.value[r]);
+        return fmt::format("{} is {:.9g}, differences of G V - nu along an accelerated motion give {:.9g}, {}",
+                           gamma_word(r), here_.gamma[r] * gamma_sign(r),
+                           (here_.times(r, acceleration) - d.value[r]) * gamma_sign(r), words_of(moment_));
       });
     }
   }
@@ -122,7 +127,8 @@ class RowCheck {
         const double rate = here_.times(r, v);
         // Rounding of lengths below 2 m times entries of order 1, and what Newton's rule leaves.
         findings_.expect("constraint-balance", std::abs(rate) <= 1e-12, [&] {
-          return fmt::format("row {} changes at a rate of {:.3g} when both markers move as one body", r, rate);
+          return fmt::format("{} changes at a rate of {:.3g} when both markers {} as one body, {}", row_word(r), rate,
+                             motion < 3 ? "shift" : "turn", words_of(moment_));
         });
       }
     }
@@ -141,13 +147,20 @@ class RowCheck {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(g);
     qr.setThreshold(1e-9);
     findings_.expect("rows-independent", qr.rank() == g.rows(),
-                     [&] { return fmt::format("{} rows have the rank {}", n, qr.rank()); });
+                     [&] { return fmt::format("{} rows have the rank {}, {}", n, qr.rank(), words_of(moment_)); });
   }
 
  private:
   const char* name(std::size_t row, const char* of_row, const char* of_coordinate) const {
-    return static_cast<int>(row) < probe_.layout().constraint_rows ? of_row : of_coordinate;
+    return is_row(row) ? of_row : of_coordinate;
   }
+  bool is_row(std::size_t row) const { return static_cast<int>(row) < probe_.layout().constraint_rows; }
+  std::string row_word(std::size_t row) const { return is_row(row) ? fmt::format("row {}", row) : "the coordinate"; }
+  std::string gamma_word(std::size_t row) const {
+    return is_row(row) ? fmt::format("gamma of row {}", row) : "the coordinate's bias";
+  }
+  double gamma_sign(std::size_t row) const { return is_row(row) ? 1.0 : -1.0; }  // bias = -gamma
+
   /// Moves marker b until phi = 0, by Newton's rule with the rows' own Jacobian.
   bool close() {
     const auto n = static_cast<Eigen::Index>(probe_.layout().constraint_rows);

@@ -57,9 +57,7 @@ void JointWalk::tell_events(JointMoment& trial) const {
 
 ClosedPath::ClosedPath(const JointProbe& probe, RandomNumbers& random) : play_(probe.layout().clearance) {
   Pose pose{};
-  Message message;
-  start_ = probe.joint().place(0.2, pose, message) ? placed_pair(probe.space(), pose, random)
-                                                   : distant_pair(probe.space(), 0.4, random);
+  start_ = probe.place(0.2, pose) ? placed_pair(probe.space(), pose, random) : distant_pair(probe.space(), 0.4, random);
   start_ = with_twists(start_, {});
   if (!(play_ > 0.0)) return;
   for (int i = 0; i < 3; ++i) start_.b.position[i] = start_.a.position[i];

@@ -78,7 +78,8 @@ double within(const Parameter& p, double factor, double wish) {
 
 class Sampler {
  public:
-  Sampler(const Component& component, const Registry& registry) : component_(component), registry_(registry) {}
+  Sampler(const Component& component, const Registry& registry, const Conditions& conditions)
+      : component_(component), registry_(registry), conditions_(conditions) {}
 
   ParameterSamples run() {
     for (const Plan& laws : law_plans()) {
@@ -174,6 +175,7 @@ class Sampler {
   bool accepts(const std::shared_ptr<const ParameterBlock>& block) {
     Instances instances;
     CreationFault fault;
+    WatchedCall watched(conditions_, "its constructor");
     switch (component_.kind) {
       case ComponentKind::joint:
         instances.create_joint(*block, fault);
@@ -188,6 +190,8 @@ class Sampler {
         instances.create_contact_law(*block, sample_contact_pair(), fault);
         break;
     }
+    instances = Instances();
+    watched.end();
     if (!fault.id.empty() && found_.refusal.empty()) {
       found_.refusal = fault.path.empty() ? fault.text : "'" + fault.path + "': " + fault.text;
     }
@@ -231,7 +235,7 @@ class Sampler {
     std::vector<std::shared_ptr<const ParameterBlock>> blocks;
     const Component* preferred = registry_.preferred(kind);
     const auto add_samples = [&](const Component& law) {
-      const ParameterSamples samples = sample_parameters(law, registry_);
+      const ParameterSamples samples = sample_parameters(law, registry_, conditions_);
       // The one with as many keys as possible asks least of the joint.
       if (!samples.accepted.empty()) blocks.push_back(samples.accepted[samples.accepted.size() > 1 ? 1 : 0].block);
     };
@@ -325,6 +329,7 @@ class Sampler {
 
   const Component& component_;
   const Registry& registry_;
+  const Conditions& conditions_;
   ParameterSamples found_;
 };
 
@@ -335,8 +340,8 @@ ContactPair sample_contact_pair() {
   return {0.01, 0.0099, 0.0001, 0.02, steel, steel};
 }
 
-ParameterSamples sample_parameters(const Component& component, const Registry& registry) {
-  return Sampler(component, registry).run();
+ParameterSamples sample_parameters(const Component& component, const Registry& registry, const Conditions& conditions) {
+  return Sampler(component, registry, conditions).run();
 }
 
 }  // namespace freeplay

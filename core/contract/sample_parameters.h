@@ -7,6 +7,7 @@
 
 #include "component/parameter_block.h"
 #include "component/registry.h"
+#include "contract/conditions.h"
 
 namespace freeplay {
 
@@ -26,6 +27,7 @@ ContactPair sample_contact_pair();
 /// Blocks that the constructor accepts: as few parameters as it needs, as many as it takes, each word of a choice, the
 /// ends of the ranges, and each law of the registry where a law is asked for. Numbers are of a size usual for their
 /// unit and stay within their bounds; optional ones are added one by one and in pairs until the constructor is content.
-ParameterSamples sample_parameters(const Component& component, const Registry& registry);
+ParameterSamples sample_parameters(const Component& component, const Registry& registry,
+                                   const Conditions& conditions = {});
 
 }  // namespace freeplay

@@ -7,8 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, mechanism
 
-LATER_COMMANDS = ["show", "convert", "analyze", "sweep", "report", "export", "compare",
-                  "check-plugin", "doctor"]
+LATER_COMMANDS = ["show", "convert", "analyze", "sweep", "report", "export", "compare", "doctor"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 

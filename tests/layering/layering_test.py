@@ -46,7 +46,7 @@ LIBRARIES = {
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 STANDARD = re.compile(r"^[a-z_0-9]+$")
-SYSTEM = {"unistd.h", "fcntl.h", "sys/stat.h", "sys/types.h"}
+SYSTEM = {"unistd.h", "fcntl.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/stat.h", "sys/types.h", "sys/wait.h"}
 
 
 def sources(*folders):

@@ -1,0 +1,14 @@
+// Probe: a static destructor that crashes.
+#include "probe.h"
+
+namespace {
+struct Crash {
+  ~Crash() { freeplay::probe::crash(); }
+} at_exit;
+}  // namespace
+
+FREEPLAY_PLUGIN(probe) {
+  using namespace freeplay;
+  static const Component components[] = {joint<probe::Idle>({.name = "probe", .summary = "Idle."})};
+  return publish(*host, *manifest, "probe", "1", components);
+}

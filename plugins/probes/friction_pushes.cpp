@@ -1,0 +1,24 @@
+// Probe: friction along the slip.
+#include <cmath>
+
+#include "probe.h"
+
+namespace {
+/// -F_N atan(v / v_s) / 4, before it is broken.
+struct Probe : freeplay::FrictionLaw {
+  explicit Probe(const freeplay::Parameters&) {}
+  freeplay::FrictionForce evaluate(const freeplay::FrictionState& s, freeplay::Span<double>) const override {
+    const double u = s.slip_speed / 0.01;
+    freeplay::FrictionForce f{-0.25 * std::atan(u) * s.normal_force, -0.25 * std::atan(u),
+                              -25.0 / (1.0 + u * u) * s.normal_force};
+    f = {-f.tangential, -f.d_normal, -f.d_slip};
+    return f;
+  }
+};
+}  // namespace
+
+FREEPLAY_PLUGIN(probe) {
+  using namespace freeplay;
+  static const Component components[] = {friction_law<Probe>({.name = "probe", .summary = "Pushes."})};
+  return publish(*host, *manifest, "probe", "1", components);
+}
