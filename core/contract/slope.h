@@ -12,19 +12,24 @@ struct Slope {
   std::vector<double> value, error;
 };
 
+/// Differences to both sides, or to one where a kink is nearer than any step.
+enum class Side { both, above, below };
+
 /// Derivative at 0 of `f(x)`, which returns a vector of a fixed size or an empty one when it fails; `largest` is the
-/// largest step tried. Central differences for a sequence of steps, each a quarter of the last; of neighbours that
+/// largest step tried. Differences for a sequence of steps, each a quarter of the last; of neighbours that
 /// agree best the extrapolation is taken. So neither the scale of f nor a kink at some distance has to be known.
 /// `error` counts the disagreement and the rounding of f; at a kink it is large.
 template <class Function>
-Slope slope(Function&& f, double largest) {
+Slope slope(Function&& f, double largest, Side side = Side::both) {
   constexpr int steps = 15;
-  const auto difference = [&f](double h, std::vector<double>& size) {
-    const std::vector<double> high = f(h), low = f(-h);
+  const double up = side == Side::below ? 0.0 : 1.0, down = side == Side::above ? 0.0 : 1.0;
+  const double order = side == Side::both ? 16.0 : 4.0;  // what a quarter of the step makes of the error
+  const auto difference = [&](double h, std::vector<double>& size) {
+    const std::vector<double> high = f(up * h), low = f(-down * h);
     std::vector<double> d(std::min(high.size(), low.size()));
     size.assign(d.size(), 0.0);
     for (std::size_t i = 0; i < d.size(); ++i) {
-      d[i] = (high[i] - low[i]) / (2.0 * h);
+      d[i] = (high[i] - low[i]) / ((up + down) * h);
       size[i] = std::max(std::abs(high[i]), std::abs(low[i]));
     }
     return d;
@@ -40,7 +45,7 @@ Slope slope(Function&& f, double largest) {
       const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * fine_size[i] / h;
       const double error = std::abs(fine[i] - coarse[i]) + rounding;
       if (!(error <= best.error[i])) continue;
-      best.value[i] = (16.0 * fine[i] - coarse[i]) / 15.0;
+      best.value[i] = (order * fine[i] - coarse[i]) / (order - 1.0);
       best.error[i] = error;
     }
     coarse = fine;
