@@ -1,5 +1,8 @@
 #include "component/instances.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace freeplay {
@@ -18,6 +21,57 @@ const Table& table_of(const Component& component) {
 std::string named(const Component& component, const std::string& text) {
   return std::string("'") + component.description.name + "': " + text;
 }
+
+/// A law, and how messages name it.
+template <class Law>
+struct NamedLaw {
+  Law law;
+  std::string name;
+
+  /// Calls `body` on the law; puts the name before what is thrown.
+  template <class Body>
+  static Status call(const void* self, Message* message, Body&& body) noexcept {
+    const auto& me = *static_cast<const NamedLaw*>(self);
+    const Status status = abi::guarded(message, [&] { body(me.law); });
+    if (status == Status::ok) return status;
+    Message text;
+    const std::size_t length = std::min(me.name.size(), sizeof text.text / 2);
+    std::memcpy(text.text, me.name.data(), length);
+    std::memcpy(text.text + length, ": ", 2);
+    abi::copy_text(text.text + length + 2, sizeof text.text - length - 2, message->text);
+    *message = text;
+    return status;
+  }
+};
+
+void require_finite(bool finite) {
+  if (!finite) throw std::runtime_error("it returned a force that is not a finite number");
+}
+
+constexpr abi::ContactLawTable named_contact_law{
+    sizeof(abi::ContactLawTable), nullptr,
+    [](const void* self, const ContactState* in, ContactForce* out, Message* m) noexcept {
+      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) {
+        *out = law.evaluate(*in);
+        require_finite(std::isfinite(out->normal + out->potential) || !std::isfinite(in->penetration + in->rate));
+      });
+    },
+    [](const void* self, const ContactState* in, const char** why, Message* m) noexcept {
+      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { *why = law.outside_range(*in); });
+    }};
+
+constexpr abi::FrictionLawTable named_friction_law{
+    sizeof(abi::FrictionLawTable), nullptr,
+    [](const void* self, std::int32_t* count, Message* m) noexcept {
+      return NamedLaw<FrictionLawRef>::call(self, m,
+                                            [&](const FrictionLawRef& law) { *count = law.internal_variables(); });
+    },
+    [](const void* self, const FrictionState* in, Span<double> rate, FrictionForce* out, Message* m) noexcept {
+      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) {
+        *out = law.evaluate(*in, rate);
+        require_finite(std::isfinite(out->tangential) || !std::isfinite(in->normal_force + in->slip_speed));
+      });
+    }};
 
 CreationFault fault_of(const Component& component, Status status, const Message& message) {
   if (status == Status::bad_parameter) return {true, message.path, message.id, message.text};
@@ -53,6 +107,9 @@ struct Instances::Server {
     throw BadParameter(kept_path.c_str(), kept_id.c_str(), fault.text);
   }
 
+  ContactLawRef serve_contact_law(const ParameterBlock& law, const ContactPair& pair, CreationFault& fault) const;
+  FrictionLawRef serve_friction_law(const ParameterBlock& law, CreationFault& fault) const;
+
   static const Server& of(const void* self) { return *static_cast<const Server*>(self); }
   abi::ParameterTable table() const;
   void keep_functions() const;
@@ -84,18 +141,47 @@ abi::ParameterTable Instances::Server::table() const {
                          Message* m) noexcept {
     return abi::guarded(m, [&] {
       CreationFault fault;
-      *law = of(self).owner.create_contact_law(of(self).law(name), *pair, fault);
+      *law = of(self).serve_contact_law(of(self).law(name), *pair, fault);
       if (!fault.id.empty()) pass_on(fault, name);
     });
   };
   table.friction_law = [](const void* self, const char* name, FrictionLawRef* law, Message* m) noexcept {
     return abi::guarded(m, [&] {
       CreationFault fault;
-      *law = of(self).owner.create_friction_law(of(self).law(name), fault);
+      *law = of(self).serve_friction_law(of(self).law(name), fault);
       if (!fault.id.empty()) pass_on(fault, name);
     });
   };
   return table;
+}
+
+// A joint gets its law through a table of ours, so that a law that fails is named.
+ContactLawRef Instances::Server::serve_contact_law(const ParameterBlock& law, const ContactPair& pair,
+                                                   CreationFault& fault) const {
+  const ContactLawRef inner = owner.create_contact_law(law, pair, fault);
+  if (!fault.id.empty()) return {};
+  auto* named = new NamedLaw<ContactLawRef>{inner, "contact law of " + owner.words_of(*law.component)};
+  owner.objects_.emplace_back(named, [](void* self) { delete static_cast<NamedLaw<ContactLawRef>*>(self); });
+  return {named_contact_law, named};
+}
+
+FrictionLawRef Instances::Server::serve_friction_law(const ParameterBlock& law, CreationFault& fault) const {
+  const FrictionLawRef inner = owner.create_friction_law(law, fault);
+  if (!fault.id.empty()) return {};
+  auto* named = new NamedLaw<FrictionLawRef>{inner, "friction law of " + owner.words_of(*law.component)};
+  owner.objects_.emplace_back(named, [](void* self) { delete static_cast<NamedLaw<FrictionLawRef>*>(self); });
+  return {named_friction_law, named};
+}
+
+std::string Instances::words_of(const Component& component) const {
+  std::string words = std::string("type '") + component.description.name + "'";
+  for (const RegisteredLibrary& library : libraries_) {
+    if (library.path == "built-in") continue;
+    for (const Component& row : library.table->components()) {
+      if (&row == &component) words += " of plugin '" + library.path + "'";
+    }
+  }
+  return words;
 }
 
 void Instances::Server::keep_functions() const {

@@ -9,6 +9,7 @@
 #include "component/integrator_ref.h"
 #include "component/joint_ref.h"
 #include "component/parameter_block.h"
+#include "component/registry.h"
 
 namespace freeplay {
 
@@ -23,12 +24,12 @@ struct CreationFault {
 class Instances {
  public:
   Instances() = default;
-  /// Keeps the tables of a registry's libraries alive as long as what was created from them.
-  void keep(std::shared_ptr<const void> tables) { tables_.push_back(std::move(tables)); }
+  /// Keeps the tables of a library alive as long as what was created from them, and knows the library by its path.
+  void keep(const RegisteredLibrary& library) { libraries_.push_back(library); }
   Instances(Instances&&) = default;
   Instances& operator=(Instances&& other) noexcept {
     objects_ = std::move(other.objects_);  // what is replaced goes before its tables
-    tables_ = std::move(other.tables_);
+    libraries_ = std::move(other.libraries_);
     return *this;
   }
 
@@ -38,12 +39,15 @@ class Instances {
   ContactLawRef create_contact_law(const ParameterBlock& parameters, const ContactPair& pair, CreationFault& fault);
   FrictionLawRef create_friction_law(const ParameterBlock& parameters, CreationFault& fault);
 
+  /// "type 'NAME'", and "of plugin 'PATH'" where a library of its own brings it: how messages name a component.
+  std::string words_of(const Component& component) const;
+
  private:
   struct Server;  // answers a constructor's questions
   using Owned = std::unique_ptr<void, std::function<void(void*)>>;
   template <class Table, class Make>
   void* create(const ParameterBlock& parameters, Make make, CreationFault& fault);
-  std::vector<std::shared_ptr<const void>> tables_;  // outlive the objects below
+  std::vector<RegisteredLibrary> libraries_;  // their tables outlive the objects below
   std::vector<Owned> objects_;
 };
 

@@ -43,12 +43,19 @@ bool is_path(std::string_view path) {
 
 bool says_something(const char* text) { return text != nullptr && text[0] != '\0'; }
 
-std::optional<std::string> unit_fault(const char* unit, Span<const Parameter> table) {
+const Parameter* find(Span<const Parameter> table, std::string_view name) {
+  for (const Parameter& p : table) {
+    if (p.name != nullptr && name == p.name) return &p;
+  }
+  return nullptr;
+}
+
+/// What is wrong with one unit, whose exponents may name dimensionless numbers of the table.
+std::optional<std::string> single_unit_fault(std::string_view unit, Span<const Parameter> table) {
   const auto exponent = [&](std::string_view name) -> std::optional<double> {
-    for (const Parameter& p : table) {
-      if (name == p.name && p.kind == ParameterKind::number) return 1.5;
-    }
-    return std::nullopt;
+    const Parameter* p = find(table, name);
+    const bool number = p != nullptr && p->kind == ParameterKind::number && std::string_view(p->unit) == "1";
+    return number ? std::optional(1.5) : std::nullopt;
   };
   try {
     parse_unit(unit, exponent);
@@ -56,6 +63,33 @@ std::optional<std::string> unit_fault(const char* unit, Span<const Parameter> ta
     return fmt::format("'{}': {}", unit, e.message);
   }
   return std::nullopt;
+}
+
+/// The same for "CHOICE: UNIT | UNIT": every alternative, one for each word of a choice of the table.
+std::optional<std::string> unit_fault(const char* text, Span<const Parameter> table) {
+  if (text == nullptr) return "missing";
+  std::string_view rest = text;
+  const std::size_t colon = rest.find(':');
+  if (colon == std::string_view::npos) return single_unit_fault(rest, table);
+  const std::string_view name = rest.substr(0, colon);
+  const Parameter* choice = find(table, name);
+  if (choice == nullptr || choice->kind != ParameterKind::choice) {
+    return fmt::format("'{}': '{}' is no choice of the table", text, name);
+  }
+  rest.remove_prefix(colon + 1);
+  std::size_t units = 0;
+  for (bool more = true; more; ++units) {
+    const std::size_t bar = rest.find('|');
+    more = bar != std::string_view::npos;
+    std::string_view unit = rest.substr(0, bar);
+    while (unit.starts_with(' ')) unit.remove_prefix(1);
+    while (unit.ends_with(' ')) unit.remove_suffix(1);
+    if (const auto fault = single_unit_fault(unit, table)) return fault;
+    rest.remove_prefix(more ? bar + 1 : rest.size());
+  }
+  const std::size_t words = words_of(*choice).size();
+  if (units == words) return std::nullopt;
+  return fmt::format("'{}': {} units for the {} words of '{}'", text, units, words, name);
 }
 
 void check_value(const Parameter& p, Findings& findings) {
@@ -112,7 +146,7 @@ Findings check_joint_names(const JointNames& joint) {
                     [&] { return fmt::format("'{}' stands twice", name); });
   };
   const auto check_unit = [&](const char* rule, const Channel& channel) {
-    const std::optional<std::string> fault = channel.unit == nullptr ? "missing" : unit_fault(channel.unit, {});
+    const std::optional<std::string> fault = unit_fault(channel.unit, {});
     findings.expect(rule, !fault, [&] { return fmt::format("unit of '{}': {}", channel.name, *fault); });
   };
   for (const Channel& channel : joint.channels) {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "freeplay/eigen.h"
+
 namespace freeplay {
 namespace {
 
@@ -49,13 +51,16 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
 }
 
 void check_place(const JointProbe& probe, RandomNumbers& random, Findings& findings) {
-  // Rounding of a rotation applied to lengths below 1 m, a few times.
-  constexpr double tolerance = 1e-13;
   for (const double wanted : {0.0, 0.3, -0.8, 2.5}) {
     Pose pose{};
     if (!probe.place(wanted, pose)) continue;
     const JointMoment placed = probe.start(placed_pair(probe.space(), pose, random), 0.0);
-    for (const double phi : probe.rows(placed).phi) {
+    const RowValues rows = probe.rows(placed);
+    // Rounding of a rotation applied to lengths, a few times, as the rows enlarge it.
+    const double rounding = 1e-13 * (1.0 + vector3(pose.position).norm());
+    double tolerance = rounding;
+    for (const double entry : rows.jacobian) tolerance = std::max(tolerance, rounding * std::abs(entry));
+    for (const double phi : rows.phi) {
       findings.expect("place", std::abs(phi) <= tolerance,
                       [&] { return fmt::format("a body placed at {} leaves a residual of {}", wanted, phi); });
     }

@@ -8,6 +8,7 @@
 #include "contract/joint_contract.h"
 #include "contract/joint_words.h"
 #include "contract/slope.h"
+#include "freeplay/eigen.h"
 
 namespace freeplay {
 namespace {
@@ -54,7 +55,7 @@ class RowCheck {
         there.markers = moved(moment_.markers, by);
         return turned_near(all_rows(probe_, there).value);
       };
-      const Slope d = slope(along, 0.05);
+      const Slope d = slope(along, 0.05, Side::both, sizes_of_terms());
       for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
         const double given = here_.jacobian[12 * r + component];
         findings_.expect(name(r, "jacobian", "coordinate"),
@@ -73,7 +74,7 @@ class RowCheck {
           there.t += x;
           return turned_near(all_rows(probe_, there).value);
         },
-        0.05);
+        0.05, Side::both, sizes_of_terms());
     for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
       findings_.expect(name(r, "nu", "coordinate"), agrees(here_.nu[r], -d.value[r], d.error[r], 1.0), [&] {
         return fmt::format("nu of {} is {:.9g}, differences in time give {:.9g}, {}", row_word(r), here_.nu[r],
@@ -95,7 +96,7 @@ class RowCheck {
           for (std::size_t r = 0; r < rate.size(); ++r) rate[r] = rows.times(r, twists(there.markers)) - rows.nu[r];
           return rate;
         },
-        0.02);
+        0.02, Side::both, sizes_of_terms());
     for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
       const double given = here_.times(r, acceleration) - here_.gamma[r];
       // Accelerations of 3 m/s^2 and speeds of 1.5 m/s: terms of order 10, more where a row is curved.
@@ -127,8 +128,10 @@ class RowCheck {
       }
       for (std::size_t r = 0; r < here_.size(); ++r) {
         const double rate = here_.times(r, v);
-        // Rounding of lengths below 2 m times the entries of the row, and what Newton's rule leaves.
-        findings_.expect("constraint-balance", std::abs(rate) <= 1e-12 * largest_entry(r), [&] {
+        double size = 1.0;
+        for (std::size_t i = 0; i < 12; ++i) size += std::abs(here_.jacobian[12 * r + i] * v[i]);
+        // Rounding of the terms, and what Newton's rule leaves.
+        findings_.expect("constraint-balance", std::abs(rate) <= 1e-12 * size, [&] {
           return fmt::format("{} changes at a rate of {:.3g} when both markers {} as one body, {}", row_word(r), rate,
                              motion < 3 ? "shift" : "turn", words_of(moment_));
         });
@@ -156,12 +159,17 @@ class RowCheck {
   const char* name(std::size_t row, const char* of_row, const char* of_coordinate) const {
     return is_row(row) ? of_row : of_coordinate;
   }
-  /// At least 1.
-  double largest_entry(std::size_t row) const {
-    double largest = 1.0;
-    for (std::size_t i = 0; i < 12; ++i) largest = std::max(largest, std::abs(here_.jacobian[12 * row + i]));
-    return largest;
+  /// A row is made of lengths, or of squares of lengths: what the largest entry of its Jacobian makes of the distances.
+  std::vector<double> sizes_of_terms() const {
+    const Eigen::Vector3d a = vector3(moment_.markers.a.position), b = vector3(moment_.markers.b.position);
+    std::vector<double> sizes(here_.size(), 0.0);
+    for (std::size_t r = 0; r < sizes.size(); ++r) {
+      for (std::size_t i = 0; i < 12; ++i) sizes[r] = std::max(sizes[r], std::abs(here_.jacobian[12 * r + i]));
+      sizes[r] *= 1.0 + a.norm() + b.norm();
+    }
+    return sizes;
   }
+
   bool is_row(std::size_t row) const { return static_cast<int>(row) < probe_.layout().constraint_rows; }
   std::string row_word(std::size_t row) const { return is_row(row) ? fmt::format("row {}", row) : "the coordinate"; }
   std::string gamma_word(std::size_t row) const {
@@ -184,6 +192,11 @@ class RowCheck {
       Eigen::MatrixXd by_b = Eigen::Map<const RowMajor>(rows.jacobian.data(), n, 12).rightCols<6>();
       if (probe_.space() == Space::planar) by_b.middleCols(2, 3).setZero();
       const Eigen::VectorXd change = by_b.completeOrthogonalDecomposition().solve(-phi);
+      const Eigen::Vector3d a = vector3(moment_.markers.a.position), b = vector3(moment_.markers.b.position);
+      if (change.norm() <= 1e-15 * (1.0 + a.norm() + b.norm())) {  // no nearer place has numbers of its own
+        here_ = all_rows(probe_, moment_);
+        return true;
+      }
       Twelve by{};
       for (std::size_t i = 0; i < 6; ++i) by[6 + i] = change[static_cast<Eigen::Index>(i)];
       moment_.markers = moved(moment_.markers, by);
@@ -191,11 +204,12 @@ class RowCheck {
     return false;
   }
 
-  /// Rows that hold an angle jump by a whole turn somewhere; no length jumps by metres over these steps.
+  /// Rows that hold an angle jump by a whole turn somewhere. Angles stay within two turns; what is larger is a length.
   std::vector<double> turned_near(std::vector<double> values) const {
     for (std::size_t r = 0; r < std::min(values.size(), here_.size()); ++r) {
       const double jump = values[r] - here_.value[r];
-      if (std::abs(jump) > 3.0) values[r] -= 2.0 * M_PI * std::round(jump / (2.0 * M_PI));
+      const bool angle = std::abs(values[r]) < 12.6 && std::abs(here_.value[r]) < 12.6;
+      if (angle && std::abs(jump) > 3.0) values[r] -= 2.0 * M_PI * std::round(jump / (2.0 * M_PI));
     }
     return values;
   }

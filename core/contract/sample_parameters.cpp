@@ -100,7 +100,9 @@ class Sampler {
   std::optional<Unit> unit_of(const Parameter& p, const ParameterBlock& block) const {
     const auto exponent = [&](std::string_view name) -> std::optional<double> {
       const auto found = block.values.find(name);
-      if (found == block.values.end() || !std::isfinite(found->second.number)) return std::nullopt;
+      if (found == block.values.end()) return std::nullopt;
+      if (found->second.word >= 0) return found->second.word;  // chooses among units
+      if (!std::isfinite(found->second.number)) return std::nullopt;
       return found->second.number;
     };
     try {
@@ -114,6 +116,10 @@ class Sampler {
     auto block = std::make_shared<ParameterBlock>();
     block->component = &component_;
     for (const Parameter& p : table()) block->values[p.name];
+    // Words choose among units.
+    for (const Parameter& p : table()) {
+      if (p.kind == ParameterKind::choice) fill(p, Unit{}, plan, 0, block->values[p.name]);
+    }
     // Exponents are dimensionless: they come first, and the units that name them after.
     for (const bool last : {false, true}) {
       int same_unit = 0;

@@ -18,9 +18,10 @@ enum class Side { both, above, below };
 /// Derivative at 0 of `f(x)`, which returns a vector of a fixed size or an empty one when it fails; `largest` is the
 /// largest step tried. Differences for a sequence of steps, each a quarter of the last; of neighbours that
 /// agree best the extrapolation is taken. So neither the scale of f nor a kink at some distance has to be known.
-/// `error` counts the disagreement and the rounding of f; at a kink it is large.
+/// `error` counts the disagreement and the rounding of f; at a kink it is large. `made_of`: sizes of the terms that the
+/// values of f are differences of, where these are known to be larger than the values.
 template <class Function>
-Slope slope(Function&& f, double largest, Side side = Side::both) {
+Slope slope(Function&& f, double largest, Side side = Side::both, const std::vector<double>& made_of = {}) {
   constexpr int steps = 15;
   const double up = side == Side::below ? 0.0 : 1.0, down = side == Side::above ? 0.0 : 1.0;
   const double order = side == Side::both ? 16.0 : 4.0;  // what a quarter of the step makes of the error
@@ -42,7 +43,8 @@ Slope slope(Function&& f, double largest, Side side = Side::both) {
     h *= 0.25;
     const std::vector<double> fine = difference(h, fine_size);
     for (std::size_t i = 0; i < std::min(fine.size(), best.value.size()); ++i) {
-      const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * fine_size[i] / h;
+      const double terms = i < made_of.size() ? std::max(fine_size[i], made_of[i]) : fine_size[i];
+      const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * terms / h;
       const double error = std::abs(fine[i] - coarse[i]) + rounding;
       if (!(error <= best.error[i])) continue;
       best.value[i] = (order * fine[i] - coarse[i]) / (order - 1.0);

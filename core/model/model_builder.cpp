@@ -37,7 +37,7 @@ class ModelBuilder {
         reading_{&diagnostics, &parameters_, &presets_} {
     draft_.top = &reading_;
     draft_.ideal_matched.assign(options.ideal.size(), false);
-    for (const RegisteredLibrary& library : registry.libraries()) draft_.model.instances.keep(library.table);
+    for (const RegisteredLibrary& library : registry.libraries()) draft_.model.instances.keep(library);
   }
 
   std::unique_ptr<Model> build() {

@@ -26,7 +26,8 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
   if (fault.kind == Fault::Kind::motion) throw_motion_fault(model, fault.motion, Error::Category::input);
   const JointElement& joint = model.joints[at(fault.joint)];
   throw Error(Error::Category::plugin, "plugin-failed",
-              fmt::format("joint '{}' failed while the model was assembled: {}", joint.name, fault.message.text),
+              fmt::format("joint '{}' of {} failed while the model was assembled: {}", joint.name,
+                          model.instances.words_of(*joint.component), fault.message.text),
               joint.location);
 }
 
@@ -481,7 +482,8 @@ class Assembler {
                                        Span<double>(state.z()).part(at(z.offset), at(z.size)),
                                        Span<double>(state.h()).part(at(h.offset), at(h.size)), message)) {
         throw Error(Error::Category::plugin, "plugin-failed",
-                    fmt::format("joint '{}' failed at its start: {}", model_.joints[at(j)].name, message.text),
+                    fmt::format("joint '{}' of {} failed at its start: {}", model_.joints[at(j)].name,
+                                model_.instances.words_of(*model_.joints[at(j)].component), message.text),
                     model_.joints[at(j)].location);
       }
     }

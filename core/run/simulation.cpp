@@ -20,13 +20,18 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double smallest_step = 1e-3;  // of the step asked for
 
+std::string integrator_words(const Model& model) {
+  return "the integrator of " + model.instances.words_of(*model.settings.integrator_parameters.component);
+}
+
 IntegratorLayout declare(const System& system) {
   const Layout& layout = system.layout();
   IntegratorLayout out;
   out.sizes = {layout.nq(), layout.nv(), layout.nc(), layout.nz()};
   Message message;
   if (!system.model().settings.integrator.declare(out, message)) {
-    throw Error(Error::Category::plugin, "plugin-failed", fmt::format("the integrator failed: {}", message.text));
+    throw Error(Error::Category::plugin, "plugin-failed",
+                fmt::format("{} failed: {}", integrator_words(system.model()), message.text));
   }
   return out;
 }
@@ -52,7 +57,7 @@ struct Simulation::Impl {
         energy(owner),
         events(owner),
         statistics(model, all_channels),
-        scratch(at(integrator_layout.scratch)),
+        scratch(at(integrator_layout.scratch) + guard::marks),
         row(all_channels.all().size(), 0.0),
         flow(at(owner.layout().nc())) {
     accepted.assign(start.state);
@@ -69,6 +74,9 @@ struct Simulation::Impl {
   bool begin();
   bool advance_to(double target, const RunHooks& hooks);
   bool step(double dt, bool& converged);
+  bool check_step(double dt);
+  /// The numbers that an attempt may use as it likes; behind them stand marks.
+  Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
   bool prepare_trial(double dt);
   bool accept();
   bool record_row();
@@ -78,6 +86,7 @@ struct Simulation::Impl {
 
   bool fail(int exit_code, std::string reason);
   bool fail_with(const Fault& fault, double t);
+  bool fail_beside(int joint);
   std::string why_not_converged(double dt) const;
   std::string row_name(int row_index) const;
 
@@ -121,8 +130,17 @@ bool Simulation::Impl::fail_with(const Fault& fault, double t) {
     return fail(4, fmt::format("t = {:.9g} s: {}{} [{}]", t, who, motion.text, motion.id));
   }
   const JointElement& joint = model.joints[at(fault.joint)];
-  return fail(5, fmt::format("t = {:.9g} s: joint '{}' of type '{}' failed: {} [plugin-failed]", t, joint.name,
-                             joint.component->description.name, fault.message.text));
+  return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
+                             model.instances.words_of(*joint.component), fault.message.text));
+}
+
+/// A joint has written past the end of the state's history.
+bool Simulation::Impl::fail_beside(int joint) {
+  Fault fault;
+  fault.kind = Fault::Kind::plugin;
+  fault.joint = joint;
+  abi::copy_text(fault.message.text, sizeof fault.message.text, "it wrote beside its history");
+  return fail_with(fault, accepted.t());
 }
 
 std::string Simulation::Impl::row_name(int row_index) const {
@@ -164,7 +182,8 @@ bool Simulation::Impl::begin() {
   solver.use_history(accepted.h());
   if (!settings.integrator.restart(view, solver.table(), message)) {
     if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), accepted.t());
-    return fail(5, fmt::format("the integrator failed at the start: {}", message.text));
+    return fail(5, fmt::format("t = {:.9g} s: {} failed at the start: {} [plugin-failed]", accepted.t(),
+                               integrator_words(model), message.text));
   }
   Fault fault;
   if (!events.at_start(accepted, e_accepted, fault)) return fail_with(fault, accepted.t());
@@ -184,6 +203,7 @@ bool Simulation::Impl::prepare_trial(double dt) {
       e_trial.fault.joint = j;
       return fail_with(e_trial.fault, accepted.t());
     }
+    if (!trial.intact()) return fail_beside(j);
   }
   return true;
 }
@@ -196,18 +216,42 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   StateView view = trial.view();
   Attempt attempt{};
   Message message;
-  if (!settings.integrator.attempt(dt, view, {scratch.data(), scratch.size()}, solver.table(), attempt, message)) {
+  guard::set(scratch_space().end());
+  const bool good = settings.integrator.attempt(dt, view, scratch_space(), solver.table(), attempt, message);
+  if (!guard::intact(scratch_space().end()) || !trial.intact()) {
+    return fail(5, fmt::format("t = {:.9g} s: {} failed: it wrote beside the state, its memory or its scratch "
+                               "[plugin-failed]",
+                               accepted.t(), integrator_words(model)));
+  }
+  if (!good) {
     // A joint may fail at a trial state that a shorter step does not meet; a driver fails by its time alone.
     plugin_fault = solver.fault();
     if (plugin_fault.kind == Fault::Kind::plugin) return true;
     if (plugin_fault.kind == Fault::Kind::motion) return fail_with(plugin_fault, *view.t);
     if (!*solver.trouble()) {
-      return fail(5, fmt::format("t = {:.9g} s: the integrator failed: {}", accepted.t(), message.text));
+      return fail(5, fmt::format("t = {:.9g} s: {} failed: {} [plugin-failed]", accepted.t(), integrator_words(model),
+                                 message.text));
     }
     return true;  // the solver gave up: a shorter step may do
   }
   converged = attempt.converged != 0;
-  return true;
+  return !converged || check_step(dt);
+}
+
+/// What an integrator that says that it converged must have left.
+bool Simulation::Impl::check_step(double dt) {
+  const double expected = accepted.t() + dt, rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  if (!(std::abs(trial.t() - expected) <= 1e-9 * dt + rounding * std::abs(expected))) {
+    return fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
+                               accepted.t(), integrator_words(model), expected, trial.t()));
+  }
+  double sum = 0.0;  // finite only if every term is
+  for (const std::span<const double> part : {trial.q(), trial.v(), trial.a(), trial.lambda(), trial.z()}) {
+    for (const double x : part) sum += x;
+  }
+  if (std::isfinite(sum)) return true;
+  return fail(5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
+                             accepted.t(), integrator_words(model)));
 }
 
 // Events first, then the joints' history, then the state is the accepted one.
@@ -224,6 +268,7 @@ bool Simulation::Impl::accept() {
       fault.joint = j;
       return fail_with(fault, trial.t());
     }
+    if (!trial.intact()) return fail_beside(j);
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     if (const int turn = system.layout().turn(j); turn >= 0) trial.h()[at(turn)] = e_trial.coordinate[at(j)];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "freeplay/integrator.h"
+#include "system/guard_marks.h"
 #include "system/layout.h"
 
 namespace freeplay {
@@ -13,7 +14,7 @@ namespace freeplay {
 /// [t | q | v | a | lambda | z | h | integrator memory]. Copying it is the only rollback.
 class State {
  public:
-  State() = default;
+  State() : block_(guard::marks) {}
   State(const Layout& layout, int memory)
       : nq_(size(layout.nq())),
         nv_(size(layout.nv())),
@@ -21,11 +22,13 @@ class State {
         nz_(size(layout.nz())),
         nh_(size(layout.nh())),
         memory_(size(memory)),
-        block_(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_ + memory_, 0.0) {}
+        block_(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_ + memory_ + guard::marks, 0.0) {
+    guard::set(end());
+  }
 
   /// Copies a state of the same layout without allocating; the memory of the integrator may differ in size.
   void assign(const State& other) {
-    const std::size_t common = std::min(block_.size(), other.block_.size());
+    const std::size_t common = std::min(block().size(), other.block().size());
     std::copy_n(other.block_.begin(), common, block_.begin());
   }
 
@@ -45,13 +48,16 @@ class State {
   std::span<const double> z() const { return part(1 + nq_ + 2 * nv_ + nc_, nz_); }
   std::span<const double> h() const { return part(1 + nq_ + 2 * nv_ + nc_ + nz_, nh_); }
   /// For checkpoints and hashes.
-  std::span<const double> block() const { return block_; }
+  std::span<const double> block() const { return std::span(block_).first(block_.size() - guard::marks); }
+  /// False when somebody wrote past the end of the block.
+  bool intact() const { return guard::intact(block_.data() + block().size()); }
   StateView view() {
     return {&block_[0],        Span<double>(q()),     Span<double>(v()), Span<double>(a()), Span<double>(lambda()),
             Span<double>(z()), Span<double>(memory())};
   }
 
  private:
+  double* end() { return block_.data() + block().size(); }
   static std::size_t size(int n) { return static_cast<std::size_t>(n); }
   std::span<double> part(std::size_t offset, std::size_t count) { return {block_.data() + offset, count}; }
   std::span<const double> part(std::size_t offset, std::size_t count) const { return {block_.data() + offset, count}; }

@@ -26,6 +26,13 @@ bool is_finite(const JointForces& f) {
   for (int i = 0; i < 6; ++i) sum += f.wrench_a[i] + f.wrench_b[i];
   return std::isfinite(sum);
 }
+bool is_finite(const ConstraintRows& rows) {
+  double sum = 0.0;
+  for (const Span<double> part : {rows.phi, rows.jacobian, rows.nu, rows.gamma}) {
+    for (const double x : part) sum += x;
+  }
+  return std::isfinite(sum);
+}
 bool is_finite(const MarkerKinematics& k) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) sum += k.position[i] + k.velocity[i] + k.angular_velocity[i];
@@ -156,7 +163,8 @@ Evaluation::Evaluation(const System& system) {
   shifted.assign(joints, still);
   int widest = 0;
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
-  row_space.resize(at(12 * widest_joint));
+  row_space.resize(at(15 * widest_joint) + 4 * guard::marks);
+  rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
   turns.resize(model.bodies.size());
   motion_time = std::numeric_limits<double>::quiet_NaN();
@@ -261,24 +269,53 @@ double System::row_velocity_product(int joint, const double* marker_row, const E
   return product;
 }
 
+constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
+
+/// Notes what a joint has done wrong. A point that is no number itself is nobody's fault but the iteration's.
+bool System::refuse(int joint, const char* why, Evaluation& e) {
+  abi::copy_text(e.fault.message.text, sizeof e.fault.message.text, why);
+  e.fault.kind = Fault::Kind::plugin;
+  e.fault.joint = joint;
+  return false;
+}
+
+bool System::markers_are_finite(int joint, const Evaluation& e) const {
+  const JointElement& element = model_.joints[at(joint)];
+  return is_finite(e.markers[at(element.marker_a)]) && is_finite(e.markers[at(element.marker_b)]);
+}
+
 bool System::evaluate_rows(const Point& point, Evaluation& e) const {
   for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
     const Slice rows = layout_.rows(j);
     if (rows.size == 0 || model_.joints[at(j)].gear >= 0) continue;
-    const auto part = [&](std::vector<double>& all) {
-      std::fill_n(all.begin() + rows.offset, rows.size, 0.0);
-      return Span<double>(all.data() + rows.offset, at(rows.size));
+    double* next = e.row_space.data();
+    const auto part = [&next](int count) {
+      const Span<double> span(next, at(count));
+      std::fill_n(next, count, 0.0);
+      guard::set(next += count);
+      next += guard::marks;
+      return span;
     };
-    std::fill_n(e.row_space.begin(), 12 * rows.size, 0.0);
-    ConstraintRows out{part(e.phi), {e.row_space.data(), at(12 * rows.size)}, part(e.nu), part(e.gamma)};
+    const Span<double> jacobian = part(12 * rows.size), phi = part(rows.size), nu = part(rows.size),
+                       gamma = part(rows.size);
+    ConstraintRows out{phi, jacobian, nu, gamma};
     if (!joint(j).constrain(input(j, point, e), out, e.fault.message)) {
       e.fault.kind = Fault::Kind::plugin;
       e.fault.joint = j;
       return false;
     }
+    for (const Span<double>& filled : {jacobian, phi, nu, gamma}) {
+      if (!guard::intact(filled.end())) return refuse(j, beside, e);
+    }
+    out = {phi, jacobian, nu, gamma};
+    std::ranges::copy(phi, e.phi.begin() + rows.offset);
+    std::ranges::copy(nu, e.nu.begin() + rows.offset);
+    std::ranges::copy(gamma, e.gamma.begin() + rows.offset);
+    if (!is_finite(out) && markers_are_finite(j, e))
+      return refuse(j, "it returned a row that is not a finite number", e);
     const int block_a = row_block_a_[at(j)], block_b = row_block_b_[at(j)];
     for (int r = 0; r < rows.size; ++r) {
-      const double* marker_row = e.row_space.data() + 12 * r;
+      const double* marker_row = jacobian.data + 12 * r;
       double row[6];
       map_row(j, marker_row, e, row);
       if (block_a >= 0) std::copy_n(row, 3, e.jacobian.begin() + blocks_[at(block_a)].offset + 3 * r);
@@ -359,8 +396,10 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const Slice internal = layout_.internal(j);
     const std::size_t nz = at(internal.size), table = (12 + nz) * (24 + nz);
     JointForces out{};
-    out.internal_rate = {e.internal_rate.data() + internal.offset, nz};
-    std::fill_n(e.internal_rate.begin() + internal.offset, nz, 0.0);
+    const Span<double> rate(e.rate_space.data(), nz);
+    std::ranges::fill(rate, 0.0);
+    guard::set(rate.end());
+    out.internal_rate = rate;
     if (derivatives && layout.analytic_derivatives != 0) {
       std::fill_n(e.derivative_space.begin(), table, 0.0);
       out.derivatives = {e.derivative_space.data(), table};
@@ -376,15 +415,13 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
       e.fault.joint = j;
       return false;
     }
+    if (!guard::intact(rate.end())) return refuse(j, beside, e);
+    std::ranges::copy(rate, e.internal_rate.begin() + internal.offset);
     double* wrench = &e.wrench[12 * at(j)];
     std::copy_n(out.wrench_a, 6, wrench);
     std::copy_n(out.wrench_b, 6, wrench + 6);
-    if (!is_finite(out) && is_finite(*in.a) && is_finite(*in.b)) {
-      abi::copy_text(e.fault.message.text, sizeof e.fault.message.text,
-                     "it returned a force that is not a finite number");
-      e.fault.kind = Fault::Kind::plugin;
-      e.fault.joint = j;
-      return false;
+    if (!is_finite(out) && markers_are_finite(j, e)) {
+      return refuse(j, "it returned a force that is not a finite number", e);
     }
     e.potential[at(j)] = out.potential;
     const JointElement& element = model_.joints[at(j)];

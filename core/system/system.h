@@ -121,6 +121,8 @@ class System {
 
  private:
   bool evaluate_coordinates(const Point& point, bool all, Evaluation& e) const;
+  static bool refuse(int joint, const char* why, Evaluation& e);
+  bool markers_are_finite(int joint, const Evaluation& e) const;
   bool evaluate_rows(const Point& point, Evaluation& e) const;
   bool evaluate_gear_rows(const Point& point, Evaluation& e) const;
   bool evaluate_driver_rows(const Point& point, Evaluation& e) const;
@@ -170,7 +172,7 @@ struct Evaluation {
 
   // Work space.
   std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
-  std::vector<double> row_space, derivative_space;
+  std::vector<double> row_space, rate_space, derivative_space;
   std::vector<planar::Turn> turns;
   double motion_time;
 };

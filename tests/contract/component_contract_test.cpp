@@ -138,6 +138,22 @@ TEST(DescriptionContract, FindsWrongParameters) {
   EXPECT_TRUE(choice("one|two", 2.0).broken("parameter-defaults"));
   EXPECT_TRUE(choice("one|one", 0.0).broken("parameter-choices"));
   EXPECT_TRUE(choice(nullptr, 0.0).broken("parameter-choices"));
+  const auto units = [&](const char* unit) {
+    const Parameter table[] = {
+        good,
+        {.name = "kind", .kind = ParameterKind::choice, .default_value = 0.0, .choices = "shift|turn", .summary = "S."},
+        {.name = "length", .unit = "m", .default_value = 1.0, .summary = "S."},
+        {.name = "power", .default_value = 1.0, .summary = "S."},
+        {.name = "stiffness", .unit = unit, .default_value = 1.0, .summary = "S."}};
+    return describe({.name = "law", .summary = "Some.", .parameters = table});
+  };
+  for (const char* unit : {"kind: N/m | N*m/rad", "kind: N/m^power | N", "N/m^power"}) {
+    EXPECT_TRUE(units(unit).held()) << broken_rules(units(unit));
+  }
+  for (const char* unit : {"kind: N/m | furlong", "kind: furlong | N/m", "kind: N/m", "kind: N | N | N", "power: N | m",
+                           "other: N | m", "N/m^length", "N/m^kind", "kind: N/m | N/m^nothing"}) {
+    EXPECT_TRUE(units(unit).broken("parameter-units")) << unit;
+  }
   const Parameter twice[] = {good, good};
   EXPECT_TRUE(describe({.name = "law", .summary = "Some.", .parameters = twice}).broken("parameter-names"));
 }

@@ -19,6 +19,7 @@ BROKEN = {
     "unbalanced_pair": ("balance", r"leave a resultant of [\d.]+ N"),
     "pushes": ("energy", r"the wrenches do work at"),
     "writes_past_span": ("stays-in-span", r"apply\(\) writes beside the 1 numbers it was given"),
+    "writes_past_rows": ("stays-in-span", r"constrain\(\) writes beside the 12 numbers it was given"),
     "writes_past_struct": ("stays-in-span", r"coordinate\(\) writes past the end of the struct"),
     "changes_input": ("stays-in-span", r"apply\(\) changes what it may only read"),
     "writes_past_scratch": ("stays-in-span", r"attempt\(\) writes beside the state, its memory or the scratch"),

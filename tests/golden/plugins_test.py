@@ -1,11 +1,16 @@
 """Plugins from outside: loading, the ways to find them, and probes that are broken on purpose."""
 import csv
+import json
 import math
 import os
+import re
 import shutil
+import signal
+import subprocess
+import time
 import unittest
 
-from program import BUILD, ProgramTest, mechanism
+from program import BUILD, PROGRAM, ProgramTest, mechanism
 
 PLUGINS = os.path.join(BUILD, "plugins")
 EXAMPLE = os.path.join(PLUGINS, "example", "torsional_spring_damper.so")
@@ -26,6 +31,18 @@ joints:
   pin: {type: revolute, between: [ground, disc]}
   odd: {type: probe, between: [ground, disc]}
 simulation: {end: 0.1 s, step: 1 ms, output: {interval: 10 ms}}
+"""
+
+# A journal that falls into its bearing; contact and friction law are filled in.
+LOOSE = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {disc: {mass: 1 kg, inertia: 0.05}}
+joints:
+  pin:
+    type: revolute
+    between: [ground, disc]
+    clearance: {bearing_radius: 10 mm, radial_clearance: 0.1 mm, material: {E: 207 GPa, nu: 0.3}, contact: %s, friction: %s}
+simulation: {end: 0.02 s, step: 5 us, output: {interval: 0.2 ms}}
 """
 
 # Probe, exit code of a run, what its message must say.
@@ -130,14 +147,71 @@ class ProbesTest(ProgramTest):
         self.assertIn("no such luck", err)
         self.assertIn("probed.yaml:5:3", err)
 
+    def fails_while_running(self, model, name, who, reason, rows=6, options=()):
+        """Runs into a failure of a plugin: named on stderr and in the summary; what was computed before is kept."""
+        with self.subTest(name):
+            _, err = self.freeplay("run", model, "--plugin", probe(name), "--out", name, *options, code=5)
+            told = r"t = 0[.\d]* s: %s of type 'probe' of plugin '%s'( failed)?: %s.*\[plugin-failed\]"
+            self.assertRegex(err, told % (who, re.escape(probe(name)), reason))
+            kept = list(csv.reader(self.read(name, "results.csv").splitlines()))
+            self.assertGreaterEqual(len(kept), rows)
+            for row in kept[1:]:
+                self.assertEqual(len(kept[0]), len(row))
+                self.assertTrue(all(math.isfinite(float(number)) for number in row if number))
+            summary = json.loads(self.read(name, "summary.json"))
+            self.assertEqual("failed", summary["status"])
+            self.assertIn(probe(name), summary["stop_reason"])
+
     def test_a_joint_that_fails_while_running_names_itself_and_the_time_and_keeps_the_rows(self):
         model = self.write("probed.yaml", PROBED)
-        for name, reason in (("throws_in_apply", "tired"), ("returns_nan", "not a finite number")):
+        for name, reason in (("throws_in_apply", "tired"),
+                             ("returns_nan", "it returned a force that is not a finite number")):
+            self.fails_while_running(model, name, "joint 'odd'", reason)
+        model = self.write("slot.yaml", PROBED.replace("  pin: {type: revolute, between: [ground, disc]}\n", ""))
+        for name, reason in (("throws_in_constrain", "out of step"),
+                             ("nan_in_constrain", "it returned a row that is not a finite number")):
+            self.fails_while_running(model, name, "joint 'odd'", reason)
+
+    def test_a_law_that_fails_while_running_is_named_with_its_joint(self):
+        for kind, other in (("contact", "{law: hertz}"), ("friction", "{law: hertz}")):
+            own = "{law: probe}"
+            contact, friction = (own, "{law: none}") if kind == "contact" else (other, own)
+            model = self.write(kind + ".yaml", LOOSE % (contact, friction))
+            for end, reason in (("throws", "too deep|stuck"), ("nan", "it returned a force that is not a finite number")):
+                who = "joint 'pin' of type 'revolute-clearance' failed: %s law" % kind
+                self.fails_while_running(model, "%s_%s" % (kind, end), who, "(%s)" % reason)
+
+    def test_an_integrator_that_fails_while_running_is_named(self):
+        for name, rows, reason in (("integrator_throws", 20, "no further"),
+                                   ("integrator_nan", 20, "it left a state that is not a finite number"),
+                                   ("wrong_time", 2, r"a step to 0\.001 s ends at 0\.001001 s"),
+                                   ("writes_past_scratch", 2, "it wrote beside the state, its memory or its scratch")):
+            self.fails_while_running(mechanism("pendulum"), name, "the integrator", reason, rows,
+                                     ("--integrator", "probe"))
+
+    def test_a_joint_that_writes_past_its_numbers_is_stopped(self):
+        model = self.write("probed.yaml", PROBED)
+        for name, words in (("writes_past_span", "[plugin-failed]"), ("writes_past_rows", "[plugin-failed]")):
             with self.subTest(name):
-                _, err = self.freeplay("run", model, "--plugin", probe(name), "--out", name, code=5)
-                self.assertRegex(err, r"t = 0\.0\d* s: joint 'odd' of type 'probe' failed: .*" + reason)
-                rows = self.read(name, "results.csv").splitlines()
-                self.assertGreaterEqual(len(rows), 6)
+                _, err = self.freeplay("run", model, "--plugin", probe(name), code=5)
+                self.assertIn("joint 'odd' of type 'probe' of plugin '%s' failed" % probe(name), err)
+                self.assertIn("it wrote beside the numbers that it was given to fill " + words, err)
+
+    def test_a_second_interrupt_ends_a_function_that_never_returns(self):
+        model = self.write("probed.yaml", PROBED)
+        running = subprocess.Popen([PROGRAM, "run", model, "--plugin", probe("never_returns"), "--out", "r"],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(running.kill)
+        deadline = time.monotonic() + 20.0
+        while not os.path.exists(self.path("r", "results.csv")):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        time.sleep(0.3)
+        running.send_signal(signal.SIGINT)
+        time.sleep(0.3)
+        self.assertIsNone(running.poll())
+        running.send_signal(signal.SIGINT)
+        self.assertEqual(130, running.wait(10))
 
 
 if __name__ == "__main__":

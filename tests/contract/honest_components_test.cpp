@@ -1,0 +1,61 @@
+// Honest components of unusual sizes and kinds break no rule, whatever the seed.
+#include "honest_components.h"
+
+#include <gtest/gtest.h>
+
+#include "allocation_counter.h"
+#include "contract/component_contract.h"
+#include "contract/rules.h"
+#include "findings_text.h"
+
+namespace freeplay::test {
+namespace {
+
+const Registry& registry() {
+  static const Registry all = honest_registry();
+  return all;
+}
+
+class HonestComponent : public testing::TestWithParam<const Component*> {};
+
+TEST_P(HonestComponent, BreaksNoRule) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Findings findings = check_component(*GetParam(), registry(), {.seed = seed, .allocations = &allocations});
+    EXPECT_GT(findings.all().size(), 8u);
+    EXPECT_TRUE(findings.held()) << "seed " << seed << "\n" << broken_rules(findings);
+  }
+}
+
+std::vector<const Component*> honest() {
+  std::vector<const Component*> found;
+  for (const RegisteredComponent& entry : registry().components()) {
+    if (entry.library == "honest") found.push_back(entry.component);
+  }
+  return found;
+}
+
+std::string test_name(const testing::TestParamInfo<const Component*>& info) {
+  std::string name = info.param->description.name;
+  for (char& c : name) {
+    if (c == '-') c = '_';
+  }
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, HonestComponent, testing::ValuesIn(honest()), test_name);
+
+TEST(Rules, EveryRuleThatIsExaminedIsExplained) {
+  for (const RegisteredComponent& entry : registry().components()) {
+    const Component& component = *entry.component;
+    const Findings findings = check_component(component, registry(), {.allocations = &allocations});
+    for (const Finding& finding : findings.all()) {
+      EXPECT_FALSE(rule_meaning(component.kind, finding.rule).empty())
+          << component.description.name << " " << finding.rule;
+    }
+  }
+  EXPECT_TRUE(rule_meaning(ComponentKind::joint, "no-tension").empty());
+  EXPECT_TRUE(rule_meaning(ComponentKind::contact_law, "no-such-rule").empty());
+}
+
+}  // namespace
+}  // namespace freeplay::test
