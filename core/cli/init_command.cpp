@@ -1,13 +1,14 @@
 #include "cli/init_command.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <regex>
+#include <string_view>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -66,8 +67,14 @@ std::string program_word() {
 
 /// A word as the shell needs it.
 std::string shell_word(const std::string& word) {
-  if (std::regex_match(word, std::regex("[A-Za-z0-9_./+:,@%=-]+"))) return word;
-  return "'" + std::regex_replace(word, std::regex("'"), "'\\''") + "'";
+  constexpr std::string_view plain = "_./+:,@%=-";
+  const auto is_plain = [&](unsigned char c) {
+    return std::isalnum(c) || plain.find(static_cast<char>(c)) != plain.npos;
+  };
+  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
 }
 
 Written init_model(const InitOptions& options) {
@@ -78,8 +85,20 @@ Written init_model(const InitOptions& options) {
   return {{file.string()}, {program_word() + " run " + shell_word(file.string())}};
 }
 
+/// Lower-case words of letters and digits, joined by '-' or '_', that begin with a letter.
+bool is_plugin_name(const std::string& name) {
+  char before = '-';
+  for (const char c : name) {
+    const bool letter = c >= 'a' && c <= 'z', digit = c >= '0' && c <= '9', joint = c == '-' || c == '_';
+    if (!letter && !digit && !joint) return false;
+    if ((before == '-' || before == '_') && joint) return false;
+    before = c;
+  }
+  return !name.empty() && name.front() >= 'a' && name.front() <= 'z' && before != '-' && before != '_';
+}
+
 void check_plugin_name(const std::string& name, ComponentKind kind, const Registry& registry) {
-  if (!std::regex_match(name, std::regex("[a-z][a-z0-9]*([-_][a-z0-9]+)*"))) {
+  if (!is_plugin_name(name)) {
     throw Error(Error::Category::usage, "bad-value", fmt::format("bad name '{}' of a plugin", name), {},
                 "lower-case words of letters and digits joined by '-', such as my-joint");
   }

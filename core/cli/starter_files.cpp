@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <regex>
 #include <string_view>
 
 #include "base/error.h"
@@ -70,7 +69,7 @@ std::string starter_model(const std::string& from, const std::string& name) {
   // A name may be anything that stands in quotes.
   std::string quoted = "'";
   for (const char c : name) quoted += c == '\'' ? "''" : std::string(1, c);
-  const bool plain = std::regex_match(name, std::regex("[A-Za-z][A-Za-z0-9_-]*"));
+  const bool plain = std::ranges::all_of(name, [](unsigned char c) { return std::isalpha(c) || c == '-' || c == '_'; });
   const std::string line = "name: " + (plain ? name : quoted + "'");
   std::string text = embedded(std::string(model_folder) + from + ".yaml");
   const std::size_t at = text.find("\nname:");

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Eigenvalues>
-
+#include "eigenvalue.h"
 #include "oscillator.h"
 
 namespace freeplay::test {
@@ -51,14 +50,15 @@ inline void expect_one_step(const std::string& name, const Numbers& numbers, con
 
 /// Largest absolute eigenvalue of one step (q, v, A) -> (q, v, A) of the undamped oscillator.
 inline double spectral_radius(const std::string& name, const Numbers& numbers, double step_per_period) {
-  Eigen::Matrix3d amplification;
+  std::array<double, 9> amplification{};
   for (int i = 0; i < 3; ++i) {
     OscillatorRun run = family_run(name, numbers, {}, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0);
     run.memory[0] = i == 2 ? 1.0 : 0.0;
     run.step(2.0 * M_PI * step_per_period);
-    amplification.col(i) << run.q[0], run.v[0], run.memory[0];
+    const double column[] = {run.q[0], run.v[0], run.memory[0]};
+    for (int k = 0; k < 3; ++k) amplification[static_cast<std::size_t>(3 * k + i)] = column[k];
   }
-  return amplification.eigenvalues().cwiseAbs().maxCoeff();
+  return largest_eigenvalue(amplification);
 }
 
 /// log2 of the ratio of the largest errors of 400 and 800 steps for the damped oscillator and for z.
