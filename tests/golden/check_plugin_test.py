@@ -29,6 +29,8 @@ BROKEN = {
     "returns_nan": ("finite", r"apply\(\) gives a number that is not finite"),
     "nan_derivative": ("finite", r"apply\(\) gives a number that is not finite"),
     "nan_in_constrain": ("finite", r"constrain\(\) gives a number that is not finite"),
+    "declares_nonsense": ("declares-sanely", r"it declares -2 constraint rows, of at most 3"),
+    "null_texts": ("summary", r"is empty"),
     "throws_in_apply": ("answers", r"apply\(\) fails at t = .*: tired"),
     "throws_in_constrain": ("answers", r"constrain\(\) fails at t = .*: out of step"),
     "throws_in_create": ("accepts-parameters", r"no such luck"),
