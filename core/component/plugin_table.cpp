@@ -122,6 +122,11 @@ void PluginTable::copy_row(const Component& row, const Manifest& manifest) {
     parameters.push_back(*reinterpret_cast<const Parameter*>(parameter));
   }
   copy.description.parameters = {parameters.data(), parameters.size()};
+  // A text that is left out is an empty one.
+  const auto say_nothing = [](const char*& text) { text = text == nullptr ? "" : text; };
+  Description& d = copy.description;
+  for (const char** text : {&d.summary, &d.formula, &d.validity, &d.references}) say_nothing(*text);
+  for (Parameter& p : parameters) say_nothing(p.summary);
   switch (row.kind) {
     case ComponentKind::joint:
       copy.table = copy_table(row, joints_);
@@ -161,6 +166,7 @@ void PluginTable::check_parameters(const Component& row) const {
     const std::string named = std::string("publishes '") + row.description.name + "' with ";
     if (p.name == nullptr || *p.name == '\0' || p.unit == nullptr) refuse(named + "a parameter without name or unit");
     const std::string parameter = "parameter '" + std::string(p.name) + "' ";
+    if (p.kind > ParameterKind::friction_law) refuse(named + parameter + "of an unknown kind");
     if (!names.insert(p.name).second) refuse(named + "two parameters called '" + p.name + "'");
     if (p.minimum > p.maximum) refuse(named + parameter + "whose bounds leave nothing");
     const bool has_default = !std::isnan(p.default_value) && p.default_value != optional;

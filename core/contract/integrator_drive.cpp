@@ -5,11 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "component/declared.h"
+
 namespace freeplay {
 namespace {
-
-// The reference systems have three coordinates: one that wants more has forgotten to set the number.
-constexpr int most_numbers = 1000000;
 
 constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
 
@@ -22,16 +21,9 @@ IntegratorLayout declare(const IntegratorRef& integrator, const Layout& sizes, c
   const bool good = integrator.declare(layout, message);
   watched.end();
   findings.expect("answers", good, [&] { return fmt::format("declare() fails: {}", message.text); });
-  const bool sane = layout.memory >= 0 && layout.memory <= most_numbers && layout.scratch >= 0 &&
-                    layout.scratch <= most_numbers && layout.order >= 1 && layout.newton_tolerance > 0.0 &&
-                    layout.newton_max_iterations >= 1;
-  findings.expect("declares-sanely", sane, [&] {
-    return fmt::format("memory {}, scratch {}, order {}, tolerance {}, {} iterations", layout.memory, layout.scratch,
-                       layout.order, layout.newton_tolerance, layout.newton_max_iterations);
-  });
-  // What follows must not trip over a wrong count.
-  layout.memory = std::clamp(layout.memory, 0, most_numbers);
-  layout.scratch = std::clamp(layout.scratch, 0, most_numbers);
+  const std::string fault = declaration_fault(layout);
+  findings.expect("declares-sanely", fault.empty(), [&] { return fault; });
+  if (!fault.empty()) layout.memory = layout.scratch = 0;  // what follows must not trip over a wrong count
   return layout;
 }
 

