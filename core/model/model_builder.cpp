@@ -87,7 +87,11 @@ class ModelBuilder {
     if (name) model.name = name->string().value_or(model.name);
     if (description) description->string();
     if (const auto plugins = top.find("plugins")) check_plugins(*plugins);
+    // Its reader has replaced the key by what the file says; a document that comes otherwise cannot have it.
     top.refuse("urdf");
+    for (const Document::Attachment& file : document_.attachments()) {
+      model.inputs.push_back({std::filesystem::path(*file.name).filename().string(), file.text});
+    }
     if (space) {
       const std::optional<int> word = space->word({"planar", "spatial"});
       if (word == std::optional<int>(1)) {

@@ -36,6 +36,7 @@ LIBRARIES = {
     "tinyxml2.h": {"io"},
     "urdf_parser": {"io"},
     "urdf_model": {"io"},
+    "console_bridge": {"io"},
     "hdf5.h": {"io"},
     "openssl": {"io"},
     "dlfcn.h": {"component"},
