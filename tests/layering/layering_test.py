@@ -40,7 +40,7 @@ LIBRARIES = {
     "hdf5.h": {"io"},
     "openssl": {"io"},
     "dlfcn.h": {"component"},
-    "nlohmann": {"io", "cli"},
+    "nlohmann": {"io", "report", "cli"},
     "CLI": {"cli"},
     "fmt": EVERY_ROOM,
     "Eigen": EVERY_ROOM - {"base", "component", "model"},
