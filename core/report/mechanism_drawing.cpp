@@ -158,6 +158,14 @@ class Drawing {
   void block(const Point& at, double radius) {
     taken_.push_back({at.x - radius, at.y - radius, at.x + radius, at.y + radius});
   }
+  /// Labels rather stay away from the line.
+  void shun(const Point& a, const Point& b) {
+    const int pieces = std::clamp(static_cast<int>(length(b - a) / 10.0), 1, 200);
+    for (int i = 0; i <= pieces; ++i) {
+      const Point at = a + (static_cast<double>(i) / pieces) * (b - a);
+      shunned_.push_back({at.x - 3, at.y - 3, at.x + 3, at.y + 3});
+    }
+  }
   void label(std::string text, const Point& at, const char* style) { names_.push_back({std::move(text), at, style}); }
 
   const char* tint(BodyId id) const { return tints[static_cast<std::size_t>(id) % std::size(tints)]; }
@@ -175,6 +183,8 @@ class Drawing {
         "<path d=\"{} Z\" fill=\"{}\" fill-opacity=\"0.25\" stroke=\"{}\" stroke-width=\"7\" stroke-opacity=\"0.55\" "
         "stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
         path, tint(id), tint(id));
+    const std::vector<Point> outline = hull(points);
+    for (std::size_t i = 0; i < outline.size(); ++i) shun(outline[i], outline[(i + 1) % outline.size()]);
     label(model_.bodies[b].name, page({q_[3 * b], q_[3 * b + 1]}), "font-weight=\"bold\"");
   }
 
@@ -192,6 +202,7 @@ class Drawing {
     for (int i = -2; i <= 2; ++i)
       line({x + 5.0 * i, y}, {x + 5.0 * i - 4, y + 6}, "stroke=\"black\" stroke-width=\"0.8\"");
     line(at, {x, y}, "stroke=\"black\"");
+    taken_.push_back({x - 14, at.y, x + 12, y + 6});
   }
 
   void draw_joint(const JointElement& joint) {
@@ -305,8 +316,9 @@ class Drawing {
                         px(name.at.x), px(name.at.y), px(std::clamp(name.at.x, best.left, best.right)),
                         px(std::clamp(name.at.y, best.top, best.bottom)));
       }
-      labels_ += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", px(best.left), px(best.bottom - 2.5), name.style,
-                             escaped(name.text));
+      labels_ += fmt::format(
+          "<text x=\"{}\" y=\"{}\" paint-order=\"stroke\" stroke=\"white\" stroke-width=\"3\" {}>{}</text>\n",
+          px(best.left), px(best.bottom - 2.5), name.style, escaped(name.text));
       taken_.push_back(best);
     }
   }
@@ -314,6 +326,7 @@ class Drawing {
   double crowding(const Box& box) const {
     double count = 0.0;
     for (const Box& other : taken_) count += box.meets(other) ? 1.0 : 0.0;
+    for (const Box& other : shunned_) count += box.meets(other) ? 0.05 : 0.0;
     const bool outside = box.left < 2 || box.right > width - 2 || box.top < 2 || box.bottom > height_ - 2;
     return outside ? count + 10.0 : count;
   }
@@ -334,7 +347,7 @@ class Drawing {
   Point middle_;
   std::string shapes_, labels_;
   std::vector<Label> names_;
-  std::vector<Box> taken_;
+  std::vector<Box> taken_, shunned_;
 };
 
 }  // namespace
