@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -99,6 +100,7 @@ class Projector {
     if (joint.closed_at_zero) {
       const PlanarPose zero = body_pose(joint.child.link) * flat(second);
       planar.first = inverse(body_pose(joint.parent.link)) * zero;
+      planar.first.angle = std::remainder(planar.first.angle, 2.0 * std::numbers::pi);
       const double turned = joint.axis_in_world ? -zero.angle : 0.0;
       axis = Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()) * axis;
       first.turn = Eigen::AngleAxisd(planar.first.angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();

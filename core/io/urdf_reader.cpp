@@ -238,6 +238,7 @@ class RobotReader {
     if (name.empty()) messages_.error(spot, "bad-urdf", fmt::format("the name of a {} is empty", kind));
     const auto [known, fresh] = lines.emplace(name, spot.line);
     if (fresh) return;
+    robot_.ambiguous = true;
     messages_.error(spot, "bad-urdf",
                     fmt::format("the {} '{}' exists already: first on line {}", kind, name, known->second));
   }
@@ -249,6 +250,7 @@ class RobotReader {
       const auto [parent, child] = references_[i];
       if (parent != nullptr) joint.parent.link = names.find(parent->value, joint.parent.spot, messages_);
       if (child != nullptr) joint.child.link = names.find(child->value, joint.child.spot, messages_);
+      robot_.ambiguous = robot_.ambiguous || joint.parent.link == no_link || joint.child.link == no_link;
       if (joint.parent.link != no_link && joint.parent.link == joint.child.link) {
         messages_.error(joint.child.spot, "bad-urdf",
                         fmt::format("joint '{}' joins link '{}' to itself", joint.name, child->value));

@@ -91,6 +91,7 @@ struct Robot {
   Spot spot;
   std::vector<Link> links;
   std::vector<Joint> joints;  ///< in file order, those of the tree first
+  bool ambiguous = false;     ///< a link was named twice, or a joint names none: nobody knows what hangs where
 
   // Filled by build_tree().
   int root = no_link;

@@ -240,6 +240,11 @@ class UrdfWriter {
 
   const Node& body_section() {
     const bool at_zero = stands_at_zero();
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      double& scale = i % 3 == 2 ? turning_ : moving_;
+      scale = std::max(scale, std::abs(v_[i]));
+      if (i % 3 != 2) size_ = std::max(size_, std::abs(q_[i]));
+    }
     Node& section = map();
     Node& base = map();
     put_frames(base, ground);
@@ -250,8 +255,8 @@ class UrdfWriter {
       const Place place = start(id);
       if (!at_zero) {
         Node& pose = map();
-        put(pose, "position", point(place.x, place.y));
-        put(pose, "angle", scalar(n(place.angle)));
+        put(pose, "position", point(clean(place.x, size_), clean(place.y, size_)));
+        put(pose, "angle", scalar(n(clean(place.angle, 1.0))));
         put(entry, "pose", pose);
       }
       put_velocity(entry, id, place);
@@ -260,6 +265,9 @@ class UrdfWriter {
     }
     return section;
   }
+
+  /// Rounding left by the assembly is nothing to show to people.
+  static double clean(double value, double scale) { return std::abs(value) <= 1e-14 * scale ? 0.0 : value; }
 
   /// Does every body of the tree stand where coordinates zero put it?
   bool stands_at_zero() const {
@@ -277,11 +285,11 @@ class UrdfWriter {
   void put_velocity(Node& entry, BodyId id, const Place& place) {
     const std::size_t b = at(id);
     const double vx = v_[3 * b], vy = v_[3 * b + 1], w = v_[3 * b + 2];
-    if (vx == 0.0 && vy == 0.0 && w == 0.0) return;
+    if (clean(vx, moving_) == 0.0 && clean(vy, moving_) == 0.0 && clean(w, turning_) == 0.0) return;
     const double rx = place.x - q_[3 * b], ry = place.y - q_[3 * b + 1];
     Node& velocity = map();
-    put(velocity, "linear", point(vx - w * ry, vy + w * rx));
-    put(velocity, "angular", scalar(n(w)));
+    put(velocity, "linear", point(clean(vx - w * ry, moving_), clean(vy + w * rx, moving_)));
+    put(velocity, "angular", scalar(n(clean(w, turning_))));
     put(entry, "velocity", velocity);
   }
 
@@ -421,8 +429,9 @@ class UrdfWriter {
   std::span<const double> q_, v_;
   std::string urdf_file_;
   Document target_;
-  std::vector<int> tree_joint_;  ///< of each body; -1: it floats
-  std::vector<bool> in_tree_;    ///< of each joint
+  std::vector<int> tree_joint_;                       ///< of each body; -1: it floats
+  std::vector<bool> in_tree_;                         ///< of each joint
+  double size_ = 0.0, moving_ = 0.0, turning_ = 0.0;  ///< largest coordinate [m] and speeds at the start
   std::vector<std::string> notes_;
 };
 

@@ -17,6 +17,7 @@ class TreeBuilder {
   void build() {
     robot_.parent_joint.assign(robot_.links.size(), -1);
     find_parents();
+    if (robot_.ambiguous) return;
     order_links();
     report_cycles();
     if (messages_.failed()) return;
