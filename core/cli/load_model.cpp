@@ -6,7 +6,7 @@
 #include "cli/failure.h"
 #include "cli/plugins.h"
 #include "io/channel_selection.h"
-#include "io/yaml_document.h"
+#include "io/model_document.h"
 #include "model/model_builder.h"
 #include "run/channel.h"
 
@@ -67,7 +67,7 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
 
 LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
   LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
-  loaded.document = read_yaml(file, loaded.diagnostics);
+  loaded.document = read_model(file, loaded.diagnostics);
   try {
     if (loaded.document) {
       const Registry registry = load_registry(common, &*loaded.document);

@@ -94,6 +94,10 @@ void require_word(const std::string& what, const std::string& word, const std::v
       nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(allowed, ", ")));
 }
 
+std::function<std::string(const std::string&)> not_empty() {
+  return [](const std::string& text) { return text.empty() ? std::string("it must not be empty") : std::string(); };
+}
+
 void not_in_this_release(const std::string& what) {
   throw Error(Error::Category::usage, "not-in-this-release", fmt::format("{}: not in this release", what));
 }

@@ -50,6 +50,9 @@ double positive_quantity(const std::string& option, const std::string& text, con
 /// Throws Error{usage} "unknown-name" with a suggestion unless `word` is one of `allowed`; `what` is what it names.
 void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed);
 
+/// For CLI11: refuses an empty text.
+std::function<std::string(const std::string&)> not_empty();
+
 [[noreturn]] void not_in_this_release(const std::string& what);
 
 }  // namespace freeplay

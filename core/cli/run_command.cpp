@@ -17,6 +17,7 @@
 #include "io/channel_selection.h"
 #include "io/csv_sink.h"
 #include "io/event_sink.h"
+#include "io/model_document.h"
 #include "io/result_directory.h"
 #include "io/run_log.h"
 #include "io/summary.h"
@@ -74,7 +75,7 @@ class Recording {
         rows_(directory_.file("results.csv"), channels, select_channels(channels, model.settings.channels)),
         events_(directory_.file("events.csv"), model),
         advice_(model) {
-    directory_.write("model.yaml", model.text);
+    directory_.write(is_urdf(model.file) ? "model.urdf" : "model.yaml", model.text);
     for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
   }
 

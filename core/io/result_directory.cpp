@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "io/growing_file.h"
 #include "io/json_text.h"
+#include "io/whole_file.h"
 
 namespace freeplay {
 namespace {
@@ -76,21 +76,7 @@ ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(pa
 }
 
 void ResultDirectory::write(std::string_view name, std::string_view text) const {
-  const fs::path target = path_ / name;
-  const fs::path temporary = target.parent_path() / fmt::format(".{}.part", target.filename().string());
-  std::error_code error;
-  fs::create_directories(target.parent_path(), error);
-  require(error, "make the directory", target.parent_path());
-  try {
-    GrowingFile file(temporary);
-    file.line() += text;
-    file.close();
-  } catch (const Error&) {
-    fs::remove(temporary, error);
-    throw;
-  }
-  fs::rename(temporary, target, error);
-  require(error, "write", target);
+  write_whole_file(path_ / name, text);
 }
 
 std::vector<std::string> ResultDirectory::files() const {

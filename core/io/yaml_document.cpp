@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,13 +16,13 @@
 #include <yaml-cpp/parser.h>
 
 #include "base/text.h"
+#include "io/input_text.h"
 #include "io/text_place.h"
 #include "io/yaml_strictness.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t largest_file = 16u << 20;
 constexpr std::size_t most_nodes = 1'000'000;
 constexpr int deepest_level = 64;
 
@@ -424,7 +421,7 @@ void report(const YAML::Exception& error, const Document& document, const TextPl
 }  // namespace
 
 std::optional<Document> parse_yaml(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
-  if (text.size() > largest_file) return refuse(diagnostics, file_name, "too-large", "the file is larger than 16 MiB");
+  if (text.size() > largest_input) return refuse(diagnostics, file_name, "too-large", "the file is larger than 16 MiB");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   diagnostics.add_source(file_name, text);
   if (const auto fault = find_bad_character(text)) {
@@ -451,21 +448,11 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
 }
 
 std::optional<Document> read_yaml(const std::string& file_name, Diagnostics& diagnostics) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(file_name, ignored);
-  const auto absent = [&](const char* why) {
+  std::string text;
+  if (const std::string why = read_input(file_name, text); !why.empty()) {
     diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
     return std::nullopt;
-  };
-  if (!std::filesystem::exists(status)) return absent("there is no such file");
-  // Opening a device or a pipe could wait, or read, for ever.
-  if (!std::filesystem::is_regular_file(status)) return absent("it is not a regular file");
-  std::ifstream stream(file_name, std::ios::binary);
-  if (!stream) return absent("it cannot be opened");
-  std::string text(largest_file + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) return absent("reading it failed");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  }
   return parse_yaml(std::move(text), file_name, diagnostics);
 }
 

@@ -67,6 +67,12 @@ bool Document::replace_value(const Node& map, std::string_view key, std::string 
   return true;
 }
 
+const std::string* Document::add_file(std::string name, std::string text) {
+  const std::string* kept = &files_.emplace_back(std::move(name));
+  attachments_.push_back({kept, std::move(text)});
+  return kept;
+}
+
 Node& Document::add(Node::Kind kind, int line, int column) {
   Node& node = nodes_.emplace_back();
   node.kind = kind;

@@ -25,6 +25,7 @@ struct Node {
   std::string text{};                 ///< of a scalar: decoded, without quotes; `~` and `null` are scalars
   bool quoted = false;                ///< 'so' or "so", or a block scalar
   bool verbatim = false;              ///< the text stands in the file as it is, on one line
+  bool foreign = false;               ///< a name that another format declares: it may begin with a digit
   std::vector<const Node*> items{};   ///< of a list
   std::vector<Entry> entries{};       ///< of a map, in file order
   const std::string* file = nullptr;  ///< owned by the document
@@ -69,11 +70,19 @@ class Document {
   /// For the reader that builds the document: a node of this file, to be filled.
   Node& add(Node::Kind kind, int line, int column);
   void set_root(const Node& root) { root_ = &root; }
+  /// Another file that nodes come from; its text is kept, byte for byte.
+  const std::string* add_file(std::string name, std::string text);
+  struct Attachment {
+    const std::string* name;
+    std::string text;
+  };
+  const std::vector<Attachment>& attachments() const { return attachments_; }
 
  private:
   std::deque<std::string> files_;  // deques: nodes point to names and to each other
   std::deque<Node> nodes_;
   std::string text_;
+  std::vector<Attachment> attachments_;
   const Node* root_;
 };
 

@@ -34,7 +34,8 @@ std::vector<int> matching(const NameTable& table, const std::string& pattern, co
 
 void Draft::check_name(const CheckedValue& entry, const std::vector<std::string>& reserved) {
   const std::string name = entry.key();
-  if (!is_name(name)) {
+  const bool foreign = entry.key_node() != nullptr && entry.key_node()->foreign;
+  if (foreign ? !is_foreign_name(name) : !is_name(name)) {
     entry.fail_at_key("bad-name", "'" + name + "' is not a valid name", {},
                       "a name has letters, digits, '_' and '-' and begins with a letter or '_'");
   } else if (std::find(reserved.begin(), reserved.end(), name) != reserved.end()) {

@@ -106,6 +106,7 @@ class DriverEntry {
       std::optional<Expression> expression = value->time_function(dimension);
       if (!expression) return;
       driver.value = std::move(*expression);
+      driver.text = value->node().text;
     }
     draft_.model.drivers.push_back(std::move(driver));
   }

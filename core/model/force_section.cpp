@@ -105,7 +105,10 @@ class ForceEntry {
 
   static bool append(const CheckedValue& value, const Dimension& dimension, AppliedForce& force) {
     std::optional<Expression> expression = value.time_function(dimension);
-    if (expression) force.value.push_back(std::move(*expression));
+    if (expression) {
+      force.value.push_back(std::move(*expression));
+      force.text.push_back(value.node().text);
+    }
     return expression.has_value();
   }
 

@@ -54,7 +54,9 @@ bool check_frame_name(const CheckedValue& entry, const std::string& name) {
     entry.fail_at_key("reserved-name", "every body has its own frame '" + name + "'");
     return false;
   }
-  if (!is_name(name)) entry.fail_at_key("bad-name", "'" + name + "' is not a valid name of a frame");
+  const bool foreign = entry.key_node()->foreign;
+  if (foreign ? !is_foreign_name(name) : !is_name(name))
+    entry.fail_at_key("bad-name", "'" + name + "' is not a valid name of a frame");
   return true;
 }
 

@@ -149,10 +149,10 @@ class JointEntry {
     const bool usable = make(ideal_parameters, ideal, element().ideal_layout);
     JointLayout layout = element().ideal_layout;
     joint = ideal;
-    if (twins) {
-      const CheckedParameters parameters = check_parameters(*component_, map_, draft_.registry);
-      make(parameters, joint, layout);
-    }
+    const CheckedParameters parameters =
+        twins ? check_parameters(*component_, map_, draft_.registry) : ideal_parameters;
+    if (twins) make(parameters, joint, layout);
+    if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
     const bool play = twins && !is_made_ideal();
     element().ideal_component = ideal_;
     element().ideal = ideal;

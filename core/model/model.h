@@ -49,7 +49,8 @@ struct JointElement {
   const Component* component = nullptr;  ///< the type that runs
   JointRef joint;
   JointLayout layout;
-  int marker_a = 0, marker_b = 0;  ///< indices into Model::markers
+  int marker_a = 0, marker_b = 0;                    ///< indices into Model::markers
+  std::shared_ptr<const ParameterBlock> parameters;  ///< what the type that is written was told; null for a gear
   // The ideal twin of a joint with play; equal to the above for all others.
   const Component* ideal_component = nullptr;
   JointRef ideal;
@@ -78,6 +79,7 @@ struct Driver {
   int joint = 0;
   DriverKind kind = DriverKind::angle;
   Expression value;  ///< of time; unused when `table` or `kinematics` is set
+  std::string text;  ///< of the expression, as written
   std::shared_ptr<const TimeTable> table;
   int kinematics = -1;  ///< index into Model::kinematics: motion by inverse kinematics
   int elbow = 1;        ///< working mode of the leg, 1 or -1
@@ -102,6 +104,7 @@ struct AppliedForce {
   int marker = 0;                 ///< torque: the marker `com` of the body
   bool frame_axes = false;        ///< force: components in the marker's axes instead of world axes
   std::vector<Expression> value;  ///< force: 2 or 3 [N]; torque: 1 or 3 [N m]
+  std::vector<std::string> text;  ///< of each expression, as written
 };
 
 /// An entry of `forces` that reports results: an applied force, or a joint without rows.
@@ -145,6 +148,7 @@ struct Model {
   Vector3 gravity{};
   std::vector<Body> bodies;
   std::vector<Marker> markers;
+  std::vector<Marker> frames;  ///< all that are declared, sorted by name; `markers` are those that something stands on
   std::vector<JointElement> joints;  ///< joints and gears as declared, then forces between markers
   std::vector<Gear> gears;
   std::vector<Driver> drivers;

@@ -1,5 +1,6 @@
 #include "model/model_builder.h"
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <utility>
@@ -58,10 +59,17 @@ class ModelBuilder {
     if (!diagnostics_.has_errors()) warn_ignored_elbows(draft_);
     warn_unused();
     if (diagnostics_.has_errors()) return nullptr;
+    keep_frames();
     return std::make_unique<Model>(std::move(draft_.model));
   }
 
  private:
+  void keep_frames() {
+    std::vector<Marker>& frames = draft_.model.frames;
+    for (const auto& [name, frame] : draft_.frames) frames.push_back({frame.body, name, frame.position, frame.angle});
+    std::ranges::sort(frames, {}, &Marker::name);
+  }
+
   // --- head of the file ------------------------------------------------------------------------------------------
 
   /// Another version may mean other keys, so nothing else is read then.
@@ -87,7 +95,11 @@ class ModelBuilder {
     if (name) model.name = name->string().value_or(model.name);
     if (description) description->string();
     if (const auto plugins = top.find("plugins")) check_plugins(*plugins);
+    // Its reader has replaced the key by what the file says; a document that comes otherwise cannot have it.
     top.refuse("urdf");
+    for (const Document::Attachment& file : document_.attachments()) {
+      model.inputs.push_back({std::filesystem::path(*file.name).filename().string(), file.text});
+    }
     if (space) {
       const std::optional<int> word = space->word({"planar", "spatial"});
       if (word == std::optional<int>(1)) {

@@ -19,6 +19,11 @@ bool follows_rule(std::string_view word, bool hyphen) {
 
 bool is_name(std::string_view word) { return follows_rule(word, true) && !is_note(word); }
 
+bool is_foreign_name(std::string_view word) {
+  return !word.empty() && word.size() <= 64 && follows_rule("_" + std::string(word.substr(1)), true) &&
+         (word.front() == '-' || is_digit(word.front()) || is_name(word));
+}
+
 bool is_parameter_name(std::string_view word) { return follows_rule(word, false); }
 
 bool matches(std::string_view pattern, std::string_view name) {

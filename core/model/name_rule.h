@@ -9,6 +9,9 @@ namespace freeplay {
 /// [A-Za-z_][A-Za-z0-9_-]{0,63}, the rule for bodies, joints and everything else but parameters.
 bool is_name(std::string_view word);
 
+/// The same for a name that another format declares (Node::foreign): it may begin with a digit or a hyphen.
+bool is_foreign_name(std::string_view word);
+
 /// [A-Za-z_][A-Za-z0-9_]{0,63}: a hyphen would be a minus sign in an expression.
 bool is_parameter_name(std::string_view word);
 

@@ -240,7 +240,7 @@ class Assembler {
   }
 
   // Newton with corrections of least norm in m and rad, shortened where the residual would grow.
-  void solve_positions() {
+  Rows converge() {
     const double tolerance = model_.settings.assembly_tolerance;
     Rows now = rows(false);
     for (int iteration = 0; iteration < model_.settings.assembly_iterations; ++iteration) {
@@ -265,9 +265,38 @@ class Assembler {
       // Past the tolerance go on while it pays: later steps start from rounding, not from here.
       if (largest(now.residual) <= 1e-3 * tolerance && after > 0.1 * before) break;
     }
-    if (!(largest(now.residual) <= tolerance)) {
-      if (!paths_.empty()) check_paths();
-      report_gap(now);
+    return now;
+  }
+
+  bool holds(const Rows& now) const { return largest(now.residual) <= model_.settings.assembly_tolerance; }
+
+  // Newton cannot leave a guess with all links in one line, where no small turn changes the gap at first order: files
+  // that give no pose begin so. Then the bodies are turned a little, each by another fixed angle.
+  bool converge_from_turned(const std::vector<double>& guess) {
+    for (const double turn : {0.1, 0.5, 1.5}) {
+      std::ranges::copy(guess, state_.q().begin());
+      for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+        const double share = static_cast<double>(b + 1) * 0.6180339887498949;  // golden ratio: spread evenly
+        state_.q()[3 * b + 2] += turn * (2.0 * (share - std::floor(share)) - 1.0);
+      }
+      if (holds(converge())) return true;
+    }
+    return false;
+  }
+
+  void solve_positions() {
+    const std::vector<double> guess(state_.q().begin(), state_.q().end());
+    Rows now = converge();
+    if (!holds(now)) {
+      if (!paths_.empty()) {
+        check_paths();
+        report_gap(now);
+      }
+      const std::vector<double> nearest(state_.q().begin(), state_.q().end());
+      if (!converge_from_turned(guess)) {
+        std::ranges::copy(nearest, state_.q().begin());
+        report_gap(rows(false));
+      }
     }
     keep_gear_offsets();
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {

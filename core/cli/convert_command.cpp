@@ -1,0 +1,151 @@
+#include "cli/convert_command.h"
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/facts.h"
+#include "cli/failure.h"
+#include "cli/load_model.h"
+#include "cli/terminal.h"
+#include "io/complete_model.h"
+#include "io/model_document.h"
+#include "io/urdf_text.h"
+#include "io/whole_file.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConvertOptions {
+  std::string in, out;
+  bool force = false;
+  ModelOptions build;
+};
+
+bool is_yaml(const std::string& file) {
+  const fs::path suffix = fs::path(file).extension();
+  return suffix == ".yaml" || suffix == ".yml";
+}
+
+void require_room(const std::string& file, bool force) {
+  std::error_code ignored;
+  if (force || !fs::exists(file, ignored)) return;
+  throw Error(Error::Category::file, "cannot-write", fmt::format("'{}' exists already", file), {},
+              "--force overwrites it");
+}
+
+void warn(LoadedModel& loaded, const char* id, const std::string& message) {
+  loaded.diagnostics.warning({loaded.document->file_name(), 0, 0}, 1, id, message);
+}
+
+/// The name a body of the source has in what was written.
+std::string new_name(const Model& written, const std::string& name) {
+  for (const Body& body : written.bodies) {
+    if (body.name == name) return name;
+  }
+  return "_" + name;
+}
+
+/// Reads what was written and compares: a conversion that changes the mechanism must not pass for one.
+void verify(const LoadedModel& loaded, const AssembledModel& source, const std::string& file,
+            const CommonOptions& common) {
+  CommonOptions lenient = common;
+  lenient.strict = false;
+  LoadedModel again = load_model(file, {}, lenient);
+  const auto assembled = again.exit_code == 0 ? assemble_model(again) : nullptr;
+  const auto differs = [&](const std::string& what) {
+    throw Error(Error::Category::internal, "internal", fmt::format("'{}' was written, but {}", file, what), {},
+                "please report this");
+  };
+  if (!assembled) differs("does not read back:\n" + again.diagnostics.format(1));
+  if (facts_json(*loaded.model, source.start.facts) != facts_json(*again.model, assembled->start.facts)) {
+    differs("its facts differ");
+  }
+  for (std::size_t b = 0; b < loaded.model->bodies.size(); ++b) {
+    const std::string name = new_name(*again.model, loaded.model->bodies[b].name);
+    const auto found = std::ranges::find(again.model->bodies, name, &Body::name);
+    if (found == again.model->bodies.end()) return differs("a body is missing");
+    const std::size_t other = static_cast<std::size_t>(found - again.model->bodies.begin());
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double gap = std::abs(source.start.state.q()[3 * b + i] - assembled->start.state.q()[3 * other + i]);
+      if (!(gap <= 1e-8)) differs(fmt::format("body '{}' starts elsewhere, by {:.3g}", name, gap));
+    }
+  }
+}
+
+/// Files that were written, the one to read first.
+std::vector<std::string> to_yaml(LoadedModel& loaded, const ConvertOptions& options) {
+  require_room(options.out, options.force);
+  std::vector<std::string> renamed;
+  const std::string text = complete_model_text(*loaded.document, renamed);
+  for (const std::string& name : renamed)
+    warn(loaded, "urdf-renamed", fmt::format("'{}' is called '_{}' there", name, name));
+  write_whole_file(options.out, text);
+  return {options.out};
+}
+
+std::vector<std::string> to_urdf(LoadedModel& loaded, const AssembledModel& assembled, const ConvertOptions& options) {
+  const std::string sidecar = options.out + ".sidecar.yaml";
+  const State& start = assembled.start.state;
+  const UrdfText text =
+      write_urdf(*loaded.document, *loaded.model, start.q(), start.v(), fs::path(options.out).filename().string());
+  require_room(options.out, options.force);
+  if (!text.sidecar.empty()) require_room(sidecar, options.force);
+  for (const std::string& note : text.notes) warn(loaded, "converted", note);
+  write_whole_file(options.out, text.urdf);
+  if (text.sidecar.empty()) return {options.out};
+  write_whole_file(sidecar, text.sidecar);
+  return {sidecar, options.out};
+}
+
+/// What --set says becomes the text of the parameter.
+void write_overrides(const BuildOptions& build, Document& document) {
+  const Node* parameters = document.root().find("parameters");
+  for (const auto& [name, text] : build.set) document.replace_value(*parameters, name, "--set " + name, text);
+}
+
+int convert(const ConvertOptions& options, const CommonOptions& common) {
+  if (options.in.empty() || options.out.empty()) {
+    throw Error(Error::Category::usage, "missing-argument", "convert needs an input and an output file");
+  }
+  if (!is_yaml(options.out) && !is_urdf(options.out)) {
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("'{}' must end in .yaml, .yml or .urdf: the suffix says what to write", options.out));
+  }
+  if (!options.build.ideal.empty()) not_in_this_release("--ideal of convert");
+  const BuildOptions build = build_options(options.build);
+  LoadedModel loaded = load_model(options.in, build, common);
+  if (loaded.exit_code == 0) write_overrides(build, *loaded.document);
+  const auto assembled = loaded.exit_code == 0 ? assemble_model(loaded) : nullptr;
+  if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  const std::vector<std::string> files =
+      is_yaml(options.out) ? to_yaml(loaded, options) : to_urdf(loaded, *assembled, options);
+  print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  verify(loaded, *assembled, files.front(), common);
+  if (common.json) {
+    print_json(Json{{"files", files}});
+  } else if (!common.quiet) {
+    for (const std::string& file : files) print(file + "\n");
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_convert_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("convert", "Write a URDF file as YAML, or a model as URDF with a side-car");
+  const auto options = std::make_shared<ConvertOptions>();
+  app->add_option("IN", options->in, "Model file")->type_name("");
+  app->add_option("OUT", options->out, "File to write: .yaml, .yml or .urdf")->type_name("");
+  app->add_flag("--force", options->force, "Overwrite");
+  add_model_options(*app, options->build);
+  add_common_options(*app, common);
+  return {app, [options, &common] { return convert(*options, common); }};
+}
+
+}  // namespace freeplay

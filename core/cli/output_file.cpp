@@ -1,0 +1,16 @@
+#include "cli/output_file.h"
+
+#include "cli/terminal.h"
+#include "io/whole_file.h"
+
+namespace freeplay {
+
+void write_output(const std::string& path, const std::string& text) {
+  if (path.empty()) {
+    print(text);
+  } else {
+    write_whole_file(path, text);
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,62 @@
+#include "cli/show_command.h"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/failure.h"
+#include "cli/load_model.h"
+#include "cli/output_file.h"
+#include "cli/terminal.h"
+#include "io/model_json.h"
+#include "report/mechanism_drawing.h"
+#include "report/model_text.h"
+
+namespace freeplay {
+namespace {
+
+struct ShowOptions {
+  std::string model, format, out;
+  ModelOptions build;
+};
+
+int show(ShowOptions options, const CommonOptions& common) {
+  if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "show needs a model file");
+  if (!options.format.empty()) require_word("format", options.format, {"text", "json", "dot", "svg"});
+  if (options.format.empty()) options.format = common.json ? "json" : "text";
+  if (common.json && options.format != "json") {
+    throw Error(Error::Category::usage, "bad-value", "--json and --format " + options.format + " exclude each other");
+  }
+  LoadedModel loaded = load_model(options.model, build_options(options.build), common);
+  std::unique_ptr<AssembledModel> assembled;
+  if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
+  if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  std::string text;
+  if (options.format == "svg") {
+    text = mechanism_svg(*loaded.model, assembled->start.state.q());
+  } else {
+    const Json model = model_json(*loaded.model);
+    text = options.format == "json"  ? json_text(model)
+           : options.format == "dot" ? model_graph(model)
+                                     : model_tree(model);
+  }
+  write_output(options.out, text);
+  return 0;
+}
+
+}  // namespace
+
+Command add_show_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("show", "Print or draw a model after everything in it is expanded");
+  const auto options = std::make_shared<ShowOptions>();
+  app->add_option("MODEL", options->model, "Model file")->type_name("");
+  app->add_option("--format", options->format, "text (default), json, dot for Graphviz, svg: a drawing of the start")
+      ->type_name("FORMAT");
+  app->add_option("--out", options->out, "Write into a file instead of stdout")->type_name("FILE")->check(not_empty());
+  add_model_options(*app, options->build);
+  add_common_options(*app, common);
+  return {app, [options, &common] { return show(*options, common); }};
+}
+
+}  // namespace freeplay

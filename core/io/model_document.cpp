@@ -1,0 +1,71 @@
+#include "io/model_document.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/input_text.h"
+#include "io/sidecar.h"
+#include "io/urdf_document.h"
+#include "io/yaml_document.h"
+
+namespace freeplay {
+namespace {
+
+/// Root of the model that a URDF file alone stands for.
+void set_root_of_robot(Document& document, const urdf::Sections& sections) {
+  Node& root = document.add(Node::Kind::map, 1, 1);
+  const auto scalar = [&](const char* text) -> Node& {
+    Node& node = document.add(Node::Kind::scalar, 1, 1);
+    node.text = text;
+    return node;
+  };
+  const auto put = [&](const char* key, const Node& value) { root.entries.push_back({&scalar(key), &value}); };
+  put("freeplay", scalar("1"));
+  // Down is -z in URDF; in the plane xy nothing of it is left.
+  if (sections.plane != urdf::Options::Plane::xy) {
+    Node& gravity = document.add(Node::Kind::list, 1, 1);
+    gravity.items = {&scalar("0"), &scalar("-9.81")};
+    put("gravity", gravity);
+  }
+  put("bodies", *sections.bodies);
+  put("joints", *sections.joints);
+  put("forces", *sections.forces);
+  document.set_root(root);
+}
+
+std::optional<Document> read_robot(const std::string& file_name, Diagnostics& diagnostics) {
+  std::string text;
+  if (const std::string why = read_input(file_name, text); !why.empty()) {
+    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
+    return std::nullopt;
+  }
+  if (text.size() > largest_input) {
+    diagnostics.error({file_name, 1, 1}, 1, "too-large", "the file is larger than 16 MiB");
+    return std::nullopt;
+  }
+  diagnostics.add_source(file_name, text);
+  Document document(file_name, std::move(text));
+  urdf::Options options;
+  options.plane.reset();
+  const auto sections = urdf::add_sections(document.text(), &document.file_name(), options, document, diagnostics);
+  if (!sections) return std::nullopt;
+  set_root_of_robot(document, *sections);
+  return document;
+}
+
+}  // namespace
+
+bool is_urdf(const std::string& file_name) { return std::filesystem::path(file_name).extension() == ".urdf"; }
+
+std::optional<Document> read_model(const std::string& file_name, Diagnostics& diagnostics) {
+  if (is_urdf(file_name)) return read_robot(file_name, diagnostics);
+  std::optional<Document> document = read_yaml(file_name, diagnostics);
+  if (document && document->root().is_map() && document->root().find("urdf") != nullptr) {
+    if (!add_robot(*document, diagnostics)) return std::nullopt;
+  }
+  return document;
+}
+
+}  // namespace freeplay

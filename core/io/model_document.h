@@ -1,0 +1,20 @@
+// ModelDocument: reads whatever file a model is written in.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "model/document.h"
+
+namespace freeplay {
+
+/// Reads a model file. A `.urdf` file becomes a complete model; in a YAML file the section `urdf` is replaced by the
+/// bodies, joints and forces of the URDF file that it names, to which the file's own are added (section 13 of the model
+/// format). Everything else is as read_yaml() gives it. Nothing is returned after an error in the URDF file.
+std::optional<Document> read_model(const std::string& file_name, Diagnostics& diagnostics);
+
+/// Is it a URDF file, by its name?
+bool is_urdf(const std::string& file_name);
+
+}  // namespace freeplay

@@ -1,0 +1,194 @@
+#include "io/sidecar.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/input_text.h"
+#include "io/urdf_document.h"
+#include "model/map_reader.h"
+#include "model/name_rule.h"
+#include "model/parameter_scope.h"
+
+namespace freeplay {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// Reads the section `urdf`.
+class UrdfSection {
+ public:
+  UrdfSection(const CheckedValue& section, const std::string& model_file)
+      : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section)), section_(section) {
+    const auto file = section.node().is_scalar() ? std::optional<CheckedValue>(section) : map_.require("file");
+    good_ = map_.good() && file.has_value();
+    if (file) read_file(*file, model_file);
+    using Plane = urdf::Options::Plane;
+    constexpr Plane planes[] = {Plane::xy, Plane::xz, Plane::yz};
+    if (const auto index = word("plane", {"xy", "xz", "yz"})) options.plane = planes[*index];
+    options.floating_base = word("base", {"fixed", "floating"}) == std::optional<int>(1);
+    options.two_parents = word("loops", {"elements", "two-parents"}) == std::optional<int>(1);
+    options.repair_inertia = word("repair", {"inertia"}).has_value();
+    if (word("limits", {"ignore", "stop"}) == std::optional<int>(1)) {
+      good_ = false;
+      map_.find("limits")->fail("wrong-type", "stops at the limits of joints are not in this release", {},
+                                "'limits: ignore' is the default");
+    }
+    if (const auto merge = map_.find("merge_fixed")) {
+      const auto value = merge->boolean();
+      good_ = good_ && value;
+      options.merge_fixed = value.value_or(false);
+    }
+    map_.finish();
+  }
+
+  bool good() const { return good_; }
+
+  urdf::Options options;
+  std::string path, text;
+
+ private:
+  void read_file(const CheckedValue& file, const std::string& model_file) {
+    const auto name = file.string();
+    good_ = good_ && name;
+    if (!name) return;
+    path = (std::filesystem::path(model_file).parent_path() / *name).string();
+    const std::string why = read_input(path, text);
+    if (!why.empty()) file.fail("file-not-found", fmt::format("cannot read '{}': {}", path, why));
+    if (text.size() > largest_input) file.fail("too-large", fmt::format("'{}' is larger than 16 MiB", path));
+    good_ = good_ && why.empty() && text.size() <= largest_input;
+  }
+
+  std::optional<int> word(const char* key, const Words& words) {
+    const auto value = map_.find(key);
+    const auto index = value ? value->word(words) : std::optional<int>();
+    good_ = good_ && (!value || index);
+    return index;
+  }
+
+  MapReader map_;
+  const CheckedValue& section_;
+  bool good_ = true;
+};
+
+class Merger {
+ public:
+  Merger(Document& document, Diagnostics& diagnostics) : document_(document), diagnostics_(diagnostics) {}
+
+  void merge(const urdf::Sections& sections) {
+    Node& root = document_.add(Node::Kind::map, document_.root().line, document_.root().column);
+    for (const Node::Entry& entry : document_.root().entries) {
+      if (entry.key->text != "urdf") root.entries.push_back(entry);
+    }
+    merge_section(root, "bodies", *sections.bodies, {"frames", "pose", "velocity"});
+    merge_section(root, "joints", *sections.joints, {"clearance"});
+    merge_section(root, "forces", *sections.forces, {});
+    document_.set_root(root);
+  }
+
+ private:
+  /// `allowed`: keys that the model may add to an entry of the robot.
+  void merge_section(Node& root, const char* name, const Node& robot, const Words& allowed) {
+    const auto own = std::ranges::find_if(root.entries, [&](const auto& entry) { return entry.key->text == name; });
+    if (own == root.entries.end()) {
+      Node& key = document_.add(Node::Kind::scalar, 1, 1);
+      key.text = name;
+      root.entries.push_back({&key, &robot});
+      return;
+    }
+    if (own->value->is_null()) {
+      own->value = &robot;
+      return;
+    }
+    if (!own->value->is_map()) return;  // the builder reports it
+    Node& both = document_.add(Node::Kind::map, own->value->line, own->value->column);
+    both.entries = robot.entries;
+    std::unordered_map<std::string, std::size_t> index;
+    for (std::size_t i = 0; i < both.entries.size(); ++i) index.emplace(both.entries[i].key->text, i);
+    for (const Node::Entry& entry : own->value->entries) {
+      const auto known = index.find(entry.key->text);
+      if (known == index.end()) {
+        both.entries.push_back(entry);
+      } else {
+        both.entries[known->second].value = extend(*both.entries[known->second].value, entry, name, allowed);
+      }
+    }
+    own->value = &both;
+  }
+
+  /// The entry of the robot with what the model adds.
+  const Node* extend(const Node& robot, const Node::Entry& added, const std::string& section, const Words& allowed) {
+    const std::string path = section + "." + added.key->text;
+    if (allowed.empty() || !added.value->is_map()) {
+      report(*added.key, "duplicate-name", fmt::format("'{}' comes from the URDF file already", path), {});
+      return &robot;
+    }
+    Node& both = document_.add(Node::Kind::map, robot.line, robot.column);
+    both.file = robot.file;
+    both.length = robot.length;
+    both.entries = robot.entries;
+    for (const Node::Entry& entry : added.value->entries) {
+      const bool note = is_note(entry.key->text);
+      if (!note && std::ranges::find(allowed, entry.key->text) == allowed.end() && added.key->text != "ground") {
+        report(*entry.key, "unknown-key",
+               fmt::format("'{}' comes from the URDF file; the key '{}' cannot be added", path, entry.key->text),
+               fmt::format("only {}", either(allowed)));
+        continue;
+      }
+      append(both, entry);
+    }
+    return &both;
+  }
+
+  /// Frames join those that are there; every other key is new or wins over the robot's (a starting pose).
+  void append(Node& both, const Node::Entry& entry) {
+    const auto known =
+        std::ranges::find_if(both.entries, [&](const auto& e) { return e.key->text == entry.key->text; });
+    if (known == both.entries.end()) {
+      both.entries.push_back(entry);
+    } else if (entry.key->text == "frames" && entry.value->is_map()) {
+      Node& frames = document_.add(Node::Kind::map, entry.value->line, entry.value->column);
+      frames.entries = known->value->entries;
+      frames.entries.insert(frames.entries.end(), entry.value->entries.begin(), entry.value->entries.end());
+      known->value = &frames;
+    } else {
+      *known = entry;
+    }
+  }
+
+  void report(const Node& at, const char* id, std::string message, std::string hint) {
+    diagnostics_.error(at.location(), at.length, id, std::move(message), {}, std::move(hint));
+  }
+
+  Document& document_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+bool add_robot(Document& document, Diagnostics& diagnostics) {
+  UsedKeys used;
+  const ParameterScope scope(used);
+  const Reading reading{&diagnostics, &scope};
+  const Node& root = document.root();
+  const auto entry = std::ranges::find_if(root.entries, [](const auto& e) { return e.key->text == "urdf"; });
+  const CheckedValue value(reading, *entry->value, entry->key, "urdf");
+  if (const Node* space = root.find("space"); space != nullptr && space->text == "spatial") {
+    diagnostics.error(space->location(), space->length, "type-space", "spatial bodies are not in this release");
+    return false;
+  }
+  UrdfSection section(value, document.file_name());
+  if (!section.good()) return false;
+  diagnostics.add_source(section.path, section.text);
+  const std::string* file = document.add_file(section.path, section.text);
+  const auto sections = urdf::add_sections(section.text, file, section.options, document, diagnostics);
+  if (!sections) return false;
+  Merger(document, diagnostics).merge(*sections);
+  return true;
+}
+
+}  // namespace freeplay

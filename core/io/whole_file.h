@@ -1,0 +1,12 @@
+// WholeFile: writes a file that is there complete or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace freeplay {
+
+/// Writes under a temporary name beside `path` and renames it. Makes the folder. Throws Error{file} "cannot-write".
+void write_whole_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace freeplay

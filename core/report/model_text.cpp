@@ -1,0 +1,170 @@
+#include "report/model_text.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/number_text.h"
+
+namespace freeplay {
+namespace {
+
+std::string words(const Json& value);
+
+std::string list_text(const Json& list, const char* open, const char* close) {
+  std::string out = open;
+  for (const Json& item : list) out += (out.size() > 1 ? ", " : "") + words(item);
+  return out + close;
+}
+
+std::string map_text(const Json& map) {
+  std::string out;
+  for (const auto& [key, value] : map.items())
+    out += fmt::format("{}{} {}", out.empty() ? "" : "  ", key, words(value));
+  return out;
+}
+
+std::string words(const Json& value) {
+  if (value.is_number()) return number_text(value.get<double>());
+  if (value.is_array()) return list_text(value, "(", ")");
+  if (value.is_object()) return "{" + map_text(value) + "}";
+  if (value.is_string()) return value.get<std::string>();
+  return value.dump();
+}
+
+std::string frame_text(const Json& frame) {
+  if (frame.is_array()) return words(frame) + " m";
+  return fmt::format("{} m  angle {} rad", words(frame["position"]), words(frame["angle"]));
+}
+
+std::size_t widest(const Json& map) {
+  std::size_t width = 0;
+  for (const auto& [name, unused] : map.items()) width = std::max(width, name.size());
+  return width;
+}
+
+std::string frames_text(const Json& frames, int indent) {
+  std::string out;
+  const std::size_t width = widest(frames);
+  for (const auto& [name, frame] : frames.items()) {
+    out += fmt::format("{:{}}frame {:<{}}  {}\n", "", indent, name, width, frame_text(frame));
+  }
+  return out;
+}
+
+std::string body_text(const std::string& name, const Json& body) {
+  std::string out = fmt::format("  {}: mass {} kg  inertia {} kg*m^2  com {} m\n", name, words(body["mass"]),
+                                words(body["inertia"]), words(body["com"]));
+  if (body.contains("pose")) {
+    const Json& pose = body["pose"];
+    out += "    pose";
+    if (pose.contains("position")) out += fmt::format("  position {} m", words(pose["position"]));
+    if (pose.contains("angle")) out += fmt::format("  angle {} rad", words(pose["angle"]));
+    out += "\n";
+  }
+  if (body.contains("velocity")) {
+    out += fmt::format("    velocity  linear {} m/s  angular {} rad/s\n", words(body["velocity"]["linear"]),
+                       words(body["velocity"]["angular"]));
+  }
+  return out + frames_text(body["frames"], 4);
+}
+
+/// A joint, driver or force: its type or kind, what it ties, and the rest.
+std::string entry_text(const std::string& name, const Json& entry, std::size_t width) {
+  Json rest = entry;
+  std::string head;
+  for (const char* key : {"type", "kind"}) {
+    if (!head.empty() || !rest.contains(key)) continue;
+    head = words(rest[key]);
+    rest.erase(key);
+  }
+  for (const char* key : {"between", "of"}) {
+    if (!rest.contains(key)) continue;
+    head += fmt::format("  {} - {}", words(rest[key][0]), words(rest[key][1]));
+    rest.erase(key);
+  }
+  const std::string tail = map_text(rest);
+  return fmt::format("  {:<{}}  {}{}{}\n", name, width, head, tail.empty() ? "" : "  ", tail);
+}
+
+std::string section_text(const char* heading, const Json& section) {
+  if (section.empty()) return {};
+  std::string out = fmt::format("{}\n", heading);
+  const std::size_t width = widest(section);
+  for (const auto& [name, entry] : section.items()) out += entry_text(name, entry, width);
+  return out;
+}
+
+std::string start_text(const Json& initial) {
+  std::string out;
+  for (const auto& [key, values] : initial.items()) {
+    for (const auto& [joint, value] : values.items()) out += fmt::format("  {} {} of {}\n", key, words(value), joint);
+  }
+  return out.empty() ? out : "initial\n" + out;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '\n') {
+      out += "\\n";
+      continue;
+    }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string body_of(const Json& marker) {
+  const std::string name = marker.get<std::string>();
+  return name.substr(0, name.find('/'));
+}
+
+std::string edge(const std::string& from, const std::string& to, const std::string& label, const char* style) {
+  return fmt::format("  {} -- {} [label={}{}];\n", quoted(from), quoted(to), quoted(label), style);
+}
+
+/// The body that a joint moves: the second one.
+std::string moved_body(const Json& model, const Json& joint) {
+  const Json& entry = model["joints"][joint.get<std::string>()];
+  return entry.contains("between") ? body_of(entry["between"][1]) : moved_body(model, entry["of"][1]);
+}
+
+}  // namespace
+
+std::string model_tree(const Json& model) {
+  const Json& simulation = model["simulation"];
+  std::string out =
+      fmt::format("{}: {}, gravity {} m/s^2\n", words(model["name"]), words(model["space"]), words(model["gravity"]));
+  out += "ground\n" + frames_text(model["ground"]["frames"], 2);
+  out += "bodies\n";
+  for (const auto& [name, body] : model["bodies"].items()) out += body_text(name, body);
+  out += section_text("joints", model["joints"]) + section_text("drivers", model["drivers"]);
+  out += section_text("forces", model["forces"]) + start_text(model["initial"]);
+  const std::string integrator = simulation["integrator"].is_null() ? "" : words(simulation["integrator"]["type"]);
+  return out + fmt::format("simulation\n  {} s to {} s in steps of {} s  {}\n", words(simulation["start"]),
+                           words(simulation["end"]), words(simulation["step"]), integrator);
+}
+
+std::string model_graph(const Json& model) {
+  std::string out = fmt::format("graph {} {{\n  node [shape=box, style=rounded];\n  \"ground\" [style=filled];\n",
+                                quoted(model["name"].get<std::string>()));
+  for (const auto& [name, unused] : model["bodies"].items()) out += fmt::format("  {};\n", quoted(name));
+  for (const auto& [name, joint] : model["joints"].items()) {
+    const std::string label = name + "\n" + joint["type"].get<std::string>();
+    if (joint.contains("between")) {
+      out += edge(body_of(joint["between"][0]), body_of(joint["between"][1]), label, "");
+    } else {
+      out += edge(moved_body(model, joint["of"][0]), moved_body(model, joint["of"][1]), label, ", style=dashed");
+    }
+  }
+  for (const auto& [name, force] : model["forces"].items()) {
+    if (!force.contains("between")) continue;
+    out += edge(body_of(force["between"][0]), body_of(force["between"][1]),
+                name + "\n" + force["type"].get<std::string>(), ", style=dotted");
+  }
+  return out + "}\n";
+}
+
+}  // namespace freeplay

@@ -1,0 +1,102 @@
+"""freeplay convert: URDF to YAML and back."""
+import csv
+import json
+import os
+import unittest
+
+from program import ROOT, ProgramTest, mechanism
+
+DATA = os.path.join(ROOT, "tests", "data", "urdf")
+
+
+class Convert(ProgramTest):
+    def verdict(self, model):
+        return json.loads(self.freeplay("validate", model, "--json")[0])
+
+    def results(self, model, *options):
+        out = model.replace("/", "_") + ".out"
+        self.freeplay("run", model, "--out", out, "--quiet", *options)
+        rows = list(csv.reader(self.read(out, "results.csv").splitlines()))
+        return {name: [float(x) for x in values] for name, *values in zip(*rows)}
+
+    def assert_same(self, one, other, *options):
+        first, second = self.verdict(one), self.verdict(other)
+        self.assertEqual(first["facts"], second["facts"])
+        self.assertEqual(set(first["start"]), set(second["start"]))
+        for body, pose in first["start"].items():
+            for key, value in pose.items():
+                self.assertAlmostEqual(value, second["start"][body][key], delta=1e-9)
+        expected, actual = self.results(one, *options), self.results(other, *options)
+        self.assertEqual(set(expected), set(actual))
+        for name, values in expected.items():
+            # What is left of an energy balance is rounding of the energies.
+            scale = max(1.0, *(abs(x) for x in expected["energy.kinetic" if name.startswith("energy.") else name]))
+            for x, y in zip(values, actual[name], strict=True):
+                self.assertLess(abs(x - y), 1e-9 * scale, name)
+
+    def test_there_and_back_is_the_same_motion(self):
+        for name, end in (("pendulum", "0.2 s"), ("four-bar", "0.2 s"), ("slider-crank", "100 us")):
+            with self.subTest(name):
+                self.freeplay("convert", mechanism(name), name + ".urdf")
+                self.assert_same(mechanism(name), name + ".urdf.sidecar.yaml", "--end", end)
+                self.freeplay("convert", name + ".urdf.sidecar.yaml", name + "-back.yaml")
+                self.assertNotIn("urdf", self.read(name + "-back.yaml"))
+                self.assert_same(mechanism(name), name + "-back.yaml", "--end", end)
+
+    def test_a_robot_becomes_a_complete_model(self):
+        for name in ("four_bar_loop.urdf", "four_bar_sidecar.yaml"):
+            with open(os.path.join(DATA, name), encoding="utf-8") as file:
+                self.write(name, file.read())
+        self.freeplay("convert", "four_bar_sidecar.yaml", "complete.yaml")
+        self.assert_same("four_bar_sidecar.yaml", "complete.yaml", "--end", "0.1 s")
+        self.freeplay("convert", "four_bar_loop.urdf", "robot.yaml")
+        self.assertIn("  crank: {mass: 0.3, inertia: 0.001, com: [0.05, 0], frames: {A: [0, 0], B: [0.1, 0]}}\n",
+                      self.read("robot.yaml"))
+
+    def test_frames_away_from_the_body_origin_keep_angles_and_coordinates(self):
+        self.write("m.yaml", """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  arm: {mass: 2, inertia: 0.1, com: [0.3, 0.1], frames: {pin: {position: [0.1, 0.2], angle: 30 deg}, end: [0.7, 0]}}
+  car: {mass: 1, inertia: 0.1, frames: {shoe: {position: [0, 0.05], angle: -20 deg}}}
+joints:
+  turn: {type: revolute, between: [ground/post, arm/pin]}
+  slide: {type: prismatic, between: [arm/end, car/shoe]}
+frames:
+  ground/post: {position: [1, 2], angle: 10 deg}
+forces:
+  pull: {type: spring-damper, between: [ground/post, car/shoe], stiffness: 40, damping: 2, free_length: 0.5}
+initial: {joints: {turn: 15 deg, slide: 0.1}, speeds: {turn: 2 rad/s}}
+simulation: {end: 0.3 s, step: 1 ms, integrator: {type: bathe, newton: {tolerance: 1e-13}}}
+""")
+        # By default a step is solved to 1e-10, so other roundings may end it one iteration earlier.
+        self.freeplay("convert", "m.yaml", "m.urdf")
+        self.assert_same("m.yaml", "m.urdf.sidecar.yaml")
+
+    def test_names_that_begin_with_a_digit_are_changed_and_said(self):
+        with open(os.path.join(DATA, "four_bar_loop.urdf"), encoding="utf-8") as file:
+            self.write("r.urdf", file.read().replace('"crank"', '"1st"'))
+        _, err = self.freeplay("convert", "r.urdf", "r.yaml")
+        self.assertIn("'1st' is called '_1st' there [urdf-renamed]", err)
+        self.assertIn("[_1st/B, coupler/B]", self.read("r.yaml"))
+
+    def test_set_is_written(self):
+        self.freeplay("convert", mechanism("pendulum"), "p.yaml", "--set", "l=3 m")
+        self.assertAlmostEqual(1.5, self.verdict("p.yaml")["start"]["rod"]["x"], places=12)
+
+    def test_nothing_is_overwritten_unasked(self):
+        self.write("p.yaml", "mine")
+        self.freeplay("convert", mechanism("pendulum"), "p.yaml", code=6)
+        self.assertEqual("mine", self.read("p.yaml"))
+        self.freeplay("convert", mechanism("pendulum"), "p.yaml", "--force")
+
+    def test_wrong_usage(self):
+        self.freeplay("convert", mechanism("pendulum"), code=2)
+        self.freeplay("convert", mechanism("pendulum"), "p.txt", code=2)
+        self.freeplay("convert", "none.yaml", "p.yaml", code=3)
+        _, err = self.freeplay("convert", mechanism("3-rrr"), "p.urdf", code=3)
+        self.assertIn("instances", err)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,77 @@
+"""freeplay show: text, JSON, graph, drawing."""
+import json
+import re
+import unittest
+import xml.etree.ElementTree as xml
+
+from program import ProgramTest, mechanism
+
+
+class Show(ProgramTest):
+    def test_json_is_the_expanded_model(self):
+        model = json.loads(self.freeplay("show", mechanism("3-rrr"), "--format", "json")[0])
+        self.assertEqual(7, len(model["bodies"]))
+        self.assertEqual(["leg%d.%s" % (i, j) for i in (1, 2, 3) for j in "ABC"], list(model["joints"]))
+        joint = model["joints"]["leg2.B"]
+        self.assertEqual(["leg2.crank/B", "leg2.coupler/B"], joint["between"])
+        self.assertEqual({"law": "lankarani-nikravesh", "exponent": 1.5, "restitution": 0.9},
+                         {k: joint["clearance"]["contact"][k] for k in ("law", "exponent", "restitution")})
+        self.assertEqual(model, json.loads(self.freeplay("show", mechanism("3-rrr"), "--json")[0]))
+
+    def test_parameters_are_numbers_in_si_units(self):
+        out, _ = self.freeplay("show", mechanism("pendulum"), "--json", "--set", "l=50 cm")
+        rod = json.loads(out)["bodies"]["rod"]
+        self.assertEqual([0.25, 0], rod["com"])
+
+    def test_text_has_units(self):
+        out, err = self.freeplay("show", mechanism("four-bar"))
+        self.assertIn("  crank: mass 0.3 kg  inertia 0.001 kg*m^2  com (0.05, 0) m\n    frame tip  (0.1, 0) m\n", out)
+        self.assertIn("  B  revolute  crank/tip - coupler/origin\n", out)
+        self.assertEqual("", err)
+
+    def test_graph_has_an_edge_for_each_joint(self):
+        out, _ = self.freeplay("show", mechanism("four-bar"), "--format", "dot")
+        self.assertEqual([("ground", "crank"), ("crank", "coupler"), ("coupler", "rocker"), ("ground", "rocker")],
+                         re.findall(r'"([^"]+)" -- "([^"]+)"', out))
+
+    def test_drawing_names_everything_and_is_the_same_each_time(self):
+        self.assertEqual(("", ""), self.freeplay("show", mechanism("3-rrr"), "--format", "svg", "--out", "a.svg"))
+        out, _ = self.freeplay("show", mechanism("3-rrr"), "--format", "svg")
+        self.assertEqual(self.read("a.svg"), out)
+        labels = [e.text for e in xml.fromstring(out).iter("{http://www.w3.org/2000/svg}text")]
+        for name in ("platform", "leg1.crank", "leg3.C", "leg2.coupler/B", "0.1 m"):
+            self.assertIn(name, labels)
+        self.assertEqual(6, out.count("#cc3311\" stroke-width=\"1.5\""))  # rings: six joints have clearance
+        texts = re.findall(r'<text x="([-0-9.]+)" y="([-0-9.]+)"', out)
+        self.assertTrue(all(0 <= float(x) <= 900 and 0 <= float(y) <= 1400 for x, y in texts))
+
+    def test_drawing_puts_a_point_where_it_is(self):
+        # A rod of 1 m hangs horizontally from the origin: its pin, its middle and its end are on one level.
+        out, _ = self.freeplay("show", mechanism("pendulum"), "--format", "svg")
+        circles = re.findall(r'<circle cx="([0-9.]+)" cy="([0-9.]+)" r="([0-9.]+)"', out)
+        self.assertEqual(2, len(circles))
+        self.assertEqual(circles[0][1], circles[1][1])
+        self.assertGreater(float(circles[1][0]), float(circles[0][0]) + 100)
+
+    def test_no_assembly_is_needed_but_for_the_drawing(self):
+        self.write("apart.yaml", """freeplay: 1
+bodies: {a: {mass: 1, inertia: 1}}
+joints:
+  p: {type: revolute, between: [ground, a]}
+  q: {type: revolute, between: [ground/far, a]}
+frames: {ground/far: [5, 0]}
+""")
+        for format in ("text", "json", "dot"):
+            self.freeplay("show", "apart.yaml", "--format", format)
+        _, err = self.freeplay("show", "apart.yaml", "--format", "svg", code=3)
+        self.assertIn("[assembly-failed]", err)
+
+    def test_wrong_usage(self):
+        self.assertIn("did you mean 'svg'?", self.freeplay("show", mechanism("pendulum"), "--format", "svgg", code=2)[1])
+        self.freeplay("show", code=2)
+        self.freeplay("show", mechanism("pendulum"), "--out", "", code=2)
+        self.freeplay("show", "none.yaml", code=3)
+
+
+if __name__ == "__main__":
+    unittest.main()
