@@ -33,7 +33,6 @@ struct RunOptions {
 };
 
 void refuse_later_options(const RunOptions& options) {
-  if (!options.accuracy.empty()) not_in_this_release("--accuracy");
   if (options.verify) not_in_this_release("--verify");
   if (options.profile) not_in_this_release("--profile");
   if (options.resume) not_in_this_release("--resume");
@@ -47,6 +46,10 @@ BuildOptions build_options(const RunOptions& options) {
   BuildOptions build = freeplay::build_options(options.model_options);
   if (!options.end.empty()) build.end = positive_quantity("--end", options.end, dimension::time);
   if (!options.step.empty()) build.step = positive_quantity("--step", options.step, dimension::time);
+  if (!options.accuracy.empty()) build.accuracy = positive_quantity("--accuracy", options.accuracy, dimension::length);
+  if (build.step && build.accuracy) {
+    throw Error(Error::Category::usage, "usage", "--step and --accuracy exclude each other");
+  }
   if (!options.integrator.empty()) build.integrator = options.integrator;
   return build;
 }
@@ -227,7 +230,7 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   app->add_option("MODEL", options->model, "Model file")->type_name("");
   app->add_option("--end", options->end, "End time: \"0.5 s\"")->type_name("T");
   app->add_option("--step", options->step, "Step: 2us")->type_name("H");
-  app->add_option("--accuracy", options->accuracy, "Accuracy instead of a step (not in this release)")->type_name("L");
+  app->add_option("--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um")->type_name("L");
   app->add_option("--integrator", options->integrator, "Integrator, with its default parameters")->type_name("NAME");
   app->add_flag("--verify", options->verify, "Run again finer and compare (not in this release)");
   app->add_flag("--profile", options->profile, "Tell where the time went (not in this release)");

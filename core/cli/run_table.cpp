@@ -28,10 +28,12 @@ std::string prefixed(double value, const char* unit) {
 
 std::string first_line(const RunRecord& record) {
   const Settings& settings = record.model.settings;
-  return fmt::format("{}: {}, {:g} s in {} steps ({}, {:g} s), {:.3g} s wall\n", record.model.name,
+  std::string steps = fmt::format("{:g} s", settings.step);
+  if (settings.adaptive) steps = fmt::format("tolerance {:g}", settings.tolerance);
+  if (settings.accuracy > 0.0) steps = fmt::format("accuracy {:g} m", settings.accuracy);
+  return fmt::format("{}: {}, {:g} s in {} steps ({}, {}), {:.3g} s wall\n", record.model.name,
                      status_word(record.outcome.status), record.outcome.time, record.outcome.steps,
-                     settings.integrator_parameters.component->description.name, settings.step,
-                     record.outcome.wall_seconds);
+                     settings.integrator_parameters.component->description.name, steps, record.outcome.wall_seconds);
 }
 
 /// The heading of the first column, as wide as the longest name of all tables.

@@ -77,7 +77,16 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
              [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
                auto& me = *static_cast<FailingStageSolver*>(self);
                return me.inner_.accelerate(me.inner_.self, state, z_rate, m);
-             }},
+             },
+             [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
+               const auto& inner = static_cast<FailingStageSolver*>(self)->inner_;
+               return inner.error_norm(inner.self, position, velocity);
+             },
+             [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
+               const auto& inner = static_cast<FailingStageSolver*>(self)->inner_;
+               inner.retract(inner.self, q_base, increment, q);
+             },
+             inner.estimates},
       good_stages_(good_stages) {}
 
 IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const ReferenceSystem& reference, double tolerance,

@@ -75,6 +75,17 @@ Json integrator_part(const ParameterBlock& block) {
   return part;
 }
 
+Json step_part(const Settings& settings) {
+  Json part = {{"size", settings.step}, {"adaptive", settings.adaptive}};
+  if (!settings.adaptive) return part;
+  if (settings.accuracy > 0.0) part["accuracy"] = settings.accuracy;
+  if (!(settings.accuracy > 0.0)) part["tolerance"] = settings.tolerance;
+  part["min"] = settings.smallest_step;
+  part["max"] = settings.largest_step;
+  part["per_contact"] = settings.per_contact;
+  return part;
+}
+
 Json settings_part(const Model& model) {
   const Settings& settings = model.settings;
   Json set = Json::object();
@@ -82,7 +93,7 @@ Json settings_part(const Model& model) {
   return {{"start", settings.start},
           {"end", settings.end},
           {"integrator", integrator_part(settings.integrator_parameters)},
-          {"step", {{"size", settings.step}, {"adaptive", false}}},
+          {"step", step_part(settings)},
           {"interval", settings.interval},
           {"discard", settings.discard},
           {"set", set},

@@ -43,7 +43,14 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
                auto& solver = *static_cast<NewtonStageSolver*>(self);
                return guarded_call(m, solver, [&] { return solver.accelerate(*state, z_rate); });
-             }},
+             },
+             [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
+               return static_cast<NewtonStageSolver*>(self)->error_norm(position, velocity);
+             },
+             [](void*, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
+               planar::retract(q_base, increment, q);
+             },
+             0},
       e_(system),
       rows_(system.layout().nc(), system.layout().nv()) {
   const int nv = system.layout().nv(), nc = system.layout().nc();
@@ -389,11 +396,55 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   std::ranges::copy(e_.force, right_a_.begin());
   std::ranges::copy(e_.gamma, right_c_.begin());
   if (!refine(state.a, state.lambda, 0.0)) return false;
-  std::copy_n(e_.internal_rate.begin(), z_rate.size, z_rate.begin());
+  std::ranges::copy(e_.internal_rate, z_rate.begin());
   if (any_dependent_) {
     system_.dense_jacobian(e_, dense_);
     rows_.analyse(dense_);
     rows_.least_norm(state.lambda, system_.layout().first_driver_row());
+  }
+  if (flows_ != nullptr) flows_->flow(e_, state.lambda, z_rate.part(e_.internal_rate.size(), at(flows_->flows())));
+  return true;
+}
+
+double NewtonStageSolver::error_norm(std::span<const double> position, std::span<const double> velocity) {
+  if (!(allowed_ > 0.0)) return 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < unit_.size(); ++i) {
+    // `allowed_` is a length: an angle may err by it over the size of the model.
+    const double scale = system_.size() / unit_[i];
+    const double error = scale * std::max(std::abs(position[i]) / allowed_, std::abs(velocity[i]) / allowed_rate_);
+    if (!(error <= largest)) largest = error, worst_component_ = static_cast<int>(i);
+  }
+  return largest;
+}
+
+bool NewtonStageSolver::mobility(const State& state, int joint, std::span<double> out) {
+  if (!system_.evaluate(point(state), term_position, e_)) return false;
+  const JointElement& element = system_.model().joints[at(joint)];
+  const int markers[2] = {element.marker_a, element.marker_b};
+  std::ranges::fill(out, 0.0);
+  for (std::size_t direction = 0; direction < 2; ++direction) {
+    std::ranges::fill(right_a_, 0.0);
+    std::ranges::fill(right_c_, 0.0);
+    for (std::size_t end = 0; end < 2; ++end) {
+      const BodyId body = system_.model().markers[at(markers[end])].body;
+      if (body == ground) continue;
+      double wrench[6] = {};
+      wrench[direction] = end == 0 ? -1.0 : 1.0;
+      planar::add_wrench(wrench, e_.arms[at(markers[end])], &right_a_[3 * at(body)]);
+    }
+    std::ranges::fill(increment_, 0.0);
+    std::ranges::fill(multipliers_, 0.0);
+    if (!refine(increment_, multipliers_, 0.0)) return false;
+    for (std::size_t end = 0; end < 2; ++end) {
+      const BodyId body = system_.model().markers[at(markers[end])].body;
+      if (body == ground) continue;
+      const double* x = &increment_[3 * at(body)];
+      const planar::Arm& arm = e_.arms[at(markers[end])];
+      const double sign = end == 0 ? -1.0 : 1.0;
+      out[direction] += sign * (x[0] - arm.y * x[2]);
+      out[3 + direction] += sign * (x[1] + arm.x * x[2]);
+    }
   }
   return true;
 }

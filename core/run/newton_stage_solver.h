@@ -16,6 +16,7 @@
 #include "freeplay/integrator.h"
 #include "linear/kkt_matrix.h"
 #include "linear/row_rank.h"
+#include "run/energy_account.h"
 #include "run/internal_elimination.h"
 #include "system/system.h"
 
@@ -39,6 +40,19 @@ class NewtonStageSolver {
   bool project_position(StateView& state);
   /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
   bool accelerate(StateView& state, Span<double> z_rate);
+
+  /// From now on attempts return their error in units of `tolerance` [m] in position, angles by the model's size, and
+  /// of tolerance/s in velocity, or, where the model moves faster than its size in a second, of that part of its speed.
+  void control_error(double tolerance) { allowed_ = tolerance, table_.estimates = tolerance > 0.0 ? 1 : 0; }
+  /// The velocities at the start of the attempt; for the unit of error_norm().
+  void use_velocity(std::span<const double> v) { allowed_rate_ = allowed_ * (1.0 + norm(v)); }
+  double error_norm(std::span<const double> position, std::span<const double> velocity);
+  /// Index into v of the largest part of the last error_norm().
+  int worst_component() const { return worst_component_; }
+  /// accelerate() appends the powers of the account to z'; z of the states handed in then has as many numbers more.
+  void integrate_flows(const EnergyAccount& account) { flows_ = &account; }
+  /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
+  bool mobility(const State& state, int joint, std::span<double> out);
 
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
   const Fault& fault() const { return e_.fault; }
@@ -83,7 +97,9 @@ class NewtonStageSolver {
   std::vector<char> dependent_;
   bool any_dependent_ = false, rank_known_ = false;
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
-  int worst_row_ = -1;
+  const EnergyAccount* flows_ = nullptr;
+  double allowed_ = 0.0, allowed_rate_ = 0.0;
+  int worst_row_ = -1, worst_component_ = -1;
   const char* trouble_ = "";
 };
 
