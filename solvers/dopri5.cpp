@@ -25,8 +25,8 @@ constexpr double error_weight[stages] = {71.0 / 57600.0,      0.0,          -71.
 ///   d' = v,  v' = a(t, q, v, z),  z' = z'(t, q, v, z)  with  q = retract(q_n, d)
 /// where a comes from the equations of motion with the constraints at acceleration level. At the end of the step q is
 /// projected on Phi = 0 and v on Phi_q v = nu, which moves them by less than the local error; the last stage is taken
-/// there, and is the first of the next step. The result of order 5 is kept. Dormand and Prince 1980; Hairer, Norsett and
-/// Wanner 1993, II.5.
+/// there, and is the first of the next step. The result of order 5 is kept. Dormand and Prince 1980; Hairer, Norsett
+/// and Wanner 1993, II.5.
 class Dopri5 final : public Integrator {
  public:
   explicit Dopri5(const Parameters&) {}
@@ -69,7 +69,10 @@ class Dopri5 final : public Integrator {
   /// Start of the step and derivatives (v, a, z') of every stage, in slices of the scratch.
   struct Stages {
     Stages(const StateView& s, Span<double> scratch)
-        : nv(s.v.size), nz(s.z.size), q(scratch.part(0, s.q.size)), rest(scratch.part(s.q.size, scratch.size - s.q.size)) {
+        : nv(s.v.size),
+          nz(s.z.size),
+          q(scratch.part(0, s.q.size)),
+          rest(scratch.part(s.q.size, scratch.size - s.q.size)) {
       increment = rest.part(stages * (2 * nv + nz), nv);
       spare = rest.part(stages * (2 * nv + nz) + nv, nv);
       z_start = rest.part(stages * (2 * nv + nz) + 2 * nv, nz);
@@ -125,8 +128,9 @@ Component dopri5() {
   return integrator<Dopri5>(
       {.name = "dopri5",
        .summary = "Explicit Runge-Kutta pair of orders 5 and 4 with projection, always adaptive.",
-       .formula = "d' = v, v' = a, z' = g with M a + Phi_q^T lambda = f, Phi_q a = gamma; seven stages, the last is the "
-                  "first of the next step; then q on Phi = 0 and v on Phi_q v = nu; error: difference of the orders.",
+       .formula =
+           "d' = v, v' = a, z' = g with M a + Phi_q^T lambda = f, Phi_q a = gamma; seven stages, the last is the "
+           "first of the next step; then q on Phi = 0 and v on Phi_q v = nu; error: difference of the orders.",
        .validity = "Motions that are not stiff against the accuracy asked for: impacts are not, stiff dampers are.",
        .references = "Dormand and Prince 1980, J Comput Appl Math 6, 19-26; Hairer, Norsett and Wanner 1993, Solving "
                      "Ordinary Differential Equations I, II.5",

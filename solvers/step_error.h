@@ -26,7 +26,7 @@ class StepError {
       used += count;
       return work.part(used - count, count);
     };
-    middle_ = {nullptr, take(s.q.size), take(s.v.size),     take(s.v.size), take(s.lambda.size),
+    middle_ = {nullptr,        take(s.q.size), take(s.v.size), take(s.v.size), take(s.lambda.size),
                take(s.z.size), Span<double>{}};
     increment_ = take(s.v.size);
     position_ = take(s.v.size);

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/compare_command.h"
 #include "cli/describe_command.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
@@ -41,7 +42,8 @@ int execute(int argc, char** argv, CommonOptions& common) {
   program.add_flag("--version", version, "Print the version");
   add_common_options(program, common);
   const Command commands[] = {add_run_command(program, common), add_validate_command(program, common),
-                              add_list_command(program, common), add_describe_command(program, common)};
+                              add_list_command(program, common), add_describe_command(program, common),
+                              add_compare_command(program, common)};
   // Words that the parser does not know are left to unknown_word(), which suggests what was meant.
   program.require_subcommand(0, 1)->allow_extras();
   for (const Command& command : commands) command.app->allow_extras();

@@ -46,6 +46,8 @@ BuildOptions build_options(const ModelOptions& options);
 
 /// A positive quantity such as "0.5 s". Throws Error{usage} "bad-value".
 double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
+/// A quantity of either sign. Throws Error{usage} "bad-value".
+double signed_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
 
 [[noreturn]] void not_in_this_release(const std::string& what);
 

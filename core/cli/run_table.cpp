@@ -88,6 +88,19 @@ void add_paths(const RunRecord& record, TextTable& table) {
   }
 }
 
+/// How well the impacts that ended were resolved, and what would do.
+std::string steps_per_impact(const RunRecord& record) {
+  const ContactAdvice& advice = record.advice;
+  if (advice.ended() == 0) return {};
+  std::string text = fmt::format("  steps per impact: {:g} or more", advice.fewest_steps());
+  if (advice.under_resolved() == 0) return text + "\n";
+  text += fmt::format("; {} of {} impacts took fewer than {:g}: ", advice.under_resolved(), advice.ended(),
+                      advice.per_contact());
+  const bool adaptive = record.model.settings.adaptive;
+  return text + (adaptive ? "a larger per_contact or a smaller tolerance would do\n"
+                          : fmt::format("--step {:.2g}, or an accuracy in its place, would do\n", advice.step()));
+}
+
 }  // namespace
 
 std::string run_table(const RunRecord& record) {
@@ -99,6 +112,7 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.kinematics.empty()) add_paths(record, paths);
   text += joints.text("  ") + drivers.text("  ") + paths.text("  ");
   const bool any = has_statistics(record.model.settings, record.outcome);
+  text += steps_per_impact(record);
   return text + fmt::format("  energy residual {}   position residual {}\n",
                             any ? quantity(record.statistics.energy_residual(), "J", 2) : "-",
                             any ? quantity(record.statistics.position_residual(), "m", 2) : "-");

@@ -13,8 +13,8 @@
 namespace freeplay {
 namespace {
 
-const std::vector<std::string> later_commands{"show",   "schema", "init",    "convert",      "analyze", "sweep",
-                                              "report", "export", "compare", "check-plugin", "doctor"};
+const std::vector<std::string> later_commands{"show",  "schema", "init",   "convert",      "analyze",
+                                              "sweep", "report", "export", "check-plugin", "doctor"};
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,
                          const std::vector<std::string>& known, const std::string& prefix = "") {

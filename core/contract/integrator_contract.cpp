@@ -37,6 +37,7 @@ class IntegratorCheck {
     for (const Kind kind : {Kind::oscillator, Kind::pendulum}) {
       const ReferenceSystem reference(kind);
       check_order(reference);
+      check_estimate(reference);
       if (findings_.broken("stays-in-span") || findings_.broken("declares-sanely")) return std::move(findings_);
       check_repeatable(reference);
     }
@@ -107,6 +108,34 @@ class IntegratorCheck {
     findings_.expect(rule, observed >= declared - 0.2, [&] {
       return fmt::format("{}: order {:.2f}, declared {}; errors {:.3g} and {:.3g} at steps of 1/160 and 1/320 s",
                          reference.name(), observed, declared, runs[3].value[kind], runs[4].value[kind]);
+    });
+  }
+
+  /// The estimate falls with the power of the step that is declared, and is no less than the error itself by much.
+  void check_estimate(const ReferenceSystem& reference) {
+    IntegratorDrive drive(subject_.integrator, reference, tight, conditions_, findings_);
+    if (drive.layout().error_estimate == 0 || !drive.start()) return;
+    const int power = drive.layout().error_order > 0 ? drive.layout().error_order : drive.layout().order + 1;
+    // Short enough for the power to show, long enough that the error stays above rounding.
+    constexpr double longest = 0.16, tolerance = 1e-10;
+    constexpr int halvings = 3, finest = 1 << halvings;
+    const std::vector<KnownState> known = reference.motion(longest / finest, finest);
+    double before = 0.0, slope = 0.0, least_ratio = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= halvings; ++i) {
+      const int stride = finest >> i;
+      double truth = 0.0;
+      const double told =
+          drive.estimate(longest * stride / finest, tolerance, truth, known[static_cast<std::size_t>(stride)]);
+      if (i > 0) slope = std::log2(before / told);
+      before = told;
+      if (truth > 1e-2) least_ratio = std::min(least_ratio, told / truth);
+    }
+    findings_.expect("estimate-order", std::abs(slope - power) <= 0.4, [&] {
+      return fmt::format("{}: the error estimate falls with the power {:.2f} of the step, declared {}",
+                         reference.name(), slope, power);
+    });
+    findings_.expect("estimate-size", least_ratio >= 0.3, [&] {
+      return fmt::format("{}: the error estimate is {:.2g} times the error", reference.name(), least_ratio);
     });
   }
 

@@ -79,12 +79,12 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
                return me.inner_.accelerate(me.inner_.self, state, z_rate, m);
              },
              [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
-               const auto& inner = static_cast<FailingStageSolver*>(self)->inner_;
-               return inner.error_norm(inner.self, position, velocity);
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               return me.inner_.error_norm(me.inner_.self, position, velocity);
              },
              [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
-               const auto& inner = static_cast<FailingStageSolver*>(self)->inner_;
-               inner.retract(inner.self, q_base, increment, q);
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               me.inner_.retract(me.inner_.self, q_base, increment, q);
              },
              inner.estimates},
       good_stages_(good_stages) {}
@@ -172,6 +172,21 @@ std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good
   if (!good) return {};
   converged = attempt.converged != 0;
   return to.bits();
+}
+
+double IntegratorDrive::estimate(double dt, double tolerance, double& truth, const KnownState& end) {
+  NewtonStageSolver solver(reference_.system(), options_);
+  solver.control_error(tolerance);
+  GuardedState to = accepted_;
+  solver.use_velocity(to.v.span());
+  Attempt attempt{};
+  GuardedNumbers scratch(at(layout_.scratch), 0.0);
+  if (!call_attempt(dt, to, scratch, solver.table(), false, attempt) || attempt.converged == 0) return 0.0;
+  std::vector<double> position = to.q.values(), velocity = to.v.values();
+  for (std::size_t i = 0; i < position.size(); ++i) position[i] -= end.q[i];
+  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] -= end.v[i];
+  truth = solver.error_norm(position, velocity);
+  return attempt.error;
 }
 
 void IntegratorDrive::residuals(double& position, double& velocity) {

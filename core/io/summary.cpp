@@ -194,6 +194,13 @@ Json advice_part(const ContactAdvice& advice) {
           {"step", json_number(advice.step())}};
 }
 
+Json verify_part(const RunRecord& record) {
+  if (record.verify.empty()) return nullptr;
+  Json part = Json::object();
+  for (const auto& [channel, error] : record.verify) part[channel] = json_number(error);
+  return part;
+}
+
 Json performance_part(const Outcome& outcome) {
   const double rate = outcome.wall_seconds > 0.0 ? static_cast<double>(outcome.steps) / outcome.wall_seconds : 0.0;
   return {{"wall_seconds", outcome.wall_seconds}, {"steps_per_second", rate}};
@@ -240,8 +247,8 @@ Json summary(const RunRecord& record) {
           {"paths", paths_part(record)},
           {"energy", energy_part(record.channels.energy, record.last_row)},
           {"advice", advice_part(record.advice)},
-          {"verify", nullptr},
-          {"agree_until", nullptr},
+          {"verify", verify_part(record)},
+          {"agree_until", json_number(record.agree_until)},
           {"performance", performance_part(outcome)},
           {"files", record.files},
           {"warnings", record.warnings}};

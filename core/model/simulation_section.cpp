@@ -93,9 +93,9 @@ class SimulationSection {
   }
 
   void read_accuracy(MapReader& map) {
-    const auto accuracy = map.find("accuracy");
-    map.conflict("step", "accuracy");
-    if (accuracy) settings_.accuracy = accuracy->quantity(dimension::length, positive).value_or(0.0);
+    accuracy_ = map.find("accuracy");
+    if (!accuracy_ || map.conflict("step", "accuracy")) return;
+    settings_.accuracy = accuracy_->quantity(dimension::length, positive).value_or(0.0);
   }
 
   /// What the file leaves open. An accuracy leaves everything open: the first step and the bounds are wide enough that
@@ -120,6 +120,13 @@ class SimulationSection {
     in_order(largest_, settings_.largest_step >= settings_.step,
              fmt::format("'max' must not be below 'size', {} s", settings_.step));
     require_estimate();
+    if (draft_.options.finer) refine();
+  }
+
+  void refine() {
+    if (!settings_.adaptive) settings_.step *= 0.5;
+    settings_.tolerance *= 0.1;
+    settings_.accuracy *= 0.1;
   }
 
   /// An integrator that cannot tell its error cannot choose its steps.
@@ -130,9 +137,9 @@ class SimulationSection {
     if (!settings_.integrator.declare(layout, message)) return;  // told when the run begins
     if (layout.always_adaptive != 0) settings_.adaptive = true;
     if (!settings_.adaptive || layout.error_estimate != 0) return;
-    const std::string why =
-        fmt::format("integrator '{}' gives no error estimate: it takes fixed steps only",
-                    settings_.integrator_parameters.component->description.name);
+    const std::string why = fmt::format("integrator '{}' gives no error estimate: it takes fixed steps only",
+                                        settings_.integrator_parameters.component->description.name);
+    if (accuracy_ && settings_.accuracy > 0.0 && !draft_.options.accuracy) return accuracy_->fail("out-of-range", why);
     if (step_ && settings_.accuracy == 0.0) return step_->fail("out-of-range", why);
     throw Error(Error::Category::usage, "usage", why);
   }
@@ -264,7 +271,7 @@ class SimulationSection {
 
   Draft& draft_;
   Settings& settings_;
-  std::optional<CheckedValue> integrator_, step_, smallest_, largest_;
+  std::optional<CheckedValue> integrator_, step_, accuracy_, smallest_, largest_;
 };
 
 }  // namespace

@@ -104,10 +104,11 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   }
   // Another event comes first, or this is the first sight of one.
   if (found.joint >= 0 && !same) hunted = found;
-  const double miss = std::abs(hunted.value);
-  const bool sharp = miss <= event_rounding || miss <= event_time * std::abs(hunted.rate) || tries > most_tries / 2;
+  // The step ends just past the zero, so that what begins there acts from the first on.
+  const double past = hunted.value;
+  const bool sharp = past <= event_rounding || past <= event_time * hunted.rate || tries > most_tries / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
-  if (ends_there && miss <= StepEvents::tolerance && sharp) {
+  if (ends_there && past >= 0.0 && past <= StepEvents::tolerance && sharp) {
     done = true;
     return true;
   }
@@ -117,10 +118,12 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
                                model.joints[at(hunted.joint)].name));
   }
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
-  const double newton = dt - hunted.value / hunted.rate;
+  const double aim = std::min(0.1 * event_time * hunted.rate, 0.5 * StepEvents::tolerance);
+  const double newton = dt - (hunted.value - aim) / hunted.rate;
   const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
   double next = near ? newton : (found.joint >= 0 ? found.fraction * dt : dt);
-  if (!(next > 0.0) || std::abs(next - dt) <= rounding * dt) next = 0.5 * dt;
+  if (next == dt) next = past < 0.0 ? dt * (1.0 + 4.0 * rounding) : dt * (1.0 - 4.0 * rounding);
+  if (!(next > 0.0)) next = 0.5 * dt;
   dt = next;
   return true;
 }
@@ -133,7 +136,8 @@ bool Simulation::Impl::write_rows_inside() {
   return true;
 }
 
-bool Simulation::Impl::write_row_at(double t) {
+// A consistent state inside the step that was just made, in `between` and e_between.
+bool Simulation::Impl::look_inside(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
   DenseStep(accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(s, between);
   between.t() = t;
@@ -146,9 +150,17 @@ bool Simulation::Impl::write_row_at(double t) {
     return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
   }
   if (!system.evaluate(point(between), all_terms, e_between)) return fail_with(e_between.fault, t);
+  return true;
+}
+
+bool Simulation::Impl::write_row_at(double t) {
+  if (!look_inside(0.5 * (accepted.t() + t))) return false;
+  energy.flow(e_between, between.lambda(), flow_half_way);
+  if (!look_inside(t)) return false;
   Fault fault;
   if (!observer.observe(point(between), e_between, between.lambda(), row_between, fault)) return fail_with(fault, t);
-  energy.fill(e_between, channels, row_between, s);
+  const double s = (t - accepted.t()) / (trial.t() - accepted.t());
+  energy.fill_inside(s, flow_half_way, e_between, between.lambda(), channels, row_between);
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row_between);
   return true;
@@ -161,8 +173,8 @@ std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const 
   const int worst = solver.worst_component();
   if (worst < 0) return text;
   const char* directions[] = {"x", "y", "angle"};
-  text += fmt::format("; the error is largest in body '{}' ({})", model.bodies[at(worst / 3)].name,
-                      directions[worst % 3]);
+  text +=
+      fmt::format("; the error is largest in body '{}' ({})", model.bodies[at(worst / 3)].name, directions[worst % 3]);
   if (const int joint = hardest_joint(worst / 3); joint >= 0) {
     text += fmt::format(", on which joint '{}' pulls hardest", model.joints[at(joint)].name);
   }

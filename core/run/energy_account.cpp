@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "run/event_finder.h"
-
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -21,7 +19,8 @@ EnergyAccount::EnergyAccount(const System& system)
       joint_loss_(system.model().joints.size(), 0.0),
       stored_start_(system.model().joints.size(), 0.0) {
   const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
-  for (auto* numbers : {&power_, &integral_, &power_before_, &power_end_, &integral_before_}) numbers->resize(count);
+  for (auto* numbers : {&power_, &integral_, &power_before_, &integral_before_, &integral_inside_})
+    numbers->resize(count);
 }
 
 void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const {
@@ -51,31 +50,42 @@ void EnergyAccount::start(const Evaluation& e, std::span<const double> lambda, c
   flow(e, lambda, power_);
 }
 
-void EnergyAccount::add(double dt, const Evaluation& e, std::span<const double> lambda,
-                        std::span<const double> integrals) {
+void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double> lambda,
+                         std::span<const double> integrals) {
   dt_ = dt;
   std::ranges::copy(power_, power_before_.begin());
   std::ranges::copy(integral_, integral_before_.begin());
+  std::ranges::copy(integrals, integral_.begin());
   flow(e, lambda, power_);
-  std::ranges::copy(power_, power_end_.begin());
+}
+
+void EnergyAccount::add(double dt, std::span<const double> half_way, const Evaluation& e,
+                        std::span<const double> lambda) {
+  take(dt, e, lambda, integral_);
   for (std::size_t i = 0; i < power_.size(); ++i) {
-    integral_[i] = integrals.empty() ? integral_[i] + 0.5 * dt * (power_before_[i] + power_[i]) : integrals[i];
+    integral_[i] += dt / 6.0 * (power_before_[i] + 4.0 * half_way[i] + power_[i]);
   }
 }
 
-double EnergyAccount::integral(std::size_t flow, double s) const {
-  if (s == 1.0) return integral_[flow];
-  return Hermite{integral_before_[flow], dt_ * power_before_[flow], integral_[flow], dt_ * power_end_[flow]}.at(s);
+void EnergyAccount::fill_inside(double s, std::span<const double> half_way, const Evaluation& e,
+                                std::span<const double> lambda, const Channels& channels, std::span<double> row) {
+  flow(e, lambda, integral_inside_);
+  for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
+    const double sum = power_before_[i] + 4.0 * half_way[i] + integral_inside_[i];
+    integral_inside_[i] = integral_before_[i] + s * dt_ / 6.0 * sum;
+  }
+  fill(e, channels, row, integral_inside_);
 }
 
-void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::span<double> row, double s) {
+void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::span<double> row,
+                         std::span<const double> integral) {
   std::size_t flow = 0;
   double work = 0.0, lost = 0.0;
-  for (double& driver : driver_work_) work += driver = integral(flow++, s);
-  for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral(flow++, s);
+  for (double& driver : driver_work_) work += driver = integral[flow++];
+  for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
   for (const ForceBlock& block : system_.force_blocks()) {
     const std::size_t j = at(block.joint);
-    joint_loss_[j] = -integral(flow++, s) - (e.potential[j] - stored_start_[j]);
+    joint_loss_[j] = -integral[flow++] - (e.potential[j] - stored_start_[j]);
     lost += joint_loss_[j];
   }
   const double total = row[at(channels.energy.kinetic)] + row[at(channels.energy.potential)];

@@ -14,8 +14,8 @@ double power(const double* wrench, const MarkerKinematics& k);
 
 /// Booked are work of drivers and applied forces and the loss of joints: minus the power of their wrenches, less what
 /// they store. What an integrator or a projection loses is never booked; it is the residual. The powers ("flows":
-/// drivers, applied forces, joints with forces, in this order) are integrated by the trapezoidal rule over accepted
-/// steps, or by the integrator itself, along with z, where it can: then to its order.
+/// drivers, applied forces, joints with forces, in this order) are integrated by Simpson's rule over accepted steps, or
+/// by the integrator itself, along with z, where it can: then to its order.
 class EnergyAccount {
  public:
   explicit EnergyAccount(const System& system);
@@ -27,11 +27,16 @@ class EnergyAccount {
   /// The start of a run. `row` needs the observed columns.
   void start(const Evaluation& e, std::span<const double> lambda, const Channels& channels,
              std::span<const double> row);
-  /// The end of an accepted step. `integrals` are the flows() integrals since the start, or empty.
-  void add(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> integrals);
-  /// Fills dissipated, work and residual of a row that holds the observed columns: at the end of the last step, or at
-  /// the fraction s of it where `e` is evaluated there (cubic in the integrals).
-  void fill(const Evaluation& e, const Channels& channels, std::span<double> row, double s = 1.0);
+  /// The end of an accepted step, with the flows() integrals since the start.
+  void take(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> integrals);
+  /// The same with the powers in the middle of the step.
+  void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
+  /// Fills dissipated, work and residual of a row that holds the observed columns, at the end of the last step.
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row) { fill(e, channels, row, integral_); }
+  /// The same at the fraction s of the last step, where `e` and `lambda` are: by Simpson's rule with the powers
+  /// half-way there.
+  void fill_inside(double s, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda,
+                   const Channels& channels, std::span<double> row);
   /// An event changed what acts at the end of the last step.
   void renew(const Evaluation& e, std::span<const double> lambda) { flow(e, lambda, power_); }
 
@@ -39,13 +44,13 @@ class EnergyAccount {
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
 
  private:
-  double integral(std::size_t flow, double s) const;
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral);
 
   const System& system_;
   double dt_ = 0.0, initial_ = 0.0;
   std::vector<double> driver_work_, joint_loss_, stored_start_;
-  std::vector<double> power_, integral_;                       // at the end of the last step
-  std::vector<double> power_before_, power_end_, integral_before_;  // of the last step
+  std::vector<double> power_, integral_;                                  // at the end of the last step
+  std::vector<double> power_before_, integral_before_, integral_inside_;  // of the last step
 };
 
 }  // namespace freeplay

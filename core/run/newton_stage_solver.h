@@ -42,10 +42,10 @@ class NewtonStageSolver {
   bool accelerate(StateView& state, Span<double> z_rate);
 
   /// From now on attempts return their error in units of `tolerance` [m] in position, angles by the model's size, and
-  /// of tolerance/s in velocity, or, where the model moves faster than its size in a second, of that part of its speed.
+  /// of tolerance/s in velocity: what an error of the velocity comes to in a second.
   void control_error(double tolerance) { allowed_ = tolerance, table_.estimates = tolerance > 0.0 ? 1 : 0; }
-  /// The velocities at the start of the attempt; for the unit of error_norm().
-  void use_velocity(std::span<const double> v) { allowed_rate_ = allowed_ * (1.0 + norm(v)); }
+  /// The velocities at the start of the attempt; their rounding is no error.
+  void use_velocity(std::span<const double> v) { allowed_rate_ = allowed_ + 2e-14 * system_.size() * norm(v); }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
   /// Index into v of the largest part of the last error_norm().
   int worst_component() const { return worst_component_; }

@@ -24,6 +24,7 @@ struct Simulation::Impl {
   bool step(double dt, bool& converged);
   bool prepare_trial(double dt);
   bool accept(const StepEvents::Passage& located);
+  void add_energy();
   bool refresh();
   bool record_row();
   bool note_warnings();
@@ -38,6 +39,7 @@ struct Simulation::Impl {
   bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
   bool write_rows_inside();
   bool write_row_at(double t);
+  bool look_inside(double t);
   std::string why_so_small(double dt, int limiting_joint) const;
   double row_time(long index) const;
 
@@ -65,7 +67,7 @@ struct Simulation::Impl {
   Observer observer;
   StepEvents events;
   Statistics statistics;
-  std::vector<double> scratch, row, row_between, residual, z_rate;
+  std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way;
   std::vector<int> stop_columns, with_history;
   struct Warning {
     const char* text = nullptr;

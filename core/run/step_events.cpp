@@ -175,7 +175,8 @@ bool StepEvents::tell_at_end(const Passage& hunted, State& after, const Evaluati
       const bool grows = std::abs(g[at(i)]) <= tolerance && sign * r[at(i)] > 0.0;
       if (!grows && !(joint == hunted.joint && i == hunted.event && !std::isnan(g[at(i)]))) continue;
       double numbers[9];
-      if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers)) return false;
+      if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers))
+        return false;
       break;
     }
   }
@@ -189,9 +190,9 @@ bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation&
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
   JointInput in = system_.input(joint, here, e);
   in.mobility = mobility;
-  if (!system_.joint(joint).on_event(
-          event, in, Span<double>(state.z()).part(at(z.offset), at(z.size)),
-          Span<double>(state.h()).part(at(h.offset), at(h.size)), {values_.data() + first, count}, fault.message)) {
+  if (!system_.joint(joint).on_event(event, in, Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                                     Span<double>(state.h()).part(at(h.offset), at(h.size)),
+                                     {values_.data() + first, count}, fault.message)) {
     fault.kind = Fault::Kind::plugin;
     fault.joint = joint;
     return false;

@@ -110,9 +110,9 @@ struct IntegratorLayout {
   double newton_tolerance = 1e-10;   ///< largest position error left by a stage, in model sizes
   std::int32_t newton_max_iterations = 20;
   // Appended.
-  std::int32_t error_order = 0;        ///< power of dt with which the estimate falls; 0: order + 1
-  std::uint32_t explicit_stages = 0;   ///< nonzero: accelerate() is all that it solves; the host may then hand it more z
-  std::uint32_t always_adaptive = 0;   ///< nonzero: may not be run with fixed steps
+  std::int32_t error_order = 0;       ///< power of dt with which the estimate falls; 0: order + 1
+  std::uint32_t explicit_stages = 0;  ///< nonzero: accelerate() is all that it solves; the host may then hand it more z
+  std::uint32_t always_adaptive = 0;  ///< nonzero: may not be run with fixed steps
 };
 
 /// The parameters of every implicit integrator; spread them into its table and copy them in declare().
