@@ -174,17 +174,19 @@ std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good
   return to.bits();
 }
 
-double IntegratorDrive::estimate(double dt, double tolerance, double& truth, const KnownState& end) {
+double IntegratorDrive::estimate(double dt, double tolerance, double& truth, const KnownState& now,
+                                 const KnownState& end) {
   NewtonStageSolver solver(reference_.system(), options_);
-  solver.control_error(tolerance);
+  solver.control_error(tolerance, tolerance, 0.0);
   GuardedState to = accepted_;
   solver.use_velocity(to.v.span());
   Attempt attempt{};
   GuardedNumbers scratch(at(layout_.scratch), 0.0);
   if (!call_attempt(dt, to, scratch, solver.table(), false, attempt) || attempt.converged == 0) return 0.0;
   std::vector<double> position = to.q.values(), velocity = to.v.values();
-  for (std::size_t i = 0; i < position.size(); ++i) position[i] -= end.q[i];
-  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] -= end.v[i];
+  const std::vector<double> q = accepted_.q.values(), v = accepted_.v.values();
+  for (std::size_t i = 0; i < position.size(); ++i) position[i] -= end.q[i] + (q[i] - now.q[i]);
+  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] -= end.v[i] + (v[i] - now.v[i]);
   truth = solver.error_norm(position, velocity);
   return attempt.error;
 }

@@ -86,7 +86,11 @@ bool Simulation::Impl::adaptive_step() {
     if (!pursue(hunted, dt, tries, done)) return false;
     if (done) break;
   }
-  control.accept(trial.t() - accepted.t(), error);
+  if (hunted.joint >= 0) {
+    control.cut();
+  } else {
+    control.accept(trial.t() - accepted.t(), error);
+  }
   return accept(hunted);
 }
 

@@ -8,6 +8,7 @@
 // Factors are kept over stages and steps, one for each pair of betas, while the iteration contracts.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -41,11 +42,16 @@ class NewtonStageSolver {
   /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
   bool accelerate(StateView& state, Span<double> z_rate);
 
-  /// From now on attempts return their error in units of `tolerance` [m] in position, angles by the model's size, and
-  /// of tolerance/s in velocity: what an error of the velocity comes to in a second.
-  void control_error(double tolerance) { allowed_ = tolerance, table_.estimates = tolerance > 0.0 ? 1 : 0; }
-  /// The velocities at the start of the attempt; their rounding is no error.
-  void use_velocity(std::span<const double> v) { allowed_rate_ = allowed_ + 2e-14 * system_.size() * norm(v); }
+  /// From now on attempts return their error in units of `position` [m], angles by the model's size, and in velocity of
+  /// `velocity` [m/s] plus the part `relative` of the largest velocity.
+  void control_error(double position, double velocity, double relative) {
+    allowed_ = position, allowed_slow_ = velocity, allowed_part_ = relative;
+    table_.estimates = position > 0.0 ? 1 : 0;
+  }
+  /// The velocities at the start of the attempt. Their rounding is no error.
+  void use_velocity(std::span<const double> v) {
+    allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * norm(v);
+  }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
   /// Index into v of the largest part of the last error_norm().
   int worst_component() const { return worst_component_; }
@@ -82,8 +88,9 @@ class NewtonStageSolver {
   bool find_dependent_rows();
   void solve_with(const Factor& factor);
   double norm(std::span<const double> increment) const;
-  /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_).
-  bool refine(std::span<double> x_a, std::span<double> x_c, double scale);
+  /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
+  /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
+  bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
 
   const System& system_;
   StageOptions options_;
@@ -98,7 +105,7 @@ class NewtonStageSolver {
   bool any_dependent_ = false, rank_known_ = false;
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
   const EnergyAccount* flows_ = nullptr;
-  double allowed_ = 0.0, allowed_rate_ = 0.0;
+  double allowed_ = 0.0, allowed_slow_ = 0.0, allowed_part_ = 0.0, allowed_rate_ = 0.0;
   int worst_row_ = -1, worst_component_ = -1;
   const char* trouble_ = "";
 };

@@ -93,7 +93,8 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
                       tolerance, owner.size(), smallest),
           {}, "ask for less accuracy");
     }
-    solver.control_error(tolerance);
+    // An accuracy is kept per second; a tolerance is relative in velocity, too.
+    solver.control_error(tolerance, tolerance, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
     owner.end_steps_at_events(settings.per_contact);
   }
   if (flows > 0) solver.integrate_flows(energy);
@@ -301,7 +302,6 @@ bool Simulation::Impl::refresh() {
   }
   if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
   energy.renew(e_accepted, accepted.lambda());
-  control.restart();
   return true;
 }
 

@@ -18,11 +18,12 @@ class StepControl {
   double next() const { return next_; }
   const StepLimits& limits() const { return limits_; }
   void accept(double dt, double error);
+  /// The step was made shorter, to end at an event: the proposal stands, and the law of motion may be a new one, of
+  /// which the last errors say nothing.
+  void cut() { last_error_ = 1.0, rejected_ = false; }
   void reject(double dt, double error);
   /// The step did not converge.
   void halve(double dt);
-  /// The motion has a new law from here on: what the last errors said does not count.
-  void restart() { last_error_ = 1.0; }
 
  private:
   StepLimits limits_;

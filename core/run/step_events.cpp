@@ -9,7 +9,8 @@
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr int most_per_step = 8;  // of one joint; more are rounding, not motion
+constexpr double rounding = 1e-15;  // of a located event function, in its unit
+constexpr int most_per_step = 8;    // of one joint; more are rounding, not motion
 }  // namespace
 
 StepEvents::StepEvents(const System& system, bool located, int flows)
@@ -137,6 +138,8 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       const Hermite first{sign * g0[i], sign * r0[i] * half, sign * gm[i], sign * rm[i] * half};
       const Hermite second{first.value1, first.slope1, sign * g1[i], sign * r1[i] * half};
       double at = 2.0;
+      // A function that rests at its zero crosses it by rounding all the time.
+      if (std::max(first.value1, second.value1) <= rounding) continue;
       // Past its zero all the way: the step is halved until it ends at the zero.
       if (const auto s = first_rise(first, 0.0)) {
         at = *s > 0.0 ? 0.5 * *s : 0.5;

@@ -40,6 +40,9 @@ class Documentation(ProgramTest):
     def test_getting_started(self):
         self.run_page(os.path.join("docs", "getting-started.md"))
 
+    def test_accuracy(self):
+        self.run_page(os.path.join("docs", "accuracy.md"))
+
     def test_pieces_of_the_model_page_are_a_model(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
             pieces = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)
@@ -49,7 +52,7 @@ class Documentation(ProgramTest):
         self.assertEqual(("", 0), (done.stderr, done.returncode))
 
     def test_links_lead_somewhere(self):
-        for page in ("README.md", os.path.join("docs", "getting-started.md")):
+        for page in ("README.md", os.path.join("docs", "getting-started.md"), os.path.join("docs", "accuracy.md")):
             with open(os.path.join(ROOT, page), encoding="utf-8") as file:
                 for target in re.findall(r"\]\((?!https?:)([^)#]+)", file.read()):
                     self.assertTrue(os.path.exists(os.path.join(ROOT, os.path.dirname(page), target)), target)
