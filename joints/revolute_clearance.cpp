@@ -102,6 +102,7 @@ enum Slot : std::size_t {
   max_force,        ///< of the present contact [N]
   max_penetration,  ///< of the present contact [m]
   steps,            ///< accepted steps of the present contact
+  impact_time,      ///< how long the present contact lasts if it is an impact, 0: not known [s]
   slots
 };
 
@@ -169,7 +170,7 @@ class RevoluteClearance final : public Joint {
   }
   void apply(const JointInput& in, JointForces& out) const override {
     const Gap gap(in, radii_);
-    if (!touches(gap)) return;
+    if (!touches(in, gap)) return;
     const Forces f = forces(in, gap, out.internal_rate);
     const Eigen::Vector2d on_b = -f.normal.normal * gap.n + f.friction.tangential * gap.t;
     for (int i = 0; i < 2; ++i) {
@@ -185,7 +186,7 @@ class RevoluteClearance final : public Joint {
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
     std::fill(internal.begin(), internal.end(), 0.0);
     reset(history);
-    if (touches(Gap(in, radii_))) {
+    if (Gap(in, radii_).penetration > 0.0) {
       history[phase] = on_from_start;
       history[begin_time] = in.t;
     }
@@ -194,7 +195,8 @@ class RevoluteClearance final : public Joint {
                   Span<double> history) const override {
     // A little inside, so that rounding of t + dt does not matter.
     history[step_end] = in.t + dt * (1.0 - 1e-9);
-    history[predicted] = history[phase] == flight ? predict(Gap(in, radii_), acc, dt) : 0.0;
+    const bool foresee = history[phase] == flight && in.per_contact == 0.0;
+    history[predicted] = foresee ? predict(Gap(in, radii_), acc, dt) : 0.0;
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     const Gap gap(in, radii_);
@@ -209,8 +211,11 @@ class RevoluteClearance final : public Joint {
     fields[1] = gap.slip;
     fields[2] = std::atan2(gap.e.y(), gap.e.x());
     if (index == 0) {
-      fields[0] = std::max(gap.rate, 0.0);
       begin(in.t, gap.rate, in.t >= history[step_end], history);
+      // The speed that the law uses: where the crossing lies inside the step, the motion behind it feels the contact.
+      const bool exact = history[approach_speed] == 0.0 || in.per_contact > 0.0;
+      fields[0] = exact ? std::max(gap.rate, 0.0) : history[approach_speed];
+      if (in.mobility != nullptr) history[impact_time] = impact_duration(gap, in.mobility);
       return;
     }
     fields[0] = std::max(-gap.rate, 0.0);
@@ -230,7 +235,7 @@ class RevoluteClearance final : public Joint {
     if (history[phase] == flight) return;
     // A contact that began at the very end of the step has not taken it.
     if (in.t > history[begin_time]) history[steps] += 1.0;
-    if (!touches(gap)) return;
+    if (!touches(in, gap)) return;
     const double force = contact_law_.evaluate({gap.penetration, gap.rate, history[approach_speed]}).normal;
     history[max_force] = std::max(history[max_force], force);
     history[max_penetration] = std::max(history[max_penetration], gap.penetration);
@@ -239,7 +244,7 @@ class RevoluteClearance final : public Joint {
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     const Gap gap(in, radii_);
     double normal = 0.0, tangential = 0.0;
-    if (touches(gap)) {
+    if (touches(in, gap)) {
       double unused[most_internal_variables];
       const Forces f = forces(in, gap, {unused, static_cast<std::size_t>(internal_variables_)});
       normal = f.normal.normal;
@@ -251,6 +256,22 @@ class RevoluteClearance final : public Joint {
     const double values[] = {
         gap.e.x(), gap.e.y(), gap.penetration, normal, tangential, power, in.history[phase] == flight ? 0.0 : 1.0};
     std::copy(std::begin(values), std::end(values), channels.begin());
+  }
+  /// An impact: its duration over the steps that it should take; after twice its duration it is a lasting contact. In
+  /// flight: the journal moves by no more than the clearance.
+  double step_limit(const JointInput& in) const override {
+    if (in.history[phase] == flight) {
+      const double speed = Gap(in, radii_).e_rate.norm();
+      return speed > 0.0 ? radii_.clearance / speed : unbounded;
+    }
+    const double duration = in.history[impact_time];
+    const bool impact = duration > 0.0 && in.t - in.history[begin_time] < 2.0 * duration;
+    return impact ? duration / std::max(in.per_contact, 1.0) : unbounded;
+  }
+  const char* warning(const JointInput& in) const override {
+    const Gap gap(in, radii_);
+    if (in.history[phase] == flight || !touches(in, gap)) return nullptr;
+    return contact_law_.outside_range({gap.penetration, gap.rate, in.history[approach_speed]});
   }
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
     out = start_;
@@ -286,7 +307,10 @@ class RevoluteClearance final : public Joint {
     std::copy(velocity.begin(), velocity.end(), start_.velocity);
   }
 
-  bool touches(const Gap& gap) const { return gap.penetration > 0.0; }
+  /// Where steps end at events a flight lasts until its event: an attempt that passes it stays smooth.
+  static bool touches(const JointInput& in, const Gap& gap) {
+    return gap.penetration > 0.0 && (in.per_contact == 0.0 || in.history[phase] != flight);
+  }
   double radius_a() const { return radii_.known() ? radii_.bearing : 0.0; }
   double radius_b() const { return radii_.known() ? radii_.journal : 0.0; }
   /// Distances of C from the origins of a and b, along n.
@@ -355,6 +379,28 @@ class RevoluteClearance final : public Joint {
     const double end = history[step_end];
     std::fill(history.begin(), history.end(), 0.0);
     history[step_end] = end;
+  }
+
+  /// About 3 d/v_0 for an impact that ends at the greatest penetration d: 2.94 for F ~ delta^1.5, pi for a spring. d
+  /// is where the law stores m v_0^2/2; 1/m = n^T W n with the mobility W.
+  double impact_duration(const Gap& gap, const double* mobility) const {
+    double inverse_mass = 0.0;
+    for (int i = 0; i < 2; ++i)
+      for (int k = 0; k < 2; ++k) inverse_mass += gap.n[i] * mobility[3 * i + k] * gap.n[k];
+    const double speed = std::max(gap.rate, smallest_approach_speed), energy = 0.5 * speed * speed / inverse_mass;
+    if (!(inverse_mass > 0.0)) return 0.0;
+    // A law may refuse a penetration; the impact has not asked for it yet.
+    const auto stored = [this](double d) {
+      try {
+        return contact_law_.evaluate({d, 0.0, 0.0}).potential;
+      } catch (const std::exception&) {
+        return unbounded;
+      }
+    };
+    double low = 0.0, high = 1e-6 * radii_.clearance;
+    for (int i = 0; i < 60 && stored(high) < energy; ++i) low = high, high *= 2.0;
+    for (int i = 0; i < 10; ++i) (stored(0.5 * (low + high)) < energy ? low : high) = 0.5 * (low + high);
+    return 2.9 * low / speed;
   }
 
   /// Penetration at which static contact carries `force` [N]: bisection with Newton steps where they stay inside.

@@ -37,8 +37,8 @@ Component newmark() {
       {.name = "newmark",
        .summary = "Newmark's method, implicit, order 2 without damping; the trapezoidal rule by default.",
        .formula = "v_1 = v_n + h ((1 - gamma) a_n + gamma a_1), d_1 = h v_n + h^2 ((1/2 - beta) a_n + beta a_1).",
-       .validity = "Fixed steps; it gives no error estimate. Stable for every step where 2 beta >= gamma; order 1 for "
-                   "gamma above 1/2. Without damping, stiff modes that are excited ring on.",
+       .validity = "Stable for every step where 2 beta >= gamma; order 1 for gamma above 1/2. Without damping, stiff "
+                   "modes that are excited ring on.",
        .references = "Newmark 1959, J Eng Mech Div 85, 67-94",
        .parameters = parameters});
 }

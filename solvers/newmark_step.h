@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "freeplay/integrator.h"
+#include "step_error.h"
 
 namespace freeplay {
 
@@ -29,7 +30,8 @@ class NewmarkStep : public Integrator {
   void declare(IntegratorLayout& layout) const final {
     const Sizes& n = layout.sizes;
     layout.memory = n.nv + 2 * n.nz;
-    layout.scratch = n.nq + 2 * n.nv + n.nz;
+    layout.scratch = n.nq + 4 * n.nv + 2 * n.nz + StepError::scratch(n);
+    layout.error_estimate = 1;
     layout.order = std::abs(weights_.gamma - 0.5 + weights_.alpha_m - weights_.alpha_f) < 1e-12 ? 2 : 1;
     layout.newton_tolerance = tolerance_;
     layout.newton_max_iterations = iterations_;
@@ -55,13 +57,17 @@ class NewmarkStep : public Integrator {
                       .beta_v = beta_v,
                       .beta_z = beta_v,
                       .level = ConstraintLevel::position};
+    if (solver.estimates()) n.keep_start(to);
     if (solver.solve(stage, to).converged == 0) return {.converged = 0, .error = 0.0};
+    for (std::size_t i = 0; i < n.v.size; ++i) n.increment[i] += beta_q * to.a[i];  // the whole increment
     for (std::size_t i = 0; i < m.a.size; ++i) m.a[i] += k1_ * to.a[i];
     for (std::size_t i = 0; i < m.z.size; ++i) m.z[i] += k1_ * (to.z[i] - n.z[i]) / beta_v;
     solver.project_velocity(to);
     solver.accelerate(to, m.z_rate);
     if (!auxiliary_) take_over(to, m);
-    return {.converged = 1, .error = 0.0};
+    if (!solver.estimates()) return {.converged = 1, .error = 0.0};
+    StepError error(to, scratch.part(n.used, scratch.size - n.used));
+    return {.converged = 1, .error = error(dt, n.q, n.v_start, n.a_start, n.z_start, n.increment, to, solver)};
   }
 
  protected:
@@ -84,14 +90,28 @@ class NewmarkStep : public Integrator {
   };
   /// The base and the known terms of the stage, in slices of the scratch.
   struct Known {
-    Known(const StateView& s, Span<double> scratch)
-        : q(scratch.part(0, s.q.size)),
-          v(scratch.part(s.q.size, s.v.size)),
-          increment(scratch.part(s.q.size + s.v.size, s.v.size)),
-          z(scratch.part(s.q.size + 2 * s.v.size, s.z.size)) {
+    Known(const StateView& s, Span<double> scratch) {
+      const auto take = [&](std::size_t count) {
+        used += count;
+        return scratch.part(used - count, count);
+      };
+      q = take(s.q.size);
+      v = take(s.v.size);
+      increment = take(s.v.size);
+      z = take(s.z.size);
+      v_start = take(s.v.size);
+      a_start = take(s.v.size);
+      z_start = take(s.z.size);
       std::copy(s.q.begin(), s.q.end(), q.begin());
     }
-    Span<double> q, v, increment, z;
+    /// Before the stage overwrites it.
+    void keep_start(const StateView& s) const {
+      std::copy(s.v.begin(), s.v.end(), v_start.begin());
+      std::copy(s.a.begin(), s.a.end(), a_start.begin());
+      std::copy(s.z.begin(), s.z.end(), z_start.begin());
+    }
+    std::size_t used = 0;
+    Span<double> q, v, increment, z, v_start, a_start, z_start;
   };
 
   static void take_over(const StateView& state, const Memory& m) {

@@ -6,10 +6,11 @@ Component bathe();
 Component newmark();
 Component hht();
 Component generalized_alpha();
+Component dopri5();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(solvers) {
   using namespace freeplay;
-  static const Component components[] = {bathe(), newmark(), hht(), generalized_alpha()};
+  static const Component components[] = {bathe(), newmark(), hht(), generalized_alpha(), dopri5()};
   return publish(*host, *manifest, "solvers", "0.1.0", components);
 }

@@ -74,16 +74,20 @@ BuildOptions build_options(const ModelOptions& options) {
   return build;
 }
 
-double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
+double signed_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
   try {
     const Expression expression = Expression::compile(text, NoParameters{}, false);
     expression.require(dimension);
-    const double value = expression.constant().value;
-    if (!(value > 0.0)) bad_value(option, text, "it must be greater than 0");
-    return value;
+    return expression.constant().value;
   } catch (const ExpressionError& e) {
     bad_value(option, text, e.message, e.suggestion.empty() ? e.hint : fmt::format("did you mean '{}'?", e.suggestion));
   }
+}
+
+double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
+  const double value = signed_quantity(option, text, dimension);
+  if (!(value > 0.0)) bad_value(option, text, "it must be greater than 0");
+  return value;
 }
 
 void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed) {

@@ -46,6 +46,8 @@ BuildOptions build_options(const ModelOptions& options);
 
 /// A positive quantity such as "0.5 s". Throws Error{usage} "bad-value".
 double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
+/// A quantity of either sign. Throws Error{usage} "bad-value".
+double signed_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
 
 /// Throws Error{usage} "unknown-name" with a suggestion unless `word` is one of `allowed`; `what` is what it names.
 void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed);

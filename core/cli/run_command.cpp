@@ -1,8 +1,9 @@
 #include "cli/run_command.h"
 
-#include <array>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "cli/progress_line.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
+#include "cli/verify_table.h"
 #include "io/channel_selection.h"
 #include "io/csv_sink.h"
 #include "io/event_sink.h"
@@ -22,10 +24,14 @@
 #include "io/run_log.h"
 #include "io/summary.h"
 #include "io/version.h"
+#include "report/row_memory.h"
+#include "report/verification.h"
 #include "run/simulation.h"
 
 namespace freeplay {
 namespace {
+
+constexpr double least_agreement = 1e-6;  // of positions, for --verify [m]
 
 struct RunOptions {
   std::string model, end, step, accuracy, integrator, out, format;
@@ -34,8 +40,6 @@ struct RunOptions {
 };
 
 void refuse_later_options(const RunOptions& options) {
-  if (!options.accuracy.empty()) not_in_this_release("--accuracy");
-  if (options.verify) not_in_this_release("--verify");
   if (options.profile) not_in_this_release("--profile");
   if (options.resume) not_in_this_release("--resume");
   if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
@@ -48,6 +52,10 @@ BuildOptions build_options(const RunOptions& options) {
   BuildOptions build = freeplay::build_options(options.model_options);
   if (!options.end.empty()) build.end = positive_quantity("--end", options.end, dimension::time);
   if (!options.step.empty()) build.step = positive_quantity("--step", options.step, dimension::time);
+  if (!options.accuracy.empty()) build.accuracy = positive_quantity("--accuracy", options.accuracy, dimension::length);
+  if (build.step && build.accuracy) {
+    throw Error(Error::Category::usage, "usage", "--step and --accuracy exclude each other");
+  }
   if (!options.integrator.empty()) build.integrator = options.integrator;
   return build;
 }
@@ -79,7 +87,7 @@ class Recording {
     for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
   }
 
-  std::array<Sink*, 3> sinks() { return {&rows_, &events_, &advice_}; }
+  std::vector<Sink*> sinks() { return {&rows_, &events_, &advice_}; }
   RunLog& log() { return log_; }
   const ContactAdvice& advice() const { return advice_; }
 
@@ -119,12 +127,14 @@ class RunJob {
          const CommonOptions& common)
       : loaded_(loaded),
         assembled_(assembled),
+        options_(options),
         common_(common),
         path_(std::move(path)),
         channels_(*loaded.model),
         recording_(path_, options.force, *loaded.model, channels_),
+        rows_(channels_),
         sinks_(recording_.sinks()),
-        simulation_(assembled.system, assembled.start, channels_, sinks_) {}
+        simulation_(assembled.system, assembled.start, channels_, all_sinks()) {}
 
   int execute() {
     note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
@@ -135,8 +145,10 @@ class RunJob {
     note(fmt::format("{} at {:g} s after {} steps, {} rows", status_word(outcome.status), outcome.time, outcome.steps,
                      outcome.rows));
     if (!outcome.reason.empty()) recording_.log().write(outcome.exit_code == 0 ? "note" : "error", outcome.reason);
+    std::optional<Verification> verification;
+    if (options_.verify && outcome.exit_code == 0) verification = run_finer();
     recording_.close();
-    return finish(outcome);
+    return finish(outcome, verification);
   }
 
  private:
@@ -152,6 +164,42 @@ class RunJob {
     print_messages("freeplay: warning: " + text + "\n", common_.no_color);
   }
 
+  std::span<Sink* const> all_sinks() {
+    if (options_.verify) sinks_.push_back(&rows_);
+    return sinks_;
+  }
+
+  /// The same model with half the step or a tenth of the error; nothing of it is written but how it differs.
+  std::optional<Verification> run_finer() {
+    BuildOptions build = build_options(options_);
+    build.finer = true;
+    LoadedModel loaded = load_model(options_.model, build, common_);
+    const auto assembled = loaded.model ? assemble_model(loaded) : nullptr;
+    if (!assembled) {
+      warn("--verify: the model could not be read again");
+      return std::nullopt;
+    }
+    RowMemory rows(channels_);
+    Sink* const sink = &rows;
+    Simulation simulation(assembled->system, assembled->start, channels_, {&sink, 1});
+    RunHooks hooks;
+    hooks.interrupt = &watch_interrupts();
+    const Outcome outcome = simulation.run(hooks);
+    if (outcome.exit_code != 0) warn(fmt::format("--verify: the finer run ended early: {}", outcome.reason));
+    std::vector<std::string> positions;
+    for (const Body& body : loaded_.model->bodies) {
+      for (const char* quantity : {"x", "y"}) positions.push_back(fmt::format("body.{}.{}", body.name, quantity));
+    }
+    Verification result =
+        verify(rows_.table(), rows.table(), positions, std::max(least_agreement, settings().accuracy));
+    const Settings& finer = loaded.model->settings;
+    result.finer = !finer.adaptive        ? fmt::format("step {:g} s", finer.step)
+                   : finer.accuracy > 0.0 ? fmt::format("accuracy {:g} m", finer.accuracy)
+                                          : fmt::format("tolerance {:g}", finer.tolerance);
+    result.steps = outcome.steps;
+    return result;
+  }
+
   Outcome run() {
     ProgressLine progress(settings().start, settings().end, stderr_is_terminal() && !common_.quiet);
     RunHooks hooks;
@@ -163,12 +211,17 @@ class RunJob {
     return simulation_.run(hooks);
   }
 
-  int finish(const Outcome& outcome) {
-    const RunRecord record{*loaded_.model,           channels_,
-                           assembled_.start.facts,   outcome,
-                           simulation_.statistics(), simulation_.last_row(),
-                           recording_.advice(),      warnings_of(loaded_.diagnostics, simulation_.warnings()),
-                           recording_.files()};
+  int finish(const Outcome& outcome, const std::optional<Verification>& verification) {
+    RunRecord record{*loaded_.model,           channels_,
+                     assembled_.start.facts,   outcome,
+                     simulation_.statistics(), simulation_.last_row(),
+                     recording_.advice(),      warnings_of(loaded_.diagnostics, simulation_.warnings()),
+                     recording_.files()};
+    if (verification) {
+      for (const ChannelError& channel : verification->channels)
+        record.verify.emplace_back(channel.name, channel.error);
+      record.agree_until = verification->agree_until;
+    }
     const Json json = summary(record);
     recording_.seal(json);
     if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
@@ -177,18 +230,21 @@ class RunJob {
     if (common_.json) {
       print_json(json);
     } else if (!common_.quiet) {
-      print(run_table(record) + fmt::format("  results in {}\n", path_.string()));
+      print(run_table(record) + (verification ? verify_table(*verification) : "") +
+            fmt::format("  results in {}\n", path_.string()));
     }
     return outcome.exit_code;
   }
 
   const LoadedModel& loaded_;
   AssembledModel& assembled_;
+  const RunOptions& options_;
   const CommonOptions& common_;
   std::filesystem::path path_;
   Channels channels_;
   Recording recording_;
-  std::array<Sink*, 3> sinks_;
+  RowMemory rows_;
+  std::vector<Sink*> sinks_;
   Simulation simulation_;
 };
 
@@ -228,9 +284,9 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   app->add_option("MODEL", options->model, "Model file")->type_name("");
   app->add_option("--end", options->end, "End time: \"0.5 s\"")->type_name("T");
   app->add_option("--step", options->step, "Step: 2us")->type_name("H");
-  app->add_option("--accuracy", options->accuracy, "Accuracy instead of a step (not in this release)")->type_name("L");
+  app->add_option("--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um")->type_name("L");
   app->add_option("--integrator", options->integrator, "Integrator, with its default parameters")->type_name("NAME");
-  app->add_flag("--verify", options->verify, "Run again finer and compare (not in this release)");
+  app->add_flag("--verify", options->verify, "Run again finer, and tell the observed error of each channel");
   app->add_flag("--profile", options->profile, "Tell where the time went (not in this release)");
   app->add_option("--out", options->out, "Result directory (results/NAME)")->type_name("DIR");
   app->add_flag("--force", options->force, "Write into a directory that holds other files");

@@ -28,10 +28,12 @@ std::string prefixed(double value, const char* unit) {
 
 std::string first_line(const RunRecord& record) {
   const Settings& settings = record.model.settings;
-  return fmt::format("{}: {}, {:g} s in {} steps ({}, {:g} s), {:.3g} s wall\n", record.model.name,
+  std::string steps = fmt::format("{:g} s", settings.step);
+  if (settings.adaptive) steps = fmt::format("tolerance {:g}", settings.tolerance);
+  if (settings.accuracy > 0.0) steps = fmt::format("accuracy {:g} m", settings.accuracy);
+  return fmt::format("{}: {}, {:g} s in {} steps ({}, {}), {:.3g} s wall\n", record.model.name,
                      status_word(record.outcome.status), record.outcome.time, record.outcome.steps,
-                     settings.integrator_parameters.component->description.name, settings.step,
-                     record.outcome.wall_seconds);
+                     settings.integrator_parameters.component->description.name, steps, record.outcome.wall_seconds);
 }
 
 /// The heading of the first column, as wide as the longest name of all tables.
@@ -86,6 +88,19 @@ void add_paths(const RunRecord& record, TextTable& table) {
   }
 }
 
+/// How well the impacts that ended were resolved, and what would do.
+std::string steps_per_impact(const RunRecord& record) {
+  const ContactAdvice& advice = record.advice;
+  if (advice.ended() == 0) return {};
+  std::string text = fmt::format("  steps per impact: {:g} or more", advice.fewest_steps());
+  if (advice.under_resolved() == 0) return text + "\n";
+  text += fmt::format("; {} of {} impacts took fewer than {:g}: ", advice.under_resolved(), advice.ended(),
+                      advice.per_contact());
+  const bool adaptive = record.model.settings.adaptive;
+  return text + (adaptive ? "a larger per_contact or a smaller tolerance would do\n"
+                          : fmt::format("--step {:.2g}, or an accuracy in its place, would do\n", advice.step()));
+}
+
 }  // namespace
 
 std::string run_table(const RunRecord& record) {
@@ -97,6 +112,7 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.kinematics.empty()) add_paths(record, paths);
   text += joints.text("  ") + drivers.text("  ") + paths.text("  ");
   const bool any = has_statistics(record.model.settings, record.outcome);
+  text += steps_per_impact(record);
   return text + fmt::format("  energy residual {}   position residual {}\n",
                             any ? quantity(record.statistics.energy_residual(), "J", 2) : "-",
                             any ? quantity(record.statistics.position_residual(), "m", 2) : "-");

@@ -54,6 +54,9 @@ class JointRef {
   bool initial_offset(Span<const double> reaction, InitialOffset& out, Message& m) const {
     return ok(table_->initial_offset(self_, reaction, &out, &m));
   }
+  bool warning(const JointInput& in, const char*& text, Message& m) const {
+    return ok(table_->warning(self_, &in, &text, &m));
+  }
 
  private:
   static bool ok(Status status) { return status == Status::ok; }

@@ -35,6 +35,10 @@ abi::JointTable defaults<abi::JointTable>() {
     return Status::ok;
   };
   table.initial_offset = [](const void*, Span<const double>, InitialOffset*, Message*) noexcept { return Status::ok; };
+  table.warning = [](const void*, const JointInput*, const char** text, Message*) noexcept {
+    *text = nullptr;
+    return Status::ok;
+  };
   return table;
 }
 

@@ -54,9 +54,9 @@ const Component* Registry::find(ComponentKind kind, std::string_view name) const
   return nullptr;
 }
 
-const Component* Registry::preferred(ComponentKind kind) const {
+const Component* Registry::preferred(ComponentKind kind, std::uint32_t use) const {
   for (const RegisteredComponent& entry : components_) {
-    if (entry.component->kind == kind && entry.component->description.preferred != 0) return entry.component;
+    if (entry.component->kind == kind && entry.component->description.preferred == use) return entry.component;
   }
   return nullptr;
 }

@@ -37,8 +37,8 @@ class Registry {
   const std::vector<RegisteredLibrary>& libraries() const { return libraries_; }
   /// Null when there is no such type.
   const Component* find(ComponentKind kind, std::string_view name) const;
-  /// The type used where a model names none; null when the kind has none.
-  const Component* preferred(ComponentKind kind) const;
+  /// The type used where a model names none; null when the kind has none. `use`: as Description::preferred.
+  const Component* preferred(ComponentKind kind, std::uint32_t use = 1) const;
   /// The joint type with play that stands for a joint of type `ideal` with the key `block`; null without one.
   const Component* twin(std::string_view ideal, std::string_view block) const;
   std::vector<std::string> names(ComponentKind kind) const;

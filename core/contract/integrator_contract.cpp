@@ -37,6 +37,7 @@ class IntegratorCheck {
     for (const Kind kind : {Kind::oscillator, Kind::pendulum}) {
       const ReferenceSystem reference(kind);
       check_order(reference);
+      check_estimate(reference);
       if (findings_.broken("stays-in-span") || findings_.broken("declares-sanely")) return std::move(findings_);
       check_repeatable(reference);
     }
@@ -109,6 +110,44 @@ class IntegratorCheck {
     findings_.expect(rule, observed >= declared - 0.2, [&] {
       return fmt::format("{}: order {:.2f}, declared {}; errors {:.3g} and {:.3g} at steps of 1/160 and 1/320 s",
                          reference.name(), observed, declared, runs[3].value[kind], runs[4].value[kind]);
+    });
+  }
+
+  /// The estimate falls with the power of the step that is declared, and is not much less than the error itself.
+  /// Looked at after some steps of the same size, as methods with a memory need them after a restart, and always at the
+  /// same instant.
+  void check_estimate(const ReferenceSystem& reference) {
+    IntegratorLayout layout;
+    layout.sizes = {3, 3, 0, 0};
+    Message message;
+    if (!subject_.integrator.declare(layout, message) || layout.error_estimate == 0) return;
+    const int power = layout.error_order > 0 ? layout.error_order : layout.order + 1;
+    // Short enough for the power to show, long enough that the error stays above rounding.
+    constexpr double longest = 0.04, tolerance = 1e-10;
+    constexpr std::size_t halvings = 2, before = 8;
+    const std::vector<KnownState> known = reference.motion(longest / (1 << halvings), (before + 1) << halvings);
+    double last = 0.0, slope = 0.0, least_ratio = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i <= halvings; ++i) {
+      const double dt = longest / static_cast<double>(1 << i);
+      IntegratorDrive drive(subject_.integrator, reference, tight, conditions_, findings_);
+      if (!drive.start()) return;
+      for (std::size_t k = 0; k < before << i; ++k) {
+        if (!drive.step(dt)) return;
+      }
+      const std::size_t now = before << halvings, stride = std::size_t{1} << (halvings - i);
+      double truth = 0.0;
+      const double told = drive.estimate(dt, tolerance, truth, known[now], known[now + stride]);
+      if (i > 0) slope = std::log2(last / told);
+      last = told;
+      if (truth > 1e-3) least_ratio = std::min(least_ratio, told / truth);
+    }
+    findings_.expect("estimate-order", std::abs(slope - power) <= 0.5, [&] {
+      return fmt::format("{}: the error estimate falls with the power {:.2f} of the step, declared {}",
+                         reference.name(), slope, power);
+    });
+    // What the errors of earlier steps grow by in this one counts in the truth, and is of the same power.
+    findings_.expect("estimate-size", least_ratio >= 0.05, [&] {
+      return fmt::format("{}: the error estimate is {:.2g} times the error", reference.name(), least_ratio);
     });
   }
 

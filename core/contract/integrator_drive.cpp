@@ -79,7 +79,16 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
              [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
                auto& me = *static_cast<FailingStageSolver*>(self);
                return me.inner_.accelerate(me.inner_.self, state, z_rate, m);
-             }},
+             },
+             [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               return me.inner_.error_norm(me.inner_.self, position, velocity);
+             },
+             [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               me.inner_.retract(me.inner_.self, q_base, increment, q);
+             },
+             inner.estimates},
       good_stages_(good_stages) {}
 
 IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const ReferenceSystem& reference, double tolerance,
@@ -168,6 +177,23 @@ std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good
   if (!good) return {};
   converged = attempt.converged != 0;
   return to.bits();
+}
+
+double IntegratorDrive::estimate(double dt, double tolerance, double& truth, const KnownState& now,
+                                 const KnownState& end) {
+  NewtonStageSolver solver(reference_.system(), options_);
+  solver.control_error(tolerance, tolerance, 0.0);
+  GuardedState to = accepted_;
+  solver.use_velocity(to.v.span());
+  Attempt attempt{};
+  GuardedNumbers scratch(at(layout_.scratch), 0.0);
+  if (!call_attempt(dt, to, scratch, solver.table(), false, attempt) || attempt.converged == 0) return 0.0;
+  std::vector<double> position = to.q.values(), velocity = to.v.values();
+  const std::vector<double> q = accepted_.q.values(), v = accepted_.v.values();
+  for (std::size_t i = 0; i < position.size(); ++i) position[i] -= end.q[i] + (q[i] - now.q[i]);
+  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] -= end.v[i] + (v[i] - now.v[i]);
+  truth = solver.error_norm(position, velocity);
+  return attempt.error;
 }
 
 void IntegratorDrive::residuals(double& position, double& velocity) {

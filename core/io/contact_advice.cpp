@@ -5,7 +5,8 @@
 
 namespace freeplay {
 
-ContactAdvice::ContactAdvice(const Model& model) : from_(model.settings.start + model.settings.discard) {
+ContactAdvice::ContactAdvice(const Model& model)
+    : from_(model.settings.start + model.settings.discard), per_contact_(model.settings.per_contact) {
   for (const JointElement& joint : model.joints) {
     auto& events = fields_.emplace_back();
     for (const Event& event : joint.layout.events) {
@@ -24,10 +25,11 @@ void ContactAdvice::event(const EventRecord& record) {
   const double steps = record.fields[static_cast<std::size_t>(at.steps)];
   const double duration = record.fields[static_cast<std::size_t>(at.duration)];
   if (std::isnan(steps)) return;
+  ++ended_;
   fewest_steps_ = std::fmin(fewest_steps_, steps);
-  if (steps >= per_contact) return;
+  if (steps >= per_contact_) return;
   ++under_resolved_;
-  step_ = std::fmin(step_, duration / per_contact);
+  step_ = std::fmin(step_, duration / per_contact_);
 }
 
 }  // namespace freeplay

@@ -12,9 +12,6 @@ namespace freeplay {
 /// Looks at events that tell `duration` and `steps` of a contact that ended, from Settings::discard on.
 class ContactAdvice : public Sink {
  public:
-  /// Steps that an impact should take.
-  static constexpr double per_contact = 20.0;
-
   explicit ContactAdvice(const Model& model);
 
   void row(std::span<const double>) override {}
@@ -24,16 +21,19 @@ class ContactAdvice : public Sink {
   long under_resolved() const { return under_resolved_; }
   /// Fewest steps of a contact; NaN when none ended.
   double fewest_steps() const { return fewest_steps_; }
-  /// Step that gives every contact `per_contact` steps [s]; NaN when all have them.
+  /// Contacts that ended, and the steps that each should take (Settings::per_contact).
+  long ended() const { return ended_; }
+  double per_contact() const { return per_contact_; }
+  /// Step that gives every contact so many steps [s]; NaN when all have them.
   double step() const { return step_; }
 
  private:
   struct Fields {
     int duration = -1, steps = -1;
   };
-  double from_;
+  double from_, per_contact_;
   std::vector<std::vector<Fields>> fields_;  // joint, event
-  long under_resolved_ = 0;
+  long under_resolved_ = 0, ended_ = 0;
   double fewest_steps_ = std::numeric_limits<double>::quiet_NaN(), step_ = fewest_steps_;
 };
 

@@ -75,6 +75,17 @@ Json integrator_part(const ParameterBlock& block) {
   return part;
 }
 
+Json step_part(const Settings& settings) {
+  Json part = {{"size", settings.step}, {"adaptive", settings.adaptive}};
+  if (!settings.adaptive) return part;
+  if (settings.accuracy > 0.0) part["accuracy"] = settings.accuracy;
+  if (!(settings.accuracy > 0.0)) part["tolerance"] = settings.tolerance;
+  part["min"] = settings.smallest_step;
+  part["max"] = settings.largest_step;
+  part["per_contact"] = settings.per_contact;
+  return part;
+}
+
 Json settings_part(const Model& model) {
   const Settings& settings = model.settings;
   Json set = Json::object();
@@ -82,7 +93,7 @@ Json settings_part(const Model& model) {
   return {{"start", settings.start},
           {"end", settings.end},
           {"integrator", integrator_part(settings.integrator_parameters)},
-          {"step", {{"size", settings.step}, {"adaptive", false}}},
+          {"step", step_part(settings)},
           {"interval", settings.interval},
           {"discard", settings.discard},
           {"set", set},
@@ -183,6 +194,13 @@ Json advice_part(const ContactAdvice& advice) {
           {"step", json_number(advice.step())}};
 }
 
+Json verify_part(const RunRecord& record) {
+  if (record.verify.empty()) return nullptr;
+  Json part = Json::object();
+  for (const auto& [channel, error] : record.verify) part[channel] = json_number(error);
+  return part;
+}
+
 Json performance_part(const Outcome& outcome) {
   const double rate = outcome.wall_seconds > 0.0 ? static_cast<double>(outcome.steps) / outcome.wall_seconds : 0.0;
   return {{"wall_seconds", outcome.wall_seconds}, {"steps_per_second", rate}};
@@ -229,8 +247,8 @@ Json summary(const RunRecord& record) {
           {"paths", paths_part(record)},
           {"energy", energy_part(record.channels.energy, record.last_row)},
           {"advice", advice_part(record.advice)},
-          {"verify", nullptr},
-          {"agree_until", nullptr},
+          {"verify", verify_part(record)},
+          {"agree_until", json_number(record.agree_until)},
           {"performance", performance_part(outcome)},
           {"files", record.files},
           {"warnings", record.warnings}};

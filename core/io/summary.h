@@ -1,8 +1,10 @@
 // Summary: summary.json, what a run did in one object.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/contact_advice.h"
@@ -23,6 +25,9 @@ struct RunRecord {
   const ContactAdvice& advice;
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< names in the result directory
+  /// Observed errors by channel, and until when two runs agree [s]; null without a second run.
+  std::vector<std::pair<std::string, double>> verify{};
+  double agree_until = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// completed, stopped, failed or interrupted.

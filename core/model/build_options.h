@@ -12,7 +12,9 @@ struct BuildOptions {
   std::vector<std::pair<std::string, std::string>> set;  ///< parameter and text; the last one of a name wins
   std::vector<std::string> ideal;                        ///< names or patterns of joints with play, or "all"
   std::optional<double> end, step;                       ///< [s]
+  std::optional<double> accuracy = std::nullopt;         ///< [m per s]; in place of any step
   std::optional<std::string> integrator;                 ///< name
+  bool finer = false;                                    ///< half the fixed step, or a tenth of the error allowed
 };
 
 }  // namespace freeplay

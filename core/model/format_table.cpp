@@ -23,8 +23,7 @@ constexpr FormatKey model[] = {
     {"bodies", "entries of map body", "", "", "What moves; `ground` may carry frames.",
      "{rod: {mass: 1, inertia: 0.1}}"},
     {"frames", "entries of frame value", "", "", "More frames; the keys are BODY/NAME.", "{rod/tip: [1, 0]}"},
-    {"joints", "entries of map joint", "", "", "What connects bodies.",
-     "{pin: {type: TYPE, between: [ground, rod]}}"},
+    {"joints", "entries of map joint", "", "", "What connects bodies.", "{pin: {type: TYPE, between: [ground, rod]}}"},
     {"drivers", "entries of map driver", "", "", "What moves joints.",
      "{motor: {joint: pin, kind: angle, value: 10*t}}"},
     {"forces", "entries of map force", "", "", "Forces and torques.", "{push: {type: force, at: rod, value: [1, 0]}}"},
@@ -158,14 +157,23 @@ constexpr FormatKey assembly[] = {
 constexpr FormatKey simulation[] = {
     {"start", "quantity", "s", "0", "", "0 s"},
     {"end", "quantity", "s", "start + 1 s", "", "2 s"},
-    {"step", "quantity | map step", "s", "0.1 ms", "", "10 us"},
+    {"step", "quantity | map step", "s", "0.1 ms", "Fixed steps; a map may let the error choose.", "10 us"},
+    {"accuracy", "quantity", "m", "", "In place of `step`: positions err by about this much per second.", "1 um"},
     {"integrator", "name | map integrator", "", "the preferred one", "`freeplay list integrators` shows them.",
      "{type: TYPE}"},
     {"output", "map output", "", "", "Rows and columns of the results.", "{interval: 1 ms}"},
     {"stop", "list of map stop", "", "", "Conditions that end the run, successfully.",
      "[{channel: body.rod.y, below: 0 m}]"}};
 
-constexpr FormatKey step[] = {{"size", "quantity", "s", "0.1 ms", "", "10 us"}};
+constexpr FormatKey step[] = {
+    {"size", "quantity", "s", "0.1 ms", "Of fixed steps; where the error chooses, of the first.", "10 us"},
+    {"adaptive", "boolean", "", "false", "The error chooses the steps, and they end where contacts begin and end.",
+     "true"},
+    {"tolerance", "quantity", "", "1e-6", "Error of one step relative to the model, or to the smallest clearance.",
+     "1e-8"},
+    {"min", "quantity", "s", "a thousandth of size", "Smallest step.", "1 ns"},
+    {"max", "quantity", "s", "10 times size", "Largest step.", "1 ms"},
+    {"per_contact", "quantity", "", "20", "Steps that an impact should take.", "40"}};
 
 constexpr FormatKey integrator[] = {
     {"type", "name", "", "required", "The other keys are the parameters of the type.", "TYPE"}};

@@ -130,7 +130,12 @@ struct StopCondition {
 
 struct Settings {
   double start = 0.0, end = 1.0;  ///< [s]
-  double step = 1e-4;             ///< [s]
+  double step = 1e-4;             ///< fixed, or the first of an adaptive run [s]
+  bool adaptive = false;
+  double tolerance = 1e-6;  ///< local error, relative to the smallest clearance or else to the model's size
+  double smallest_step = 1e-7, largest_step = 1e-3;  ///< adaptive runs [s]
+  double per_contact = 20.0;                         ///< steps that an impact should take
+  double accuracy = 0.0;                             ///< chooses all of these [m per s]; 0: not given
   ParameterBlock integrator_parameters;
   IntegratorRef integrator;
   double interval = 0.0;                   ///< of output rows [s]

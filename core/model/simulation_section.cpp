@@ -7,6 +7,10 @@
 namespace freeplay {
 namespace {
 
+// Below, rounding decides; above, the error says nothing.
+constexpr Range tolerances{.minimum = 1e-14, .maximum = 0.1};
+constexpr Range contact_steps{.minimum = 2.0, .maximum = 1e6};
+
 /// Reads the section into the draft's settings.
 class SimulationSection {
  public:
@@ -19,7 +23,7 @@ class SimulationSection {
     integrator_ = map.find("integrator");
     const auto output = map.find("output");
     const auto stop = map.find("stop");
-    map.refuse("accuracy");
+    read_accuracy(map);
     settings_.interval = (settings_.end - settings_.start) / 1000.0;
     if (output) read_output(*output);
     if (stop) read_stop(*stop);
@@ -36,12 +40,14 @@ class SimulationSection {
     if (options.step && !(*options.step > 0.0)) {
       throw Error(Error::Category::usage, "usage", fmt::format("--step {} must be > 0", *options.step));
     }
-    if (options.step) settings_.step = *options.step;
+    if (options.step) settings_.accuracy = 0.0;
+    if (options.accuracy) settings_.accuracy = *options.accuracy;
     if (!section_given) {
       settings_.end = options.end.value_or(settings_.end);
       settings_.interval = (settings_.end - settings_.start) / 1000.0;
     }
     create_integrator();
+    complete_steps();
   }
 
  private:
@@ -60,19 +66,82 @@ class SimulationSection {
   }
 
   void read_step(MapReader& map) {
-    const auto step = map.find("step");
-    if (!step) return;
-    std::optional<double> size;
-    if (step->node().is_map()) {
-      MapReader inner(*step, "step");
-      const auto value = inner.find("size");
-      if (value) size = value->quantity(dimension::time, positive);
-      for (const char* key : {"adaptive", "tolerance", "min", "max", "per_contact"}) inner.refuse(key);
-      inner.finish();
-    } else {
-      size = step->quantity(dimension::time, positive);
+    step_ = map.find("step");
+    if (!step_) return;
+    if (!step_->node().is_map()) {
+      settings_.step = step_->quantity(dimension::time, positive).value_or(settings_.step);
+      return;
     }
-    settings_.step = size.value_or(settings_.step);
+    MapReader inner(*step_, "step");
+    const auto size = inner.find("size");
+    const auto adaptive = inner.find("adaptive");
+    const auto tolerance = inner.find("tolerance");
+    smallest_ = inner.find("min");
+    largest_ = inner.find("max");
+    const auto per_contact = inner.find("per_contact");
+    if (size) settings_.step = size->quantity(dimension::time, positive).value_or(settings_.step);
+    if (adaptive) settings_.adaptive = adaptive->boolean().value_or(false);
+    if (tolerance) {
+      settings_.tolerance = tolerance->quantity(dimension::none, tolerances).value_or(settings_.tolerance);
+    }
+    if (smallest_) settings_.smallest_step = smallest_->quantity(dimension::time, positive).value_or(0.0);
+    if (largest_) settings_.largest_step = largest_->quantity(dimension::time, positive).value_or(unbounded);
+    if (per_contact) {
+      settings_.per_contact = per_contact->quantity(dimension::none, contact_steps).value_or(settings_.per_contact);
+    }
+    inner.finish();
+  }
+
+  void read_accuracy(MapReader& map) {
+    accuracy_ = map.find("accuracy");
+    if (!accuracy_ || map.conflict("step", "accuracy")) return;
+    settings_.accuracy = accuracy_->quantity(dimension::length, positive).value_or(0.0);
+  }
+
+  /// What the file leaves open. An accuracy leaves everything open: the first step and the bounds are wide enough that
+  /// the error decides.
+  void complete_steps() {
+    const double span = settings_.end - settings_.start;
+    if (settings_.accuracy > 0.0) {
+      settings_.adaptive = true;
+      settings_.step = 1e-5 * span;
+      settings_.smallest_step = 1e-14 * span;
+      settings_.largest_step = 1e-2 * span;
+    } else {
+      if (draft_.options.step) settings_.step = *draft_.options.step;
+      if (!smallest_) settings_.smallest_step = 1e-3 * settings_.step;
+      if (!largest_) settings_.largest_step = 10.0 * settings_.step;
+    }
+    const auto in_order = [&](const std::optional<CheckedValue>& value, bool good, const std::string& rule) {
+      if (value && !good && !draft_.options.step && settings_.accuracy == 0.0) value->fail("out-of-range", rule);
+    };
+    in_order(smallest_, settings_.smallest_step <= settings_.step,
+             fmt::format("'min' must not be above 'size', {} s", settings_.step));
+    in_order(largest_, settings_.largest_step >= settings_.step,
+             fmt::format("'max' must not be below 'size', {} s", settings_.step));
+    require_estimate();
+    if (draft_.options.finer) refine();
+  }
+
+  void refine() {
+    if (!settings_.adaptive) settings_.step *= 0.5;
+    settings_.tolerance *= 0.1;
+    settings_.accuracy *= 0.1;
+  }
+
+  /// An integrator that cannot tell its error cannot choose its steps.
+  void require_estimate() {
+    if (!settings_.integrator) return;
+    IntegratorLayout layout;
+    Message message;
+    if (!settings_.integrator.declare(layout, message)) return;  // told when the run begins
+    if (layout.always_adaptive != 0) settings_.adaptive = true;
+    if (!settings_.adaptive || layout.error_estimate != 0) return;
+    const std::string why = fmt::format("integrator '{}' gives no error estimate: it takes fixed steps only",
+                                        settings_.integrator_parameters.component->description.name);
+    if (accuracy_ && settings_.accuracy > 0.0 && !draft_.options.accuracy) return accuracy_->fail("out-of-range", why);
+    if (step_ && settings_.accuracy == 0.0) return step_->fail("out-of-range", why);
+    throw Error(Error::Category::usage, "usage", why);
   }
 
   void read_output(const CheckedValue& value) {
@@ -146,6 +215,11 @@ class SimulationSection {
   void create_integrator() {
     const Component* chosen = nullptr;
     if (integrator_) chosen = read_integrator(*integrator_);
+    const bool by_accuracy = draft_.options.accuracy || (!integrator_ && settings_.accuracy > 0.0);
+    if (by_accuracy && !draft_.options.integrator) {
+      const Component* best = draft_.registry.preferred(ComponentKind::integrator, 2);
+      if (best != nullptr) return use_defaults(*best);
+    }
     if (draft_.options.integrator) {
       const Component* asked = asked_for(*draft_.options.integrator);
       if (asked != chosen) use_defaults(*asked);
@@ -197,7 +271,7 @@ class SimulationSection {
 
   Draft& draft_;
   Settings& settings_;
-  std::optional<CheckedValue> integrator_;
+  std::optional<CheckedValue> integrator_, step_, accuracy_, smallest_, largest_;
 };
 
 }  // namespace

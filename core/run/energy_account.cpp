@@ -1,5 +1,7 @@
 #include "run/energy_account.h"
 
+#include <algorithm>
+
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -12,44 +14,81 @@ double power(const double* wrench, const MarkerKinematics& k) {
 }
 
 EnergyAccount::EnergyAccount(const System& system)
-    : driver_work_(system.model().drivers.size(), 0.0),
-      joint_work_(system.model().joints.size(), 0.0),
+    : system_(system),
+      driver_work_(system.model().drivers.size(), 0.0),
       joint_loss_(system.model().joints.size(), 0.0),
-      driver_power_(system.model().drivers.size(), 0.0),
-      joint_power_(system.model().joints.size(), 0.0),
-      force_power_(system.model().forces.size(), 0.0),
-      stored_start_(system.model().joints.size(), 0.0) {}
+      stored_start_(system.model().joints.size(), 0.0) {
+  const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
+  for (auto* numbers : {&power_, &integral_, &power_before_, &integral_before_, &integral_inside_})
+    numbers->resize(count);
+}
 
-void EnergyAccount::add(const System& system, const Evaluation& e, const Channels& channels, std::span<double> row) {
-  const double t = row[at(channels.time)], half = started_ ? 0.5 * (t - last_time_) : 0.0;
-  last_time_ = t;
-  for (std::size_t d = 0; d < driver_work_.size(); ++d) {
-    const double now = row[at(channels.drivers[d].power)];
-    driver_work_[d] += half * (driver_power_[d] + now);
-    driver_power_[d] = now;
+void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const {
+  const Model& model = system_.model();
+  std::size_t flow = 0;
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const int r = system_.layout().driver_row(d);
+    const double effort = r < 0 ? e.motion[at(d)].value : -lambda[at(r)];
+    out[flow++] = effort * e.coordinate_rate[at(model.drivers[at(d)].joint)];
   }
-  for (std::size_t f = 0; f < force_power_.size(); ++f) {
-    const double now = row[at(channels.forces[f].power)];
-    applied_work_ += half * (force_power_[f] + now);
-    force_power_[f] = now;
+  for (std::size_t f = 0; f < model.forces.size(); ++f) {
+    const MarkerKinematics& k = e.markers[at(model.forces[f].marker)];
+    const double* applied = &e.applied[3 * f];
+    out[flow++] = applied[0] * k.velocity[0] + applied[1] * k.velocity[1] + applied[2] * k.angular_velocity[2];
   }
-  double lost = 0.0;
-  for (const ForceBlock& block : system.force_blocks()) {
+  for (const ForceBlock& block : system_.force_blocks()) {
+    const JointElement& joint = model.joints[at(block.joint)];
+    const double* wrench = &e.wrench[12 * at(block.joint)];
+    out[flow++] = power(wrench, e.markers[at(joint.marker_a)]) + power(wrench + 6, e.markers[at(joint.marker_b)]);
+  }
+}
+
+void EnergyAccount::start(const Evaluation& e, std::span<const double> lambda, const Channels& channels,
+                          std::span<const double> row) {
+  initial_ = row[at(channels.energy.kinetic)] + row[at(channels.energy.potential)];
+  stored_start_.assign(e.potential.begin(), e.potential.end());
+  flow(e, lambda, power_);
+}
+
+void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double> lambda,
+                         std::span<const double> integrals) {
+  dt_ = dt;
+  std::ranges::copy(power_, power_before_.begin());
+  std::ranges::copy(integral_, integral_before_.begin());
+  std::ranges::copy(integrals, integral_.begin());
+  flow(e, lambda, power_);
+}
+
+void EnergyAccount::add(double dt, std::span<const double> half_way, const Evaluation& e,
+                        std::span<const double> lambda) {
+  take(dt, e, lambda, integral_);
+  for (std::size_t i = 0; i < power_.size(); ++i) {
+    integral_[i] += dt / 6.0 * (power_before_[i] + 4.0 * half_way[i] + power_[i]);
+  }
+}
+
+void EnergyAccount::fill_inside(double s, std::span<const double> half_way, const Evaluation& e,
+                                std::span<const double> lambda, const Channels& channels, std::span<double> row) {
+  flow(e, lambda, integral_inside_);
+  for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
+    const double sum = power_before_[i] + 4.0 * half_way[i] + integral_inside_[i];
+    integral_inside_[i] = integral_before_[i] + s * dt_ / 6.0 * sum;
+  }
+  fill(e, channels, row, integral_inside_);
+}
+
+void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::span<double> row,
+                         std::span<const double> integral) {
+  std::size_t flow = 0;
+  double work = 0.0, lost = 0.0;
+  for (double& driver : driver_work_) work += driver = integral[flow++];
+  for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
+  for (const ForceBlock& block : system_.force_blocks()) {
     const std::size_t j = at(block.joint);
-    const JointElement& joint = system.model().joints[j];
-    const double now = power(&e.wrench[12 * j], e.markers[at(joint.marker_a)]) +
-                       power(&e.wrench[12 * j + 6], e.markers[at(joint.marker_b)]);
-    if (!started_) stored_start_[j] = e.potential[j];
-    joint_work_[j] += half * (joint_power_[j] + now);
-    joint_power_[j] = now;
-    joint_loss_[j] = -joint_work_[j] - (e.potential[j] - stored_start_[j]);
+    joint_loss_[j] = -integral[flow++] - (e.potential[j] - stored_start_[j]);
     lost += joint_loss_[j];
   }
-  double work = applied_work_;
-  for (const double w : driver_work_) work += w;
   const double total = row[at(channels.energy.kinetic)] + row[at(channels.energy.potential)];
-  if (!started_) initial_ = total;
-  started_ = true;
   row[at(channels.energy.dissipated)] = lost;
   row[at(channels.energy.work)] = work;
   row[at(channels.energy.residual)] = total - initial_ + lost - work;

@@ -12,23 +12,45 @@ namespace freeplay {
 /// Power of a wrench (force and moment) at a marker [W].
 double power(const double* wrench, const MarkerKinematics& k);
 
-/// Powers are integrated over accepted steps by the trapezoidal rule. Booked are work of drivers and applied forces and
-/// the loss of joints: minus the power of their wrenches, less what they store. What an integrator or a projection
-/// loses is never booked; it is the residual.
+/// Booked are work of drivers and applied forces and the loss of joints: minus the power of their wrenches, less what
+/// they store. What an integrator or a projection loses is never booked; it is the residual. The powers ("flows":
+/// drivers, applied forces, joints with forces, in this order) are integrated by Simpson's rule over accepted steps, or
+/// by the integrator itself, along with z, where it can: then to its order.
 class EnergyAccount {
  public:
   explicit EnergyAccount(const System& system);
 
-  /// First call: the start. `row` needs the observed columns; fills dissipated, work and residual.
-  void add(const System& system, const Evaluation& e, const Channels& channels, std::span<double> row);
+  int flows() const { return static_cast<int>(power_.size()); }
+  /// Powers [W] at an evaluated point (forces and coordinates), flows() numbers.
+  void flow(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
 
-  std::span<const double> driver_work() const { return driver_work_; }  ///< [J]
+  /// The start of a run. `row` needs the observed columns.
+  void start(const Evaluation& e, std::span<const double> lambda, const Channels& channels,
+             std::span<const double> row);
+  /// The end of an accepted step, with the flows() integrals since the start.
+  void take(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> integrals);
+  /// The same with the powers in the middle of the step.
+  void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
+  /// Fills dissipated, work and residual of a row that holds the observed columns, at the end of the last step.
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row) { fill(e, channels, row, integral_); }
+  /// The same at the fraction s of the last step, where `e` and `lambda` are: by Simpson's rule with the powers
+  /// half-way there.
+  void fill_inside(double s, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda,
+                   const Channels& channels, std::span<double> row);
+  /// An event changed what acts at the end of the last step.
+  void renew(const Evaluation& e, std::span<const double> lambda) { flow(e, lambda, power_); }
+
+  std::span<const double> driver_work() const { return driver_work_; }  ///< at the last fill() [J]
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
 
  private:
-  bool started_ = false;
-  double last_time_ = 0.0, initial_ = 0.0, applied_work_ = 0.0;
-  std::vector<double> driver_work_, joint_work_, joint_loss_, driver_power_, joint_power_, force_power_, stored_start_;
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral);
+
+  const System& system_;
+  double dt_ = 0.0, initial_ = 0.0;
+  std::vector<double> driver_work_, joint_loss_, stored_start_;
+  std::vector<double> power_, integral_;                                  // at the end of the last step
+  std::vector<double> power_before_, integral_before_, integral_inside_;  // of the last step
 };
 
 }  // namespace freeplay

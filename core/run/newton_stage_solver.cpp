@@ -12,7 +12,14 @@ constexpr double singular_pivot = 1e-13;     // smallest pivot over the largest
 constexpr double slow_contraction = 0.1;     // a stale factor that contracts less is renewed
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr int refinement_limit = 30;
+constexpr double smallest = std::numeric_limits<double>::min();
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double largest(std::span<const double> numbers) {
+  double size = 0.0;
+  for (const double x : numbers) size = std::max(size, std::abs(x));
+  return size;
+}
 
 template <class Call>
 Status guarded_call(Message* message, const NewtonStageSolver& solver, Call&& call) noexcept {
@@ -43,7 +50,14 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
                auto& solver = *static_cast<NewtonStageSolver*>(self);
                return guarded_call(m, solver, [&] { return solver.accelerate(*state, z_rate); });
-             }},
+             },
+             [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
+               return static_cast<NewtonStageSolver*>(self)->error_norm(position, velocity);
+             },
+             [](void*, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
+               planar::retract(q_base, increment, q);
+             },
+             0},
       e_(system),
       rows_(system.layout().nc(), system.layout().nv()) {
   const int nv = system.layout().nv(), nc = system.layout().nc();
@@ -301,14 +315,14 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (fresh && ratio > slow_contraction && iteration > 2) factor.valid = false;  // full Newton from here
   }
   trouble_ = "the iteration of a stage did not converge";
-  double largest = -1.0;
+  double farthest = -1.0;
   for (int r = 0; r < nc; ++r) {
-    if (std::abs(e_.phi[at(r)]) > largest) largest = std::abs(e_.phi[at(r)]), worst_row_ = r;
+    if (std::abs(e_.phi[at(r)]) > farthest) farthest = std::abs(e_.phi[at(r)]), worst_row_ = r;
   }
   return true;
 }
 
-bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale) {
+bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
   const std::size_t nv = x_a.size(), nc = x_c.size();
   Factor& factor = factor_for(0.0, 0.0);
   bool fresh = false;
@@ -326,7 +340,13 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
     solve_with(factor);
     for (std::size_t i = 0; i < nv; ++i) x_a[i] += update_[i];
     for (std::size_t r = 0; r < nc; ++r) x_c[r] += update_[nv + r];
-    const double change = norm(std::span(update_).first(nv)), size = std::max(norm(x_a), scale);
+    double change = norm(std::span(update_).first(nv)) / std::max({norm(x_a), scale, smallest});
+    if (multipliers) {
+      // Multipliers that vanish are right to the rounding of the forces and inertias that leave nothing over.
+      double forces = std::max(largest(x_c), largest(right_a_));
+      for (std::size_t i = 0; i < nv; ++i) forces = std::max(forces, std::abs(system_.mass()[i] * x_a[i]));
+      change = std::max(change, largest(std::span(update_).subspan(nv)) / std::max(forces, smallest));
+    }
     if (!std::isfinite(change)) {
       trouble_ = "a number in the state is not finite";
       return false;
@@ -334,7 +354,7 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
     const double ratio = change / previous;
     previous = change;
     const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
-    if (iteration > 0 && (left <= 1e-15 * size || (ratio >= 0.3 && change <= 1e-12 * size))) return true;
+    if (iteration > 0 && (left <= 1e-15 || (ratio >= 0.3 && change <= 1e-12))) return true;
     if (change == 0.0) return true;
     if (!fresh && iteration > 0 && ratio > slow_contraction) {
       if (!refactor(factor)) return false;
@@ -388,12 +408,57 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!evaluate(state, term_position | term_velocity | term_acceleration | term_force)) return false;
   std::ranges::copy(e_.force, right_a_.begin());
   std::ranges::copy(e_.gamma, right_c_.begin());
-  if (!refine(state.a, state.lambda, 0.0)) return false;
-  std::copy_n(e_.internal_rate.begin(), z_rate.size, z_rate.begin());
+  // Where drivers alone decide the motion, a is right at once and the multipliers are not.
+  if (!refine(state.a, state.lambda, 0.0, true)) return false;
+  std::ranges::copy(e_.internal_rate, z_rate.begin());
   if (any_dependent_) {
     system_.dense_jacobian(e_, dense_);
     rows_.analyse(dense_);
     rows_.least_norm(state.lambda, system_.layout().first_driver_row());
+  }
+  if (flows_ != nullptr) flows_->flow(e_, state.lambda, z_rate.part(e_.internal_rate.size(), at(flows_->flows())));
+  return true;
+}
+
+double NewtonStageSolver::error_norm(std::span<const double> position, std::span<const double> velocity) {
+  if (!(allowed_ > 0.0)) return 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < unit_.size(); ++i) {
+    // `allowed_` is a length: an angle may err by it over the size of the model.
+    const double scale = system_.size() / unit_[i];
+    const double error = scale * std::max(std::abs(position[i]) / allowed_, std::abs(velocity[i]) / allowed_rate_);
+    if (!(error <= largest)) largest = error, worst_component_ = static_cast<int>(i);
+  }
+  return largest;
+}
+
+bool NewtonStageSolver::mobility(const State& state, int joint, std::span<double> out) {
+  if (!system_.evaluate(point(state), term_position, e_)) return false;
+  const JointElement& element = system_.model().joints[at(joint)];
+  const int markers[2] = {element.marker_a, element.marker_b};
+  std::ranges::fill(out, 0.0);
+  for (std::size_t direction = 0; direction < 2; ++direction) {
+    std::ranges::fill(right_a_, 0.0);
+    std::ranges::fill(right_c_, 0.0);
+    for (std::size_t end = 0; end < 2; ++end) {
+      const BodyId body = system_.model().markers[at(markers[end])].body;
+      if (body == ground) continue;
+      double wrench[6] = {};
+      wrench[direction] = end == 0 ? -1.0 : 1.0;
+      planar::add_wrench(wrench, e_.arms[at(markers[end])], &right_a_[3 * at(body)]);
+    }
+    std::ranges::fill(increment_, 0.0);
+    std::ranges::fill(multipliers_, 0.0);
+    if (!refine(increment_, multipliers_, 0.0)) return false;
+    for (std::size_t end = 0; end < 2; ++end) {
+      const BodyId body = system_.model().markers[at(markers[end])].body;
+      if (body == ground) continue;
+      const double* x = &increment_[3 * at(body)];
+      const planar::Arm& arm = e_.arms[at(markers[end])];
+      const double sign = end == 0 ? -1.0 : 1.0;
+      out[direction] += sign * (x[0] - arm.y * x[2]);
+      out[3 + direction] += sign * (x[1] + arm.x * x[2]);
+    }
   }
   return true;
 }

@@ -8,6 +8,7 @@
 // Factors are kept over stages and steps, one for each pair of betas, while the iteration contracts.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -16,6 +17,7 @@
 #include "freeplay/integrator.h"
 #include "linear/kkt_matrix.h"
 #include "linear/row_rank.h"
+#include "run/energy_account.h"
 #include "run/internal_elimination.h"
 #include "system/system.h"
 
@@ -39,6 +41,24 @@ class NewtonStageSolver {
   bool project_position(StateView& state);
   /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
   bool accelerate(StateView& state, Span<double> z_rate);
+
+  /// From now on attempts return their error in units of `position` [m], angles by the model's size, and in velocity of
+  /// `velocity` [m/s] plus the part `relative` of the largest velocity.
+  void control_error(double position, double velocity, double relative) {
+    allowed_ = position, allowed_slow_ = velocity, allowed_part_ = relative;
+    table_.estimates = position > 0.0 ? 1 : 0;
+  }
+  /// The velocities at the start of the attempt. Their rounding is no error.
+  void use_velocity(std::span<const double> v) {
+    allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * norm(v);
+  }
+  double error_norm(std::span<const double> position, std::span<const double> velocity);
+  /// Index into v of the largest part of the last error_norm().
+  int worst_component() const { return worst_component_; }
+  /// accelerate() appends the powers of the account to z'; z of the states handed in then has as many numbers more.
+  void integrate_flows(const EnergyAccount& account) { flows_ = &account; }
+  /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
+  bool mobility(const State& state, int joint, std::span<double> out);
 
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
   const Fault& fault() const { return e_.fault; }
@@ -68,8 +88,9 @@ class NewtonStageSolver {
   bool find_dependent_rows();
   void solve_with(const Factor& factor);
   double norm(std::span<const double> increment) const;
-  /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_).
-  bool refine(std::span<double> x_a, std::span<double> x_c, double scale);
+  /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
+  /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
+  bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
 
   const System& system_;
   StageOptions options_;
@@ -83,7 +104,9 @@ class NewtonStageSolver {
   std::vector<char> dependent_;
   bool any_dependent_ = false, rank_known_ = false;
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
-  int worst_row_ = -1;
+  const EnergyAccount* flows_ = nullptr;
+  double allowed_ = 0.0, allowed_slow_ = 0.0, allowed_part_ = 0.0, allowed_rate_ = 0.0;
+  int worst_row_ = -1, worst_component_ = -1;
   const char* trouble_ = "";
 };
 

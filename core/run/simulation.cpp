@@ -1,7 +1,6 @@
 #include "run/simulation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,112 +8,115 @@
 #include <fmt/format.h>
 
 #include "component/declared.h"
-#include "run/energy_account.h"
-#include "run/newton_stage_solver.h"
-#include "run/observer.h"
-#include "run/step_events.h"
+#include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double smallest_step = 1e-3;  // of the step asked for
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double smallest_step = 1e-3;     // of the step asked for
+constexpr double accuracy_per_step = 0.3;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
   return "the integrator of " + model.instances.words_of(*model.settings.integrator_parameters.component);
 }
 
-IntegratorLayout declare(const System& system) {
+// `flows`: integrals that the host would like to be carried along; taken by integrators that can.
+IntegratorLayout declare(const System& system, int flows) {
   const Layout& layout = system.layout();
-  IntegratorLayout out;
-  out.sizes = {layout.nq(), layout.nv(), layout.nc(), layout.nz()};
-  Message message;
-  const bool good = system.model().settings.integrator.declare(out, message);
-  const std::string fault = good ? declaration_fault(out) : message.text;
-  if (!good || !fault.empty()) {
-    throw Error(Error::Category::plugin, "plugin-failed",
-                fmt::format("{} failed: {}", integrator_words(system.model()), fault));
+  const auto ask = [&](int more) {
+    IntegratorLayout out;
+    out.sizes = {layout.nq(), layout.nv(), layout.nc(), layout.nz() + more};
+    Message message;
+    const bool good = system.model().settings.integrator.declare(out, message);
+    const std::string fault = good ? declaration_fault(out) : message.text;
+    if (!good || !fault.empty()) {
+      throw Error(Error::Category::plugin, "plugin-failed",
+                  fmt::format("{} failed: {}", integrator_words(system.model()), fault));
+    }
+    return out;
+  };
+  const IntegratorLayout plain = ask(0);
+  return plain.explicit_stages != 0 ? ask(flows) : plain;
+}
+
+// Length by which positions may err in one step [m].
+double local_tolerance(const System& system) {
+  const Settings& settings = system.model().settings;
+  if (settings.accuracy > 0.0) return accuracy_per_step * settings.accuracy;
+  double unit = system.size();
+  for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
+    const double clearance = system.joint_layout(j).clearance;
+    if (clearance > 0.0) unit = std::min(unit, clearance);
   }
-  return out;
+  return settings.tolerance * unit;
+}
+
+StepLimits step_limits(const Settings& settings) {
+  return {settings.step, settings.smallest_step, settings.largest_step};
 }
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 
-struct Simulation::Impl {
-  Impl(System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks)
-      : system(owner),
-        model(owner.model()),
-        settings(model.settings),
-        channels(all_channels),
-        sinks(all_sinks.begin(), all_sinks.end()),
-        integrator_layout(declare(owner)),
-        solver(owner, {integrator_layout.newton_tolerance, integrator_layout.newton_max_iterations}),
-        accepted(owner.layout(), integrator_layout.memory),
-        trial(owner.layout(), integrator_layout.memory),
-        e_accepted(owner),
-        e_trial(owner),
-        observer(owner, all_channels),
-        energy(owner),
-        events(owner),
-        statistics(model, all_channels),
-        scratch(at(integrator_layout.scratch) + guard::marks),
-        row(all_channels.all().size(), 0.0),
-        flow(at(owner.layout().nc())) {
-    accepted.assign(start.state);
-    for (const StopCondition& stop : settings.stop) stop_columns.push_back(channels.find(stop.channel));
-    for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-      const JointLayout& layout = owner.joint_layout(j);
-      if (layout.history > 0) with_history.push_back(j);
+Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_channels,
+                       std::span<Sink* const> all_sinks)
+    : system(owner),
+      model(owner.model()),
+      settings(model.settings),
+      channels(all_channels),
+      sinks(all_sinks.begin(), all_sinks.end()),
+      energy(owner),
+      integrator_layout(declare(owner, energy.flows())),
+      adaptive(settings.adaptive || integrator_layout.always_adaptive != 0),
+      flows(integrator_layout.explicit_stages != 0 ? energy.flows() : 0),
+      solver(owner, {integrator_layout.newton_tolerance, integrator_layout.newton_max_iterations}),
+      control(step_limits(settings),
+              integrator_layout.error_order > 0 ? integrator_layout.error_order : integrator_layout.order + 1),
+      accepted(owner.layout(), integrator_layout.memory, flows),
+      trial(owner.layout(), integrator_layout.memory, flows),
+      between(owner.layout(), integrator_layout.memory, flows),
+      e_accepted(owner),
+      e_trial(owner),
+      e_between(owner),
+      observer(owner, all_channels),
+      events(owner, adaptive, flows),
+      statistics(model, all_channels),
+      scratch(at(integrator_layout.scratch) + guard::marks),
+      row(all_channels.all().size(), 0.0),
+      row_between(all_channels.all().size(), 0.0),
+      residual(at(owner.layout().nc())),
+      z_rate(at(owner.layout().nz() + flows)),
+      flow_half_way(at(energy.flows())),
+      joint_warnings(model.joints.size()) {
+  if (adaptive) {
+    const double tolerance = local_tolerance(owner), smallest = 8.0 * rounding * owner.size();
+    if (!(tolerance >= smallest)) {
+      throw Error(
+          Error::Category::input, "out-of-range",
+          fmt::format("a step may err by {:.3g} m, but positions of a model of {:.3g} m are rounded to {:.3g} m",
+                      tolerance, owner.size(), smallest),
+          {}, "ask for less accuracy");
     }
+    // An accuracy is kept per second; a tolerance is relative in velocity, too.
+    solver.control_error(tolerance, tolerance, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
+    owner.end_steps_at_events(settings.per_contact);
   }
-
-  Outcome run(const RunHooks& hooks);
-
-  // The parts of a run; each returns false when the run is over, with `outcome` filled.
-  bool begin();
-  bool advance_to(double target, const RunHooks& hooks);
-  bool step(double dt, bool& converged);
-  bool check_step(double dt);
-  /// The numbers that an attempt may use as it likes; behind them stand marks.
-  Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
-  bool prepare_trial(double dt);
-  bool accept();
-  bool record_row();
-  bool tell_sinks();
-  bool check_stop();
-  bool check_interrupt(const RunHooks& hooks);
-
-  bool fail(int exit_code, std::string reason);
-  bool fail_with(const Fault& fault, double t);
-  bool fail_beside(int joint);
-  std::string why_not_converged(double dt) const;
-  std::string row_name(int row_index) const;
-
-  System& system;
-  const Model& model;
-  const Settings& settings;
-  const Channels& channels;
-  std::vector<Sink*> sinks;
-  IntegratorLayout integrator_layout;
-  NewtonStageSolver solver;
-  State accepted, trial;
-  Evaluation e_accepted, e_trial;
-  Observer observer;
-  EnergyAccount energy;
-  StepEvents events;
-  Statistics statistics;
-  std::vector<double> scratch, row, flow;
-  std::vector<int> stop_columns, with_history;
-  std::vector<std::string> warnings;
-  Outcome outcome;
-  Fault plugin_fault;  // of the last attempt
-  Clock::time_point started;
-  double last_progress = 0.0;
-  static constexpr unsigned all_terms = term_position | term_velocity | term_force | term_coordinate;
-};
+  if (flows > 0) solver.integrate_flows(energy);
+  accepted.assign_motion(start.state);
+  for (const StopCondition& stop : settings.stop) stop_columns.push_back(channels.find(stop.channel));
+  std::size_t values = 0;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointLayout& layout = owner.joint_layout(j);
+    if (layout.history > 0) with_history.push_back(j);
+    joint_warnings[at(j)].values = values;
+    values += layout.channels.size;
+  }
+  warning_values.resize(values);
+}
 
 bool Simulation::Impl::fail(int exit_code, std::string reason) {
   outcome.status = RunStatus::failed;
@@ -159,6 +161,25 @@ std::string Simulation::Impl::row_name(int row_index) const {
   return {};
 }
 
+// Of the joints at a body, or of all (ground), the one that pulls hardest; -1 when none has a force.
+int Simulation::Impl::hardest_joint(BodyId body) const {
+  double largest = 0.0;
+  int hardest = -1;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    if (joint.gear >= 0) continue;
+    if (body != ground && model.markers[at(joint.marker_a)].body != body &&
+        model.markers[at(joint.marker_b)].body != body) {
+      continue;
+    }
+    double wrench[3];
+    system.reaction(j, e_accepted, accepted.lambda(), wrench);
+    const double force = std::hypot(wrench[0], wrench[1]);
+    if (force > largest) largest = force, hardest = j;
+  }
+  return hardest;
+}
+
 std::string Simulation::Impl::why_not_converged(double dt) const {
   std::string text = fmt::format("t = {:.9g} s: no step of {:.3g} s or longer could be made: {}", accepted.t(), dt,
                                  *solver.trouble() ? solver.trouble() : "the integrator gave up");
@@ -190,6 +211,10 @@ bool Simulation::Impl::begin() {
   }
   Fault fault;
   if (!events.at_start(accepted, e_accepted, fault)) return fail_with(fault, accepted.t());
+  if (!observer.observe(point(accepted), e_accepted, accepted.lambda(), row, fault)) {
+    return fail_with(fault, accepted.t());
+  }
+  energy.start(e_accepted, accepted.lambda(), channels, row);
   return record_row() && tell_sinks();
 }
 
@@ -216,6 +241,7 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   plugin_fault.kind = Fault::Kind::none;
   if (!prepare_trial(dt)) return false;
   solver.use_history(trial.h());
+  if (adaptive) solver.use_velocity(accepted.v());
   StateView view = trial.view();
   Attempt attempt{};
   Message message;
@@ -238,13 +264,14 @@ bool Simulation::Impl::step(double dt, bool& converged) {
     return true;  // the solver gave up: a shorter step may do
   }
   converged = attempt.converged != 0;
+  error = attempt.error;
   return !converged || check_step(dt);
 }
 
 /// What an integrator that says that it converged must have left.
 bool Simulation::Impl::check_step(double dt) {
-  const double expected = accepted.t() + dt, rounding = 4.0 * std::numeric_limits<double>::epsilon();
-  if (!(std::abs(trial.t() - expected) <= 1e-9 * dt + rounding * std::abs(expected))) {
+  const double expected = accepted.t() + dt;
+  if (!(std::abs(trial.t() - expected) <= 1e-9 * dt + 4.0 * rounding * std::abs(expected))) {
     return fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
                                accepted.t(), integrator_words(model), expected, trial.t()));
   }
@@ -257,11 +284,33 @@ bool Simulation::Impl::check_step(double dt) {
                              accepted.t(), integrator_words(model)));
 }
 
-// Events first, then the joints' history, then the state is the accepted one.
-bool Simulation::Impl::accept() {
-  if (!system.evaluate(point(trial), all_terms, e_trial)) return fail_with(e_trial.fault, trial.t());
+// Where the integrator does not carry the flows, forces are looked at once more in the middle of the step.
+void Simulation::Impl::add_energy() {
+  const double dt = trial.t() - accepted.t();
+  if (flows > 0 || energy.flows() == 0) {
+    return energy.take(dt, e_trial, trial.lambda(), std::span<const double>(trial.z()).last(at(flows)));
+  }
+  DenseStep(accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(0.5, between);
+  std::ranges::copy(trial.h(), between.h().begin());  // as the attempt had it
+  // A state that no joint can be asked at is left out of the sum: the ends speak for it.
+  const bool seen = system.evaluate(point(between), term_force, e_between);
+  energy.flow(seen ? e_between : e_trial, between.lambda(), flow_half_way);
+  energy.add(dt, flow_half_way, e_trial, trial.lambda());
+}
+
+// Of a step whose end is evaluated in e_trial: events first, then the joints' history, then it is the accepted state.
+bool Simulation::Impl::accept(const StepEvents::Passage& located) {
+  add_energy();
+  if (adaptive && !write_rows_inside()) return false;
   Fault fault;
-  if (!events.apply(accepted, e_accepted, trial, e_trial, fault)) return fail_with(fault, trial.t());
+  const auto mobility = [](void* self, int joint, double* out) {
+    auto& run = *static_cast<Impl*>(self);
+    return run.solver.mobility(run.trial, joint, {out, 9});
+  };
+  if (!events.apply(accepted, e_accepted, trial, e_trial, fault) ||
+      !events.tell_at_end(located, trial, e_trial, mobility, this, fault)) {
+    return fail_with(fault, trial.t());
+  }
   for (const int j : with_history) {
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
     if (!system.joint(j).commit(system.input(j, point(trial), e_trial),
@@ -280,7 +329,24 @@ bool Simulation::Impl::accept() {
   std::swap(e_accepted, e_trial);
   ++outcome.steps;
   outcome.time = accepted.t();
-  return record_row() && tell_sinks();
+  if (!events.happenings().empty() && !refresh()) return false;
+  return record_row() && note_warnings() && tell_sinks();
+}
+
+// An event changes history or internal variables, and with them what acts: the integrator starts again from here.
+bool Simulation::Impl::refresh() {
+  StateView view = accepted.view();
+  solver.use_history(accepted.h());
+  Message message;
+  const bool solved = solver.accelerate(view, {z_rate.data(), z_rate.size()});
+  if (!solved || !settings.integrator.restart(view, solver.table(), message)) {
+    if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), accepted.t());
+    if (!solved) return fail(4, fmt::format("t = {:.9g} s: {}", accepted.t(), solver.trouble()));
+    return fail(5, fmt::format("t = {:.9g} s: the integrator failed: {}", accepted.t(), message.text));
+  }
+  if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
+  energy.renew(e_accepted, accepted.lambda());
+  return true;
 }
 
 bool Simulation::Impl::record_row() {
@@ -288,15 +354,49 @@ bool Simulation::Impl::record_row() {
   if (!observer.observe(point(accepted), e_accepted, accepted.lambda(), row, fault)) {
     return fail_with(fault, accepted.t());
   }
-  energy.add(system, e_accepted, channels, row);
+  energy.fill(e_accepted, channels, row);
   double position = 0.0, velocity = 0.0;
-  system.multiply(e_accepted, accepted.v(), flow);
-  for (std::size_t r = 0; r < flow.size(); ++r) {
+  system.multiply(e_accepted, accepted.v(), residual);
+  for (std::size_t r = 0; r < residual.size(); ++r) {
     position = std::max(position, std::abs(e_accepted.phi[r]));
-    velocity = std::max(velocity, std::abs(flow[r] - e_accepted.nu[r]));
+    velocity = std::max(velocity, std::abs(residual[r] - e_accepted.nu[r]));
   }
   statistics.add(row, energy.driver_work(), energy.joint_loss(), position, velocity);
   return true;
+}
+
+// Once for each joint; the text is made when the run is over.
+bool Simulation::Impl::note_warnings() {
+  for (const ForceBlock& block : system.force_blocks()) {
+    Warning& warning = joint_warnings[at(block.joint)];
+    if (warning.text != nullptr) continue;
+    Fault fault;
+    if (!system.joint(block.joint)
+             .warning(system.input(block.joint, point(accepted), e_accepted), warning.text, fault.message)) {
+      fault.kind = Fault::Kind::plugin;
+      fault.joint = block.joint;
+      return fail_with(fault, accepted.t());
+    }
+    if (warning.text == nullptr) continue;
+    warning.time = accepted.t();
+    std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,
+                warning_values.begin() + static_cast<std::ptrdiff_t>(warning.values));
+  }
+  return true;
+}
+
+void Simulation::Impl::format_warnings() {
+  for (std::size_t j = 0; j < joint_warnings.size(); ++j) {
+    const Warning& warning = joint_warnings[j];
+    if (warning.text == nullptr) continue;
+    std::string text = fmt::format("joint '{}' at t = {:.9g} s: {}", model.joints[j].name, warning.time, warning.text);
+    const Span<const Channel> own = system.joint_layout(static_cast<int>(j)).channels;
+    for (std::size_t i = 0; i < own.size; ++i) {
+      text += fmt::format("{} {} = {:.4g} {}", i == 0 ? ":" : ",", own[i].name, warning_values[warning.values + i],
+                          own[i].unit);
+    }
+    warnings.push_back(text);
+  }
 }
 
 bool Simulation::Impl::tell_sinks() {
@@ -369,8 +469,30 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
         continue;
       }
       if (last) trial.t() = goal;
-      if (!accept() || !check_stop() || !check_interrupt(hooks)) return false;
+      if (!system.evaluate(point(trial), all_terms, e_trial)) return fail_with(e_trial.fault, trial.t());
+      if (!accept({}) || !check_stop() || !check_interrupt(hooks)) return false;
     }
+  }
+  return true;
+}
+
+void Simulation::Impl::write_row() {
+  ++outcome.rows;
+  for (Sink* sink : sinks) sink->row(row);
+}
+
+double Simulation::Impl::row_time(long index) const {
+  const double t = settings.start + static_cast<double>(index) * settings.interval;
+  return t > settings.end - 1e-9 * settings.interval ? settings.end : t;
+}
+
+bool Simulation::Impl::run_fixed(const RunHooks& hooks) {
+  while (accepted.t() < settings.end) {
+    const long before = outcome.steps;
+    const bool going = advance_to(row_time(next_row++), hooks);
+    // A run that was stopped keeps the state it stopped in.
+    if (going || outcome.steps > before) write_row();
+    if (!going) return false;
   }
   return true;
 }
@@ -378,24 +500,14 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
 Outcome Simulation::Impl::run(const RunHooks& hooks) {
   started = Clock::now();
   outcome.time = accepted.t();
-  const auto write_row = [&] {
-    ++outcome.rows;
-    for (Sink* sink : sinks) sink->row(row);
-  };
-  bool going = begin();
-  if (going) write_row();
-  const double start = settings.start, end = settings.end;
-  for (long k = 1; going && accepted.t() < end; ++k) {
-    double target = start + static_cast<double>(k) * settings.interval;
-    if (target > end - 1e-9 * settings.interval) target = end;
-    const long before = outcome.steps;
-    going = advance_to(target, hooks);
-    // A run that was stopped keeps the state it stopped in.
-    if (going || outcome.steps > before) write_row();
+  if (begin()) {
+    write_row();
+    adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   }
   outcome.wall_seconds = seconds_since(started);
   outcome.iterations = solver.iterations();
   outcome.factorizations = solver.factorizations();
+  format_warnings();
   return outcome;
 }
 

@@ -9,10 +9,16 @@
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr int most_per_step = 8;  // of one joint; more are rounding, not motion
+constexpr double rounding = 1e-15;  // of a located event function, in its unit
+constexpr int most_per_step = 8;    // of one joint; more are rounding, not motion
 }  // namespace
 
-StepEvents::StepEvents(const System& system) : system_(system), between_(system.layout(), 0), e_between_(system) {
+StepEvents::StepEvents(const System& system, bool located, int flows)
+    : system_(system),
+      located_(located),
+      between_(system.layout(), 0, flows),
+      e_between_(system),
+      inside_(system.model().joints.size(), 0) {
   std::size_t most_events = 0, all_fields = 0;
   for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
     const Span<const Event> events = system.joint_layout(j).events;
@@ -20,10 +26,13 @@ StepEvents::StepEvents(const System& system) : system_(system), between_(system.
     watched_.push_back(j);
     most_events = std::max(most_events, events.size);
     std::size_t most_fields = 0;
-    for (const Event& event : events) most_fields = std::max(most_fields, event.fields.size);
+    for (const Event& event : events) {
+      most_fields = std::max(most_fields, event.fields.size);
+      if (!located || event.locate == 0) inside_[at(j)] = 1;
+    }
     all_fields += most_per_step * most_fields;
   }
-  for (auto* numbers : {&g0_, &r0_, &g1_, &r1_}) numbers->resize(most_events);
+  for (auto* numbers : {&g0_, &r0_, &gm_, &rm_, &g1_, &r1_}) numbers->resize(most_events);
   // Reserved once: a step appends without allocating.
   values_.reserve(all_fields);
   happenings_.reserve(most_per_step * watched_.size());
@@ -45,6 +54,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
   happenings_.clear();
   values_.clear();
   for (const int joint : watched_) {
+    if (inside_[at(joint)] == 0) continue;
     if (!apply_joint(joint, before, e_before, after, e_after, fault)) return false;
   }
   // Stable by hand: a handful of entries, and no allocation.
@@ -71,7 +81,7 @@ bool StepEvents::apply_joint(int joint, const State& before, const Evaluation& e
     int next = -1;
     double earliest = 2.0;
     for (std::size_t i = 0; i < events.size; ++i) {
-      if (std::isnan(g0[i]) || std::isnan(g1[i])) continue;
+      if (std::isnan(g0[i]) || std::isnan(g1[i]) || (located_ && events[i].locate != 0)) continue;
       const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
       // The common case of a step far from any zero needs no cubic.
       const auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, reached);
@@ -102,13 +112,90 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   return tell(joint, event, point(between_), e_between_, after, fault);
 }
 
-bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault) {
+bool StepEvents::first_crossing(const State& before, const Evaluation& e_before, const State& after,
+                                const Evaluation& e_after, Passage& found, Fault& fault) {
+  found = {};
+  if (watched_.empty()) return true;
+  DenseStep(before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
+  if (!system_.evaluate(point(between_), 0, e_between_)) {
+    fault = e_between_.fault;
+    return false;
+  }
+  const double half = 0.5 * (after.t() - before.t());
+  double earliest = 2.0;
+  for (const int joint : watched_) {
+    const Span<const Event> events = system_.joint_layout(joint).events;
+    const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
+    const std::span gm = std::span(gm_).first(events.size), rm = std::span(rm_).first(events.size);
+    const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
+    const Point end{after.t(), after.q(), after.v(), after.z(), before.h()};
+    if (!functions(joint, point(before), e_before, g0, r0, fault)) return false;
+    if (!functions(joint, point(between_), e_between_, gm, rm, fault)) return false;
+    if (!functions(joint, end, e_after, g1, r1, fault)) return false;
+    for (std::size_t i = 0; i < events.size; ++i) {
+      if (events[i].locate == 0 || std::isnan(g0[i]) || std::isnan(gm[i]) || std::isnan(g1[i])) continue;
+      const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
+      const Hermite first{sign * g0[i], sign * r0[i] * half, sign * gm[i], sign * rm[i] * half};
+      const Hermite second{first.value1, first.slope1, sign * g1[i], sign * r1[i] * half};
+      double at = 2.0;
+      // A function that rests at its zero crosses it by rounding all the time.
+      if (std::max(first.value1, second.value1) <= rounding) continue;
+      // Past its zero all the way: the step is halved until it ends at the zero.
+      if (const auto s = first_rise(first, 0.0)) {
+        at = *s > 0.0 ? 0.5 * *s : 0.5;
+      } else if (const auto later = first_rise(second, 0.0)) {
+        at = 0.5 + 0.5 * *later;
+      }
+      if (at < earliest) {
+        earliest = at;
+        found = {joint, static_cast<int>(i), at, second.value1, sign * r1[i]};
+      }
+    }
+  }
+  return true;
+}
+
+bool StepEvents::at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault) {
+  const Span<const Event> events = system_.joint_layout(passage.joint).events;
+  const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
+  if (!functions(passage.joint, point(after), e_after, g, r, fault)) return false;
+  const double sign = events[at(passage.event)].crossing == Crossing::rising ? 1.0 : -1.0;
+  passage.value = sign * g[at(passage.event)];
+  passage.rate = sign * r[at(passage.event)];
+  return true;
+}
+
+bool StepEvents::tell_at_end(const Passage& hunted, State& after, const Evaluation& e_after, Mobility mobility,
+                             void* self, Fault& fault) {
+  if (hunted.joint < 0) return true;
+  for (const int joint : watched_) {
+    const Span<const Event> events = system_.joint_layout(joint).events;
+    const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
+    for (int i = 0; i < static_cast<int>(events.size); ++i) {
+      if (events[at(i)].locate == 0) continue;
+      if (!functions(joint, point(after), e_after, g, r, fault)) return false;
+      const double sign = events[at(i)].crossing == Crossing::rising ? 1.0 : -1.0;
+      const bool grows = std::abs(g[at(i)]) <= tolerance && sign * r[at(i)] > 0.0;
+      if (!grows && !(joint == hunted.joint && i == hunted.event && !std::isnan(g[at(i)]))) continue;
+      double numbers[9];
+      if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers))
+        return false;
+      break;
+    }
+  }
+  return true;
+}
+
+bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
+                      const double* mobility) {
   const Slice z = system_.layout().internal(joint), h = system_.layout().history(joint);
   const std::size_t first = values_.size(), count = system_.joint_layout(joint).events[at(event)].fields.size;
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
-  if (!system_.joint(joint).on_event(
-          event, system_.input(joint, here, e), Span<double>(state.z()).part(at(z.offset), at(z.size)),
-          Span<double>(state.h()).part(at(h.offset), at(h.size)), {values_.data() + first, count}, fault.message)) {
+  JointInput in = system_.input(joint, here, e);
+  in.mobility = mobility;
+  if (!system_.joint(joint).on_event(event, in, Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                                     Span<double>(state.h()).part(at(h.offset), at(h.size)),
+                                     {values_.data() + first, count}, fault.message)) {
     fault.kind = Fault::Kind::plugin;
     fault.joint = joint;
     return false;

@@ -1,8 +1,9 @@
-// StepEvents: finds the zero crossings of joints inside an accepted step and tells the joints.
+// StepEvents: finds the zero crossings of joints inside a step and tells the joints.
 #pragma once
 
 #include <vector>
 
+#include "run/dense_step.h"
 #include "run/sink.h"
 #include "system/system.h"
 
@@ -10,9 +11,33 @@ namespace freeplay {
 
 /// Fixed-step runs shorten nothing for events: after a step is accepted every crossing is found on the cubic of
 /// (g, g') and the joint's on_event() is called with the state interpolated there (cubic in q, cubic in v).
+/// Runs that locate events ask first_crossing() and end their step there; tell_at_end() then tells with exact states.
 class StepEvents {
  public:
-  explicit StepEvents(const System& system);
+  /// Gives the mobility of a joint at the end of a located step (JointInput::mobility); false when it fails.
+  using Mobility = bool (*)(void* self, int joint, double* mobility);
+
+  /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `flows`: as State has them.
+  StepEvents(const System& system, bool located, int flows);
+
+  /// A crossing that a step passes or ends at.
+  struct Passage {
+    int joint = -1, event = 0;
+    double fraction = 1.0;  ///< of the step
+    double value = 0.0;     ///< of the function at the end, growing through zero [its unit]
+    double rate = 0.0;      ///< its time derivative
+  };
+  /// The earliest crossing of a located event within the step; joint -1 without one. Looks at both ends and the middle,
+  /// and between them at the cubics of (g, g'). Events that stand at their zero when the step begins count as passed.
+  bool first_crossing(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
+                      Passage& found, Fault& fault);
+  /// Value and rate of one event at the end of a step, growing through zero.
+  bool at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault);
+  /// After apply(): tells `hunted` and every other located event that is within `tolerance` of its zero and growing at
+  /// the end of the step. Nothing when hunted.joint is -1.
+  bool tell_at_end(const Passage& hunted, State& after, const Evaluation& e_after, Mobility mobility, void* self,
+                   Fault& fault);
+  static constexpr double tolerance = 1e-12;  ///< of a located event function, in its unit
 
   /// Advances z and h of `after` over the events between `before` and `after`; `e_before` and `e_after` are evaluated
   /// there (markers and coordinates of all joints). False, with `fault`, when a joint fails.
@@ -36,13 +61,16 @@ class StepEvents {
   bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
                  Fault& fault) const;
   bool tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault);
-  bool tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault);
+  bool tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
+            const double* mobility = nullptr);
 
   const System& system_;
+  bool located_;
   State between_;
   Evaluation e_between_;
   std::vector<int> watched_;
-  std::vector<double> g0_, r0_, g1_, r1_, values_;
+  std::vector<char> inside_;  // by joint: some of its events are told inside a step
+  std::vector<double> g0_, r0_, gm_, rm_, g1_, r1_, values_;
   std::vector<Happening> happenings_;
 };
 

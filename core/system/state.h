@@ -15,11 +15,12 @@ namespace freeplay {
 class State {
  public:
   State() : block_(guard::marks) {}
-  State(const Layout& layout, int memory)
+  /// `flows`: integrals that the integrator carries along behind the internal variables of the joints.
+  State(const Layout& layout, int memory, int flows = 0)
       : nq_(size(layout.nq())),
         nv_(size(layout.nv())),
         nc_(size(layout.nc())),
-        nz_(size(layout.nz())),
+        nz_(size(layout.nz() + flows)),
         nh_(size(layout.nh())),
         memory_(size(memory)),
         block_(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_ + memory_ + guard::marks, 0.0) {
@@ -30,6 +31,16 @@ class State {
   void assign(const State& other) {
     const std::size_t common = std::min(block().size(), other.block().size());
     std::copy_n(other.block_.begin(), common, block_.begin());
+  }
+  /// The same where the flows differ in number, too; flows and memory are left as they are.
+  void assign_motion(const State& other) {
+    t() = other.t();
+    std::ranges::copy(other.q(), q().begin());
+    std::ranges::copy(other.v(), v().begin());
+    std::ranges::copy(other.a(), a().begin());
+    std::ranges::copy(other.lambda(), lambda().begin());
+    std::copy_n(other.z().begin(), std::min(nz_, other.nz_), z().begin());
+    std::ranges::copy(other.h(), h().begin());
   }
 
   double& t() { return block_[0]; }

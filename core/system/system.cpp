@@ -233,7 +233,8 @@ JointInput System::input(int index, const Point& point, const Evaluation& e) con
           e.coordinate[at(index)],
           e.coordinate_rate[at(index)],
           {point.z.data() + internal.offset, at(internal.size)},
-          {point.h.data() + history.offset, at(history.size)}};
+          {point.h.data() + history.offset, at(history.size)},
+          per_contact_};
 }
 
 bool System::evaluate_coordinates(const Point& point, bool all, Evaluation& e) const {

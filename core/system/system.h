@@ -85,6 +85,8 @@ class System {
   void set_gear_offset(int gear, double offset) { gear_offsets_[static_cast<std::size_t>(gear)] = offset; }
   /// Diagonal of M: mass, mass, inertia of every body.
   std::span<const double> mass() const { return mass_; }
+  /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
+  void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
   /// Largest distance that matters: unit of position tolerances [m].
   double size() const { return size_; }
 
@@ -149,7 +151,7 @@ class System {
   std::vector<std::array<int, 4>> gear_blocks_;  // by gear: of the bodies of its first and of its second joint
   std::vector<double> gear_offsets_;
   std::vector<ForceBlock> force_blocks_;
-  double size_ = 1.0;
+  double size_ = 1.0, per_contact_ = 0.0;
   friend struct Evaluation;
 };
 

@@ -52,6 +52,9 @@ class Documentation(ProgramTest):
         self.assertGreater(len(rules), 50)
         self.assertEqual(set(), rules - explained)
 
+    def test_accuracy(self):
+        self.run_page(os.path.join("docs", "accuracy.md"))
+
     def test_pieces_of_the_model_page_are_a_model(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
             pieces = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)

@@ -7,7 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, mechanism
 
-LATER_COMMANDS = ["show", "convert", "analyze", "sweep", "report", "export", "compare", "doctor"]
+LATER_COMMANDS = ["analyze", "sweep", "report", "export", "doctor"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 
@@ -64,7 +64,7 @@ class Words(ProgramTest):
 
     def test_later_options(self):
         model = mechanism("pendulum")
-        for option in (["--accuracy", "1um"], ["--verify"], ["--profile"], ["--resume"], ["--format", "hdf5"],
+        for option in (["--profile"], ["--resume"], ["--format", "hdf5"],
                        ["--format", "both"]):
             _, err = self.freeplay("run", model, *option, code=2)
             self.assertIn("not in this release", err)

@@ -44,6 +44,10 @@ struct StageSolverTable {
   Status (*project_velocity)(void*, StateView*, Message*) noexcept;
   Status (*project_position)(void*, StateView*, Message*) noexcept;
   Status (*accelerate)(void*, StateView*, Span<double> z_rate, Message*) noexcept;
+  // Appended. `estimates`: nonzero when the run controls its steps by Attempt::error.
+  double (*error_norm)(void*, Span<const double> position, Span<const double> velocity) noexcept;
+  void (*retract)(void*, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept;
+  std::uint32_t estimates;
 };
 }  // namespace abi
 
@@ -75,6 +79,17 @@ class StageSolver {
     Message message;
     abi::require(table_->accelerate(table_->self, &state, z_rate, &message), message);
   }
+  /// Nonzero in runs that control their steps: attempts that have an estimate must then return it.
+  bool estimates() const { return table_->estimates != 0; }
+  /// Largest local error in units of what the run allows: `position` [m, rad] (an increment) and `velocity` [m/s,
+  /// rad/s], nv numbers each. At most 1 is acceptable. 0 in runs that do not control their steps.
+  double error_norm(Span<const double> position, Span<const double> velocity) const {
+    return table_->error_norm(table_->self, position, velocity);
+  }
+  /// q = retract(q_base, increment); for methods that make their own stages.
+  void retract(Span<const double> q_base, Span<const double> increment, Span<double> q) const {
+    table_->retract(table_->self, q_base, increment, q);
+  }
 
  private:
   const abi::StageSolverTable* table_;
@@ -94,6 +109,10 @@ struct IntegratorLayout {
   std::uint32_t error_estimate = 0;  ///< nonzero: Attempt::error means something
   double newton_tolerance = 1e-10;   ///< largest position error left by a stage, in model sizes
   std::int32_t newton_max_iterations = 20;
+  // Appended.
+  std::int32_t error_order = 0;       ///< power of dt with which the estimate falls; 0: order + 1
+  std::uint32_t explicit_stages = 0;  ///< nonzero: accelerate() is all that it solves; the host may then hand it more z
+  std::uint32_t always_adaptive = 0;  ///< nonzero: may not be run with fixed steps
 };
 
 /// The parameters of every implicit integrator; spread them into its table and copy them in declare().

@@ -73,6 +73,14 @@ struct JointInput {
   double coordinate_rate;       ///< [rad/s or m/s]
   Span<const double> internal;  ///< this joint's share of z
   Span<const double> history;   ///< this joint's share of h
+  // Appended.
+  /// Steps that an impact should take, in runs that end their steps at events; 0 in runs that do not. In such runs
+  /// `history` alone decides which side of an event a joint is on: an attempt that passes the event is thrown away,
+  /// and is repeated up to it.
+  double per_contact = 0.0;
+  /// on_event() of such runs: 3 x 3, acceleration of b relative to a [m/s^2] for a unit force [N] on b and its opposite
+  /// on a, constraints included, world axes. Else null.
+  const double* mobility = nullptr;
 };
 
 /// Rows of Phi(q,t) = 0. Zeroed by the host.
@@ -142,6 +150,9 @@ class Joint {
   virtual bool place(double /*coordinate*/, Pose& /*b_in_a*/) const { return false; }
   /// A joint with play: its start, given the force [N] of the ideal joint on the second body (world axes).
   virtual void initial_offset(Span<const double> /*reaction*/, InitialOffset&) const {}
+  /// A static sentence when the joint or one of its laws is used outside its range here, else null. Asked at accepted
+  /// states; the host reports the first answer of each joint.
+  virtual const char* warning(const JointInput&) const { return nullptr; }
 };
 
 namespace abi {
@@ -163,6 +174,7 @@ struct JointTable {
   Status (*step_limit)(const void*, const JointInput*, double*, Message*) noexcept;
   Status (*place)(const void*, double, Pose*, std::int32_t*, Message*) noexcept;
   Status (*initial_offset)(const void*, Span<const double>, InitialOffset*, Message*) noexcept;
+  Status (*warning)(const void*, const JointInput*, const char** text, Message*) noexcept;
 };
 
 /// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
@@ -208,6 +220,9 @@ inline constexpr JointTable joint_table{
     },
     [](const void* s, Span<const double> reaction, InitialOffset* out, Message* m) noexcept {
       return guarded(m, [&] { static_cast<const J*>(s)->initial_offset(reaction, *out); });
+    },
+    [](const void* s, const JointInput* in, const char** text, Message* m) noexcept {
+      return guarded(m, [&] { *text = static_cast<const J*>(s)->warning(*in); });
     }};
 
 template <class J>

@@ -27,7 +27,8 @@ struct Description {
   const char* validity = "";    ///< where it may be used; "" without a limit
   const char* references = "";  ///< paper or book with equation number; "" when elementary
   Span<const Parameter> parameters = {};
-  std::uint32_t preferred = 0;  ///< nonzero: used where the model file names none of this kind
+  /// 1: used where the model file names none of this kind; 2: the integrator of runs that name an accuracy instead.
+  std::uint32_t preferred = 0;
   // Joints with play. A joint of type `ideal` that has the key `block` is of this type, and `ideal` stands in for it
   // where the play is closed: in assembly, `--ideal` and the analysis.
   const char* ideal = nullptr;

@@ -109,9 +109,9 @@ inline void expect_newton_parameters(const std::string& name) {
   IntegratorLayout layout;
   layout.sizes = {7, 6, 2, 3};
   integrator.call(&abi::IntegratorTable::declare, &layout);
-  EXPECT_EQ(layout.memory, 12);   // A, Z, z'
-  EXPECT_EQ(layout.scratch, 22);  // q, v, increment, z
-  EXPECT_EQ(layout.error_estimate, 0u);
+  EXPECT_EQ(layout.memory, 12);        // A, Z, z'
+  EXPECT_EQ(layout.scratch, 37 + 45);  // q, twice v, increment (or a) and z; what the error estimate needs
+  EXPECT_EQ(layout.error_estimate, 1u);
   EXPECT_EQ(layout.newton_tolerance, 1e-8);
   EXPECT_EQ(layout.newton_max_iterations, 7);
 }

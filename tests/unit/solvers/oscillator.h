@@ -25,7 +25,15 @@ struct Oscillator {
   double acceleration(double q, double v) const { return -omega * omega * q - 2.0 * zeta * omega * v; }
 
   abi::StageSolverTable table() {
-    return {sizeof(abi::StageSolverTable), this, solve, project_velocity, project_position, accelerate};
+    return {sizeof(abi::StageSolverTable),
+            this,
+            solve,
+            project_velocity,
+            project_position,
+            accelerate,
+            error_norm,
+            retract,
+            0};
   }
   static Oscillator& self(void* s) { return *static_cast<Oscillator*>(s); }
   static Status solve(void* s, const Stage* stage, StateView* out, StageResult* result, Message*) noexcept {
@@ -52,6 +60,10 @@ struct Oscillator {
     return Status::ok;
   }
   static Status project_position(void*, StateView*, Message*) noexcept { return Status::failed; }
+  static double error_norm(void*, Span<const double>, Span<const double>) noexcept { return 0.0; }
+  static void retract(void*, Span<const double> base, Span<const double> d, Span<double> q) noexcept {
+    q[0] = base[0] + d[0];
+  }
   static Status accelerate(void* s, StateView* state, Span<double> z_rate, Message*) noexcept {
     ++self(s).accelerations;
     state->a[0] = self(s).acceleration(state->q[0], state->v[0]) + self(s).post_solve;

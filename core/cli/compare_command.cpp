@@ -1,0 +1,110 @@
+#include "cli/compare_command.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/terminal.h"
+#include "io/number_text.h"
+#include "report/comparison.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t rows_shown = 10;  // without --verbose
+
+struct CompareOptions {
+  std::string a, b, tolerance, absolute, from, until;
+  std::vector<std::string> channels;
+};
+
+/// A number >= 0 without a unit of its own, or a time.
+double value_of(const std::string& option, const std::string& text, bool time) {
+  if (time) return signed_quantity(option, text, dimension::time);
+  const double value = signed_quantity(option, text, dimension::none);
+  if (!(value >= 0.0)) {
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("bad value '{}' of {}: it must not be negative", text, option));
+  }
+  return value;
+}
+
+ComparisonRules rules_of(const CompareOptions& options) {
+  ComparisonRules rules;
+  if (!options.tolerance.empty()) rules.relative = value_of("--tolerance", options.tolerance, false);
+  if (!options.absolute.empty()) rules.absolute = value_of("--absolute", options.absolute, false);
+  if (!options.from.empty()) rules.from = value_of("--from", options.from, true);
+  if (!options.until.empty()) rules.until = value_of("--until", options.until, true);
+  if (!options.channels.empty()) rules.channels = options.channels;
+  return rules;
+}
+
+std::string table_text(const Comparison& comparison, bool all) {
+  std::string text = "channel,max_abs,max_rel,rms,at_time,ok\n";
+  const std::size_t shown = all ? comparison.channels.size() : std::min(comparison.channels.size(), rows_shown);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const ChannelDifference& d = comparison.channels[i];
+    text += fmt::format("{},{},{},{},{},{}\n", d.name, number_text(d.largest), number_text(d.relative),
+                        number_text(d.rms), number_text(d.at_time), d.agrees ? "1" : "0");
+  }
+  return text;
+}
+
+Json table_json(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const ChannelDifference& d : comparison.channels) {
+    list.push_back({{"channel", d.name},
+                    {"max_abs", json_number(d.largest)},
+                    {"max_rel", json_number(d.relative)},
+                    {"rms", json_number(d.rms)},
+                    {"at_time", json_number(d.at_time)},
+                    {"ok", d.agrees}});
+  }
+  return list;
+}
+
+int compare_results(const CompareOptions& options, const CommonOptions& common) {
+  if (options.a.empty() || options.b.empty()) {
+    throw Error(Error::Category::usage, "missing-argument", "compare needs two results");
+  }
+  const ComparisonRules rules = rules_of(options);
+  const ResultTable a = read_result(options.a), b = read_result(options.b);
+  const Comparison comparison = compare(a, b, rules);
+  if (common.json) {
+    print_json(table_json(comparison));
+  } else {
+    print(table_text(comparison, common.verbose));
+  }
+  for (const std::string& text : comparison.missing) print_messages("freeplay: note: " + text + "\n", common.no_color);
+  if (comparison.interpolated && !common.quiet) {
+    print_messages(fmt::format("freeplay: note: times differ: {} is interpolated linearly\n", b.file), common.no_color);
+  }
+  const std::size_t left_out = comparison.channels.size() - std::min(comparison.channels.size(), rows_shown);
+  if (!common.json && !common.verbose && !common.quiet && left_out > 0) {
+    print_messages(fmt::format("freeplay: note: {} more channels with --verbose\n", left_out), common.no_color);
+  }
+  return comparison.agree() ? 0 : 7;
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("compare", "Tell how far two results agree");
+  const auto options = std::make_shared<CompareOptions>();
+  app->add_option("A", options->a, "Result directory or CSV file")->type_name("");
+  app->add_option("B", options->b, "Another; it is interpolated where its times differ")->type_name("");
+  app->add_option("--tolerance", options->tolerance, "Part of the largest |a| that may differ (1e-6)")
+      ->type_name("REL");
+  app->add_option("--absolute", options->absolute, "What may differ besides (1e-12)")->type_name("ABS");
+  add_repeatable(*app, "--channels", options->channels, "Channels to compare, a name or pattern with *; repeatable")
+      ->type_name("PATTERN");
+  app->add_option("--from", options->from, "First time: \"10 ms\"")->type_name("T");
+  app->add_option("--until", options->until, "Last time")->type_name("T");
+  add_common_options(*app, common);
+  return {app, [options, &common] { return compare_results(*options, common); }};
+}
+
+}  // namespace freeplay

@@ -1,0 +1,188 @@
+// Steps with error control: every located event ends a step, output rows are taken from inside the steps.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "run/simulation_impl.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double largest_turn = 1.0;      // of a joint in one step [rad]: angles are continued over turns
+constexpr double event_time = 1e-11;      // a located event is as sharp as this [s], or as its function can be
+constexpr double event_rounding = 1e-15;  // [unit of the function]
+constexpr int most_tries = 40;            // to end a step at an event
+
+}  // namespace
+
+bool Simulation::Impl::run_adaptive(const RunHooks& hooks) {
+  while (accepted.t() < settings.end) {
+    const long before = outcome.steps;
+    const bool going = adaptive_step() && check_stop() && check_interrupt(hooks);
+    const bool due = accepted.t() >= row_time(next_row);
+    if (outcome.steps > before && (due || !going)) write_row();
+    if (!going) return false;
+    while (row_time(next_row) <= accepted.t() && accepted.t() < settings.end) ++next_row;
+  }
+  return true;
+}
+
+// The proposal of the error control, no longer than any joint allows and than what is left.
+bool Simulation::Impl::bounded_step(double& dt, int& limiting_joint) {
+  dt = control.next();
+  limiting_joint = -1;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    if (model.joints[at(j)].gear >= 0) continue;
+    const JointInput in = system.input(j, point(accepted), e_accepted);
+    double limit = unbounded;
+    Fault fault;
+    if (!system.joint(j).step_limit(in, limit, fault.message)) {
+      fault.kind = Fault::Kind::plugin;
+      fault.joint = j;
+      return fail_with(fault, accepted.t());
+    }
+    if (system.joint_layout(j).coordinate == Coordinate::angle) {
+      limit = std::min(limit, largest_turn / std::abs(in.coordinate_rate));
+    }
+    if (limit < dt) dt = limit, limiting_joint = j;
+  }
+  return true;
+}
+
+bool Simulation::Impl::adaptive_step() {
+  const double smallest = control.limits().smallest;
+  double dt = 0.0;
+  int limiting = -1;
+  if (!bounded_step(dt, limiting)) return false;
+  if (!(dt >= smallest)) return fail(4, why_so_small(dt, limiting));
+  StepEvents::Passage hunted;
+  for (int tries = 0;; ++tries) {
+    const double left = settings.end - accepted.t();
+    const bool last = dt >= left * (1.0 - 1e-12);
+    if (last) dt = left;
+    if (!last && accepted.t() + dt == accepted.t()) return fail(4, why_so_small(dt, limiting));
+    bool converged = false;
+    if (!step(dt, converged)) return false;
+    if (!converged || !(error <= 1.0)) {
+      ++outcome.rejected;
+      if (converged) {
+        control.reject(dt, error);
+      } else {
+        control.halve(dt);
+      }
+      dt = control.next();
+      hunted = {};
+      if (dt >= smallest) continue;
+      if (plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());
+      return fail(4, converged ? why_so_small(dt, -1) : why_not_converged(dt));
+    }
+    if (last) trial.t() = settings.end;
+    if (!system.evaluate(point(trial), all_terms, e_trial)) return fail_with(e_trial.fault, trial.t());
+    bool done = false;
+    if (!pursue(hunted, dt, tries, done)) return false;
+    if (done) break;
+  }
+  if (hunted.joint >= 0) {
+    control.cut();
+  } else {
+    control.accept(trial.t() - accepted.t(), error);
+  }
+  return accept(hunted);
+}
+
+// Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
+// is where to try next.
+bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done) {
+  Fault fault;
+  StepEvents::Passage found;
+  if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
+  if (!events.first_crossing(accepted, e_accepted, trial, e_trial, found, fault)) return fail_with(fault, trial.t());
+  const bool same = found.joint == hunted.joint && found.event == hunted.event;
+  if (found.joint < 0 && hunted.joint < 0) {
+    done = true;
+    return true;
+  }
+  // Another event comes first, or this is the first sight of one.
+  if (found.joint >= 0 && !same) hunted = found;
+  // The step ends just past the zero, so that what begins there acts from the first on.
+  const double past = hunted.value;
+  const bool sharp = past <= event_rounding || past <= event_time * hunted.rate || tries > most_tries / 2;
+  const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
+  if (ends_there && past >= 0.0 && past <= StepEvents::tolerance && sharp) {
+    done = true;
+    return true;
+  }
+  if (tries > most_tries) {
+    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located", accepted.t(),
+                               system.joint_layout(hunted.joint).events[at(hunted.event)].name,
+                               model.joints[at(hunted.joint)].name));
+  }
+  // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
+  const double aim = std::min(0.1 * event_time * hunted.rate, 0.5 * StepEvents::tolerance);
+  const double newton = dt - (hunted.value - aim) / hunted.rate;
+  const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
+  double next = near ? newton : (found.joint >= 0 ? found.fraction * dt : dt);
+  if (next == dt) next = past < 0.0 ? dt * (1.0 + 4.0 * rounding) : dt * (1.0 - 4.0 * rounding);
+  if (!(next > 0.0)) next = 0.5 * dt;
+  dt = next;
+  return true;
+}
+
+bool Simulation::Impl::write_rows_inside() {
+  while (row_time(next_row) < trial.t()) {
+    if (!write_row_at(row_time(next_row))) return false;
+    ++next_row;
+  }
+  return true;
+}
+
+// A consistent state inside the step that was just made, in `between` and e_between.
+bool Simulation::Impl::look_inside(double t) {
+  const double s = (t - accepted.t()) / (trial.t() - accepted.t());
+  DenseStep(accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(s, between);
+  between.t() = t;
+  StateView view = between.view();
+  solver.use_history(between.h());
+  const bool good = solver.project_position(view) && solver.project_velocity(view) &&
+                    solver.accelerate(view, {z_rate.data(), z_rate.size()});
+  if (!good) {
+    if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), t);
+    return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
+  }
+  if (!system.evaluate(point(between), all_terms, e_between)) return fail_with(e_between.fault, t);
+  return true;
+}
+
+bool Simulation::Impl::write_row_at(double t) {
+  if (!look_inside(0.5 * (accepted.t() + t))) return false;
+  energy.flow(e_between, between.lambda(), flow_half_way);
+  if (!look_inside(t)) return false;
+  Fault fault;
+  if (!observer.observe(point(between), e_between, between.lambda(), row_between, fault)) return fail_with(fault, t);
+  const double s = (t - accepted.t()) / (trial.t() - accepted.t());
+  energy.fill_inside(s, flow_half_way, e_between, between.lambda(), channels, row_between);
+  ++outcome.rows;
+  for (Sink* sink : sinks) sink->row(row_between);
+  return true;
+}
+
+std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const {
+  std::string text = fmt::format("t = {:.9g} s: a step of {:.3g} s is needed, the smallest allowed is {:.3g} s",
+                                 accepted.t(), dt, control.limits().smallest);
+  if (limiting_joint >= 0) return text + fmt::format("; joint '{}' asks for it", model.joints[at(limiting_joint)].name);
+  const int worst = solver.worst_component();
+  if (worst < 0) return text;
+  const char* directions[] = {"x", "y", "angle"};
+  text +=
+      fmt::format("; the error is largest in body '{}' ({})", model.bodies[at(worst / 3)].name, directions[worst % 3]);
+  if (const int joint = hardest_joint(worst / 3); joint >= 0) {
+    text += fmt::format(", on which joint '{}' pulls hardest", model.joints[at(joint)].name);
+  }
+  return text + "; allow smaller steps or a larger error";
+}
+
+}  // namespace freeplay

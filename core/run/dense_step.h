@@ -1,0 +1,25 @@
+// DenseStep: the motion inside an accepted step.
+#pragma once
+
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Between two states of one motion: q by the quintic of (q, v, a) at both ends, v and a as its derivatives, z by the
+/// cubic of (z, z'), lambda straight. Errors of order 6 in q and 5 in v where the ends are exact; constraints hold to
+/// that order and not better. h is that of the start: no event lies inside.
+class DenseStep {
+ public:
+  DenseStep(const State& start, std::span<const double> start_rate, const State& end, std::span<const double> end_rate)
+      : start_(start), end_(end), start_rate_(start_rate), end_rate_(end_rate) {}
+
+  /// The state at the fraction s of the step; `out` has the layout of both.
+  void at(double s, State& out) const;
+
+ private:
+  const State& start_;
+  const State& end_;
+  std::span<const double> start_rate_, end_rate_;  ///< z' of the joints' internal variables
+};
+
+}  // namespace freeplay

@@ -1,0 +1,93 @@
+// The parts of a run. Private to simulation.cpp and adaptive_run.cpp.
+#pragma once
+
+#include <chrono>
+
+#include "run/energy_account.h"
+#include "run/newton_stage_solver.h"
+#include "run/observer.h"
+#include "run/simulation.h"
+#include "run/step_control.h"
+#include "run/step_events.h"
+
+namespace freeplay {
+
+struct Simulation::Impl {
+  Impl(System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);
+
+  Outcome run(const RunHooks& hooks);
+
+  // Each returns false when the run is over, with `outcome` filled.
+  bool begin();
+  bool advance_to(double target, const RunHooks& hooks);
+  bool run_fixed(const RunHooks& hooks);
+  bool step(double dt, bool& converged);
+  bool check_step(double dt);
+  /// The numbers that an attempt may use as it likes; behind them stand marks.
+  Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
+  bool prepare_trial(double dt);
+  bool accept(const StepEvents::Passage& located);
+  void add_energy();
+  bool refresh();
+  bool record_row();
+  bool note_warnings();
+  bool tell_sinks();
+  bool check_stop();
+  bool check_interrupt(const RunHooks& hooks);
+
+  // Runs with error control (adaptive_run.cpp).
+  bool run_adaptive(const RunHooks& hooks);
+  bool adaptive_step();
+  bool bounded_step(double& dt, int& limiting_joint);
+  bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
+  bool write_rows_inside();
+  bool write_row_at(double t);
+  bool look_inside(double t);
+  std::string why_so_small(double dt, int limiting_joint) const;
+  double row_time(long index) const;
+
+  void write_row();
+  bool fail(int exit_code, std::string reason);
+  bool fail_with(const Fault& fault, double t);
+  bool fail_beside(int joint);
+  std::string why_not_converged(double dt) const;
+  std::string row_name(int row_index) const;
+  int hardest_joint(BodyId body) const;
+  void format_warnings();
+
+  System& system;
+  const Model& model;
+  const Settings& settings;
+  const Channels& channels;
+  std::vector<Sink*> sinks;
+  EnergyAccount energy;
+  IntegratorLayout integrator_layout;
+  bool adaptive;
+  int flows;  ///< integrals that the integrator carries along
+  NewtonStageSolver solver;
+  StepControl control;
+  State accepted, trial, between;
+  Evaluation e_accepted, e_trial, e_between;
+  Observer observer;
+  StepEvents events;
+  Statistics statistics;
+  std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way;
+  std::vector<int> stop_columns, with_history;
+  struct Warning {
+    const char* text = nullptr;
+    double time = 0.0;
+    std::size_t values = 0;  ///< offset into warning_values
+  };
+  std::vector<Warning> joint_warnings;  ///< by joint
+  std::vector<double> warning_values;   ///< the joints' own channels when they warned
+  std::vector<std::string> warnings;
+  Outcome outcome;
+  Fault plugin_fault;  // of the last attempt
+  double error = 0.0;  // of the last attempt
+  long next_row = 1;
+  std::chrono::steady_clock::time_point started;
+  double last_progress = 0.0;
+  static constexpr unsigned all_terms = term_position | term_velocity | term_force | term_coordinate;
+};
+
+}  // namespace freeplay

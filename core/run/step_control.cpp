@@ -1,0 +1,31 @@
+#include "run/step_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freeplay {
+namespace {
+constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway
+}
+
+void StepControl::accept(double dt, double error) {
+  const double e = std::max(error, smallest_error);
+  double factor = std::clamp(0.9 * std::pow(e, -0.7 / power_) * std::pow(last_error_, 0.4 / power_), 0.2, 5.0);
+  if (rejected_) factor = std::min(factor, 1.0);
+  next_ = std::min(dt * factor, limits_.largest);
+  last_error_ = e;
+  rejected_ = false;
+}
+
+void StepControl::reject(double dt, double error) {
+  const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -1.0 / power_), 0.1, 0.9) : 0.1;
+  next_ = dt * factor;
+  rejected_ = true;
+}
+
+void StepControl::halve(double dt) {
+  next_ = 0.5 * dt;
+  rejected_ = true;
+}
+
+}  // namespace freeplay

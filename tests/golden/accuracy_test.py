@@ -1,0 +1,113 @@
+"""Accuracy in place of a step, the second look of --verify, and `freeplay compare`."""
+import json
+import os
+import unittest
+
+from program import ProgramTest, mechanism
+
+
+class Accuracy(ProgramTest):
+    def run_json(self, *arguments, code=0):
+        out, _ = self.freeplay("run", *arguments, "--json", code=code)
+        return json.loads(out)
+
+    def test_accuracy_chooses_integrator_and_steps(self):
+        settings = self.run_json(mechanism("pendulum"), "--accuracy", "1um", "--end", "0.1 s", "--out", "r")["settings"]
+        self.assertEqual("dopri5", settings["integrator"]["type"])
+        self.assertEqual((True, 1e-6, 20.0),
+                         tuple(settings["step"][key] for key in ("adaptive", "accuracy", "per_contact")))
+        settings = self.run_json(mechanism("pendulum"), "--accuracy", "1um", "--integrator", "bathe", "--end", "0.1 s",
+                                 "--out", "r")["settings"]
+        self.assertEqual("bathe", settings["integrator"]["type"])
+
+    def test_accuracy_in_the_file_keeps_the_integrator_that_the_file_names(self):
+        with open(mechanism("pendulum"), encoding="utf-8") as file:
+            text = file.read().replace("{end: 2 s, step: 1 ms}", "{end: 0.1 s, accuracy: 1 um, integrator: hht}")
+        with open(self.path("a.yaml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        self.assertEqual("hht", self.run_json("a.yaml")["settings"]["integrator"]["type"])
+        self.assertEqual("dopri5", self.run_json("a.yaml", "--accuracy", "1um")["settings"]["integrator"]["type"])
+        fixed = self.run_json("a.yaml", "--step", "1ms")["settings"]
+        self.assertEqual({"size": 1e-3, "adaptive": False}, fixed["step"])
+
+    def test_step_and_accuracy_exclude_each_other(self):
+        self.freeplay("run", mechanism("pendulum"), "--step", "1ms", "--accuracy", "1um", code=2)
+        self.freeplay("run", mechanism("pendulum"), "--accuracy", "1 s", code=2)
+
+    def test_accuracy_below_rounding_is_refused_with_the_reason(self):
+        _, err = self.freeplay("run", mechanism("pendulum"), "--accuracy", "1e-17 m", "--out", "r", code=3)
+        self.assertIn("rounded", err)
+
+    def test_rows_stand_at_the_interval_and_impacts_are_counted(self):
+        summary = self.run_json(mechanism("slider-crank"), "--accuracy", "1um", "--end", "2 ms", "--out", "r")
+        with open(self.path("r/results.csv"), encoding="utf-8") as file:
+            times = [line.split(",")[0] for line in file.read().splitlines()[1:]]
+        self.assertEqual(101, len(times))
+        for k, time in enumerate(times):
+            self.assertAlmostEqual(k * 2e-5, float(time), delta=1e-15)
+        self.assertGreater(summary["counts"]["contacts_total"], 5)
+        with open(self.path("r/events.csv"), encoding="utf-8") as file:
+            steps = [int(line.split(",")[-1]) for line in file if "contact_end" in line]
+        self.assertGreaterEqual(min(steps), 20)
+
+    def test_under_resolved_impacts_are_counted_with_the_step_that_would_do(self):
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            self.write("all.yaml", file.read().replace("discard: 12 ms", "discard: 0 ms"))
+        out, _ = self.freeplay("run", "all.yaml", "--step", "10us", "--end", "4 ms", "--out", "r")
+        self.assertRegex(out, r"steps per impact: \d+ or more; \d+ of \d+ impacts took fewer than 20: --step")
+        with open(self.path("r/summary.json"), encoding="utf-8") as file:
+            advice = json.load(file)["advice"]
+        self.assertGreater(advice["under_resolved"], 0)
+        self.assertLess(advice["step"], 1e-5)
+
+    def test_verify_tells_errors_and_until_when_runs_agree(self):
+        out, _ = self.freeplay("run", mechanism("slider-crank"), "--accuracy", "1e-9", "--end", "10 ms", "--verify",
+                               "--out", "r")
+        self.assertIn("verified by accuracy 1e-10 m", out)
+        self.assertIn("body.slider.x", out)
+        with open(self.path("r/summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.assertGreaterEqual(summary["agree_until"], 8e-3)
+        self.assertLess(summary["verify"]["body.slider.x"], 1e-6)
+
+    def test_verify_of_fixed_steps_halves_the_step(self):
+        out, _ = self.freeplay("run", mechanism("pendulum"), "--end", "1 s", "--verify", "--out", "r")
+        self.assertIn("verified by step 0.0005 s (2000 steps): positions agree", out)
+
+
+class Compare(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        for name, step in (("a", "0.2ms"), ("b", "0.1ms"), ("c", "0.2ms")):
+            self.freeplay("run", mechanism("pendulum"), "--end", "0.2 s", "--step", step, "--out", name)
+
+    def test_equal_results_agree_and_others_differ(self):
+        out, _ = self.freeplay("compare", "a", "c", "--tolerance", "0", "--absolute", "0")
+        self.assertEqual("channel,max_abs,max_rel,rms,at_time,ok", out.splitlines()[0])
+        out, _ = self.freeplay("compare", "a", "b", code=7)
+        self.assertTrue(out.splitlines()[1].endswith(",0"))
+        self.freeplay("compare", "a", "b", "--tolerance", "1e-2", "--absolute", "1e-3")
+
+    def test_a_directory_or_its_table_may_be_named(self):
+        self.freeplay("compare", os.path.join("a", "results.csv"), "c")
+
+    def test_json_is_a_list_also_when_results_differ(self):
+        out, _ = self.freeplay("compare", "a", "b", "--json", "--channels", "body.*", "--tolerance", "1e-13", code=7)
+        rows = json.loads(out)
+        self.assertEqual(6, len(rows))
+        self.assertEqual({"channel", "max_abs", "max_rel", "rms", "at_time", "ok"}, set(rows[0]))
+
+    def test_window_and_mistakes(self):
+        self.freeplay("compare", "a", "b", "--until", "0 s")
+        self.freeplay("compare", "a", code=2)
+        self.freeplay("compare", "a", "b", "--channels", "joint.nothing.*", code=2)
+        self.freeplay("compare", "a", "b", "--tolerance", "-1", code=2)
+        self.freeplay("compare", "a", "nothing", code=6)
+        with open(self.path("broken.csv"), "w", encoding="utf-8") as file:
+            file.write("time,x\n0,1\n1,two\n")
+        _, err = self.freeplay("compare", "a", "broken.csv", code=6)
+        self.assertIn("'two' is not a number", err)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,248 @@
+// Runs with error control: located events, orders through impacts, accuracy that is asked for.
+#include "puck.h"
+
+namespace freeplay::test {
+namespace {
+
+/// `text` with the steps of its simulation section replaced.
+std::string with_steps(const std::string& text, double step, const std::string& steps) {
+  return replaced(text, ", step: " + number(step) + ",", ", " + steps + ",");
+}
+
+BuildOptions accurate(double accuracy, double end, const std::optional<std::string>& integrator = std::nullopt) {
+  BuildOptions options;
+  options.accuracy = accuracy;
+  options.end = end;
+  options.integrator = integrator;
+  return options;
+}
+
+struct Flight {
+  double r0[2], v0[2];
+  const char* gravity;
+  double time, normal, tangential;
+};
+
+// Roots of the quartic |e(t)| = c in 34 digits.
+TEST(LocatedEvent, FirstContactIsTheRootOfTheParabola) {
+  const Flight flights[] = {
+      {{0.0, 0.0}, {0.05, 0.0}, "[0, -9.81]", 0.00196388550299565, 0.0527417933072436, -0.00945891547441952},
+      {{3e-05, -4e-05}, {-0.02, 0.01}, "[12, -9.81]", 0.00421981293940259, 0.042800093435473, 0.00962059152226299},
+      {{0.0, 9e-05}, {0.1, 0.3}, "[0, 0]", 3.31501278244824e-05, 0.303150127824482, -0.09}};
+  for (const Flight& want : flights) {
+    Puck puck;
+    puck.x = want.r0[0];
+    puck.y = want.r0[1];
+    puck.vx = want.v0[0];
+    puck.vy = want.v0[1];
+    puck.sections = std::string("gravity: ") + want.gravity + "\n";
+    for (const char* integrator : {"dopri5", "bathe"}) {
+      const ModelRun run(puck.text(), accurate(1e-9, want.time + 1e-4, integrator));
+      ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+      ASSERT_FALSE(run.events().empty()) << integrator;
+      const Event& begin = run.events().front();
+      // Flight under constant acceleration is a parabola for every integrator; the event is as sharp as 1e-11 s.
+      EXPECT_NEAR(begin.time, want.time, 2e-11) << integrator;
+      EXPECT_NEAR(begin.fields[speed], want.normal, 1e-9 * want.normal) << integrator;
+      EXPECT_NEAR(begin.fields[tangential_speed], want.tangential, 1e-8 * want.normal) << integrator;
+    }
+  }
+}
+
+// Closed form of the duration and of the rebound (contact.json, Hertz and Lankarani-Nikravesh).
+TEST(LocatedEvent, ImpactTakesTheStepsThatAreAskedFor) {
+  for (const double per_contact : {20.0, 50.0}) {
+    Puck puck;
+    puck.y = -0.099e-3;
+    puck.vy = -0.1;
+    puck.end = 1e-5 + 1.4 * 0.000119629579928;
+    const ModelRun run(with_steps(
+        puck.text(), puck.step,
+        "step: {size: 1e-6, max: 1e-3, adaptive: true, tolerance: 0.01, per_contact: " + number(per_contact) + "}"));
+    const auto all = contacts(run);
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_GE(all[0].end.fields[steps], per_contact);
+    EXPECT_LE(all[0].end.fields[steps], 1.5 * per_contact);
+    EXPECT_NEAR(all[0].end.fields[duration], 0.000119629579928, 3e-3 * 0.00012);  // of 20 steps and order 2
+  }
+}
+
+TEST(LocatedEvent, EnergyOfAnElasticImpactIsNotLost) {
+  Puck puck;
+  puck.y = -0.099e-3;
+  puck.vy = -0.1;
+  puck.end = 1e-5 + 1.4 * 0.000119629579928;
+  const ModelRun run(puck.text(), accurate(1e-10, puck.end));
+  const auto all = contacts(run);
+  ASSERT_EQ(all.size(), 1u);
+  const double energy = 0.5 * 0.2 * 0.1 * 0.1;
+  EXPECT_NEAR(all[0].end.fields[speed], 0.1, 1e-9);
+  EXPECT_NEAR(run.last("energy.dissipated"), 0.0, 1e-8 * energy);
+  EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-8 * energy);
+}
+
+/// The drop with unit mass, stiffness and speed, restitution 0.9, and a constant push of 0.05 toward the ring, in steps
+/// of one size but for those that end at the events. Rebound speed.
+double unit_rebound(const std::string& integrator, double step, double phase) {
+  constexpr double push = 0.05;
+  Puck puck;
+  puck.mass = 1.0;
+  puck.ring = "radial_clearance: 100";
+  puck.contact = "{law: lankarani-nikravesh, K: 1, restitution: 0.9}";
+  const double wait = phase * step;
+  puck.vy = -(1.0 - push * wait);
+  puck.y = -(100.0 - (wait - 0.5 * push * wait * wait));
+  puck.sections = "forces: {push: {type: force, at: puck, value: [0, " + number(-push) + "]}}\n";
+  puck.step = step;
+  puck.end = 5.0;
+  const std::string h = number(step);
+  const ModelRun run(with_steps(puck.text(), step,
+                                "integrator: " + integrator + ", step: {size: " + h + ", max: " + h +
+                                    ", adaptive: true, tolerance: 0.1, per_contact: 2}"));
+  EXPECT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  const auto all = contacts(run);
+  EXPECT_EQ(all.size(), 1u);
+  return all.empty() ? 0.0 : all[0].end.fields.at(speed);
+}
+
+// The rebound of the known study, 0.901222060959, with a push that a wrong approach speed would show.
+TEST(LocatedEvent, MethodsOfOrderTwoKeepItThroughAnImpact) {
+  for (const char* integrator : {"bathe", "hht", "generalized-alpha", "newmark"}) {
+    std::vector<double> errors;
+    for (const int steps : {40, 160, 640}) {
+      double worst = 0.0;
+      for (int phase = 0; phase < 6; ++phase) {
+        const double rebound = unit_rebound(integrator, 3.21806545971904 / steps, (phase + 0.5) / 6.0);
+        worst = std::max(worst, std::abs(rebound / 0.901222060959 - 1.0));
+      }
+      errors.push_back(worst);
+      record(std::string(integrator) + "_error_at_" + std::to_string(steps), worst);
+    }
+    const double mean_order = order(errors[0], errors[2]) / 4.0;
+    record(std::string(integrator) + "_order", mean_order);
+    EXPECT_GE(mean_order, 1.8) << integrator;
+    EXPECT_LE(mean_order, 2.3) << integrator;
+  }
+}
+
+// Radius at which an angle counts as a length: 0.05 m, as in the tests of fixed steps.
+double largest_distance(const ModelRun& run, const Table& table) {
+  double worst = 0.0;
+  std::size_t row = 0;
+  for (const std::vector<double>& numbers : table.rows) {
+    while (row < run.rows() && run.at(row, "time") < numbers[0] - 1e-9) ++row;
+    if (row >= run.rows() || std::abs(run.at(row, "time") - numbers[0]) > 1e-9) {
+      ADD_FAILURE() << "no row at " << numbers[0];
+      return std::numeric_limits<double>::infinity();
+    }
+    for (std::size_t i = 1; i < numbers.size(); ++i) {
+      double off = run.at(row, table.names[i]) - numbers[i];
+      if (table.names[i].ends_with(".angle")) off = std::remainder(off, 2.0 * M_PI) * 0.05;
+      if (!(std::abs(off) <= worst)) worst = std::abs(off);
+    }
+  }
+  return worst;
+}
+
+// Quadruple precision, every contact located.
+TEST(Accuracy, ThreeRrrAtOneNanometreFollowsTheReferenceForTwentyMilliseconds) {
+  const std::string text = replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: 0.1 s}", "{interval: 1 ms}");
+  const ModelRun run(text, accurate(1e-9, 20e-3));
+  ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  const double worst = largest_distance(run, read_table("rrr3_friction_trajectory.csv"));
+  record("worst_distance", worst);
+  EXPECT_LE(worst, 1e-8);
+  EXPECT_LT(run.statistics().position_residual(), 1e-12);
+  const std::pair<const char*, double> known[] = {{"leg1.B", 0.00548333785509636}, {"leg3.B", 0.00590306015414261},
+                                                  {"leg1.C", 0.0067390359026056},  {"leg3.C", 0.00744866421410308},
+                                                  {"leg2.B", 0.00844143722135433}, {"leg2.C", 0.00851851940436134}};
+  for (const auto& [joint, time] : known) {
+    const auto first = std::ranges::find_if(run.events(), [&](const Event& e) { return e.joint == joint; });
+    ASSERT_NE(first, run.events().end()) << joint;
+    EXPECT_NEAR(first->time, time, 1e-9) << joint;
+  }
+}
+
+TEST(Accuracy, SliderCrankAtOneNanometreFollowsTheReferenceForThirtyMilliseconds) {
+  std::string text = replaced(mechanism("slider-crank"), "contact: {law: lankarani-nikravesh, restitution: 0.9}",
+                              "contact: {law: lankarani-nikravesh, restitution: 0.9}\n"
+                              "      friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}");
+  text = replaced(text, "output: {interval: 20 us, discard: 12 ms}", "output: {interval: 1 ms}");
+  const ModelRun run(text, accurate(1e-9, 30e-3));
+  ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  const double worst = largest_distance(run, read_table("slider_crank_friction_trajectory.csv"));
+  record("worst_distance", worst);
+  EXPECT_LE(worst, 1e-8);
+}
+
+// Time integral of |driver power| of the 3-RRR over 20 ms, from its own rows: the unit of the residual.
+TEST(Accuracy, EnergyResidualFallsWithTheAccuracy) {
+  std::vector<double> residuals;
+  for (const double accuracy : {1e-6, 1e-8, 1e-9}) {
+    const ModelRun run(mechanism("3-rrr"), accurate(accuracy, 20e-3));
+    double worst = 0.0, work = 0.0;
+    for (std::size_t row = 0; row < run.rows(); ++row) {
+      worst = std::max(worst, std::abs(run.at(row, "energy.residual")));
+      for (const char* driver : {"driver.leg1.A.power", "driver.leg2.A.power", "driver.leg3.A.power"}) {
+        work += 1e-4 * std::abs(run.at(row, driver));
+      }
+    }
+    residuals.push_back(worst / work);
+    record("residual_at_" + number(accuracy), worst / work);
+  }
+  EXPECT_LE(residuals[2], 1e-6);
+  EXPECT_LT(residuals[1], residuals[0] / 10.0);
+  EXPECT_LT(residuals[2], residuals[1]);
+}
+
+// Free flight, contact and lasting contact: rows come from inside the steps and are states of the same motion.
+TEST(Accuracy, OutputDoesNotChangeTheMotion) {
+  const std::string text = mechanism("3-rrr");
+  const ModelRun many(text, accurate(1e-8, 10e-3));
+  const ModelRun few(replaced(text, "interval: 0.1 ms", "interval: 5 ms"), accurate(1e-8, 10e-3));
+  ASSERT_EQ(few.rows(), 3u);
+  ASSERT_EQ(many.rows(), 101u);
+  EXPECT_EQ(many.outcome().steps, few.outcome().steps);
+  EXPECT_NEAR(many.last("body.platform.x"), few.last("body.platform.x"), 1e-13);
+  EXPECT_NEAR(many.at(50, "body.platform.x"), few.at(1, "body.platform.x"), 1e-13);
+  EXPECT_NEAR(many.at(50, "driver.leg1.A.torque"), few.at(1, "driver.leg1.A.torque"), 1e-8);
+}
+
+TEST(Accuracy, RowsInsideLongStepsSatisfyTheEquations) {
+  // A pendulum of 1 m: period 1.6 s, steps of tens of milliseconds, rows at every millisecond.
+  const ModelRun run(mechanism("pendulum"), accurate(1e-9, 2.0));
+  ASSERT_GT(run.rows(), 10u * static_cast<std::size_t>(run.outcome().steps) / 10u);
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    const double angle = run.at(row, "body.rod.angle"), omega = run.at(row, "body.rod.omega");
+    EXPECT_NEAR(run.at(row, "body.rod.x"), 0.5 * std::cos(angle), 1e-13);
+    EXPECT_NEAR(run.at(row, "body.rod.vy"), 0.5 * std::cos(angle) * omega, 1e-12);
+    // m g l/2 sin(angle) + (m l^2/3) omega^2/2 = 0 from rest at the horizontal; energy shared by no other term.
+    EXPECT_NEAR(9.81 * 0.5 * std::sin(angle) + omega * omega / 6.0, 0.0, 1e-8);
+  }
+}
+
+TEST(StepBound, FailureNamesTheJointThatForcesTheSmallStep) {
+  Puck puck;
+  puck.y = -0.099e-3;
+  puck.vy = -0.1;
+  puck.end = 3e-4;
+  const ModelRun run(
+      with_steps(puck.text(), puck.step, "step: {size: 1e-5, min: 9e-6, max: 1e-3, adaptive: true, tolerance: 1e-6}"));
+  EXPECT_EQ(run.outcome().exit_code, 4);
+  EXPECT_NE(run.outcome().reason.find("joint 'ring'"), std::string::npos) << run.outcome().reason;
+}
+
+TEST(LawOutsideItsRange, IsToldOnceForEachJointWithNumbers) {
+  const std::unique_ptr<Model> model = load(mechanism("slider-crank"), accurate(1e-6, 2e-3));
+  System system(*model);
+  const Start start = assemble(system);
+  const Channels channels(*model);
+  Simulation simulation(system, start, channels, {});
+  simulation.run({});
+  ASSERT_EQ(simulation.warnings().size(), 1u);
+  EXPECT_NE(simulation.warnings()[0].find("joint 'wrist'"), std::string::npos) << simulation.warnings()[0];
+  EXPECT_NE(simulation.warnings()[0].find("delta = 5."), std::string::npos) << simulation.warnings()[0];
+}
+
+}  // namespace
+}  // namespace freeplay::test
