@@ -83,8 +83,9 @@ std::string type_text(const ExaminedType& type, bool brief) {
 std::string verdict_text(const Examination& found) {
   const auto bad = std::ranges::count_if(found.types, [](const ExaminedType& type) { return !type.held(); });
   const std::size_t count = found.types.size();
-  if (bad > 0) return fmt::format("\n{} of {} types do not keep their contract.\n", bad, count);
-  return count == 1 ? "\nThe type keeps its contract.\n" : fmt::format("\nAll {} types keep their contracts.\n", count);
+  if (count == 1) return bad == 0 ? "\nThe type keeps its contract.\n" : "\nThe type does not keep its contract.\n";
+  if (bad == 0) return fmt::format("\nAll {} types keep their contracts.\n", count);
+  return fmt::format("\n{} of {} types {} not keep their contracts.\n", bad, count, bad == 1 ? "does" : "do");
 }
 
 std::string examination_text(const Examination& found, bool quiet) {
@@ -127,8 +128,11 @@ Json examination_json(const Examination& found) {
 void show_printed(const Examination& found, const CommonOptions& common) {
   const auto show = [&](const std::string& who, const std::string& text) {
     if (text.empty()) return;
-    print_messages(fmt::format("freeplay: note: {} printed:\n{}{}", who, text, text.ends_with('\n') ? "" : "\n"),
-                   common.no_color);
+    constexpr std::size_t most = 4000;
+    std::string shown = text.substr(0, most);
+    if (!shown.ends_with('\n')) shown += '\n';
+    if (text.size() > most) shown += fmt::format("... and {} bytes more\n", text.size() - most);
+    print_messages(fmt::format("freeplay: note: {} printed:\n{}", who, shown), common.no_color);
   };
   show("the library", found.printed);
   for (const ExaminedType& type : found.types) show("'" + type.name + "'", type.printed);

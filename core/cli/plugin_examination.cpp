@@ -189,6 +189,7 @@ void read_findings(const ChildProcess& child, double time_limit, ExaminedType& t
   type.rules = all.empty() ? so_far.all() : all;
   type.printed = child.end().printed;
   type.failure = failure_of(child, "'" + type.name + "'", time_limit);
+  if (type.failure.empty() && all.empty()) type.failure = "'" + type.name + "' cut off the report of its examination";
 }
 
 std::vector<std::unique_ptr<ChildProcess>> one(const ChildProcess::Work& work) {
