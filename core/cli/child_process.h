@@ -32,8 +32,8 @@ class ChildProcess {
  public:
   /// Passes lines to the parent. They arrive even if the child crashes next.
   using Report = std::function<void(std::string_view line)>;
-  /// How the child leaves when its work is done: at once, or as any program does, with the static destructors of what it
-  /// has loaded.
+  /// How the child leaves when its work is done: at once, or as any program does, with the static destructors of what
+  /// it has loaded.
   enum class Leave { at_once, as_usual };
   using Work = std::function<Leave(const Report&, CallNote&)>;
 

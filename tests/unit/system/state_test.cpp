@@ -51,6 +51,21 @@ TEST(State, AssigningRestoresEveryBit) {
   EXPECT_TRUE(same_bits(trial, copy));
 }
 
+TEST(State, SeesAWritePastItsEndUntilItIsMadeAnew) {
+  const auto model = test::load(test::mechanism("pendulum"));
+  const Layout layout(*model, Variant::released);
+  for (const int memory : {0, 3}) {
+    State state(layout, memory);
+    const State untouched(layout, 2);
+    scribble(state);
+    state.assign(untouched);
+    EXPECT_TRUE(state.intact()) << "a state of other size was assigned";
+    double* end = state.memory().data() + state.memory().size();
+    *end = 0.0;
+    EXPECT_FALSE(state.intact());
+  }
+}
+
 TEST(State, AssigningLeavesMemoryThatTheOtherLacks) {
   const auto model = test::load(test::mechanism("pendulum"));
   const Layout layout(*model, Variant::released);
