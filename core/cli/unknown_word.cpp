@@ -15,14 +15,11 @@ namespace {
 
 // One a line, so that the release that brings one takes its line away.
 const std::vector<std::string> later_commands{
-    "show",     //
-    "convert",  //
     "analyze",  //
     "sweep",    //
     "report",   //
     "export",   //
     "compare",  //
-    "doctor",   //
 };
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,

@@ -7,7 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, mechanism
 
-LATER_COMMANDS = ["show", "convert", "analyze", "sweep", "report", "export", "compare", "doctor"]
+LATER_COMMANDS = ["analyze", "sweep", "report", "export", "compare"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 
