@@ -169,7 +169,7 @@ class SmallMistakes(ProgramTest):
         self.freeplay("run", mechanism("pendulum"), "--out", "", code=2)
 
     def test_a_decimal_comma_is_shown_as_a_whole(self):
-        self.assertEqual([(2, 20, "bad-expression", None)], [m[:3] + (None,) for m in self.messages(
+        self.assertEqual([(2, 21, "bad-expression", None)], [m[:3] + (None,) for m in self.messages(
             "freeplay: 1\nbodies: {b: {mass: \"1,5\", inertia: 1}}\n")][:1])
 
     def test_summary_names_the_joints_that_are_made_ideal(self):
