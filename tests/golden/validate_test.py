@@ -177,6 +177,27 @@ class SmallMistakes(ProgramTest):
         self.assertEqual(["leg2.B", "leg2.C"], json.loads(self.read("r", "summary.json"))["settings"]["ideal"])
 
 
+class Assembly(ProgramTest):
+    def test_links_that_are_given_in_one_line_are_put_together(self):
+        # Newton's steps cannot leave the line; 1.8 + 2.6 + 2 > 3.6, so the four-bar closes.
+        self.write("line.yaml", """freeplay: 1
+bodies:
+  a: {mass: 1, inertia: 1, frames: {end: [1.8, 0]}}
+  b: {mass: 1, inertia: 1, frames: {end: [3.6, 0]}}
+  c: {mass: 1, inertia: 1, frames: {end: [2.6, 0]}}
+joints:
+  p: {type: revolute, between: [ground/post, a]}
+  q: {type: revolute, between: [a/end, b]}
+  r: {type: revolute, between: [b/end, c]}
+  s: {type: revolute, between: [c/end, ground]}
+frames: {ground/post: [2, 0]}
+""")
+        facts = json.loads(self.freeplay("validate", "line.yaml", "--json")[0])["facts"]
+        self.assertEqual((8, 1), (facts["rank"], facts["dof"]))
+        self.write("apart.yaml", self.read("line.yaml").replace("3.6", "6.6"))
+        self.assertIn("[assembly-failed]", self.freeplay("validate", "apart.yaml", code=3)[1])
+
+
 class DrivenJointsTest(ProgramTest):
     def test_an_inverse_kinematics_driver_must_drive_a_joint(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:
