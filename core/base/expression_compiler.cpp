@@ -407,7 +407,8 @@ class ExpressionCompiler {
 
   void enter(std::size_t open) {
     position_ = open + 1;
-    if (++nesting_ > deepest) fail("bad-expression", open, open + 1, "parentheses are nested more than 256 deep");
+    // No single parenthesis is to blame.
+    if (++nesting_ > deepest) fail("bad-expression", 0, text_.size(), "parentheses are nested more than 256 deep");
   }
 
   void leave(std::size_t open) {
@@ -448,8 +449,11 @@ class ExpressionCompiler {
   [[noreturn]] void fail_at_comma() {
     const auto digit = [&](std::size_t i) { return i < text_.size() && text_[i] >= '0' && text_[i] <= '9'; };
     const bool decimal = position_ > 0 && digit(position_ - 1) && digit(position_ + 1);
-    fail("bad-expression", position_, position_ + 1, "unexpected ','", {},
-         decimal ? "write a decimal point, as in '0.5'" : "");
+    if (!decimal) fail("bad-expression", position_, position_ + 1, "unexpected ','");
+    std::size_t begin = position_, end = position_ + 1;
+    while (begin > 0 && (digit(begin - 1) || text_[begin - 1] == '.')) --begin;
+    while (digit(end)) ++end;
+    fail("bad-expression", begin, end, "a ',' cannot stand inside a number", {}, "write a decimal point, as in '0.5'");
   }
 
   void fail_if_not_finite_word(std::size_t word_begin, std::size_t begin) const {

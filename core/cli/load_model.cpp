@@ -44,6 +44,15 @@ Location pattern_location(const Document& document, std::size_t index) {
   return node->location();
 }
 
+/// A limit must have the dimension of its channel.
+void check_limit(const StopCondition& condition, const ChannelInfo& channel, Diagnostics& diagnostics) {
+  const Dimension wanted = channel.unit.empty() ? dimension::none : parse_unit(channel.unit).dimension;
+  if (fits(condition.quantity, wanted)) return;
+  diagnostics.error(condition.quantity_location, 1, "dimension-mismatch",
+                    fmt::format("the limit of '{}' must be of {}, not of {}", channel.name, dimension_name(wanted),
+                                dimension_name(condition.quantity.dimension)));
+}
+
 /// Channels are known only when the model is complete, so their names are checked last.
 void check_channels(const Model& model, const Document& document, Diagnostics& diagnostics) {
   const Channels channels(model);
@@ -53,7 +62,11 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
                       suggestion(name, names).value_or(""));
   };
   for (const StopCondition& condition : model.settings.stop) {
-    if (channels.find(condition.channel) >= 0) continue;
+    const int index = channels.find(condition.channel);
+    if (index >= 0) {
+      check_limit(condition, channels.all()[static_cast<std::size_t>(index)], diagnostics);
+      continue;
+    }
     unknown(condition.location, condition.channel, fmt::format("there is no channel '{}'", condition.channel));
   }
   for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {

@@ -13,6 +13,7 @@
 #include "cli/compare_command.h"
 #include "cli/convert_command.h"
 #include "cli/describe_command.h"
+#include "cli/doctor_command.h"
 #include "cli/failure.h"
 #include "cli/init_command.h"
 #include "cli/interrupt.h"
@@ -49,8 +50,19 @@ int execute(int argc, char** argv, CommonOptions& common) {
   add_common_options(program, common);
   using Add = Command (*)(CLI::App&, CommonOptions&);
   constexpr Add all[] = {
-      add_run_command,      add_validate_command, add_show_command, add_convert_command,      add_list_command,
-      add_describe_command, add_schema_command,   add_init_command, add_check_plugin_command, add_compare_command,
+      // clang-format off
+      add_run_command,
+      add_validate_command,
+      add_compare_command,
+      add_show_command,
+      add_convert_command,
+      add_doctor_command,
+      add_list_command,
+      add_describe_command,
+      add_schema_command,
+      add_init_command,
+      add_check_plugin_command,
+      // clang-format on
   };
   std::vector<Command> commands;
   for (const Add add : all) commands.push_back(add(program, common));

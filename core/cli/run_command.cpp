@@ -288,7 +288,7 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   app->add_option("--integrator", options->integrator, "Integrator, with its default parameters")->type_name("NAME");
   app->add_flag("--verify", options->verify, "Run again finer, and tell the observed error of each channel");
   app->add_flag("--profile", options->profile, "Tell where the time went (not in this release)");
-  app->add_option("--out", options->out, "Result directory (results/NAME)")->type_name("DIR");
+  app->add_option("--out", options->out, "Result directory (results/NAME)")->type_name("DIR")->check(not_empty());
   app->add_flag("--force", options->force, "Write into a directory that holds other files");
   app->add_option("--format", options->format, "csv; hdf5 and both are not in this release")->type_name("FORMAT");
   app->add_flag("--resume", options->resume, "Go on from a checkpoint (not in this release)");

@@ -19,7 +19,6 @@ const std::vector<std::string> later_commands{
     "sweep",    //
     "report",   //
     "export",   //
-    "doctor",   //
 };
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "io/input_text.h"
-#include "io/sidecar.h"
 #include "io/urdf_document.h"
+#include "io/urdf_sidecar.h"
 #include "io/yaml_document.h"
 
 namespace freeplay {

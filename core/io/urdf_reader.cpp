@@ -268,9 +268,7 @@ class RobotReader {
     for (Joint& joint : robot_.joints) {
       if (joint.mimic) resolve_mimic(joint, index, names);
     }
-    for (const Joint& joint : robot_.joints) {
-      if (joint.mimic) require_no_cycle(joint);
-    }
+    report_mimic_cycles();
   }
 
   void resolve_mimic(Joint& joint, const std::unordered_map<std::string, int>& index,
@@ -294,18 +292,28 @@ class RobotReader {
     }
   }
 
-  void require_no_cycle(const Joint& joint) {
-    int at = joint.mimic->index;
-    for (std::size_t steps = 0; at >= 0 && steps <= robot_.joints.size(); ++steps) {
-      const Joint& next = robot_.joints[static_cast<std::size_t>(at)];
-      if (&next == &joint) {
-        const bool own = steps == 0;
-        messages_.error(joint.mimic->spot, "bad-urdf",
-                        own ? fmt::format("mimic: joint '{}' follows itself", joint.name)
-                            : fmt::format("mimic: joint '{}' follows itself in a cycle", joint.name));
-        return;
+  /// Reports every joint of a cycle of followers; each joint is passed once.
+  void report_mimic_cycles() {
+    std::vector<int> round(robot_.joints.size(), 0);
+    const auto leader = [&](int joint) {
+      const auto& mimic = robot_.joints[static_cast<std::size_t>(joint)].mimic;
+      return mimic ? mimic->index : -1;
+    };
+    for (int start = 0; start < static_cast<int>(robot_.joints.size()); ++start) {
+      int at = start;
+      while (at >= 0 && round[static_cast<std::size_t>(at)] == 0) {
+        round[static_cast<std::size_t>(at)] = start + 1;
+        at = leader(at);
       }
-      at = next.mimic ? next.mimic->index : -1;
+      if (at < 0 || round[static_cast<std::size_t>(at)] != start + 1) continue;
+      const bool alone = leader(at) == at;
+      for (int member = at;;) {
+        const Joint& joint = robot_.joints[static_cast<std::size_t>(member)];
+        messages_.error(joint.mimic->spot, "bad-urdf",
+                        fmt::format("mimic: joint '{}' follows itself{}", joint.name, alone ? "" : " in a cycle"));
+        member = leader(member);
+        if (member == at) break;
+      }
     }
   }
 

@@ -11,7 +11,7 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t deepest_level = 64, most_parts = 1'000'000, most_attributes = 256;
+constexpr std::size_t deepest_level = 64, most_parts = 1'000'000, most_attributes = 64;
 constexpr std::string_view blanks = " \t\r\n";
 
 /// Ends the parsing after the mistake has been reported.
@@ -95,7 +95,7 @@ class XmlParser {
     if (text_[at_] != '<') return read_text();
     const std::string_view rest = text_.substr(at_);
     if (rest.starts_with("<!--")) return read_comment();
-    if (rest.starts_with("<?")) return skip_past("?>", "the processing instruction");
+    if (rest.starts_with("<?")) return skip_past("?>", 2, "the processing instruction");
     if (rest.starts_with("<![CDATA[")) return read_cdata();
     if (rest.starts_with("<!")) {
       fail(at_, "a document type (<!DOCTYPE>) with its entities is not allowed", "remove it and write the text out");
@@ -104,19 +104,16 @@ class XmlParser {
     read_start_tag();
   }
 
-  void skip_past(std::string_view end, const char* what) {
-    const std::size_t found = text_.find(end, at_ + 2);
+  /// `head`: bytes at the beginning that are no part of the end.
+  void skip_past(std::string_view end, std::size_t head, const char* what) {
+    const std::size_t found = text_.find(end, at_ + head);
     if (found == std::string_view::npos) fail(at_, fmt::format("{} never ends: '{}' is missing", what, end));
     at_ = found + end.size();
   }
 
   void read_comment() {
-    const std::size_t begin = at_;
-    at_ += 2;  // so that <!--> does not end itself
-    skip_past("--", "the comment");
-    if (at_ >= text_.size() || text_[at_] != '>') {
-      fail(at_ <= text_.size() ? at_ - 2 : begin, "'--' cannot stand inside of a comment");
-    }
+    skip_past("--", 4, "the comment");
+    if (at_ >= text_.size() || text_[at_] != '>') fail(at_ - 2, "'--' cannot stand inside of a comment");
     ++at_;
   }
 
@@ -222,7 +219,7 @@ class XmlParser {
     }
     count();
     if (element.attributes.size() == most_attributes) {
-      fail(attribute.place, "more than 256 attributes in one element", {}, "too-large");
+      fail(attribute.place, "more than 64 attributes in one element", {}, "too-large");
     }
     element.attributes.push_back(std::move(attribute));
   }

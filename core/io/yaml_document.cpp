@@ -88,6 +88,7 @@ class TreeBuilder : public YAML::EventHandler {
       throw Abandon();
     }
     require_depth(found->second.height);
+    if (!frames_.empty() && !frames_.back().first_alias) frames_.back().first_alias = place(mark);
     attach(found->second, place(mark));
   }
 
@@ -119,6 +120,7 @@ class TreeBuilder : public YAML::EventHandler {
     bool at_value = false;      // of a map: the key has come
     bool flow = false;          // in brackets or braces
     bool leave_out = false;     // the key in hand is wrong: its value is read and dropped
+    std::optional<TextPlace> first_alias{};
   };
 
   // --- structure
@@ -202,8 +204,13 @@ class TreeBuilder : public YAML::EventHandler {
     throw Abandon();
   }
 
-  /// Reports at the section of the file that is too large, since no single value in it is to blame.
+  /// Reports at the aliases that are too many where the section is a plain list of them, else at the section of the
+  /// file that is too large, since no single value in it is to blame.
   [[noreturn]] void refuse_size(const char* message) {
+    if (frames_.size() == 2 && frames_.back().first_alias) {
+      error(*frames_.back().first_alias, 1, "too-large", message);
+      throw Abandon();
+    }
     const Frame& top = frames_.front();
     const Node& section = top.key ? *top.key : *top.built.node;
     error({section.line, section.column}, section.length, "too-large", message);

@@ -28,6 +28,9 @@ void read_body(const CheckedValue& entry, Body& body) {
   const auto inertia = map.require("inertia");
   if (mass) body.mass = mass->quantity(dimension::mass, positive).value_or(1.0);
   if (inertia) body.inertia[8] = inertia->quantity(dimension::moment_of_inertia, not_negative).value_or(1.0);
+  if (inertia && body.inertia[8] == 0.0) {
+    inertia->warn("zero-inertia", "the body '" + body.name + "' has no moment of inertia: it is a point mass");
+  }
   if (const auto com = map.find("com")) body.com = com->vector(dimension::length).value_or(Vector3{});
   if (const auto pose = map.find("pose")) read_pose(*pose, body);
   if (const auto velocity = map.find("velocity")) read_velocity(*velocity, body);

@@ -88,6 +88,10 @@ void CheckedValue::fail_at_start(const std::string& id, const std::string& messa
   report(*node_, {node_->location().file, 1, 1}, 1, Severity::error, id, message, {}, {});
 }
 
+void CheckedValue::warn(const std::string& id, const std::string& message) const {
+  report(*node_, node_->location(), 0, Severity::warning, id, message, {}, {});
+}
+
 void CheckedValue::warn_at_key(const std::string& id, const std::string& message) const {
   const Node& at = key_ == nullptr ? *node_ : *key_;
   report(at, at.location(), 0, Severity::warning, id, message, {}, {});

@@ -69,6 +69,7 @@ class CheckedValue {
                    const std::string& hint = {}) const;
   /// At the first character of the file.
   void fail_at_start(const std::string& id, const std::string& message) const;
+  void warn(const std::string& id, const std::string& message) const;
   void warn_at_key(const std::string& id, const std::string& message) const;
   /// `wrong-type`: "'path' must be `wanted`, not ...".
   void wrong_type(const std::string& wanted) const;

@@ -58,6 +58,7 @@ void Draft::unknown(const CheckedValue& value, const char* kind, const std::stri
     if (!part.prefix.empty() && full.starts_with(part.prefix)) candidates.push_back(full.substr(part.prefix.size()));
     candidates.push_back(full);
   }
+  if (&table == &bodies) candidates.push_back("ground");
   value.fail("unknown-name", std::string("unknown ") + kind + " '" + name + "'", nearest(name, candidates));
 }
 

@@ -20,6 +20,7 @@ constexpr FormatKey model[] = {
     {"presets", "entries of contents", "", "", "Named keys that entries copy with `use`.", "{steel: {mass: 1 kg}}"},
     {"plugins", "list of text", "", "", "Libraries with more types: paths from the model's folder, or names.",
      "[./my_joint.so]"},
+    {"urdf", "text | map urdf", "", "", "A URDF file that this file adds to.", "robot.urdf"},
     {"bodies", "entries of map body", "", "", "What moves; `ground` may carry frames.",
      "{rod: {mass: 1, inertia: 0.1}}"},
     {"frames", "entries of frame value", "", "", "More frames; the keys are BODY/NAME.", "{rod/tip: [1, 0]}"},
@@ -35,6 +36,15 @@ constexpr FormatKey model[] = {
     {"analysis", "map analysis", "", "", "Platform, inputs and grids of `freeplay analyze`.", "{frame: platform}"},
     {"sweep", "map sweep", "", "", "Grids of parameters and what is kept of each run.",
      "{parameters: {l: [0.1, 0.2]}}"}};
+
+constexpr FormatKey urdf[] = {
+    {"file", "text", "", "required", "Path from the model's folder.", "robot.urdf"},
+    {"plane", "'xy' | 'xz' | 'yz'", "", "xy", "Plane of the mechanism, in axes of the root link.", "xz"},
+    {"base", "'fixed' | 'floating'", "", "fixed", "How a root link with mass meets ground.", "floating"},
+    {"loops", "'elements' | 'two-parents'", "", "elements", "Whether a second parent closes a loop.", "two-parents"},
+    {"repair", "'inertia'", "", "", "Mend impossible inertia instead of refusing it.", "inertia"},
+    {"merge_fixed", "boolean", "", "false", "Bodies on fixed joints become part of what carries them.", "true"},
+    {"limits", "'ignore' | 'stop'", "", "ignore", "Joint limits.", "ignore"}};
 
 constexpr FormatKey body[] = {
     {"mass", "quantity", "kg", "required", "Greater than 0.", "0.2 kg"},
@@ -229,6 +239,7 @@ constexpr FormatKey reducer[] = {{"channel", "text", "", "required", "A column o
 
 constexpr FormatMap maps[] = {
     {"model", "", "The whole file.", model},
+    {"urdf", "urdf", "How a URDF file is read.", urdf},
     {"body", "bodies.NAME", "A rigid body. Positions are in its body frame.", body},
     {"ground", "bodies.ground", "What does not move.", ground},
     {"pose", "bodies.NAME.pose", "Guess of a body's start.", pose},

@@ -86,8 +86,9 @@ void add_listed_frame(Draft& draft, const CheckedValue& entry, const Part& part)
   const std::optional<BodyId> body = draft.find_body(body_word, part);
   if (!body) {
     if (draft.excused(body_word)) return;
-    return entry.fail_at_key("unknown-name", "unknown body '" + body_word + "'",
-                             nearest(body_word, draft.bodies.names()));
+    std::vector<std::string> known = draft.bodies.names();
+    known.push_back("ground");
+    return entry.fail_at_key("unknown-name", "unknown body '" + body_word + "'", nearest(body_word, known));
   }
   if (!check_frame_name(entry, name)) return;
   const bool own = !part.prefix.empty() && draft.body_name(*body).starts_with(part.prefix);

@@ -154,6 +154,7 @@ class JointEntry {
     if (twins) make(parameters, joint, layout);
     if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
     const bool play = twins && !is_made_ideal();
+    if (twins && !play) draft_.model.ideal.push_back(element().name);
     element().ideal_component = ideal_;
     element().ideal = ideal;
     element().component = play ? component_ : ideal_;

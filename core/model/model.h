@@ -122,7 +122,9 @@ struct InputFile {
 /// Ends a run, successfully.
 struct StopCondition {
   std::string channel;
-  double limit = 0.0;
+  double limit = 0.0;  ///< SI
+  Quantity quantity;   ///< the same with what is known of its dimension, which must be that of the channel
+  Location quantity_location;
   bool above = true;
   double after = 0.0;  ///< [s]
   Location location;
@@ -163,7 +165,7 @@ struct Model {
   std::vector<InputFile> inputs;
   Settings settings;
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set, name and text
-  std::vector<std::string> ideal;                              ///< --ideal, as asked for
+  std::vector<std::string> ideal;                              ///< joints whose clearance --ideal closes, full names
   Instances instances;                                         ///< keeps joints and laws alive
 
   int clearance_joints() const {

@@ -90,9 +90,9 @@ class ModelBuilder {
     model.text = document_.text();
     model.name = std::filesystem::path(model.file).stem().string();
     model.overrides = draft_.options.set;
-    model.ideal = draft_.options.ideal;
     const auto name = top.find("name"), description = top.find("description"), space = top.find("space");
     if (name) model.name = name->string().value_or(model.name);
+    if (name && model.name.empty()) name->fail("wrong-type", "'name' must not be empty");
     if (description) description->string();
     if (const auto plugins = top.find("plugins")) check_plugins(*plugins);
     // Its reader has replaced the key by what the file says; a document that comes otherwise cannot have it.

@@ -204,7 +204,11 @@ class SimulationSection {
     if (channel) stop.channel = channel->string().value_or("");
     const auto& limit = above ? above : below;
     // Its dimension is that of the channel, which is unknown until the model is complete.
-    if (limit) stop.limit = limit->any_quantity().value_or(Quantity{}).value;
+    if (limit) {
+      stop.quantity = limit->any_quantity().value_or(Quantity{});
+      stop.limit = stop.quantity.value;
+      stop.quantity_location = limit->location();
+    }
     if (after) stop.after = after->quantity(dimension::time).value_or(0.0);
     map.finish();
     settings_.stop.push_back(std::move(stop));

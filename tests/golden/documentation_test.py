@@ -55,6 +55,15 @@ class Documentation(ProgramTest):
     def test_accuracy(self):
         self.run_page(os.path.join("docs", "accuracy.md"))
 
+    def test_urdf(self):
+        page = os.path.join("docs", "urdf.md")
+        self.run_page(page)
+        with open(os.path.join(ROOT, page), encoding="utf-8") as file:
+            text = file.read()
+        self.write("rocker.urdf", re.search(r"^```xml\n(.*?)^```", text, re.M | re.S)[1])
+        self.write("rocker.yaml", re.search(r"^```yaml\n(.*?)^```", text, re.M | re.S)[1])
+        self.freeplay("run", "rocker.yaml")
+
     def test_pieces_of_the_model_page_are_a_model(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
             pieces = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)

@@ -1,10 +1,11 @@
 """freeplay show: text, JSON, graph, drawing."""
 import json
+import os
 import re
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import ProgramTest, mechanism
+from program import ROOT, ProgramTest, mechanism
 
 
 class Show(ProgramTest):
@@ -44,6 +45,10 @@ class Show(ProgramTest):
         self.assertEqual(6, out.count("#cc3311\" stroke-width=\"1.5\""))  # rings: six joints have clearance
         texts = re.findall(r'<text x="([-0-9.]+)" y="([-0-9.]+)"', out)
         self.assertTrue(all(0 <= float(x) <= 900 and 0 <= float(y) <= 1400 for x, y in texts))
+
+    def test_drawing_in_the_readme_is_the_program_s(self):
+        with open(os.path.join(ROOT, "docs", "images", "3-rrr.svg"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), self.freeplay("show", mechanism("3-rrr"), "--format", "svg")[0])
 
     def test_drawing_puts_a_point_where_it_is(self):
         # A rod of 1 m hangs horizontally from the origin: its pin, its middle and its end are on one level.

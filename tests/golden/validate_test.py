@@ -142,6 +142,62 @@ frames:
         self.assertRegex(err, r"^apart\.yaml(:\d+:\d+)?: error: .*\[assembly-failed\]\n")
 
 
+class SmallMistakes(ProgramTest):
+    def messages(self, text, code=3):
+        out, _ = self.freeplay("validate", self.write("m.yaml", text), "--no-assemble", "--json", code=code)
+        return [(m["line"], m["column"], m["id"], m["suggestion"]) for m in json.loads(out)["messages"]]
+
+    def test_ground_is_suggested_where_a_body_is_meant(self):
+        self.assertIn((3, 40, "unknown-name", "ground"), self.messages(
+            "freeplay: 1\nbodies: {b: {mass: 1, inertia: 1}}\njoints: {j: {type: revolute, between: [grond, b]}}\n"))
+        self.assertIn((3, 10, "unknown-name", "ground"), self.messages(
+            "freeplay: 1\nbodies: {b: {mass: 1, inertia: 1}}\nframes: {gruond/a: [0, 0]}\n"))
+
+    def test_a_point_mass_is_a_warning(self):
+        self.assertEqual([(2, 32, "zero-inertia", None)], self.messages(
+            "freeplay: 1\nbodies: {b: {mass: 1, inertia: 0}}\n", code=0))
+
+    def test_a_stop_limit_has_the_dimension_of_its_channel(self):
+        text = "freeplay: 1\nbodies: {b: {mass: 1, inertia: 1}}\nsimulation: {stop: [{channel: body.b.vx, above: 1 %s}]}\n"
+        self.assertEqual([(3, 49, "dimension-mismatch", None)], self.messages(text % "mm"))
+        self.assertEqual([], self.messages(text % "mm/s", code=0))
+        self.assertEqual([], self.messages(text % "", code=0))
+
+    def test_empty_names_are_refused(self):
+        self.assertEqual([(2, 7, "wrong-type", None)], self.messages(
+            "freeplay: 1\nname: ''\nbodies: {b: {mass: 1, inertia: 1}}\n"))
+        self.freeplay("run", mechanism("pendulum"), "--out", "", code=2)
+
+    def test_a_decimal_comma_is_shown_as_a_whole(self):
+        self.assertEqual([(2, 21, "bad-expression", None)], [m[:3] + (None,) for m in self.messages(
+            "freeplay: 1\nbodies: {b: {mass: \"1,5\", inertia: 1}}\n")][:1])
+
+    def test_summary_names_the_joints_that_are_made_ideal(self):
+        self.freeplay("run", mechanism("3-rrr"), "--ideal", "leg2.*", "--end", "4 us", "--out", "r", "--quiet")
+        self.assertEqual(["leg2.B", "leg2.C"], json.loads(self.read("r", "summary.json"))["settings"]["ideal"])
+
+
+class Assembly(ProgramTest):
+    def test_links_that_are_given_in_one_line_are_put_together(self):
+        # Newton's steps cannot leave the line; 1.8 + 2.6 + 2 > 3.6, so the four-bar closes.
+        self.write("line.yaml", """freeplay: 1
+bodies:
+  a: {mass: 1, inertia: 1, frames: {end: [1.8, 0]}}
+  b: {mass: 1, inertia: 1, frames: {end: [3.6, 0]}}
+  c: {mass: 1, inertia: 1, frames: {end: [2.6, 0]}}
+joints:
+  p: {type: revolute, between: [ground/post, a]}
+  q: {type: revolute, between: [a/end, b]}
+  r: {type: revolute, between: [b/end, c]}
+  s: {type: revolute, between: [c/end, ground]}
+frames: {ground/post: [2, 0]}
+""")
+        facts = json.loads(self.freeplay("validate", "line.yaml", "--json")[0])["facts"]
+        self.assertEqual((8, 1), (facts["rank"], facts["dof"]))
+        self.write("apart.yaml", self.read("line.yaml").replace("3.6", "6.6"))
+        self.assertIn("[assembly-failed]", self.freeplay("validate", "apart.yaml", code=3)[1])
+
+
 class DrivenJointsTest(ProgramTest):
     def test_an_inverse_kinematics_driver_must_drive_a_joint(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:

@@ -184,7 +184,8 @@ class Names(unittest.TestCase):
         for path in sources("core"):
             if path.startswith("core/io/urdf"):  # a format with joint types of its own
                 continue
-            text = read(path).lower()
+            # How the base of a robot is held is a word of the format, not a joint.
+            text = re.sub(r'\{"base", .*?\}', "", read(path).lower(), flags=re.S)
             found += ["%s: %s" % (path, name) for name in self.names if self.occurs(name, text)]
         self.assertEqual([], found)
 

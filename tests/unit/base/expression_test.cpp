@@ -225,7 +225,7 @@ TEST(Expression, RefusesUnknownUnits) {
 TEST(Expression, PointsIntoTheTextInCharacters) {
   EXPECT_EQ(error_of("5 \u00b5m + foo").offset, 7);
   EXPECT_EQ(error_of("6.75e-3*(1 + $l1").offset, 8);
-  EXPECT_EQ(error_of("6,75e-3").offset, 1);
+  EXPECT_EQ(error_of("1 + 6,75e-3").offset, 4);  // the number, not its comma
   EXPECT_EQ(error_of("6,75e-3").hint, "write a decimal point, as in '0.5'");
   EXPECT_EQ(error_of("sin(0,5)").hint, "write a decimal point, as in '0.5'");
 }

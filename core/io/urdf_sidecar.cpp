@@ -1,4 +1,4 @@
-#include "io/sidecar.h"
+#include "io/urdf_sidecar.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -23,7 +23,7 @@ using Words = std::vector<std::string>;
 class UrdfSection {
  public:
   UrdfSection(const CheckedValue& section, const std::string& model_file)
-      : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section)), section_(section) {
+      : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section, "urdf")), section_(section) {
     const auto file = section.node().is_scalar() ? std::optional<CheckedValue>(section) : map_.require("file");
     good_ = map_.good() && file.has_value();
     if (file) read_file(*file, model_file);

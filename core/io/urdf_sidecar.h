@@ -1,4 +1,4 @@
-// Sidecar: a model file that adds to a URDF file.
+// UrdfSidecar: a model file that adds to a URDF file.
 #pragma once
 
 #include "base/diagnostics.h"
