@@ -135,6 +135,11 @@ constexpr Rule rules[] = {
      "the scratch. Look for mutable members, and for scratch that is read before it is written."},
     {"reports-failure", integrators, "When a stage does not converge, the attempt has not converged."},
     {"restart", integrators, "restart() leaves positions and velocities alone."},
+    {"estimate-order", integrators,
+     "The error estimate falls with the power of the step that `error_order` declares, or with the order and one if it "
+     "is "
+     "left at zero."},
+    {"estimate-size", integrators, "The error estimate is not much less than the error itself."},
     {"error-estimate", integrators,
      "The error of an attempt is a finite number that is not negative, and zero if declare() announces no estimate."},
 };
