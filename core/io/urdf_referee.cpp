@@ -1,6 +1,7 @@
 #include "io/urdf_referee.h"
 
 #include <exception>
+#include <set>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
@@ -126,17 +127,31 @@ const XmlElement* find_culprit(const XmlElement& root, std::string& why) {
 }  // namespace
 
 void ask_referee(const XmlElement& root, Messages& messages) {
-  std::string all;
+  std::string all, why;
+  std::set<std::string> children;
+  const XmlElement* culprit = nullptr;
   for (const XmlElement& child : root.children) {
-    if (is_judged(child)) append(all, child);
+    if (!is_judged(child)) continue;
+    const XmlElement* end = child.name == "joint" ? child.child("child") : nullptr;
+    const XmlAttribute* link = end == nullptr ? nullptr : end->attribute("link");
+    if (link == nullptr || children.insert(link->value).second) {
+      append(all, child);
+    } else if (culprit == nullptr) {
+      // A second parent can make a ring of links, which urdfdom would never free again.
+      why = refusal(robot_text(root, alone(child)));
+      if (!why.empty()) culprit = &child;
+    }
   }
-  const std::string why = refusal(robot_text(root, all));
-  if (why.empty()) return;
-  std::string own = why;
-  const XmlElement* culprit = find_culprit(root, own);
+  if (culprit == nullptr) {
+    why = refusal(robot_text(root, all));
+    if (why.empty()) return;
+    std::string own = why;
+    culprit = find_culprit(root, own);
+    why = own;
+  }
   const XmlElement& blamed = culprit == nullptr ? root : *culprit;
   messages.error(name_spot(blamed), "bad-urdf",
-                 fmt::format("urdfdom refuses this {}: {}", blamed.name, printable(own)));
+                 fmt::format("urdfdom refuses this {}: {}", blamed.name, printable(why)));
 }
 
 }  // namespace freeplay::urdf
