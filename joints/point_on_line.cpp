@@ -13,6 +13,7 @@ class PointOnLine final : public Joint {
 
   void declare(JointLayout& layout) const override {
     layout.coordinate = Coordinate::position;
+    layout.rows_without_coordinate = 1;
     layout.constraint_rows = 1;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { Slide(in).write_along(row); }

@@ -16,6 +16,7 @@ class Prismatic final : public Joint {
 
   void declare(JointLayout& layout) const override {
     layout.coordinate = Coordinate::position;
+    layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { Slide(in).write_along(row); }

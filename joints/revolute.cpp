@@ -17,6 +17,7 @@ class Revolute final : public Joint {
 
   void declare(JointLayout& layout) const override {
     layout.coordinate = Coordinate::angle;
+    layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;
     layout.pin = 1;
   }

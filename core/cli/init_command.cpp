@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "cli/component_entry.h"
 #include "cli/plugins.h"
 #include "cli/starter_files.h"
 #include "cli/terminal.h"
@@ -104,6 +105,10 @@ void check_plugin_name(const std::string& name, ComponentKind kind, const Regist
   }
   if (std::ranges::find(cmake_words, name) != cmake_words.end()) {
     throw Error(Error::Category::usage, "bad-value", fmt::format("CMake keeps the name '{}' for itself", name));
+  }
+  for (const Json& entry : core_entries()) {
+    if (entry["name"] != name || kind != ComponentKind::joint) continue;
+    throw Error(Error::Category::usage, "bad-value", fmt::format("the model file has a meaning for '{}'", name));
   }
   for (const RegisteredComponent& entry : registry.components()) {
     if (entry.component->kind != kind || entry.component->description.name != name) continue;

@@ -12,6 +12,7 @@ constexpr int most_of_a_joint = 10000, most_of_an_integrator = 100000000;
 constexpr std::size_t most_names = 1000;
 
 bool all_named(Span<const Channel> channels) {
+  if (channels.data == nullptr) return channels.size == 0;
   for (const Channel& channel : channels) {
     if (channel.name == nullptr || channel.unit == nullptr) return false;
   }
@@ -38,7 +39,8 @@ std::string declaration_fault(const JointLayout& layout) {
   if (layout.events.size > most_names || layout.channels.size > most_names) {
     return fmt::format("it declares {} events and {} channels", layout.events.size, layout.channels.size);
   }
-  bool named = all_named(layout.channels);
+  bool named = all_named(layout.channels) && (layout.events.data != nullptr || layout.events.size == 0);
+  if (!named) return "it declares an event or a channel without name or unit";
   for (const Event& event : layout.events) {
     named = named && event.name != nullptr && event.fields.size <= most_names && all_named(event.fields);
   }

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <string_view>
 #include <system_error>
 
 #include <dlfcn.h>
+#include <elf.h>
 
 #include "base/error.h"
 
@@ -21,6 +24,23 @@ std::string linker_words(const fs::path& file) {
   const std::string prefix = file.string() + ": ";
   if (text.starts_with(prefix)) text.erase(0, prefix.size());
   return text;
+}
+
+// Does a 64-bit ELF file end before what its headers promise? The linker would map it and die at the first touch.
+bool is_cut_off(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  Elf64_Ehdr header{};
+  if (error || !stream.read(reinterpret_cast<char*>(&header), sizeof header)) return false;
+  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64) return false;
+  for (unsigned i = 0; i < header.e_phnum; ++i) {
+    Elf64_Phdr segment{};
+    stream.seekg(static_cast<std::streamoff>(header.e_phoff + i * sizeof segment));
+    if (!stream.read(reinterpret_cast<char*>(&segment), sizeof segment)) return true;
+    if (segment.p_type == PT_LOAD && segment.p_offset + segment.p_filesz > size) return true;
+  }
+  return false;
 }
 
 bool ends_in_so(std::string_view word) { return word.ends_with(".so"); }
@@ -68,6 +88,10 @@ fs::path find_plugin(const std::string& word, const fs::path& base) {
 }
 
 PluginEntry open_plugin(const fs::path& file) {
+  if (is_cut_off(file)) {
+    throw Error(Error::Category::plugin, "plugin-refused",
+                "plugin '" + file.string() + "' cannot be loaded: the file is cut off");
+  }
   dlerror();
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
@@ -91,6 +115,9 @@ void load_plugin(Registry& registry, const fs::path& file) {
   }
   for (const RegisteredLibrary& library : registry.libraries()) {
     if (library.path == real.string()) return;
+  }
+  if (!fs::is_regular_file(real, error)) {
+    throw Error(Error::Category::plugin, "plugin-refused", "plugin '" + file.string() + "' is not a regular file");
   }
   registry.add(open_plugin(real), real.string());
 }

@@ -52,6 +52,14 @@ bool has_null(const void* table, std::uint32_t size) {
   return false;
 }
 
+// A row of a library, of which this program may know fewer fields, or more: those have their defaults.
+template <class Row>
+Row as_known(const char* row, std::uint32_t size) {
+  Row known{};
+  std::memcpy(static_cast<void*>(&known), row, std::min<std::size_t>(size, sizeof(Row)));
+  return known;
+}
+
 std::string bytes(std::uint32_t theirs, std::uint32_t ours) {
   return "(" + std::to_string(theirs) + " bytes, this program has " + std::to_string(ours) + ")";
 }
@@ -68,7 +76,7 @@ PluginTable::PluginTable(PluginEntry entry, const std::string& library) : librar
   compiler_ = manifest.compiler ? manifest.compiler : "";
   const auto* row = reinterpret_cast<const char*>(manifest.components.data);
   for (std::size_t i = 0; i < manifest.components.size; ++i, row += manifest.component_size) {
-    copy_row(*reinterpret_cast<const Component*>(row), manifest);
+    copy_row(as_known<Component>(row, manifest.component_size), manifest);
   }
 }
 
@@ -89,13 +97,13 @@ void PluginTable::check(const Manifest& manifest, Status status) const {
   }
   if (status != Status::ok) refuse("refuses this program");
   // Rows are copied field by field up to the smaller size; what came first is always there.
-  if (manifest.size < sizeof(Manifest))
-    refuse("has a manifest that is too small " + bytes(manifest.size, sizeof(Manifest)));
-  if (manifest.component_size < sizeof(Component)) {
-    refuse("has rows of another size " + bytes(manifest.component_size, sizeof(Component)));
+  if (manifest.size < first_manifest_size)
+    refuse("has a manifest that is too small " + bytes(manifest.size, first_manifest_size));
+  if (manifest.component_size < first_component_size) {
+    refuse("has rows of another size " + bytes(manifest.component_size, first_component_size));
   }
-  if (manifest.parameter_size < sizeof(Parameter)) {
-    refuse("has parameters of another size " + bytes(manifest.parameter_size, sizeof(Parameter)));
+  if (manifest.parameter_size < first_parameter_size) {
+    refuse("has parameters of another size " + bytes(manifest.parameter_size, first_parameter_size));
   }
   if (manifest.struct_sizes.size > std::size(struct_sizes))
     refuse("knows structs that this program does not: update Freeplay");
@@ -123,7 +131,7 @@ void PluginTable::copy_row(const Component& row, const Manifest& manifest) {
   std::vector<Parameter>& parameters = parameters_.emplace_back();
   const auto* parameter = reinterpret_cast<const char*>(row.description.parameters.data);
   for (std::size_t i = 0; i < row.description.parameters.size; ++i, parameter += manifest.parameter_size) {
-    parameters.push_back(*reinterpret_cast<const Parameter*>(parameter));
+    parameters.push_back(as_known<Parameter>(parameter, manifest.parameter_size));
   }
   copy.description.parameters = {parameters.data(), parameters.size()};
   // A text that is left out is an empty one.

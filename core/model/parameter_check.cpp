@@ -1,6 +1,7 @@
 #include "model/parameter_check.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -163,6 +164,11 @@ class ParameterCheck {
     return false;
   }
 
+  static bool is_word(const Node& node) {
+    const auto letter = [](unsigned char c) { return std::isalpha(c) || c == '-' || c == '_'; };
+    return node.is_scalar() && !node.text.empty() && std::ranges::all_of(node.text, letter);
+  }
+
   static bool read_number(const Parameter& parameter, const Unit& unit, const CheckedValue& written,
                           ParameterValue& value) {
     const std::vector<std::string> words = words_of(parameter);
@@ -170,6 +176,14 @@ class ParameterCheck {
       if (!written.node().is_scalar() || written.node().text != words[i]) continue;
       value.word = static_cast<int>(i);
       return true;
+    }
+    // A misspelt word, not a number gone wrong.
+    if (const std::string meant = nearest(written.node().text, words); !meant.empty() && is_word(written.node())) {
+      written.fail(
+          "wrong-type",
+          "'" + written.path() + "' must be a number or " + either(words) + ", not '" + written.node().text + "'",
+          meant);
+      return false;
     }
     const Range range{parameter.minimum * unit.factor, parameter.maximum * unit.factor, parameter.open};
     const std::optional<double> number = written.quantity(unit.dimension, range);
@@ -179,8 +193,11 @@ class ParameterCheck {
 
   static bool read_integer(const Parameter& parameter, const CheckedValue& written, ParameterValue& value) {
     constexpr double widest = 2147483647.0;  // what Parameters::integer() can return
-    const long minimum = std::lround(std::max(parameter.minimum, -widest));
-    const long maximum = std::lround(std::min(parameter.maximum, widest));
+    const auto open = [&](Open end) { return parameter.open == end || parameter.open == Open::both; };
+    // The whole numbers inside: the next one where an end does not belong to the range.
+    const double low = open(Open::minimum) ? std::floor(parameter.minimum) + 1.0 : std::ceil(parameter.minimum);
+    const double high = open(Open::maximum) ? std::ceil(parameter.maximum) - 1.0 : std::floor(parameter.maximum);
+    const long minimum = std::lround(std::max(low, -widest)), maximum = std::lround(std::min(high, widest));
     const std::optional<long> number = written.integer(minimum, maximum);
     if (number) value.number = static_cast<double>(*number);
     return number.has_value();

@@ -43,11 +43,21 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
   }
 }
 
+/// -lambda^T nu over the rows of joints: what the force of a row that moves by itself puts in.
+double EnergyAccount::row_power(const Evaluation& e, std::span<const double> lambda) const {
+  double power = 0.0;
+  for (int j = 0; j < static_cast<int>(system_.model().joints.size()); ++j) {
+    const Slice rows = system_.layout().rows(j);
+    for (std::size_t r = at(rows.offset); r < at(rows.offset + rows.size); ++r) power -= lambda[r] * e.nu[r];
+  }
+  return power;
+}
+
 void EnergyAccount::start(const Evaluation& e, std::span<const double> lambda, const Channels& channels,
                           std::span<const double> row) {
   initial_ = row[at(channels.energy.kinetic)] + row[at(channels.energy.potential)];
   stored_start_.assign(e.potential.begin(), e.potential.end());
-  flow(e, lambda, power_);
+  renew(e, lambda);
 }
 
 void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double> lambda,
@@ -56,7 +66,10 @@ void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double>
   std::ranges::copy(power_, power_before_.begin());
   std::ranges::copy(integral_, integral_before_.begin());
   std::ranges::copy(integrals, integral_.begin());
-  flow(e, lambda, power_);
+  row_power_before_ = row_power_;
+  row_work_before_ = row_work_;
+  renew(e, lambda);
+  row_work_ += 0.5 * dt * (row_power_before_ + row_power_);
 }
 
 void EnergyAccount::add(double dt, std::span<const double> half_way, const Evaluation& e,
@@ -74,13 +87,14 @@ void EnergyAccount::fill_inside(double s, std::span<const double> half_way, cons
     const double sum = power_before_[i] + 4.0 * half_way[i] + integral_inside_[i];
     integral_inside_[i] = integral_before_[i] + s * dt_ / 6.0 * sum;
   }
-  fill(e, channels, row, integral_inside_);
+  fill(e, channels, row, integral_inside_,
+       row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda)));
 }
 
 void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::span<double> row,
-                         std::span<const double> integral) {
+                         std::span<const double> integral, double row_work) {
   std::size_t flow = 0;
-  double work = 0.0, lost = 0.0;
+  double work = row_work, lost = 0.0;
   for (double& driver : driver_work_) work += driver = integral[flow++];
   for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
   for (const ForceBlock& block : system_.force_blocks()) {

@@ -12,10 +12,11 @@ namespace freeplay {
 /// Power of a wrench (force and moment) at a marker [W].
 double power(const double* wrench, const MarkerKinematics& k);
 
-/// Booked are work of drivers and applied forces and the loss of joints: minus the power of their wrenches, less what
-/// they store. What an integrator or a projection loses is never booked; it is the residual. The powers ("flows":
-/// drivers, applied forces, joints with forces, in this order) are integrated by Simpson's rule over accepted steps, or
-/// by the integrator itself, along with z, where it can: then to its order.
+/// Booked are work of drivers, applied forces and rows of joints that depend on time, and the loss of joints: minus the
+/// power of their wrenches, less what they store. What an integrator or a projection loses is never booked; it is the
+/// residual. The powers ("flows": drivers, applied forces, joints with forces, in this order) are integrated by
+/// Simpson's rule over accepted steps, or by the integrator itself, along with z, where it can: then to its order;
+/// those of rows by the trapezoidal rule.
 class EnergyAccount {
  public:
   explicit EnergyAccount(const System& system);
@@ -32,22 +33,31 @@ class EnergyAccount {
   /// The same with the powers in the middle of the step.
   void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
   /// Fills dissipated, work and residual of a row that holds the observed columns, at the end of the last step.
-  void fill(const Evaluation& e, const Channels& channels, std::span<double> row) { fill(e, channels, row, integral_); }
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row) {
+    fill(e, channels, row, integral_, row_work_);
+  }
   /// The same at the fraction s of the last step, where `e` and `lambda` are: by Simpson's rule with the powers
   /// half-way there.
   void fill_inside(double s, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda,
                    const Channels& channels, std::span<double> row);
   /// An event changed what acts at the end of the last step.
-  void renew(const Evaluation& e, std::span<const double> lambda) { flow(e, lambda, power_); }
+  void renew(const Evaluation& e, std::span<const double> lambda) {
+    flow(e, lambda, power_);
+    row_power_ = row_power(e, lambda);
+  }
 
   std::span<const double> driver_work() const { return driver_work_; }  ///< at the last fill() [J]
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
 
  private:
-  void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral);
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
+            double row_work);
+  double row_power(const Evaluation& e, std::span<const double> lambda) const;
 
   const System& system_;
   double dt_ = 0.0, initial_ = 0.0;
+  double row_power_ = 0.0, row_work_ = 0.0;                // at the end of the last step
+  double row_power_before_ = 0.0, row_work_before_ = 0.0;  // at its start
   std::vector<double> driver_work_, joint_loss_, stored_start_;
   std::vector<double> power_, integral_;                                  // at the end of the last step
   std::vector<double> power_before_, integral_before_, integral_inside_;  // of the last step

@@ -33,7 +33,6 @@ std::optional<double> first_rise(const Hermite& curve, double from) {
     }
     return high;
   }
-  if (curve.value1 > 0.0) return from;
   return std::nullopt;
 }
 

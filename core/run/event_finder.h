@@ -17,7 +17,7 @@ struct Hermite {
 };
 
 /// First s in (from, 1] where the cubic passes zero upwards. A contact that opens and closes inside the step is found
-/// at the extremum between. When the end lies past zero but no crossing is seen (it was past zero already): `from`.
+/// at the extremum between.
 std::optional<double> first_rise(const Hermite& curve, double from);
 
 }  // namespace freeplay

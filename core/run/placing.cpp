@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace freeplay {
 namespace {
 
@@ -110,7 +112,13 @@ class Walk {
     const double coordinate = std::isnan(coordinates_[at(j)]) ? 0.0 : coordinates_[at(j)];
     Pose relative{};
     Message message;
-    if (!system_.joint(j).place(coordinate, relative, message)) return false;
+    if (!system_.joint(j).place(coordinate, relative, message)) {
+      if (message.text[0] == '\0') return false;
+      throw Error(Error::Category::plugin, "plugin-failed",
+                  fmt::format("joint '{}' of {} failed to place a body: {}", joint.name,
+                              model_.instances.words_of(*joint.component), message.text),
+                  joint.location);
+    }
     double angle = std::atan2(relative.rotation[3], relative.rotation[0]);
     if (system_.joint_layout(j).coordinate == Coordinate::angle) {
       angle += 2.0 * M_PI * std::round((coordinate - angle) / (2.0 * M_PI));

@@ -19,11 +19,13 @@ StepEvents::StepEvents(const System& system, bool located, int flows)
       between_(system.layout(), 0, flows),
       e_between_(system),
       inside_(system.model().joints.size(), 0) {
-  std::size_t most_events = 0, all_fields = 0;
+  std::size_t most_events = 0, all_fields = 0, all_events = 0;
   for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
     const Span<const Event> events = system.joint_layout(j).events;
     if (events.empty()) continue;
     watched_.push_back(j);
+    first_event_.push_back(all_events);
+    all_events += events.size;
     most_events = std::max(most_events, events.size);
     std::size_t most_fields = 0;
     for (const Event& event : events) {
@@ -33,6 +35,8 @@ StepEvents::StepEvents(const System& system, bool located, int flows)
     all_fields += most_per_step * most_fields;
   }
   for (auto* numbers : {&g0_, &r0_, &gm_, &rm_, &g1_, &r1_}) numbers->resize(most_events);
+  armed_.resize(all_events, 0);
+  seen_.resize(all_events, 0);
   // Reserved once: a step appends without allocating.
   values_.reserve(all_fields);
   happenings_.reserve(most_per_step * watched_.size());
@@ -53,9 +57,13 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
                        Fault& fault) {
   happenings_.clear();
   values_.clear();
-  for (const int joint : watched_) {
-    if (inside_[at(joint)] == 0) continue;
-    if (!apply_joint(joint, before, e_before, after, e_after, fault)) return false;
+  for (std::size_t w = 0; w < watched_.size(); ++w) {
+    const Span<const Event> events = system_.joint_layout(watched_[w]).events;
+    for (std::size_t i = 0; located_ && i < events.size; ++i) {
+      if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
+    }
+    if (inside_[at(watched_[w])] == 0) continue;
+    if (!apply_joint(w, before, e_before, after, e_after, fault)) return false;
   }
   // Stable by hand: a handful of entries, and no allocation.
   for (std::size_t i = 1; i < happenings_.size(); ++i) {
@@ -66,8 +74,10 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
   return true;
 }
 
-bool StepEvents::apply_joint(int joint, const State& before, const Evaluation& e_before, State& after,
+bool StepEvents::apply_joint(std::size_t watched, const State& before, const Evaluation& e_before, State& after,
                              const Evaluation& e_after, Fault& fault) {
+  const int joint = watched_[watched];
+  const std::span armed = std::span(armed_).subspan(first_event_[watched]);
   const Span<const Event> events = system_.joint_layout(joint).events;
   const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
   const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
@@ -81,10 +91,13 @@ bool StepEvents::apply_joint(int joint, const State& before, const Evaluation& e
     int next = -1;
     double earliest = 2.0;
     for (std::size_t i = 0; i < events.size; ++i) {
-      if (std::isnan(g0[i]) || std::isnan(g1[i]) || (located_ && events[i].locate != 0)) continue;
+      if (located_ && events[i].locate != 0) continue;
+      const bool known = armed[i] != 0;
+      armed[i] = std::isnan(g0[i]) || std::isnan(g1[i]) ? 0 : 1;
+      if (armed[i] == 0) continue;
       const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
-      // The common case of a step far from any zero needs no cubic.
-      const auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, reached);
+      auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, reached);
+      if (!s && !known && sign * g1[i] > 0.0) s = reached;  // armed when it was past its zero
       if (s && *s < earliest) earliest = *s, next = static_cast<int>(i);
     }
     if (next < 0) return true;
@@ -123,7 +136,8 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
   }
   const double half = 0.5 * (after.t() - before.t());
   double earliest = 2.0;
-  for (const int joint : watched_) {
+  for (std::size_t w = 0; w < watched_.size(); ++w) {
+    const int joint = watched_[w];
     const Span<const Event> events = system_.joint_layout(joint).events;
     const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
     const std::span gm = std::span(gm_).first(events.size), rm = std::span(rm_).first(events.size);
@@ -133,18 +147,23 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
     if (!functions(joint, point(between_), e_between_, gm, rm, fault)) return false;
     if (!functions(joint, end, e_after, g1, r1, fault)) return false;
     for (std::size_t i = 0; i < events.size; ++i) {
-      if (events[i].locate == 0 || std::isnan(g0[i]) || std::isnan(gm[i]) || std::isnan(g1[i])) continue;
+      if (events[i].locate == 0) continue;
+      const bool known = armed_[first_event_[w] + i] != 0;
+      const bool armed = !std::isnan(g0[i]) && !std::isnan(gm[i]) && !std::isnan(g1[i]);
+      seen_[first_event_[w] + i] = armed ? 1 : 0;
+      if (!armed) continue;
       const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
       const Hermite first{sign * g0[i], sign * r0[i] * half, sign * gm[i], sign * rm[i] * half};
       const Hermite second{first.value1, first.slope1, sign * g1[i], sign * r1[i] * half};
       double at = 2.0;
       // A function that rests at its zero crosses it by rounding all the time.
       if (std::max(first.value1, second.value1) <= rounding) continue;
-      // Past its zero all the way: the step is halved until it ends at the zero.
       if (const auto s = first_rise(first, 0.0)) {
-        at = *s > 0.0 ? 0.5 * *s : 0.5;
+        at = 0.5 * *s;
       } else if (const auto later = first_rise(second, 0.0)) {
         at = 0.5 + 0.5 * *later;
+      } else if (!known && second.value1 > 0.0) {
+        at = 0.5;  // armed when it was past its zero: the step is halved until it ends there
       }
       if (at < earliest) {
         earliest = at;
@@ -207,11 +226,13 @@ bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation&
 bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
   happenings_.clear();
   values_.clear();
-  for (const int joint : watched_) {
+  for (std::size_t w = 0; w < watched_.size(); ++w) {
+    const int joint = watched_[w];
     const Span<const Event> events = system_.joint_layout(joint).events;
     const std::span g = std::span(g0_).first(events.size), r = std::span(r0_).first(events.size);
     if (!functions(joint, point(start), e, g, r, fault)) return false;
     for (std::size_t i = 0; i < events.size; ++i) {
+      armed_[first_event_[w] + i] = seen_[first_event_[w] + i] = std::isnan(g[i]) ? 0 : 1;
       if (events[i].crossing != Crossing::rising || !(g[i] > 0.0)) continue;
       if (!tell(joint, static_cast<int>(i), point(start), e, start, fault)) return false;
     }

@@ -56,8 +56,8 @@ class StepEvents {
   std::span<const double> fields(const Happening& h) const { return {values_.data() + h.fields, h.count}; }
 
  private:
-  bool apply_joint(int joint, const State& before, const Evaluation& e_before, State& after, const Evaluation& e_after,
-                   Fault& fault);
+  bool apply_joint(std::size_t watched, const State& before, const Evaluation& e_before, State& after,
+                   const Evaluation& e_after, Fault& fault);
   bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
                  Fault& fault) const;
   bool tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault);
@@ -69,7 +69,9 @@ class StepEvents {
   State between_;
   Evaluation e_between_;
   std::vector<int> watched_;
-  std::vector<char> inside_;  // by joint: some of its events are told inside a step
+  std::vector<std::size_t> first_event_;  // by watched joint: where its events stand in the next two
+  std::vector<char> armed_, seen_;        // could the event happen at the last look; the same for the step being tried
+  std::vector<char> inside_;              // by joint: some of its events are told inside a step
   std::vector<double> g0_, r0_, gm_, rm_, g1_, r1_, values_;
   std::vector<Happening> happenings_;
 };

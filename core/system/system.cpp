@@ -86,6 +86,8 @@ System::System(const Model& model, Variant variant)
     const Slice rows = is_gear ? Slice{} : layout_.rows(j);
     row_block_a_.push_back(add_block(body_a(j), rows.offset, rows.size));
     row_block_b_.push_back(add_block(body_b(j), rows.offset, rows.size));
+    const bool rows_read_it = joint_layout(j).constraint_rows > 0 && joint_layout(j).rows_without_coordinate == 0;
+    if (joint_layout(j).coordinate != Coordinate::none && rows_read_it) needs_coordinate_[at(j)] = 1;
     if (joint_layout(j).forces != 0) {
       has_forces_[at(j)] = 1;
       const int nz = layout_.internal(j).size;

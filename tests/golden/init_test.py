@@ -58,7 +58,7 @@ class PluginStarters(ProgramTest):
                 for word in ("my-type", "my_type", "MyType"):
                     self.assertNotIn(word, text)
             self.assertIn('.name = "soft-%s"' % kind, self.read("soft-%s" % kind, "soft_%s.cpp" % kind))
-            self.assertIn("class Soft%s final" % kind.capitalize(), self.read("soft-%s" % kind, "soft_%s.cpp" % kind))
+            self.assertIn("class Soft%sType final" % kind.capitalize(), self.read("soft-%s" % kind, "soft_%s.cpp" % kind))
 
     def test_a_folder_that_holds_something_is_refused(self):
         os.mkdir(self.path("mine"))
@@ -67,7 +67,7 @@ class PluginStarters(ProgramTest):
         self.assertEqual(["notes.txt"], os.listdir(self.path("mine")))
 
     def test_names_that_no_type_may_bear_are_refused(self):
-        for name in ("Spring", "2nd", "a b", "test", "revolute"):
+        for name in ("Spring", "2nd", "a b", "test", "revolute", "gear", "force"):
             self.freeplay("init", name, "--kind", "plugin", "--type", "joint", code=2)
         # Names are unique within a kind only.
         self.freeplay("init", "revolute", "--kind", "plugin", "--type", "friction")

@@ -37,7 +37,9 @@ struct Channel {
 
 enum class Crossing : std::uint32_t { rising, falling };
 
-/// A zero crossing that the joint wants to be told of.
+/// A zero crossing that the joint wants to be told of: the event function passes zero in the given direction. One that
+/// is NaN cannot happen now; one that an event turns from NaN to a number past its zero happens at once, and a rising
+/// one whose function is positive when the run starts happens then.
 struct Event {
   const char* name;
   Crossing crossing;
@@ -62,6 +64,7 @@ struct JointLayout {
   double clearance = 0.0;                  ///< radius of the massless link that stands for the play [m]; 0 without play
   Span<const Event> events;
   Span<const Channel> channels;
+  std::uint32_t rows_without_coordinate = 0;  ///< nonzero: constrain() does not read the coordinate, which saves time
 };
 
 /// Everything a joint may read. All views are valid during the call only.

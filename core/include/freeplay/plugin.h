@@ -78,6 +78,10 @@ inline constexpr std::uint32_t struct_sizes[] = {
 /// Structs that stand in arrays or inside others: their sizes are fixed for an ABI version.
 inline constexpr std::uint32_t fixed_sizes[] = {sizeof(Event), sizeof(Channel), sizeof(MarkerKinematics), sizeof(Pose)};
 
+/// Sizes of rows, parameters and the manifest in the first release of this ABI version: no library has smaller ones.
+inline constexpr std::uint32_t first_component_size = 128, first_parameter_size = 72, first_manifest_size = 96;
+static_assert(sizeof(Component) >= first_component_size && sizeof(Parameter) >= first_parameter_size);
+
 /// Given by the host. A newer host may have a larger struct; fields are only ever appended.
 struct Host {
   std::uint32_t size;
