@@ -30,9 +30,9 @@ struct XmlElement {
 };
 
 /// Reads `text` and returns its root element. Stricter than most readers: what is not well-formed XML 1.0 in UTF-8 is
-/// reported as `id`, and so is a document type, since its entities can explode; more than 64 levels, 64 attributes of an
-/// element, or 1 000 000 elements and attributes are `too-large`. `diagnostics` is to know the text already. Linear in
-/// time and memory.
+/// reported as `id`, and so is a document type, since its entities can explode; more than 64 levels, 64 attributes of
+/// an element, or 1 000 000 elements and attributes are `too-large`. `diagnostics` is to know the text already. Linear
+/// in time and memory.
 ///
 /// Own code, since tinyxml2 knows no columns and takes what is not well-formed (an attribute twice, text after the
 /// root, unknown entities).

@@ -1,6 +1,7 @@
 #include "model/map_reader.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "model/name_rule.h"
@@ -89,14 +90,9 @@ bool MapReader::conflict(const std::string& first, const std::string& second) co
   return true;
 }
 
-std::string MapReader::hint_for(const MapLayer& layer, const Node& key) const {
+std::string MapReader::hint_for(const Node& key, const Node* before) const {
   for (const Refused& refused : refused_) {
     if (refused.key == key.text) return refused.hint;
-  }
-  const Node* before = nullptr;
-  for (const Node::Entry& entry : layer.map->entries) {
-    if (entry.key == &key) break;
-    before = entry.value;
   }
   const bool cut = before != nullptr && before->is_scalar() && leaves_parenthesis_open(before->text);
   return cut ? "an expression with a comma must be quoted here: \"" + before->text + ", " + key.text + "\"" : "";
@@ -104,10 +100,12 @@ std::string MapReader::hint_for(const MapLayer& layer, const Node& key) const {
 
 void MapReader::finish() {
   for (const MapLayer& layer : layers_) {
+    const Node* before = nullptr;  // value of the entry before
     for (const Node::Entry& entry : layer.map->entries) {
+      const Node* const previous = std::exchange(before, entry.value);
       const std::string& key = entry.key->text;
       if (is_note(key) || knows(key) || (key == "use" && !layer.user.empty())) continue;
-      const std::string hint = hint_for(layer, *entry.key);
+      const std::string hint = hint_for(*entry.key, previous);
       const std::string where = layer.path.empty() ? "" : " in '" + layer.path + "'";
       value_of({&layer, &entry})
           .fail_at_key("unknown-key", "unknown key '" + key + "'" + where, hint.empty() ? nearest(key, known_) : "",

@@ -154,6 +154,13 @@ class Loops(UrdfTest):
         self.assertEqual((1, 6), (facts["clearance_joints"], facts["constraints"]))
         self.freeplay("validate", "play.yaml", "--ideal", "B")
 
+    def test_a_robot_alone_runs_under_gravity_along_minus_z(self):
+        self.write("bar.urdf", five_bar("gazebo"))
+        self.freeplay("run", "bar.urdf", "--end", "1 ms", "--quiet")
+        self.assertEqual(self.read("bar.urdf"), self.read("results", "bar", "model.urdf"))
+        model = json.loads(self.freeplay("show", "bar.urdf", "--json")[0])
+        self.assertEqual([0, -9.81], model["gravity"])
+
     def test_a_comma_locale_changes_no_byte(self):
         self.copy("four_bar_loop.urdf")
         model = self.copy("four_bar_sidecar.yaml")
