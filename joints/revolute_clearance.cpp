@@ -134,8 +134,9 @@ constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},
 /// Both forces act at one point C = P_a + (R_B + delta/2) n = P_b + (R_J - delta/2) n, half-way between the two
 /// surfaces, so that the pair has neither a resultant nor a moment. F_N comes from the contact law with the approach
 /// speed v_0 = delta' at the instant the contact began, at least 1e-6 m/s, or 0 (elastic part only) for a contact that
-/// is on at the start; v_0 is history and lasts until delta <= 0. A contact that begins inside a step takes v_0 from
-/// the motion predicted with the accelerations at the start of the step. Where only c is known, radii count as zero in
+/// is on at the start; v_0 is history and lasts until delta <= 0. Where steps end at events v_0 is the rate
+/// there; else a contact that begins inside a step takes v_0 from the motion predicted with the accelerations at the
+/// start of the step. Where only c is known, radii count as zero in
 /// v_T and C: the law of friction is then inert and F_N passes through both origins. Flores and Ambrosio 2004, Comput
 /// Struct 82; Lankarani and Nikravesh 1990.
 class RevoluteClearance final : public Joint {

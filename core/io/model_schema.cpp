@@ -46,6 +46,7 @@ Json alternative(std::string_view text) {
   if (text == "grid") return any_of({reference("quantity"), array_of(reference("quantity")), reference("grid")});
   if (text == "vector") return reference("vector");
   if (text == "text" || text == "name" || text == "frame") return reference("text");
+  if (text == "boolean") return {{"type", "boolean"}};
   return reference("quantity");  // every other scalar is an expression
 }
 

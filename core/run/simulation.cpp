@@ -265,7 +265,8 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   }
   converged = attempt.converged != 0;
   error = attempt.error;
-  return !converged || check_step(dt);
+  const bool rejected = adaptive && !(error <= 1.0);  // whatever it left
+  return !converged || rejected || check_step(dt);
 }
 
 /// What an integrator that says that it converged must have left.
@@ -342,7 +343,8 @@ bool Simulation::Impl::refresh() {
   if (!solved || !settings.integrator.restart(view, solver.table(), message)) {
     if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), accepted.t());
     if (!solved) return fail(4, fmt::format("t = {:.9g} s: {}", accepted.t(), solver.trouble()));
-    return fail(5, fmt::format("t = {:.9g} s: the integrator failed: {}", accepted.t(), message.text));
+    return fail(5, fmt::format("t = {:.9g} s: {} failed: {} [plugin-failed]", accepted.t(), integrator_words(model),
+                               message.text));
   }
   if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
   energy.renew(e_accepted, accepted.lambda());

@@ -77,6 +77,7 @@ struct Stepping {
   double step;
   long steps;
   bool touches;
+  bool accurate = false;  ///< steps chosen by an accuracy of 1 um, rows at every `step`
 };
 void PrintTo(const Stepping& what, std::ostream* out) { *out << what.model << (what.ideal ? " ideal" : ""); }
 
@@ -92,6 +93,7 @@ long allocations_of(const Stepping& what, long& events) {
   BuildOptions options{
       .set = {}, .ideal = {}, .end = what.step * static_cast<double>(what.steps), .step = what.step, .integrator = {}};
   if (what.ideal) options.ideal = {"all"};
+  if (what.accurate) options.accuracy = 1e-6, options.step.reset();
   const auto model = load(text, options);
   System system(*model);
   const Start start = assemble(system);
@@ -122,7 +124,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Stepping{"3-rrr", false, 2e-6, 5000, true}, Stepping{"4-rrr", false, 2e-6, 5000, true},
                       Stepping{"3-rrr", true, 2e-6, 1000, false}, Stepping{"4-rrr", true, 2e-6, 1000, false},
                       Stepping{"slider-crank", false, 1e-6, 2000, true}, Stepping{"pendulum", false, 1e-3, 2000, false},
-                      Stepping{"four-bar", false, 1e-3, 2000, false}));
+                      Stepping{"four-bar", false, 1e-3, 2000, false}, Stepping{"3-rrr", false, 1e-5, 1000, true, true},
+                      Stepping{"slider-crank", false, 1e-5, 300, true, true}));
 
 TEST(AllocationCounter, SeesNewAndMalloc) {
   allocations = 0;

@@ -1,0 +1,43 @@
+#include "run/dense_step.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "validation/run_model.h"
+
+namespace freeplay {
+namespace {
+
+/// q = t^5 - 2 t^3 + t for every coordinate i, times i + 1.
+void fill(State& state, double t) {
+  state.t() = t;
+  for (std::size_t i = 0; i < state.q().size(); ++i) {
+    const double factor = static_cast<double>(i + 1);
+    state.q()[i] = factor * (std::pow(t, 5) - 2.0 * std::pow(t, 3) + t);
+    state.v()[i] = factor * (5.0 * std::pow(t, 4) - 6.0 * t * t + 1.0);
+    state.a()[i] = factor * (20.0 * std::pow(t, 3) - 12.0 * t);
+  }
+}
+
+TEST(DenseStep, GivesBackAQuinticWithItsDerivatives) {
+  const auto model = test::load(test::mechanism("pendulum"));
+  const Layout layout(*model, Variant::released);
+  State start(layout, 0), end(layout, 0), between(layout, 0), known(layout, 0);
+  fill(start, 0.3);
+  fill(end, 1.1);
+  const DenseStep step(start, {}, end, {});
+  for (const double s : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+    step.at(s, between);
+    fill(known, 0.3 + 0.8 * s);
+    EXPECT_NEAR(between.t(), known.t(), 1e-15);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(between.q()[i], known.q()[i], 4e-15) << s;
+      EXPECT_NEAR(between.v()[i], known.v()[i], 3e-14) << s;
+      EXPECT_NEAR(between.a()[i], known.a()[i], 4e-13) << s;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace freeplay

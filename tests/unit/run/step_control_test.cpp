@@ -1,0 +1,49 @@
+#include "run/step_control.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace freeplay {
+namespace {
+
+TEST(StepControl, SteadyErrorOfOneShrinksTheStepByTheSafetyFactor) {
+  StepControl control({1.0, 1e-6, 10.0}, 5);
+  control.accept(1.0, 1.0);
+  EXPECT_NEAR(control.next(), 0.9, 1e-15);
+}
+
+TEST(StepControl, GrowsByFiveAtMostAndNotBeyondTheLargest) {
+  StepControl control({1.0, 1e-6, 30.0}, 5);
+  control.accept(1.0, 0.0);
+  EXPECT_EQ(control.next(), 5.0);
+  control.accept(20.0, 0.0);
+  EXPECT_EQ(control.next(), 30.0);
+}
+
+TEST(StepControl, RejectedStepIsMadeShorterAndTheNextDoesNotGrow) {
+  StepControl control({1.0, 1e-6, 10.0}, 3);
+  control.reject(1.0, 8.0);
+  EXPECT_NEAR(control.next(), 0.45, 1e-15);
+  control.accept(0.45, 1e-6);
+  EXPECT_EQ(control.next(), 0.45);
+  control.accept(0.45, 1e-6);
+  EXPECT_GT(control.next(), 0.45);
+}
+
+TEST(StepControl, ErrorThatIsNoNumberTakesTheLargestCut) {
+  StepControl control({1.0, 1e-6, 10.0}, 3);
+  control.reject(1.0, std::nan(""));
+  EXPECT_NEAR(control.next(), 0.1, 1e-15);
+}
+
+TEST(StepControl, StepThatEndsAtAnEventLeavesTheProposal) {
+  StepControl control({1.0, 1e-6, 10.0}, 3);
+  control.accept(1.0, 0.5);
+  const double before = control.next();
+  control.cut();
+  EXPECT_EQ(control.next(), before);
+}
+
+}  // namespace
+}  // namespace freeplay
