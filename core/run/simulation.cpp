@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -391,11 +392,14 @@ void Simulation::Impl::format_warnings() {
   for (std::size_t j = 0; j < joint_warnings.size(); ++j) {
     const Warning& warning = joint_warnings[j];
     if (warning.text == nullptr) continue;
-    std::string text = fmt::format("joint '{}' at t = {:.9g} s: {}", model.joints[j].name, warning.time, warning.text);
+    std::string_view sentence = warning.text;
+    if (sentence.ends_with('.')) sentence.remove_suffix(1);
+    std::string text = fmt::format("joint '{}' at t = {:.9g} s: {}", model.joints[j].name, warning.time, sentence);
     const Span<const Channel> own = system.joint_layout(static_cast<int>(j)).channels;
     for (std::size_t i = 0; i < own.size; ++i) {
-      text += fmt::format("{} {} = {:.4g} {}", i == 0 ? ":" : ",", own[i].name, warning_values[warning.values + i],
-                          own[i].unit);
+      const bool plain = std::string_view(own[i].unit) == "1";
+      text += fmt::format("{} {} = {:.4g}{}{}", i == 0 ? ":" : ",", own[i].name, warning_values[warning.values + i],
+                          plain ? "" : " ", plain ? "" : own[i].unit);
     }
     warnings.push_back(text);
   }
