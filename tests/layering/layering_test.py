@@ -40,6 +40,7 @@ LIBRARIES = {
     "hdf5.h": {"io"},
     "openssl": {"io"},
     "dlfcn.h": {"component"},
+    "elf.h": {"component"},
     "nlohmann": {"io", "report", "cli"},
     "CLI": {"cli"},
     "fmt": EVERY_ROOM,

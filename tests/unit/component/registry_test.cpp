@@ -1,5 +1,6 @@
 #include "component/registry.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../model/toy_components.h"
@@ -72,6 +73,70 @@ TEST(Registry, RefusesWhatItDoesNotUnderstand) {
               return status;
             }),
             "plugin-refused");
+}
+
+// A joint that is described as `change` says, published after the toys.
+template <class Change>
+std::string claim(Change change) {
+  static Component row;
+  row = {};
+  Registry registry;
+  registry.add(&toy::publish_toys, "toys");
+  const Component* pin = registry.find(ComponentKind::joint, "loose-pin");
+  row = *pin;
+  row.description.name = "mine";
+  row.description.ideal = row.description.block = nullptr;
+  row.description.first_end = row.description.second_end = nullptr;
+  row.description.parameters = {};
+  change(row.description);
+  try {
+    registry.add(
+        [](const Host* host, Manifest* manifest) noexcept {
+          return publish(*host, *manifest, "mine", "1", {&row, 1});
+        },
+        "mine.so");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.id(), "plugin-clash");
+    return error.message();
+  }
+  return "";
+}
+
+TEST(Registry, KeepsTypesFromTakingWordsThatAreTaken) {
+  using testing::HasSubstr;
+  EXPECT_EQ(claim([](Description&) {}), "");
+  EXPECT_EQ(claim([](Description& d) { d.ideal = "pin", d.block = "wear"; }), "");
+  EXPECT_THAT(claim([](Description& d) { d.ideal = "pin", d.block = "play"; }),
+              HasSubstr("as 'toys' says of 'loose-pin' already"));
+  EXPECT_THAT(claim([](Description& d) { d.ideal = "pin", d.block = "between"; }), HasSubstr("every joint has"));
+  EXPECT_THAT(claim([](Description& d) { d.ideal = "mine", d.block = "play"; }), HasSubstr("the type itself"));
+  EXPECT_THAT(claim([](Description& d) { d.ideal = "pin"; }), HasSubstr("its ideal type and its block together"));
+  EXPECT_THAT(claim([](Description& d) { d.first_end = "bearing"; }), HasSubstr("one of its ends only"));
+  EXPECT_THAT(claim([](Description& d) { d.first_end = "type", d.second_end = "use"; }), HasSubstr("the key 'type'"));
+  EXPECT_THAT(claim([](Description& d) { d.name = "gear"; }), HasSubstr("the model file has a meaning for"));
+  static constexpr Parameter use[] = {{.name = "use.more"}};
+  EXPECT_THAT(claim([](Description& d) { d.parameters = use; }), HasSubstr("the key 'use'"));
+}
+
+TEST(Registry, TakesRowsOfTheFirstReleaseAndLongerOnes) {
+  struct Longer {
+    Component known;
+    double more[3];
+  };
+  static Longer rows[2];
+  Registry toys;
+  toys.add(&toy::publish_toys, "toys");
+  rows[0].known = rows[1].known = *toys.find(ComponentKind::joint, "pin");
+  rows[1].known.description.name = "second";
+  Registry registry;
+  registry.add(
+      [](const Host* host, Manifest* manifest) noexcept {
+        const Status status = publish(*host, *manifest, "longer", "1", {&rows[0].known, 2});
+        manifest->component_size = sizeof(Longer);
+        return status;
+      },
+      "longer.so");
+  EXPECT_NE(registry.find(ComponentKind::joint, "second"), nullptr);
 }
 
 }  // namespace
