@@ -13,9 +13,31 @@ double angle_between(const JointInput& in) {
   return std::atan2(a[0] * b[3] - a[3] * b[0], a[0] * b[0] + a[3] * b[3]);
 }
 
+/// Where marker b stands in the axes h, n of marker a, which turns with w: x = h.d, y = n.d, and their rates.
+struct Relative {
+  explicit Relative(const JointInput& in)
+      : h{in.a->rotation[0], in.a->rotation[3]}, n{in.a->rotation[1], in.a->rotation[4]}, w(in.a->angular_velocity[2]) {
+    for (int i = 0; i < 2; ++i) {
+      const double d = in.b->position[i] - in.a->position[i], v = in.b->velocity[i] - in.a->velocity[i];
+      x += h[i] * d, y += n[i] * d, vx += h[i] * v, vy += n[i] * v;
+    }
+    dx = vx + w * y, dy = vy - w * x;
+  }
+  /// The first two rows: those of x and y.
+  void fill(ConstraintRows& rows) const {
+    for (std::size_t i = 0; i < 2; ++i) {
+      rows.jacobian[i] = -h[i], rows.jacobian[6 + i] = h[i];
+      rows.jacobian[12 + i] = -n[i], rows.jacobian[18 + i] = n[i];
+    }
+    rows.jacobian[5] = y, rows.jacobian[17] = -x;
+    rows.gamma[0] = -w * (vy + dy), rows.gamma[1] = w * (vx + dx);
+  }
+  double h[2], n[2], w, x = 0, y = 0, vx = 0, vy = 0, dx = 0, dy = 0;
+};
+
 constexpr Parameter wheel_parameters[] = {{.name = "radius", .unit = "m", .summary = "Of the wheel."}};
 
-/// A wheel that rolls on the x axis of the ground: its row reads the joint's own coordinate.
+/// A wheel that rolls on the x axis of the first frame: its row reads the joint's own coordinate.
 class RollingWheel final : public Joint {
  public:
   explicit RollingWheel(const Parameters& p) : radius_(p.number("radius")) {}
@@ -29,10 +51,11 @@ class RollingWheel final : public Joint {
     out.jacobian[11] = 1.0;
   }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    rows.phi[0] = in.b->position[0] - in.a->position[0] + radius_ * in.coordinate;
-    rows.phi[1] = in.b->position[1] - in.a->position[1] - radius_;
-    rows.jacobian[0] = -1.0, rows.jacobian[6] = 1.0, rows.jacobian[5] = -radius_, rows.jacobian[11] = radius_;
-    rows.jacobian[13] = -1.0, rows.jacobian[19] = 1.0;
+    const Relative r(in);
+    r.fill(rows);
+    rows.phi[0] = r.x + radius_ * in.coordinate;
+    rows.phi[1] = r.y - radius_;
+    rows.jacobian[5] -= radius_, rows.jacobian[11] += radius_;
   }
 
  private:
@@ -87,14 +110,12 @@ class MovedPin final : public Joint {
   void declare(JointLayout& layout) const override { layout.constraint_rows = 2; }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     const TimeValue way = way_.at(in.t);
-    for (std::size_t i = 0; i < 2; ++i) {
-      rows.phi[i] = in.b->position[i] - in.a->position[i];
-      rows.jacobian[13 * i] = -1.0;
-      rows.jacobian[13 * i + 6] = 1.0;
-    }
-    rows.phi[0] -= way.value;
+    const Relative r(in);
+    r.fill(rows);
+    rows.phi[0] = r.x - way.value;
+    rows.phi[1] = r.y;
     rows.nu[0] = way.rate;
-    rows.gamma[0] = way.acceleration;
+    rows.gamma[0] += way.acceleration;
   }
 
  private:
