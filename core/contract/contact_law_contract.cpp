@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ class ContactLawCheck {
     if (findings_.broken("answers") || findings_.broken("finite")) return std::move(findings_);
     check_start();
     check_elastic_part();
-    for (const double v0 : {0.01, 0.3}) {
+    for (const double v0 : {0.01, 0.3, 6.0}) {
       for (const double rebound : {0.2, 0.7, 1.0}) check_cycle(v0, rebound);
     }
     check_memory();
@@ -67,14 +68,17 @@ class ContactLawCheck {
 
   void check_states() {
     for (const double penetration : penetrations()) {
-      for (const double v0 : {0.0, 0.003, 0.1, 1.0}) {
+      for (const double v0 : {0.0, 0.003, 0.1, 1.0, 8.0}) {
         for (const double share : {-2.13, -0.91, -0.31, 0.0, 0.43, 1.0, 1.29}) {
-          const ContactState s{penetration, share * (v0 > 0.0 ? v0 : 0.2), v0};
-          check_derivatives(s);
-          check_range(s);
+          check_state({penetration, share * (v0 > 0.0 ? v0 : 0.2), v0});
         }
+        for (const double rate : {-12.0, 12.0}) check_state({penetration, rate, v0});
       }
     }
+  }
+  void check_state(const ContactState& s) {
+    check_derivatives(s);
+    check_range(s);
   }
 
   void check_derivatives(const ContactState& s) {
@@ -141,13 +145,16 @@ class ContactLawCheck {
 
   void check_elastic_part() {
     double force = 0.0, energy = 0.0, from = 0.0;
+    // A potential may be a difference of terms as large as this, whatever the penetration.
+    const double terms = ask({penetrations().back(), 0.0, 0.0}).normal * subject_.clearance;
+    const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * terms;
     for (const double penetration : penetrations()) {
       const ContactForce still = ask({penetration, 0.0, 0.0});
       findings_.expect("monotone", still.normal >= force, [&] {
         return fmt::format("the elastic force falls to {:.6g} N {}", still.normal, words({penetration, 0.0, 0.0}));
       });
       force = still.normal;
-      for (const double rate : {-0.5, 0.02, 1.0}) {
+      for (const double rate : {-11.0, -0.5, 0.02, 1.0, 11.0}) {
         const ContactForce moving = ask({penetration, rate, 0.0});
         findings_.expect("elastic-part", moving.normal == still.normal && moving.d_rate == 0.0, [&] {
           return fmt::format("without approach speed the force depends on the rate {}",
@@ -161,7 +168,7 @@ class ContactLawCheck {
       // Powers are exact to 1e-6; logarithms of the penetration cost two digits in the piece that starts at zero.
       energy += integral(from, penetration);
       from = penetration;
-      findings_.expect("potential", std::abs(still.potential - energy) <= 1e-4 * energy, [&] {
+      findings_.expect("potential", std::abs(still.potential - energy) <= 1e-4 * energy + rounding, [&] {
         return fmt::format("the stored energy is {:.9g} J, the integral of the elastic force {:.9g} J {}",
                            still.potential, energy, words({penetration, 0.0, 0.0}));
       });

@@ -12,7 +12,7 @@
 namespace freeplay {
 namespace {
 
-constexpr double speeds[] = {1e-6, 3e-5, 2.3e-4, 7e-4, 3e-3, 0.02, 0.13, 1.1};
+constexpr double speeds[] = {1e-6, 3e-5, 2.3e-4, 7e-4, 3e-3, 0.02, 0.13, 1.1, 9.0, 33.0};
 constexpr double loads[] = {0.0, 0.7, 25.0, 900.0};
 
 class FrictionLawCheck {
@@ -44,7 +44,7 @@ class FrictionLawCheck {
         check_memory(load, speed);
       }
     }
-    check_cycle(25.0);
+    for (const double fastest : {0.02, 12.0}) check_cycle(25.0, fastest);
     return std::move(findings_);
   }
 
@@ -102,17 +102,11 @@ class FrictionLawCheck {
   }
 
   void check_sign(double load, double speed) {
-    const std::vector<double> z = settled(load, speed);
-    std::vector<double> turned = z;
-    for (double& x : turned) x = -x;
-    const double there = ask(load, speed, z).force.tangential, back = ask(load, -speed, turned).force.tangential;
+    const double there = ask(load, speed, settled(load, speed)).force.tangential;
+    const double back = ask(load, -speed, settled(load, -speed)).force.tangential;
     findings_.expect("opposes-slip", there <= 0.0 && back >= 0.0, [&] {
       return fmt::format("the force is {:.6g} N for a slip of {:.3g} m/s and {:.6g} N for its opposite", there, speed,
                          back);
-    });
-    // Rounding of a few operations.
-    findings_.expect("odd", std::abs(there + back) <= 1e-12 * std::abs(there), [&] {
-      return fmt::format("a slip of {:.3g} m/s gives {:.9g} N, its opposite {:.9g} N", speed, there, back);
     });
     if (load == 0.0) {
       findings_.expect("unloaded", there == 0.0 && back == 0.0,
@@ -154,14 +148,14 @@ class FrictionLawCheck {
                      [] { return std::string("two objects with equal parameters differ"); });
   }
 
-  /// Slip to and fro; the first time lets internal variables settle.
-  void check_cycle(double load) {
+  /// Slip to and fro, up to `fastest` [m/s]; the first time lets internal variables settle.
+  void check_cycle(double load, double fastest) {
     constexpr int around = 2000;
     const double dt = 0.1 / around;
     std::vector<double> z(count_, 0.0);
     double work = 0.0, moved = 0.0;
     for (int i = 0; i < 2 * around; ++i) {
-      const double slip = 0.02 * std::sin(2.0 * M_PI * (i + 0.5) / around);
+      const double slip = fastest * std::sin(2.0 * M_PI * (i + 0.5) / around);
       z = advanced(load, slip, z, dt);
       const double power = ask(load, slip, z).force.tangential * slip;
       if (i < around) continue;

@@ -15,7 +15,7 @@ struct ContactLawSubject {
   bool may_jump = false;    ///< the law says that a damped contact begins with a jump
 };
 
-/// All rules for one contact law, at penetrations over seven decades:
+/// All rules for one contact law, at penetrations over seven decades and speeds of 3 mm/s to 17 m/s:
 ///
 ///   no-tension              the normal force is never negative
 ///   continuous              it starts from zero with the penetration, damped as well unless the law says otherwise
@@ -31,10 +31,9 @@ struct FrictionLawSubject {
   FrictionLawRef law, twin;
 };
 
-/// All rules for one friction law:
+/// All rules for one friction law, at speeds of 1 um/s to 33 m/s; it may depend on the direction of the slip:
 ///
 ///   opposes-slip            the force acts against the slip; with internal variables in steady slip
-///   odd                     slip turned round turns the force round
 ///   unloaded                no normal force, no friction
 ///   derivatives             against differences
 ///   passive                 a cycle of slip to and fro takes no energy out of the contact

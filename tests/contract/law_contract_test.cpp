@@ -65,6 +65,26 @@ TEST(ContactLawContract, FindsTension) {
   });
 }
 
+TEST(ContactLawContract, FindsTensionAtFastSeparation) {
+  // Below zero from 5 m/s on.
+  expect_found("no-tension", [](const ContactState& s) {
+    const double rate = s.approach_speed > 0.0 ? s.rate : 0.0, slope = s.approach_speed > 0.0 ? 0.2 : 0.0;
+    const double elastic = 1e5 * s.penetration;
+    return ContactForce{elastic * (1.0 + 0.2 * rate), 1e5 * (1.0 + 0.2 * rate), elastic * slope,
+                        0.5 * elastic * s.penetration};
+  });
+}
+
+TEST(ContactLawContract, DoesNotJudgeTheRoundingOfStoredEnergy) {
+  // F = k c (e^(x/c) - 1), U = k c (c (e^(x/c) - 1) - x): terms of 1e-3 J cancel to 1e-19 J.
+  const auto wall = [](const ContactState& s) {
+    constexpr double k = 1e5, c = 1e-4;
+    const double x = s.penetration, e = std::exp(x / c);
+    return ContactForce{k * c * (e - 1.0), k * e, 0.0, k * c * (c * (e - 1.0) - x)};
+  };
+  EXPECT_TRUE(judge(wall).held()) << broken_rules(judge(wall));
+}
+
 TEST(ContactLawContract, FindsAJumpUnlessTheLawTells) {
   const auto jumps = [](const ContactState& s) {
     const double damping = s.approach_speed > 0.0 ? 50.0 : 0.0, force = 1e5 * s.penetration + damping * s.rate;
@@ -172,10 +192,21 @@ TEST(FrictionLawContract, FindsForcesThatPush) {
   EXPECT_TRUE(judge(pushes, 1).broken("passive"));
 }
 
-TEST(FrictionLawContract, FindsASide) {
-  expect_slip_found("odd", [](FrictionForce& f, const FrictionState& s) {
-    if (s.slip_speed > 0.0) f.tangential *= 1.001;
-  });
+TEST(FrictionLawContract, FindsAPushAtHighSpeed) {
+  for (const double from : {8.0, 28.0}) {
+    expect_slip_found("opposes-slip", [from](FrictionForce& f, const FrictionState& s) {
+      if (std::abs(s.slip_speed) > from) f = {-f.tangential, -f.d_normal, -f.d_slip};
+    });
+  }
+}
+
+TEST(FrictionLawContract, LetsFrictionDependOnTheDirection) {
+  const auto sided = [](const FrictionState& s, Span<double> rate) {
+    const double more = s.slip_speed > 0.0 ? 1.5 : 1.0;
+    const FrictionForce f = smooth(s, rate);
+    return FrictionForce{more * f.tangential, more * f.d_normal, more * f.d_slip};
+  };
+  EXPECT_TRUE(judge(sided).held()) << broken_rules(judge(sided));
 }
 
 TEST(FrictionLawContract, FindsFrictionWithoutLoad) {
