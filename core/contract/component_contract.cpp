@@ -1,5 +1,6 @@
 #include "contract/component_contract.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -19,6 +20,14 @@ bool has_functions(const ParameterBlock& block) {
     if (p.kind == ParameterKind::function) return true;
   }
   return false;
+}
+
+/// Does a contact law, or one that it is made from, say that a damped contact begins with a jump?
+bool may_jump(const ParameterBlock& block) {
+  const char* validity = block.component->description.validity;
+  if (validity != nullptr && std::strstr(validity, "jump") != nullptr) return true;
+  return std::ranges::any_of(block.values,
+                             [](const auto& entry) { return entry.second.law && may_jump(*entry.second.law); });
 }
 
 /// Notes the end of a component's objects, too.
@@ -69,7 +78,7 @@ Findings check_joint_sample(const ParameterSample& sample, const Conditions& con
     WatchedCall watched(conditions, "declare");
     const bool declared = joint.declare(layout, message);
     watched.end();
-    if (declared) findings.merge(check_joint_names({layout.events, layout.channels}), "");
+    if (declared) findings.merge(check_joint_names(layout), "");
     findings.merge(check_joint({joint, twin, space, !has_functions(block)}, conditions), where);
   }
   return findings;
@@ -80,17 +89,16 @@ Findings check_sample(const ParameterSample& sample, const Conditions& condition
   if (block.component->kind == ComponentKind::joint) return check_joint_sample(sample, conditions);
   say(conditions, sample.name);
   Subjects subjects(conditions);
-  const Description& description = block.component->description;
   switch (block.component->kind) {
     case ComponentKind::joint:
       break;
     case ComponentKind::contact_law: {
       const ContactPair pair = sample_contact_pair();
-      const bool may_jump = description.validity != nullptr && std::strstr(description.validity, "jump") != nullptr;
       const auto make = [&](Instances& instances, CreationFault& fault) {
         return instances.create_contact_law(block, pair, fault);
       };
-      return check_contact_law({subjects.make(make), subjects.make(make), pair.radial_clearance, may_jump}, conditions);
+      return check_contact_law({subjects.make(make), subjects.make(make), pair.radial_clearance, may_jump(block)},
+                               conditions);
     }
     case ComponentKind::friction_law: {
       const auto make = [&](Instances& instances, CreationFault& fault) {

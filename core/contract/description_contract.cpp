@@ -10,7 +10,9 @@
 
 #include "base/expression_error.h"
 #include "base/unit.h"
+#include "model/format_table.h"
 #include "model/parameter_tree.h"
+#include "run/channel.h"
 
 namespace freeplay {
 namespace {
@@ -92,6 +94,23 @@ std::optional<std::string> unit_fault(const char* text, Span<const Parameter> ta
   return fmt::format("'{}': {} units for the {} words of '{}'", text, units, words, name);
 }
 
+/// Is the first key of a path one that the reader of the model file takes itself?
+bool is_taken(std::string_view path, const Component& component) {
+  const std::string_view key = path.substr(0, path.find('.'));
+  switch (component.kind) {
+    case ComponentKind::joint:
+      break;
+    case ComponentKind::integrator:
+      return format_map("integrator").find(key) != nullptr;
+    case ComponentKind::contact_law:
+    case ComponentKind::friction_law:
+      return key == "law";
+  }
+  const Description& d = component.description;
+  const auto is = [key](const char* end) { return end != nullptr && key == end; };
+  return format_map("joint").find(key) != nullptr || is(d.first_end) || is(d.second_end);
+}
+
 void check_value(const Parameter& p, Findings& findings) {
   const bool numeric = p.kind == ParameterKind::number || p.kind == ParameterKind::integer;
   const bool closed = p.open == Open::none;
@@ -116,6 +135,22 @@ void check_value(const Parameter& p, Findings& findings) {
   findings.expect("parameter-defaults", good, [&] { return fmt::format("'{}' has the default {}", p.name, given); });
 }
 
+/// Does a joint, or a force where it may stand as one, have a column `name` without the type's doing?
+bool is_column(const JointLayout& layout, const char* name) {
+  Model model;
+  model.joints.resize(2);
+  model.force_elements.push_back({.joint = 1});
+  for (JointElement& joint : model.joints) {
+    joint.layout.coordinate = layout.coordinate;
+    joint.name = "it";
+  }
+  model.joints[1].is_force = true;
+  const Channels columns(model);
+  const auto has = [&](const std::string& prefix) { return columns.find(prefix + name) >= 0; };
+  const bool may_be_force = layout.constraint_rows == 0 && !(layout.clearance > 0.0);
+  return has("joint.it.") || (may_be_force && has("force.it."));
+}
+
 }  // namespace
 
 Findings check_description(const Component& component) {
@@ -123,11 +158,17 @@ Findings check_description(const Component& component) {
   Findings findings;
   findings.expect("name", is_joined_words(d.name, '-'), [&] { return fmt::format("'{}'", d.name); });
   findings.expect("summary", says_something(d.summary), [] { return std::string("is empty"); });
+  if (component.kind == ComponentKind::joint) {
+    const bool known = d.space == Space::planar || d.space == Space::spatial || d.space == Space::both;
+    findings.expect("space", known, [&] { return fmt::format("{} is none", static_cast<unsigned>(d.space)); });
+  }
   std::set<std::string> names;
   for (const Parameter& p : d.parameters) {
     findings.expect("parameter-names", is_path(p.name), [&] { return fmt::format("'{}'", p.name); });
     findings.expect("parameter-names", names.insert(p.name).second,
                     [&] { return fmt::format("'{}' stands twice", p.name); });
+    findings.expect("parameter-names", !is_taken(p.name, component),
+                    [&] { return fmt::format("'{}' begins with a key that the model file reads itself", p.name); });
     findings.expect("summary", says_something(p.summary),
                     [&] { return fmt::format("that of parameter '{}' is empty", p.name); });
     const std::optional<std::string> fault = unit_fault(p.unit, d.parameters);
@@ -137,7 +178,7 @@ Findings check_description(const Component& component) {
   return findings;
 }
 
-Findings check_joint_names(const JointNames& joint) {
+Findings check_joint_names(const JointLayout& joint) {
   Findings findings;
   std::set<std::string> events, channels;
   const auto check = [&](const char* rule, const char* name, std::set<std::string>& known) {
@@ -150,6 +191,8 @@ Findings check_joint_names(const JointNames& joint) {
     findings.expect(rule, !fault, [&] { return fmt::format("unit of '{}': {}", channel.name, *fault); });
   };
   for (const Channel& channel : joint.channels) {
+    findings.expect("channel-names", channel.name == nullptr || !is_column(joint, channel.name),
+                    [&] { return fmt::format("'{}' is a column that every such joint has", channel.name); });
     check("channel-names", channel.name, channels);
     check_unit("channel-units", channel);
   }

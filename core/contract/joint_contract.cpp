@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -13,22 +15,44 @@ namespace {
 // Angles in any turn: what is left after the nearest whole turn.
 double without_turns(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
+/// Sizes of a moment's numbers: ordinary, or those of a large, fast or long simulation.
+struct Extent {
+  StateSize size;
+  double latest = 1.0;  ///< [s]
+};
+Extent extent_of(int moment) {
+  Extent extent;
+  if (moment % 2 == 1) extent.size.distance = extent.size.speed = 5.0;
+  if (moment / 2 % 2 == 1) extent.size.turning = 10.0;
+  if (moment % 3 == 1) extent.latest = 50.0;
+  return extent;
+}
+
+/// Finite, with a matrix that turns and does nothing else.
+bool is_pose(const Pose& pose) {
+  const Eigen::Map<const RowMajor3> r(pose.rotation);
+  const double off = (r.transpose() * r - Eigen::Matrix3d::Identity()).norm() + std::abs(r.determinant() - 1.0);
+  return off <= 1e-12 && vector3(pose.position).allFinite();
+}
+
 /// Moments at which a joint is asked: anywhere, near where it places a body, or around the end of its play; and in each
 /// of the states that its history can be in after a step has begun and after an event.
 std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& random) {
   std::vector<JointMoment> moments;
   const double play = probe.layout().clearance;
-  const auto add = [&](const MarkerPair& markers) {
-    const double t = random.between(0.1, 1.0);
+  const Space space = probe.space();
+  const auto add = [&](const MarkerPair& markers, double latest) {
+    const double t = random.between(0.5, 1.0) * latest;
     const JointMoment fresh = probe.start(markers, t);
     moments.push_back(fresh);
     // History from elsewhere, with a step begun from there.
     const JointMoment other = probe.start(
-        play > 0.0 ? distant_pair(probe.space(), 0.99 * play, random) : random_pair(probe.space(), random), t);
+        play > 0.0 ? distant_pair(random_pair(space, random), space, 0.99 * play, random) : random_pair(space, random),
+        t);
     JointMoment begun = fresh;
     begun.h = other.h;
     const double dt = 1e-4;
-    probe.begin_step(other, random_twelve(probe.space(), random, 10.0), dt, begun);
+    probe.begin_step(other, random_twelve(space, random, 10.0), dt, begun);
     if (probe.layout().history > 0) moments.push_back(begun);
     for (int event = 0; event < static_cast<int>(probe.layout().events.size); ++event) {
       JointMoment told = fresh;
@@ -37,14 +61,28 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
     }
   };
   // A joint with play is no model of anything where its parts have left each other's reach.
-  for (int i = 0; i < 6 && !(play > 0.0); ++i) add(random_pair(probe.space(), random));
+  const int count = play > 0.0 ? 0 : 12;
+  for (int i = 0; i < count; ++i) {
+    const Extent extent = extent_of(i);
+    // One in each twelfth of the turn; 5 and 12 have no common divisor, so that extents and angles mix.
+    const double turn = (2.0 * (5 * i % count + random.between(0.0, 1.0)) / count - 1.0) * M_PI;
+    add(turned_pair(space, extent.size, turn, random), extent.latest);
+  }
   Pose pose{};
   for (int i = 0; i < 4; ++i) {
-    if (probe.place(random.between(-1.0, 1.0), pose)) add(placed_pair(probe.space(), pose, random));
+    const Extent extent = extent_of(i);
+    const double coordinate = random.between(-1.0, 1.0) * (i % 2 == 1 ? 3.0 : 1.0);
+    if (!probe.place(coordinate, pose) || !is_pose(pose)) continue;
+    add(placed_pair(turned_pair(space, extent.size, 0.0, random), pose), extent.latest);
   }
   if (play > 0.0) {
+    int i = 0;
     for (const double beyond : {-0.4, 0.001, 0.004, 0.013, 0.05}) {
-      for (int i = 0; i < 3; ++i) add(distant_pair(probe.space(), play * (1.0 + beyond), random));
+      for (int k = 0; k < 3; ++k) {
+        const Extent extent = extent_of(i++);
+        const MarkerPair base = turned_pair(space, extent.size, random.between(-M_PI, M_PI), random);
+        add(distant_pair(base, space, play * (1.0 + beyond), random), extent.latest);
+      }
     }
   }
   return moments;
@@ -54,7 +92,11 @@ void check_place(const JointProbe& probe, RandomNumbers& random, Findings& findi
   for (const double wanted : {0.0, 0.3, -0.8, 2.5}) {
     Pose pose{};
     if (!probe.place(wanted, pose)) continue;
-    const JointMoment placed = probe.start(placed_pair(probe.space(), pose, random), 0.0);
+    const bool turns = is_pose(pose);
+    findings.expect("place", turns,
+                    [&] { return fmt::format("a body placed at {} has a rotation that is none", wanted); });
+    if (!turns) continue;
+    const JointMoment placed = probe.start(placed_pair(random_pair(probe.space(), random), pose), 0.0);
     const RowValues rows = probe.rows(placed);
     // Rounding of a rotation applied to lengths, a few times, as the rows enlarge it.
     const double rounding = 1e-13 * (1.0 + vector3(pose.position).norm());
@@ -86,13 +128,35 @@ void check_offset(const JointProbe& probe, Findings& findings) {
   }
 }
 
+bool same_names(Span<const Channel> a, Span<const Channel> b) {
+  return std::ranges::equal(a, b, [](const Channel& x, const Channel& y) {
+    return std::string_view(x.name) == y.name && std::string_view(x.unit) == y.unit;
+  });
+}
+bool same_layout(const JointLayout& a, const JointLayout& b) {
+  const auto numbers = [](const JointLayout& l) {
+    return std::tuple(l.coordinate, l.constraint_rows, l.internal_variables, l.history, l.forces != 0,
+                      l.analytic_derivatives != 0, l.pin != 0, l.clearance);
+  };
+  return numbers(a) == numbers(b) && same_names(a.channels, b.channels) &&
+         std::ranges::equal(a.events, b.events, [](const Event& x, const Event& y) {
+           return std::string_view(x.name) == y.name && x.crossing == y.crossing && x.locate == y.locate &&
+                  same_names(x.fields, y.fields);
+         });
+}
+
 }  // namespace
 
 Findings check_joint(const JointSubject& subject, const Conditions& conditions) {
   Findings findings(conditions.found);
   RandomNumbers random(conditions.seed);
   const JointProbe probe(subject.joint, subject.space, conditions, findings);
+  const JointProbe again(subject.joint, subject.space, conditions, findings);
   const JointProbe twin(subject.twin, subject.space, conditions, findings);
+  const bool steady = same_layout(probe.layout(), again.layout()) && same_layout(probe.layout(), twin.layout());
+  findings.expect("declares-sanely", steady, [] { return std::string("declare() answers differently each time"); });
+  findings.expect("pin", !probe.layout().pin || subject.space != Space::planar || probe.layout().constraint_rows == 2,
+                  [&] { return fmt::format("it declares {} constraint rows", probe.layout().constraint_rows); });
   if (!findings.held()) return findings;  // a layout that is wrong makes every other answer meaningless
   const std::vector<JointMoment> moments = moments_of(probe, random);
   check_rows(probe, moments, random, findings);

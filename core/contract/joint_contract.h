@@ -12,7 +12,8 @@ struct JointSubject {
   bool passive = true;          ///< false: a parameter is a function of time, which may bring energy
 };
 
-/// All rules for one joint. At random moments, in the plane or in space:
+/// All rules for one joint. At random moments up to 50 s, in the plane or in space, turned by any angle, with distances
+/// and speeds up to 5 m and 5 m/s and 10 rad/s:
 ///
 ///   jacobian, nu, gamma               rows against differences of phi along poses, in time, along accelerated motion
 ///   coordinate, coordinate-bias       the same for the coordinate
@@ -24,7 +25,8 @@ struct JointSubject {
 ///   energy, energy-cycle              stored energy and dissipation account for the work, at once and over a cycle
 ///   derivatives, unused-derivatives   of apply() against differences
 ///   event-rate                        rates of the event functions against differences
-///   place                             satisfies the rows and gives the coordinate
+///   place                             is a pose that satisfies the rows and gives the coordinate
+///   pin                               where it is set, origins coincide in the plane and the turn is free
 ///   initial-offset                    of a joint with play is a finite place within reach
 ///   no-hidden-state, same-twin        answers depend on the input alone, bit for bit, and not on the object
 ///   rollback                          history and internal variables are all there is to put back

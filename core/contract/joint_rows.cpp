@@ -76,10 +76,11 @@ class RowCheck {
         },
         0.05, Side::both, sizes_of_terms());
     for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
-      findings_.expect(name(r, "nu", "coordinate"), agrees(here_.nu[r], -d.value[r], d.error[r], 1.0), [&] {
-        return fmt::format("nu of {} is {:.9g}, differences in time give {:.9g}, {}", row_word(r), here_.nu[r],
-                           -d.value[r], words_of(moment_));
-      });
+      findings_.expect(name(r, "nu", "coordinate"),
+                       agrees(here_.nu[r], -d.value[r], d.error[r], std::max(1.0, std::abs(here_.nu[r]))), [&] {
+                         return fmt::format("nu of {} is {:.9g}, differences in time give {:.9g}, {}", row_word(r),
+                                            here_.nu[r], -d.value[r], words_of(moment_));
+                       });
     }
   }
 
@@ -96,7 +97,7 @@ class RowCheck {
           for (std::size_t r = 0; r < rate.size(); ++r) rate[r] = rows.times(r, twists(there.markers)) - rows.nu[r];
           return rate;
         },
-        0.02, Side::both, sizes_of_terms());
+        0.02, Side::both, sizes_of_rates());
     for (std::size_t r = 0; r < std::min(here_.size(), d.value.size()); ++r) {
       const double given = here_.times(r, acceleration) - here_.gamma[r];
       // Accelerations of 3 m/s^2 and speeds of 1.5 m/s: terms of order 10, more where a row is curved.
@@ -114,6 +115,7 @@ class RowCheck {
   void balance() {
     if (!close()) return;
     const bool planar = probe_.space() == Space::planar;
+    if (planar && probe_.layout().pin != 0) pin();
     for (int motion = 0; motion < 6; ++motion) {
       if (planar && (motion == 2 || motion == 3 || motion == 4)) continue;
       Twelve v{};
@@ -136,6 +138,19 @@ class RowCheck {
                              motion < 3 ? "shift" : "turn", words_of(moment_));
         });
       }
+    }
+  }
+
+  /// Where the rows hold, the origins coincide, and a turn of b about its own changes nothing.
+  void pin() {
+    const Eigen::Vector3d a = vector3(moment_.markers.a.position), b = vector3(moment_.markers.b.position);
+    const double apart = (b - a).head<2>().norm();
+    findings_.expect("pin", apart <= 1e-9 * (1.0 + a.norm() + b.norm()), [&] {
+      return fmt::format("the rows hold with the origins {:.6g} m apart, {}", apart, words_of(moment_));
+    });
+    for (std::size_t r = 0; is_row(r) && r < here_.size(); ++r) {
+      findings_.expect("pin", std::abs(here_.jacobian[12 * r + 11]) <= 1e-9 * (1.0 + sizes_of_terms()[r]),
+                       [&] { return fmt::format("row {} hinders the turn, {}", r, words_of(moment_)); });
     }
   }
 
@@ -167,6 +182,15 @@ class RowCheck {
       for (std::size_t i = 0; i < 12; ++i) sizes[r] = std::max(sizes[r], std::abs(here_.jacobian[12 * r + i]));
       sizes[r] *= 1.0 + a.norm() + b.norm();
     }
+    return sizes;
+  }
+
+  /// The same for G V: the largest speed of anything at these distances.
+  std::vector<double> sizes_of_rates() const {
+    std::vector<double> sizes = sizes_of_terms();
+    double fastest = 0.0;
+    for (const double v : twists(moment_.markers)) fastest = std::max(fastest, std::abs(v));
+    for (double& size : sizes) size *= fastest;
     return sizes;
   }
 

@@ -57,7 +57,8 @@ void JointWalk::tell_events(JointMoment& trial) const {
 
 ClosedPath::ClosedPath(const JointProbe& probe, RandomNumbers& random) : play_(probe.layout().clearance) {
   Pose pose{};
-  start_ = probe.place(0.2, pose) ? placed_pair(probe.space(), pose, random) : distant_pair(probe.space(), 0.4, random);
+  const MarkerPair base = random_pair(probe.space(), random);
+  start_ = probe.place(0.2, pose) ? placed_pair(base, pose) : distant_pair(base, probe.space(), 0.4, random);
   start_ = with_twists(start_, {});
   if (!(play_ > 0.0)) return;
   for (int i = 0; i < 3; ++i) start_.b.position[i] = start_.a.position[i];

@@ -84,16 +84,43 @@ MarkerPair random_pair(Space space, RandomNumbers& random) {
   return with_twists(moved(still, by), random_twelve(space, random, 1.5));
 }
 
-MarkerPair placed_pair(Space space, const Pose& relative, RandomNumbers& random) {
-  MarkerPair pair = random_pair(space, random);
+MarkerPair turned_pair(Space space, const StateSize& size, double relative, RandomNumbers& random) {
+  const auto large = [&random](double most) {
+    const double sign = random.between(-1.0, 1.0) < 0.0 ? -1.0 : 1.0;
+    return sign * random.between(0.5 * most, most);
+  };
+  const bool planar = space == Space::planar;
+  const auto axis = [&] {
+    if (planar) return Vector3d(0.0, 0.0, 1.0);
+    Vector3d any(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+    return Vector3d(any.normalized());
+  };
+  MarkerPair pair;
+  const Eigen::Matrix3d first = turn(random.between(-M_PI, M_PI) * axis());
+  set_rotation(pair.a, first);
+  set_rotation(pair.b, first * turn(relative * axis()));
+  Twelve twist{};
+  for (const std::size_t i : moving_components(space)) {
+    if (i % 6 < 3) {
+      (i < 6 ? pair.a : pair.b).position[i % 6] = large(size.distance);
+      twist[i] = large(size.speed);
+    } else {
+      twist[i] = large(size.turning);
+    }
+  }
+  return with_twists(pair, twist);
+}
+
+MarkerPair placed_pair(const MarkerPair& base, const Pose& relative) {
+  MarkerPair pair = base;
   const Vector3d offset = rotation(pair.a) * vector3(relative.position);
   for (int i = 0; i < 3; ++i) pair.b.position[i] = pair.a.position[i] + offset[i];
   set_rotation(pair.b, rotation(pair.a) * Eigen::Map<const RowMajor3>(relative.rotation));
   return pair;
 }
 
-MarkerPair distant_pair(Space space, double gap, RandomNumbers& random) {
-  MarkerPair pair = random_pair(space, random);
+MarkerPair distant_pair(const MarkerPair& base, Space space, double gap, RandomNumbers& random) {
+  MarkerPair pair = base;
   Vector3d direction(random.between(-1.0, 1.0), random.between(-1.0, 1.0),
                      space == Space::planar ? 0.0 : random.between(-1.0, 1.0));
   direction *= gap / direction.norm();

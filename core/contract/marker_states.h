@@ -36,10 +36,20 @@ struct MarkerPath {
 
 /// A random pose for a, and b beside it: anywhere within half a metre.
 MarkerPair random_pair(Space space, RandomNumbers& random);
-/// b stands where `relative` puts it in a; twists are random.
-MarkerPair placed_pair(Space space, const Pose& relative, RandomNumbers& random);
-/// The origin of b is at the distance `gap` from that of a.
-MarkerPair distant_pair(Space space, double gap, RandomNumbers& random);
+
+/// How large the numbers of a random state are.
+struct StateSize {
+  double distance = 0.5;  ///< of coordinates of the origins [m]
+  double speed = 1.5;     ///< [m/s]
+  double turning = 1.5;   ///< [rad/s]
+};
+/// Markers turned by any angle, b against a by `relative` [rad]. Each number is at least half as large as `size` says.
+MarkerPair turned_pair(Space space, const StateSize& size, double relative, RandomNumbers& random);
+
+/// Twists and pose of a are those of `base`; b stands where `relative` puts it in a.
+MarkerPair placed_pair(const MarkerPair& base, const Pose& relative);
+/// `base` with the origin of b at the distance `gap` from that of a.
+MarkerPair distant_pair(const MarkerPair& base, Space space, double gap, RandomNumbers& random);
 Twelve random_twelve(Space space, RandomNumbers& random, double size);
 
 }  // namespace freeplay

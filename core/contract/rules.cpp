@@ -14,9 +14,12 @@ struct Rule {
 constexpr Rule rules[] = {
     // The table of the library.
     {"name", all, "The name is lower-case words joined by hyphens."},
+    {"space", joints, "`space` is planar, spatial or both."},
     {"summary", all, "The type and each of its parameters has a summary; manuals and error messages print it."},
     {"parameter-names", all,
-     "Names are letters, digits and underscores, paths are joined by dots, and no two are alike."},
+     "Names are letters, digits and underscores, paths are joined by dots, and no two are alike. None is a key that "
+     "the "
+     "model file reads itself, such as `type`."},
     {"parameter-bounds", all, "A parameter's minimum lies below its maximum."},
     {"parameter-defaults", all, "A default lies within its bounds; that of a choice is the index of one of its words."},
     {"parameter-choices", all, "A choice has words separated by '|', no two alike."},
@@ -39,8 +42,7 @@ constexpr Rule rules[] = {
      "matrices; size work space in the constructor, or declare history or scratch."},
     {"declares-sanely", joints,
      "declare() asks for at most 3 rows in the plane and 6 in space and for no negative sizes; `forces` is set if "
-     "apply() "
-     "acts."},
+     "apply() acts. It answers the same each time."},
     {"declares-sanely", integrators,
      "declare() asks for an order of 1 or more, a tolerance above 0 and sizes within reason."},
     {"no-hidden-state", joints | laws,
@@ -66,7 +68,11 @@ constexpr Rule rules[] = {
      "are a pair. Look at the columns of body a and at the lever arms in the columns of turns."},
     {"rows-independent", joints, "The rows of one joint are linearly independent."},
     {"place", joints,
-     "place() puts body b where the rows are satisfied and the coordinate has the value that was asked for."},
+     "place() puts body b where the rows are satisfied and the coordinate has the value that was asked for. The pose "
+     "has "
+     "a rotation matrix."},
+    {"pin", joints,
+     "A joint that sets `pin` keeps the origins of its markers together in the plane and leaves the turn free."},
     // Forces of joints.
     {"balance", joints,
      "The wrenches on a and b have no resultant force and no resultant moment about any point. Look at the reaction on "
@@ -85,7 +91,8 @@ constexpr Rule rules[] = {
     {"event-rate", joints, "The rate of an event function is its derivative in time."},
     {"event-names", joints,
      "Names of events and of their fields are lower-case words joined by underscores, no two alike."},
-    {"channel-names", joints, "Names of channels are lower-case words joined by underscores, no two alike."},
+    {"channel-names", joints,
+     "Names of channels are lower-case words joined by underscores, no two alike, and none that every joint has."},
     {"channel-units", joints, "Channels and event fields have units of the model format."},
     {"rollback", joints,
      "After history and internal variables are put back, the joint repeats itself bit for bit, also after an attempt "
@@ -110,7 +117,6 @@ constexpr Rule rules[] = {
     // Friction laws.
     {"opposes-slip", friction_laws,
      "The force acts against the slip; with internal variables once these have settled."},
-    {"odd", friction_laws, "Slip turned round turns the force round."},
     {"unloaded", friction_laws, "Without a normal force there is no friction."},
     {"derivatives", friction_laws, "d_normal and d_slip agree with differences of the tangential force."},
     {"passive", friction_laws, "Slip to and fro takes no energy out of the contact."},

@@ -78,8 +78,12 @@ double within(const Parameter& p, double factor, double wish) {
 
 class Sampler {
  public:
-  Sampler(const Component& component, const Registry& registry, const Conditions& conditions)
-      : component_(component), registry_(registry), conditions_(conditions) {}
+  /// `within`: the components that ask for this one as a law, outermost first.
+  Sampler(const Component& component, const Registry& registry, const Conditions& conditions,
+          std::vector<const Component*> within = {})
+      : component_(component), registry_(registry), conditions_(conditions), chain_(std::move(within)) {
+    chain_.push_back(&component);
+  }
 
   ParameterSamples run() {
     for (const Plan& laws : law_plans()) {
@@ -87,7 +91,9 @@ class Sampler {
       if (!few) continue;
       add(name_of_laws(laws), *few);
       if (found_.accepted.size() > 1) continue;  // the rest does not depend on the laws
-      add("as many as possible", most(*few));
+      const Plan many = with_other_numbers(most(*few)), all = with_other_words(many);
+      add("as many as possible", many);
+      if (all.words != many.words) add("everything given", all);
       add_words(*few);
       add_ends(*few);
     }
@@ -239,9 +245,13 @@ class Sampler {
 
   std::vector<std::shared_ptr<const ParameterBlock>> law_blocks(ComponentKind kind) const {
     std::vector<std::shared_ptr<const ParameterBlock>> blocks;
+    // A law within a law within a law: the innermost asks for none.
+    constexpr std::size_t deepest = 3;
     const Component* preferred = registry_.preferred(kind);
     const auto add_samples = [&](const Component& law) {
-      const ParameterSamples samples = sample_parameters(law, registry_, conditions_);
+      if (std::ranges::find(chain_, &law) != chain_.end()) return;
+      if (chain_.size() + 1 >= deepest && std::ranges::any_of(law.description.parameters, is_law)) return;
+      const ParameterSamples samples = Sampler(law, registry_, conditions_, chain_).run();
       // The one with as many keys as possible asks least of the joint.
       if (!samples.accepted.empty()) blocks.push_back(samples.accepted[samples.accepted.size() > 1 ? 1 : 0].block);
     };
@@ -306,6 +316,53 @@ class Sampler {
     return plan;
   }
 
+  /// Numbers that have a default get another value near it, as far as the constructor takes it.
+  Plan with_other_numbers(Plan plan) {
+    const std::shared_ptr<const ParameterBlock> block = make(plan);
+    for (const Parameter& p : table()) {
+      const bool number = p.kind == ParameterKind::number || p.kind == ParameterKind::integer;
+      if (!number || is_required(p) || is_optional(p)) continue;
+      for (const double other : other_numbers(p, unit_of(p, *block).value_or(Unit{}))) {
+        Plan next = plan;
+        next.numbers[p.name] = other;
+        if (!accepts(next)) continue;
+        plan = next;
+        break;
+      }
+    }
+    return plan;
+  }
+
+  /// Values within the bounds that are not the default [SI], the best one first.
+  static std::vector<double> other_numbers(const Parameter& p, const Unit& unit) {
+    const double standard = p.default_value * unit.factor, low = p.minimum * unit.factor,
+                 high = p.maximum * unit.factor;
+    // The ends have samples of their own.
+    std::vector<double> wishes = {
+        1.4 * standard,         0.6 * standard,         usual_size(unit.dimension), -usual_size(unit.dimension),
+        0.5 * (standard + low), 0.5 * (standard + high)};
+    std::erase_if(wishes, [&](double x) { return !std::isfinite(x) || x == standard || x <= low || x >= high; });
+    if (p.kind != ParameterKind::integer) return wishes;
+    wishes = {standard + 1.0, standard - 1.0};
+    std::erase_if(wishes, [&](double x) { return within(p, 1.0, x) != x; });
+    return wishes;
+  }
+
+  /// Choices take another word than their default, as far as the constructor takes it.
+  Plan with_other_words(Plan plan) {
+    for (const Parameter& p : table()) {
+      if (p.kind != ParameterKind::choice) continue;
+      const auto count = static_cast<int>(words_of(p).size());
+      const int standard = is_required(p) || is_optional(p) ? 0 : static_cast<int>(p.default_value);
+      for (int word = 0; word < count && !plan.words.contains(p.name); ++word) {
+        Plan next = plan;
+        next.words[p.name] = (standard + 1 + word) % count;
+        if (next.words[p.name] != standard && accepts(next)) plan = next;
+      }
+    }
+    return plan;
+  }
+
   void add_words(const Plan& plan) {
     for (const Parameter& p : table()) {
       if (is_law(p)) continue;
@@ -336,6 +393,7 @@ class Sampler {
   const Component& component_;
   const Registry& registry_;
   const Conditions& conditions_;
+  std::vector<const Component*> chain_;
   ParameterSamples found_;
 };
 

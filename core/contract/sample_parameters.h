@@ -27,6 +27,8 @@ ContactPair sample_contact_pair();
 /// Blocks that the constructor accepts: as few parameters as it needs, as many as it takes, each word of a choice, the
 /// ends of the ranges, and each law of the registry where a law is asked for. Numbers are of a size usual for their
 /// unit and stay within their bounds; optional ones are added one by one and in pairs until the constructor is content.
+/// With as many as possible, numbers that have a default take another value, and in one more block choices, too. A law
+/// may ask for a law, but never for itself, and the third within each other asks for none.
 ParameterSamples sample_parameters(const Component& component, const Registry& registry,
                                    const Conditions& conditions = {});
 

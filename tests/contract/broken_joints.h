@@ -24,6 +24,14 @@ enum class Flaw {
   twice_the_same_row,
   place_off_the_rows,
   place_off_the_coordinate,
+  place_stretches,
+  no_pin,
+  wrong_when_turned,
+  wrong_when_turning,
+  wrong_when_fast,
+  wrong_when_late,
+  wrong_when_far,
+  declares_in_turn,
   // forces
   no_reaction,
   no_moment,
@@ -63,6 +71,7 @@ class Tether final : public Joint {
   void declare(JointLayout& layout) const override {
     layout.coordinate = Coordinate::position;
     layout.constraint_rows = flaw_ == Flaw::negative_rows ? -2 : 2;
+    layout.pin = flaw_ == Flaw::no_pin ? 1 : 0;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
     const Vector2 d = xy(in.b->position) - xy(in.a->position), rate = xy(in.b->velocity) - xy(in.a->velocity);
@@ -121,6 +130,8 @@ class Swivel final : public Joint {
   void declare(JointLayout& layout) const override {
     layout.coordinate = Coordinate::angle;
     layout.constraint_rows = 2;
+    layout.pin = 1;
+    if (flaw_ == Flaw::declares_in_turn) layout.history = ++declared_ % 2;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
     const double *a = in.a->rotation, *b = in.b->rotation;
@@ -134,16 +145,28 @@ class Swivel final : public Joint {
       rows.jacobian[12 * i + i] = -1.0;
       rows.jacobian[12 * i + 6 + i] = 1.0;
     }
+    if (is_beyond(in)) rows.jacobian[0] = 0.0;
   }
   bool place(double angle, Pose& pose) const override {
     const double turned = flaw_ == Flaw::place_off_the_coordinate ? -angle : angle;
     const double c = std::cos(turned), s = std::sin(turned);
     pose = {{flaw_ == Flaw::place_off_the_rows ? 1e-6 : 0.0, 0.0, 0.0}, {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0}};
+    if (flaw_ == Flaw::place_stretches) pose.rotation[1] *= 2.0;
     return true;
   }
 
  private:
+  /// In a state that a narrow choice of states does not reach.
+  bool is_beyond(const JointInput& in) const {
+    if (flaw_ == Flaw::wrong_when_turned) return std::abs(in.coordinate) > 2.5;
+    if (flaw_ == Flaw::wrong_when_turning) return in.a->angular_velocity[2] > 5.0;
+    if (flaw_ == Flaw::wrong_when_fast) return std::abs(in.b->velocity[0]) > 2.5;
+    if (flaw_ == Flaw::wrong_when_late) return in.t > 10.0;
+    if (flaw_ == Flaw::wrong_when_far) return (xy(in.b->position) - xy(in.a->position)).norm() > 2.5;
+    return false;
+  }
   Flaw flaw_;
+  mutable int declared_ = 0;
 };
 
 /// A ball in a cage of radius c, in the plane; e = P_b - P_a, n = e/|e|, delta = |e| - c > 0:

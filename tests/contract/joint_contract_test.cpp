@@ -86,7 +86,48 @@ TEST(JointContract, FindsWrongRows) {
 }
 
 TEST(JointContract, FindsWrongPlaces) {
-  expect_found<Swivel>({{Flaw::place_off_the_rows, "place"}, {Flaw::place_off_the_coordinate, "place"}});
+  expect_found<Swivel>({{Flaw::place_off_the_rows, "place"},
+                        {Flaw::place_off_the_coordinate, "place"},
+                        {Flaw::place_stretches, "place"}});
+}
+
+TEST(JointContract, FindsFaultsFarFromTheOrdinary) {
+  for (const Flaw flaw : {Flaw::wrong_when_turned, Flaw::wrong_when_turning, Flaw::wrong_when_fast,
+                          Flaw::wrong_when_late, Flaw::wrong_when_far}) {
+    const Swivel joint(flaw);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Findings findings = check_joint({handle(joint), handle(joint), Space::planar, true}, {.seed = seed});
+      EXPECT_TRUE(findings.broken("jacobian")) << static_cast<int>(flaw) << " with seed " << seed;
+    }
+  }
+}
+
+TEST(JointContract, FindsAPinThatIsNone) { expect_found<Tether>({{Flaw::no_pin, "pin"}}); }
+
+TEST(JointContract, FindsADeclarationThatChanges) {
+  expect_found<Swivel>({{Flaw::declares_in_turn, "declares-sanely"}});
+}
+
+/// A force at a right angle to the speed of b, which does no work: F_b = c z x v_b.
+struct Powerless final : Joint {
+  void declare(JointLayout& layout) const override { layout.forces = 1; }
+  void apply(const JointInput& in, JointForces& out) const override {
+    const Vector2 v = xy(in.b->velocity) - xy(in.a->velocity), force(-20.0 * v[1], 20.0 * v[0]);
+    const Vector2 arm = xy(in.b->position) - xy(in.a->position);
+    for (int i = 0; i < 2; ++i) {
+      out.wrench_b[i] = force[i];
+      out.wrench_a[i] = -force[i];
+    }
+    out.wrench_a[5] = arm[1] * force[0] - arm[0] * force[1];
+  }
+};
+
+TEST(JointContract, DoesNotJudgeTheRoundingOfAForceWithoutPower) {
+  const Powerless joint;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Findings findings = check_joint({handle(joint), handle(joint), Space::planar, true}, {.seed = seed});
+    EXPECT_FALSE(findings.broken("energy-cycle")) << "seed " << seed << "\n" << broken_rules(findings);
+  }
 }
 
 TEST(JointContract, FindsWrongForces) {
