@@ -495,7 +495,7 @@ class RevoluteClearance final : public Joint {
     by(state.slip_speed, 1e-3);
     for (std::size_t i = 0; i < n; ++i) scatter(rows[i] + high[i] * slip, derivatives.data + (12 + i) * size);
     for (std::size_t k = 0; k < n; ++k) {
-      const double tangential = by(z[k], 1e-9);
+      const double tangential = by(z[k], 1e-6);
       const std::size_t column = 24 + k;
       for (std::size_t i = 0; i < 2; ++i) {
         derivatives[i * size + column] = -tangential * gap.t[static_cast<int>(i)];
