@@ -246,6 +246,32 @@ struct Buffer final : Joint {
   double stiffness, reach;
 };
 
+/// A spring that yields: force k (L - h) within +-limit on the line of the origins; h follows when a step is accepted.
+constexpr Parameter yielding_parameters[] = {
+    {.name = "stiffness", .unit = "N/m", .default_value = 1e5, .minimum = 0.0, .open = Open::minimum, .summary = "k."},
+    {.name = "limit", .unit = "N", .default_value = 10.0, .minimum = 0.0, .open = Open::minimum, .summary = "Yields."}};
+struct Yielding final : Joint {
+  explicit Yielding(const Parameters& p) : stiffness(p.number("stiffness")), limit(p.number("limit")) {}
+  void declare(JointLayout& layout) const override {
+    layout.forces = 1;
+    layout.history = 1;
+  }
+  void initialize(const JointInput& in, Span<double>, Span<double> history) const override {
+    history[0] = Gap(in).length;
+  }
+  void apply(const JointInput& in, JointForces& out) const override {
+    const Gap gap(in);
+    const double force = std::clamp(stiffness * (gap.length - in.history[0]), -limit, limit);
+    add_force(in, out, vector3(in.b->position), -force * gap.along);
+    out.potential = 0.5 * force * force / stiffness;
+  }
+  void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
+    const double length = Gap(in).length, most = limit / stiffness;
+    history[0] = std::clamp(history[0], length - most, length + most);
+  }
+  double stiffness, limit;
+};
+
 /// F = K delta^n with the damping of a restitution near 1; K is in N/m^n.
 constexpr Parameter power_parameters[] = {
     {.name = "stiffness", .unit = "N/m^exponent", .minimum = 0.0, .open = Open::minimum, .summary = "K."},
@@ -340,6 +366,7 @@ Status publish_honest(const Host* host, Manifest* manifest) noexcept {
       joint<Plates>(
           {.name = "rubbing-plates", .space = Space::planar, .summary = "Rubs.", .parameters = plates_parameters}),
       joint<Buffer>({.name = "end-buffer", .summary = "Has events.", .parameters = buffer_parameters}),
+      joint<Yielding>({.name = "yielding-spring", .summary = "Plastic.", .parameters = yielding_parameters}),
       contact_law<Power>({.name = "power-law", .summary = "Any exponent.", .parameters = power_parameters}),
       friction_law<Dahl>({.name = "dahl-bristle", .summary = "A bristle.", .parameters = dahl_parameters}),
       integrator<Theta<1>>({.name = "mean-of-ends", .summary = "Second order, with an estimate."}),
