@@ -41,7 +41,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 /// The template's names replaced by those of the new type.
 std::string renamed(const std::string& text, const std::string& name) {
-  return replaced(replaced(replaced(text, "my-type", name), "my_type", snake_case(name)), "MyType", camel_case(name) + "Type");
+  return replaced(replaced(replaced(text, "my-type", name), "my_type", snake_case(name)), "MyType",
+                  camel_case(name) + "Type");
 }
 
 }  // namespace
