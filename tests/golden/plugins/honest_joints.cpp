@@ -67,7 +67,7 @@ constexpr Parameter stop_parameters[] = {{.name = "gap", .unit = "m", .summary =
 constexpr Channel impacts[] = {{"impacts", "1"}};
 constexpr Event stop_events[] = {{"stop_begin", Crossing::rising, 1, {}}, {"stop_end", Crossing::falling, 1, {}}};
 
-/// A stop at x = gap that counts its impacts. Its event functions are numbers all the time.
+/// A stop at x = gap of the first frame that counts its impacts. Its event functions are numbers all the time.
 class HardStop final : public Joint {
  public:
   explicit HardStop(const Parameters& p) : gap_(p.number("gap")), stiffness_(p.number("stiffness")) {}
@@ -78,15 +78,16 @@ class HardStop final : public Joint {
     layout.channels = impacts;
   }
   void apply(const JointInput& in, JointForces& out) const override {
-    const double depth = std::max(0.0, beyond(in));
-    out.wrench_b[0] = -stiffness_ * depth;
-    out.wrench_a[0] = stiffness_ * depth;
-    out.wrench_a[5] = -(in.b->position[1] - in.a->position[1]) * stiffness_ * depth;
-    out.potential = 0.5 * stiffness_ * depth * depth;
+    const Relative r(in);
+    const double depth = std::max(0.0, r.x - gap_), force = stiffness_ * depth;
+    for (std::size_t i = 0; i < 2; ++i) out.wrench_a[i] = force * r.h[i], out.wrench_b[i] = -force * r.h[i];
+    out.wrench_a[5] = -r.y * force;  // the reaction acts where b is
+    out.potential = 0.5 * force * depth;
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
-    g[0] = g[1] = beyond(in);
-    rate[0] = rate[1] = in.b->velocity[0] - in.a->velocity[0];
+    const Relative r(in);
+    g[0] = g[1] = r.x - gap_;
+    rate[0] = rate[1] = r.dx;
   }
   void on_event(int index, const JointInput&, Span<double>, Span<double> history, Span<double>) const override {
     if (index == 0) history[0] += 1.0;
@@ -96,7 +97,6 @@ class HardStop final : public Joint {
   }
 
  private:
-  double beyond(const JointInput& in) const { return in.b->position[0] - in.a->position[0] - gap_; }
   double gap_, stiffness_;
 };
 
