@@ -44,7 +44,7 @@ std::string test_name(const testing::TestParamInfo<const Component*>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Every, HonestComponent, testing::ValuesIn(honest()), test_name);
 
-TEST(Rules, EveryRuleThatIsExaminedIsExplained) {
+TEST(RulesLong, EveryRuleThatIsExaminedIsExplained) {
   for (const RegisteredComponent& entry : registry().components()) {
     const Component& component = *entry.component;
     const Findings findings = check_component(component, registry(), {.allocations = &allocations});
