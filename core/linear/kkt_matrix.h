@@ -1,4 +1,4 @@
-// KktMatrix: a square matrix with a fixed pattern, filled in place and factored again and again.
+// KktMatrix: a square sparse matrix with a fixed pattern, filled in place and factored again and again.
 #pragma once
 
 #include <memory>
@@ -12,22 +12,29 @@ struct MatrixEntry {
   int row, column;
 };
 
-/// The pattern is given once; then values are added at the slots that set_pattern() returned, and factor() and solve()
-/// follow. Nothing allocates after set_pattern().
+/// LU of a sparse matrix by KLU (Davis and Palamadai Natarajan 2010, ACM TOMS 37, algorithm 907): block triangular
+/// form, so that unknowns that are decided one after the other cost no more than a substitution; order and pivots found
+/// once and kept while they are good.
 class KktMatrix {
  public:
-  virtual ~KktMatrix() = default;
+  KktMatrix();
+  KktMatrix(KktMatrix&&) noexcept;
+  KktMatrix& operator=(KktMatrix&&) noexcept;
+  ~KktMatrix();
 
-  /// Returns for every entry the index into values() where it lives; entries at one place share a slot.
-  virtual std::vector<int> set_pattern(int size, std::span<const MatrixEntry> entries) = 0;
-  virtual std::span<double> values() = 0;
-  /// Factors values(); returns the smallest pivot over the largest, 0 for a singular matrix.
-  virtual double factor() = 0;
+  /// Returns for every entry the index into values() where it lives; entries at one place share a slot. Values are
+  /// zero and order and pivots forgotten.
+  std::vector<int> set_pattern(int size, std::span<const MatrixEntry> entries);
+  std::span<double> values();
+  /// Factors values(); returns the smallest pivot over the largest, 0 for a singular matrix. Allocates only where the
+  /// pivots are chosen anew: the first time, and where those of the last time have become bad.
+  double factor();
   /// x with A x = b for the last factored A; `x` and `b` have size numbers and may not overlap.
-  virtual void solve(std::span<const double> b, std::span<double> x) const = 0;
-};
+  void solve(std::span<const double> b, std::span<double> x) const;
 
-/// LU with partial pivoting of a dense matrix.
-std::unique_ptr<KktMatrix> make_dense_kkt();
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace freeplay

@@ -12,6 +12,7 @@ constexpr double singular_pivot = 1e-13;     // smallest pivot over the largest
 constexpr double slow_contraction = 0.1;     // a stale factor that contracts less is renewed
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr int refinement_limit = 30;
+constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -59,38 +60,10 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              },
              0},
       e_(system),
-      rows_(system.layout().nc(), system.layout().nv()) {
+      rows_(system.layout().nc(), system.layout().nv()),
+      index_one_{.matrix = StageMatrix(system, false)} {
   const int nv = system.layout().nv(), nc = system.layout().nc();
-  const auto body_entries = [&](BodyId row_body, BodyId column_body) {
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        const bool inside = row_body != ground && column_body != ground;
-        // Places on ground are pointed at the first diagonal entry and never written.
-        entries_.push_back(inside ? MatrixEntry{3 * row_body + r, 3 * column_body + c} : MatrixEntry{0, 0});
-      }
-    }
-  };
-  for (int i = 0; i < nv; ++i) entries_.push_back({i, i});
-  for (int i = 0; i < nc; ++i) entries_.push_back({nv + i, nv + i});
-  for (const ForceBlock& block : system.force_blocks()) {
-    const BodyId bodies[2] = {block.a, block.b};
-    for (const BodyId row : bodies) {
-      for (const BodyId column : bodies) body_entries(row, column);
-    }
-  }
-  for (const JacobianBlock& block : system.jacobian_blocks()) {
-    for (int r = 0; r < block.rows; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        entries_.push_back({nv + block.row + r, 3 * block.body + c});
-        entries_.push_back({3 * block.body + c, nv + block.row + r});
-      }
-    }
-  }
-  for (Factor& factor : factors_) {
-    factor.matrix = make_dense_kkt();
-    factor.slots = factor.matrix->set_pattern(nv + nc, entries_);
-    factor.internal = std::make_unique<InternalElimination>(system);
-  }
+  for (int i = 0; i < kept_factors; ++i) factors_.push_back({.matrix = StageMatrix(system, true)});
   for (int i = 0; i < nv; ++i) unit_.push_back(i % 3 == 2 ? 1.0 : system.size());
   dense_.resize(at(nc) * at(nv));
   right_.resize(at(nv + nc));
@@ -109,7 +82,8 @@ NewtonStageSolver::Factor& NewtonStageSolver::factor_for(double beta_q, double b
   Factor* oldest = &factors_[0];
   for (Factor& factor : factors_) {
     // A factor only preconditions the iteration: betas that differ by rounding may share it.
-    if (std::abs(factor.beta_q - beta_q) <= 1e-6 * beta_q && std::abs(factor.beta_v - beta_v) <= 1e-6 * beta_v) {
+    if (factor.used >= 0 && std::abs(factor.beta_q - beta_q) <= 1e-6 * beta_q &&
+        std::abs(factor.beta_v - beta_v) <= 1e-6 * beta_v) {
       factor.used = clock_;
       return factor;
     }
@@ -129,53 +103,6 @@ bool NewtonStageSolver::evaluate(const StateView& s, unsigned terms) {
   return false;
 }
 
-void NewtonStageSolver::assemble(Factor& factor) {
-  const std::span<double> values = factor.matrix->values();
-  const int* slot = factor.slots.data();
-  std::ranges::fill(values, 0.0);
-  for (const double mass : system_.mass()) values[at(*slot++)] += mass;
-  for (const char dependent : dependent_) values[at(*slot++)] += dependent ? 1.0 : 0.0;
-  const bool forces = factor.beta_q > 0.0 || factor.beta_v > 0.0;
-  if (forces && !factor.internal->empty()) {
-    factor.internal->prepare(e_, factor.beta_q, factor.beta_v, factor.beta_z);
-    factor.internal->add_to_matrix([&](std::size_t block, int r, int c, double value) {
-      const BodyId row = r < 3 ? system_.force_blocks()[block].a : system_.force_blocks()[block].b;
-      const BodyId column = c < 3 ? system_.force_blocks()[block].a : system_.force_blocks()[block].b;
-      // Slots of a force block: four 3 x 3 pieces, row body by column body.
-      const int piece = 9 * (2 * (r / 3) + c / 3) + 3 * (r % 3) + c % 3;
-      if (row != ground && column != ground) values[at(slot[36 * block + at(piece)])] += value;
-    });
-  }
-  for (std::size_t f = 0; f < system_.force_blocks().size(); ++f) {
-    const ForceBlock& block = system_.force_blocks()[f];
-    const BodyId bodies[2] = {block.a, block.b};
-    for (int i = 0; i < 2; ++i) {
-      for (int k = 0; k < 2; ++k) {
-        if (!forces || bodies[i] == ground || bodies[k] == ground) {
-          slot += 9;
-          continue;
-        }
-        for (int r = 0; r < 3; ++r) {
-          for (int c = 0; c < 3; ++c) {
-            const std::size_t entry = 36 * f + at((3 * i + r) * 6 + 3 * k + c);
-            values[at(*slot++)] -= factor.beta_v * e_.force_v[entry] + factor.beta_q * e_.force_q[entry];
-          }
-        }
-      }
-    }
-  }
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
-    for (int r = 0; r < block.rows; ++r) {
-      const bool dependent = dependent_[at(block.row + r)] != 0;
-      for (int c = 0; c < 3; ++c) {
-        const double entry = dependent ? 0.0 : e_.jacobian[at(block.offset + 3 * r + c)];
-        values[at(*slot++)] += entry;
-        values[at(*slot++)] += entry;
-      }
-    }
-  }
-}
-
 bool NewtonStageSolver::find_dependent_rows() {
   system_.dense_jacobian(e_, dense_);
   rows_.analyse(dense_);
@@ -184,28 +111,28 @@ bool NewtonStageSolver::find_dependent_rows() {
   std::ranges::copy(rows_.dependent(), dependent_.begin());
   any_dependent_ = rows_.rank() < system_.layout().nc();
   if (!same) {
-    for (Factor& factor : factors_) factor.valid = false;
+    for (Factor& factor : factors_) factor.valid = factor.has_pattern = false;
+    index_one_.valid = index_one_.has_pattern = false;
   }
   return !same;
 }
 
+double NewtonStageSolver::factor_once(Factor& factor) {
+  if (!factor.has_pattern) factor.matrix.set_pattern(dependent_);
+  factor.has_pattern = true;
+  ++factorizations_;
+  return factor.matrix.factor(e_, factor.beta_q, factor.beta_v, factor.beta_z);
+}
+
 bool NewtonStageSolver::refactor(Factor& factor) {
   if (!rank_known_) find_dependent_rows();
-  assemble(factor);
-  ++factorizations_;
-  double pivot = factor.matrix->factor();
-  if (!(pivot > singular_pivot) && find_dependent_rows()) {
-    // The rank has changed along the motion: the rows that say nothing new are left out.
-    assemble(factor);
-    ++factorizations_;
-    pivot = factor.matrix->factor();
-  }
+  double pivot = factor_once(factor);
+  // The rank may have changed along the motion: rows that say nothing new are then left out.
+  if (!(pivot > singular_pivot) && find_dependent_rows()) pivot = factor_once(factor);
   factor.valid = pivot > 0.0 && std::isfinite(pivot);
   if (!factor.valid) trouble_ = "the equations of motion are singular";
   return factor.valid;
 }
-
-void NewtonStageSolver::solve_with(const Factor& factor) { factor.matrix->solve(right_, update_); }
 
 double NewtonStageSolver::norm(std::span<const double> increment) const {
   double largest = 0.0;
@@ -261,15 +188,15 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     for (std::size_t r = 0; r < at(nc); ++r) {
       if (dependent_[r]) right_[at(nv) + r] = 0.0;
     }
-    if (!factor.internal->empty()) {
-      factor.internal->add_to_right(e_.internal_rate, z_rate_, std::span(right_).first(at(nv)));
+    if (!factor.matrix.internal().empty()) {
+      factor.matrix.internal().add_to_right(e_.internal_rate, z_rate_, std::span(right_).first(at(nv)));
     }
-    solve_with(factor);
+    factor.matrix.solve(right_, update_);
     for (std::size_t i = 0; i < at(nv); ++i) out.a[i] += update_[i];
     for (std::size_t r = 0; r < at(nc); ++r) out.lambda[r] += update_[at(nv) + r];
     bool internal_settled = true;
-    if (!factor.internal->empty()) {
-      internal_settled = factor.internal->advance(std::span(update_).first(at(nv)), stage.beta_z, out.z, z_rate_) <=
+    if (!factor.matrix.internal().empty()) {
+      internal_settled = factor.matrix.internal().advance(std::span(update_).first(at(nv)), stage.beta_z, out.z, z_rate_) <=
                          internal_tolerance;
     }
 
@@ -324,7 +251,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
 
 bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
   const std::size_t nv = x_a.size(), nc = x_c.size();
-  Factor& factor = factor_for(0.0, 0.0);
+  Factor& factor = index_one_;
   bool fresh = false;
   if (!factor.valid) {
     if (!refactor(factor)) return false;
@@ -337,7 +264,7 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
     system_.multiply(e_, x_a, std::span(work_).first(nc));
     for (std::size_t i = 0; i < nv; ++i) right_[i] = right_a_[i] - system_.mass()[i] * x_a[i] - right_[i];
     for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : right_c_[r] - work_[r];
-    solve_with(factor);
+    factor.matrix.solve(right_, update_);
     for (std::size_t i = 0; i < nv; ++i) x_a[i] += update_[i];
     for (std::size_t r = 0; r < nc; ++r) x_c[r] += update_[nv + r];
     double change = norm(std::span(update_).first(nv)) / std::max({norm(x_a), scale, smallest});

@@ -9,16 +9,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "freeplay/integrator.h"
-#include "linear/kkt_matrix.h"
 #include "linear/row_rank.h"
 #include "run/energy_account.h"
-#include "run/internal_elimination.h"
+#include "run/stage_matrix.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -71,22 +69,18 @@ class NewtonStageSolver {
 
  private:
   struct Factor {
-    double beta_q = -1.0, beta_v = -1.0;
+    StageMatrix matrix;
+    double beta_q = 0.0, beta_v = 0.0, beta_z = 0.0;
     long used = -1;
-    bool valid = false;
-    double beta_z = 0.0;
-    std::unique_ptr<KktMatrix> matrix;
-    std::vector<int> slots;
-    std::unique_ptr<InternalElimination> internal;
+    bool valid = false, has_pattern = false;
   };
 
   Factor& factor_for(double beta_q, double beta_v);
   bool evaluate(const StateView& at, unsigned terms);
-  /// Assembles and factors at the present evaluation (which must hold Phi_q and, for betas > 0, derivatives).
+  /// Factors at the present evaluation (which must hold Phi_q and, for betas above zero, derivatives).
   bool refactor(Factor& factor);
-  void assemble(Factor& factor);
+  double factor_once(Factor& factor);
   bool find_dependent_rows();
-  void solve_with(const Factor& factor);
   double norm(std::span<const double> increment) const;
   /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
   /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
@@ -98,8 +92,8 @@ class NewtonStageSolver {
   Evaluation e_;
   RowRank rows_;
   std::span<const double> h_;
-  std::array<Factor, 4> factors_;
-  std::vector<MatrixEntry> entries_;
+  Factor index_one_;
+  std::vector<Factor> factors_;  // of stages, one for each pair of betas
   std::vector<double> unit_, dense_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, multipliers_;
   std::vector<char> dependent_;
   bool any_dependent_ = false, rank_known_ = false;

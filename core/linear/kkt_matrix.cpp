@@ -1,0 +1,96 @@
+#include "linear/kkt_matrix.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <klu.h>
+
+namespace freeplay {
+namespace {
+
+constexpr double smallest_growth = 1e-6;  // of pivots that are used again: digits that may be lost
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+struct KktMatrix::Impl {
+  int size = 0;
+  std::vector<int> starts, rows;  // columns one after the other
+  std::vector<double> values;
+  klu_common common;
+  klu_symbolic* symbolic = nullptr;
+  klu_numeric* numeric = nullptr;
+
+  Impl() { klu_defaults(&common); }
+  ~Impl() { forget(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void forget() {
+    klu_free_numeric(&numeric, &common);
+    klu_free_symbolic(&symbolic, &common);
+  }
+
+  bool reuse_pivots() {
+    return numeric != nullptr &&
+           klu_refactor(starts.data(), rows.data(), values.data(), symbolic, numeric, &common) != 0 &&
+           common.status == KLU_OK &&
+           klu_rgrowth(starts.data(), rows.data(), values.data(), symbolic, numeric, &common) != 0 &&
+           common.rgrowth > smallest_growth;
+  }
+
+  bool choose_pivots() {
+    klu_free_numeric(&numeric, &common);
+    numeric = klu_factor(starts.data(), rows.data(), values.data(), symbolic, &common);
+    if (numeric != nullptr && common.status == KLU_OK) return true;
+    klu_free_numeric(&numeric, &common);
+    return false;
+  }
+};
+
+KktMatrix::KktMatrix() : impl_(std::make_unique<Impl>()) {}
+KktMatrix::KktMatrix(KktMatrix&&) noexcept = default;
+KktMatrix& KktMatrix::operator=(KktMatrix&&) noexcept = default;
+KktMatrix::~KktMatrix() = default;
+
+std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> entries) {
+  Impl& m = *impl_;
+  m.forget();
+  m.size = size;
+  std::vector<int> order(entries.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto place = [&](int i) { return std::pair(entries[at(i)].column, entries[at(i)].row); };
+  std::ranges::sort(order, [&](int a, int b) { return place(a) < place(b); });
+  std::vector<int> slots(entries.size());
+  m.rows.clear();
+  m.starts.assign(at(size) + 1, 0);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto [column, row] = place(order[i]);
+    if (i == 0 || place(order[i - 1]) != std::pair(column, row)) {
+      m.rows.push_back(row);
+      ++m.starts[at(column) + 1];
+    }
+    slots[at(order[i])] = static_cast<int>(m.rows.size()) - 1;
+  }
+  std::partial_sum(m.starts.begin(), m.starts.end(), m.starts.begin());
+  m.values.assign(m.rows.size(), 0.0);
+  if (size > 0) m.symbolic = klu_analyze(size, m.starts.data(), m.rows.data(), &m.common);
+  return slots;
+}
+
+std::span<double> KktMatrix::values() { return impl_->values; }
+
+double KktMatrix::factor() {
+  Impl& m = *impl_;
+  if (m.size == 0) return 1.0;
+  if (m.symbolic == nullptr || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
+  return klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
+}
+
+void KktMatrix::solve(std::span<const double> b, std::span<double> x) const {
+  Impl& m = *impl_;
+  std::ranges::copy(b, x.begin());
+  if (m.size > 0) klu_solve(m.symbolic, m.numeric, m.size, 1, x.data(), &m.common);
+}
+
+}  // namespace freeplay
