@@ -16,7 +16,8 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 struct KktMatrix::Impl {
   int size = 0;
   std::vector<int> starts, rows;  // columns one after the other
-  std::vector<double> values;
+  std::vector<double> values, factored;
+  double pivots = 0.0;  // smallest over largest of `factored`
   klu_common common;
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
@@ -74,6 +75,7 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
   }
   std::partial_sum(m.starts.begin(), m.starts.end(), m.starts.begin());
   m.values.assign(m.rows.size(), 0.0);
+  m.factored.assign(m.rows.size(), 0.0);
   if (size > 0) m.symbolic = klu_analyze(size, m.starts.data(), m.rows.data(), &m.common);
   return slots;
 }
@@ -83,8 +85,12 @@ std::span<double> KktMatrix::values() { return impl_->values; }
 double KktMatrix::factor() {
   Impl& m = *impl_;
   if (m.size == 0) return 1.0;
+  // What does not change, as the masses of bodies without rows, costs a look.
+  if (m.numeric != nullptr && m.values == m.factored) return m.pivots;
   if (m.symbolic == nullptr || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
-  return klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
+  std::ranges::copy(m.values, m.factored.begin());
+  m.pivots = klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
+  return m.pivots;
 }
 
 void KktMatrix::solve(std::span<const double> b, std::span<double> x) const {

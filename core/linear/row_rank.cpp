@@ -3,22 +3,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/sparse_rows.h"
+
 namespace freeplay {
 
 RowRank::RowRank(int rows, int columns)
     : rows_(rows),
       columns_(columns),
-      transposed_(Eigen::MatrixXd::Zero(columns, rows)),
-      null_space_(Eigen::MatrixXd::Zero(rows, rows)),
-      qr_(columns, rows),
       dependent_(static_cast<std::size_t>(rows), 0),
-      done_(static_cast<std::size_t>(rows), 0) {}
+      done_(static_cast<std::size_t>(rows), 0) {
+  if (is_large()) return;
+  transposed_ = Eigen::MatrixXd::Zero(columns, rows);
+  null_space_ = Eigen::MatrixXd::Zero(rows, rows);
+  qr_ = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns, rows);
+}
 
-int RowRank::analyse(std::span<const double> jacobian) {
+int RowRank::analyse(const std::vector<SparseEntry>& jacobian) {
   std::ranges::fill(dependent_, char{0});
   rank_ = 0;
   if (rows_ == 0) return 0;
-  transposed_ = Eigen::Map<const Eigen::MatrixXd>(jacobian.data(), columns_, rows_);
+  if (is_large()) {
+    sparse_ = sparse_matrix(rows_, columns_, jacobian);
+    const SparseRows decomposed(sparse_, tolerance);
+    std::ranges::copy(decomposed.dependent(), dependent_.begin());
+    return rank_ = decomposed.rank();
+  }
+  transposed_.setZero();
+  for (const SparseEntry& entry : jacobian) transposed_(entry.col(), entry.row()) += entry.value();
   qr_.compute(transposed_);
   const auto diagonal = qr_.matrixR().diagonal();
   const double largest = diagonal.size() > 0 ? std::abs(diagonal[0]) : 0.0;
@@ -39,6 +50,7 @@ int RowRank::analyse(std::span<const double> jacobian) {
 void RowRank::least_norm(std::span<double> lambda, int first_driver) {
   const int free = rows_ - rank_;
   if (free == 0) return;
+  if (is_large()) return least_norm_multipliers(sparse_, first_driver, tolerance, lambda);
   const auto& order = qr_.colsPermutation().indices();
   // Gram-Schmidt in two passes: the first in the driver rows alone; what has no part there is left to the second.
   const auto within = [&](int row, bool drivers) { return (row >= first_driver) == drivers; };

@@ -6,10 +6,12 @@
 
 #include <Eigen/QR>
 
+#include "linear/sparse_matrix.h"
+
 namespace freeplay {
 
 /// Rank-revealing decomposition of J^T (column-pivoted QR), J being nc x nv with columns in m and rad.
-/// Sized once; analyse() and shift() do not allocate.
+/// Sized once; analyse() and least_norm() do not allocate up to most_dense_columns. Beyond, both are sparse.
 class RowRank {
  public:
   RowRank(int rows, int columns);
@@ -18,8 +20,8 @@ class RowRank {
   /// pivot).
   static constexpr double tolerance = 1e-10;
 
-  /// Decomposes J given by rows (row-major nc x nv). Returns the rank.
-  int analyse(std::span<const double> jacobian);
+  /// Decomposes J. Returns the rank.
+  int analyse(const std::vector<SparseEntry>& jacobian);
   int rank() const { return rank_; }
   /// Nonzero for rows that the others determine. Valid after analyse().
   std::span<const char> dependent() const { return dependent_; }
@@ -29,7 +31,10 @@ class RowRank {
   void least_norm(std::span<double> lambda, int first_driver);
 
  private:
+  bool is_large() const { return columns_ > most_dense_columns; }
+
   int rows_, columns_, rank_ = 0;
+  SparseMatrix sparse_;  // J, where it is large
   Eigen::MatrixXd transposed_, null_space_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
   std::vector<char> dependent_, done_;

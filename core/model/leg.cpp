@@ -85,23 +85,48 @@ std::optional<Leg> closed_form_leg(const Model& model, int driver) {
   return leg;
 }
 
-LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
+namespace {
+
+// C relative to A.
+struct Reach {
+  Jet x, y;
+};
+
+Reach reach_of(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
   const auto constant = [](double value) { return Jet::constant(value); };
   const Jet c = cos(angle), s = sin(angle);
-  const Jet p = x + c * constant(leg.cx) - s * constant(leg.cy) - constant(leg.ax);
-  const Jet q = y + s * constant(leg.cx) + c * constant(leg.cy) - constant(leg.ay);
-  const Jet squared = p * p + q * q;
-  const Jet w1 = constant(2.0 * leg.crank) * p, w2 = constant(2.0 * leg.crank) * q;
+  return {x + c * constant(leg.cx) - s * constant(leg.cy) - constant(leg.ax),
+          y + s * constant(leg.cx) + c * constant(leg.cy) - constant(leg.ay)};
+}
+
+CrankPose solve_crank(const Leg& leg, const Reach& reach) {
+  const auto constant = [](double value) { return Jet::constant(value); };
+  const Jet squared = reach.x * reach.x + reach.y * reach.y;
+  const Jet w1 = constant(2.0 * leg.crank) * reach.x, w2 = constant(2.0 * leg.crank) * reach.y;
   const Jet w3 = squared + constant(leg.crank * leg.crank - leg.coupler * leg.coupler);
   const Jet room = w1 * w1 + w2 * w2 - w3 * w3;
-  LegPose pose;
+  CrankPose pose;
   pose.distance = std::sqrt(squared.value);
   pose.reachable = room.value > 0.0;
   if (!pose.reachable) return pose;
   const Jet direction = atan2(w2, w1) + constant(leg.elbow) * atan2(sqrt(room), w3);
-  const Jet bx = p - constant(leg.crank) * cos(direction), by = q - constant(leg.crank) * sin(direction);
   pose.crank = direction - constant(leg.crank_direction);
-  pose.coupler = atan2(by, bx) - constant(leg.coupler_direction);
+  return pose;
+}
+
+}  // namespace
+
+CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
+  return solve_crank(leg, reach_of(leg, x, y, angle));
+}
+
+LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
+  const Reach reach = reach_of(leg, x, y, angle);
+  LegPose pose{solve_crank(leg, reach), {}};
+  if (!pose.reachable) return pose;
+  const Jet direction = pose.crank + Jet::constant(leg.crank_direction), length = Jet::constant(leg.crank);
+  pose.coupler = atan2(reach.y - length * sin(direction), reach.x - length * cos(direction)) -
+                 Jet::constant(leg.coupler_direction);
   return pose;
 }
 

@@ -33,14 +33,20 @@ std::optional<Leg> find_leg(const Model& model, int driven, int frame);
 /// The leg of a driver by inverse kinematics whose path gives x, y and angle; nothing for other drivers.
 std::optional<Leg> closed_form_leg(const Model& model, int driver);
 
-/// Angles of the bodies of a leg [rad], principal values, with derivatives.
-struct LegPose {
-  Jet crank, coupler;
+/// Angle of the crank's body [rad], principal value, with derivatives.
+struct CrankPose {
+  Jet crank;
   bool reachable = true;
   double distance = 0.0;  ///< of A and C [m]
 };
 
+/// The same with the angle of the coupler's body.
+struct LegPose : CrankPose {
+  Jet coupler;
+};
+
 /// `x`, `y` [m] and `angle` [rad]: position of the path's frame and angle of the platform's body.
+CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
 LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
 
 }  // namespace freeplay

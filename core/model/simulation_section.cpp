@@ -10,6 +10,7 @@ namespace {
 // Below, rounding decides; above, the error says nothing.
 constexpr Range tolerances{.minimum = 1e-14, .maximum = 0.1};
 constexpr Range contact_steps{.minimum = 2.0, .maximum = 1e6};
+constexpr double steps_of_accurate_contact = 5.0;  // at least; the error asks for more where they are needed
 
 /// Reads the section into the draft's settings.
 class SimulationSection {
@@ -107,6 +108,7 @@ class SimulationSection {
       settings_.step = 1e-5 * span;
       settings_.smallest_step = 1e-14 * span;
       settings_.largest_step = 1e-2 * span;
+      settings_.per_contact = steps_of_accurate_contact;
     } else {
       if (draft_.options.step) settings_.step = *draft_.options.step;
       if (!smallest_) settings_.smallest_step = 1e-3 * settings_.step;

@@ -81,7 +81,9 @@ bool Simulation::Impl::adaptive_step() {
       return fail(4, converged ? why_so_small(dt, -1) : why_not_converged(dt));
     }
     if (last) trial.t() = settings.end;
-    if (!system.evaluate(point(trial), all_terms, e_trial)) return fail_with(e_trial.fault, trial.t());
+    if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
+      return fail_with(e_trial.fault, trial.t());
+    }
     bool done = false;
     if (!pursue(hunted, dt, tries, done)) return false;
     if (done) break;
@@ -153,18 +155,16 @@ bool Simulation::Impl::look_inside(double t) {
     if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), t);
     return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
   }
-  if (!system.evaluate(point(between), all_terms, e_between)) return fail_with(e_between.fault, t);
+  if (!system.evaluate(point(between), all_terms, solver.evaluation(), e_between)) return fail_with(e_between.fault, t);
   return true;
 }
 
 bool Simulation::Impl::write_row_at(double t) {
-  if (!look_inside(0.5 * (accepted.t() + t))) return false;
-  energy.flow(e_between, between.lambda(), flow_half_way);
   if (!look_inside(t)) return false;
   Fault fault;
   if (!observer.observe(point(between), e_between, between.lambda(), row_between, fault)) return fail_with(fault, t);
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
-  energy.fill_inside(s, flow_half_way, e_between, between.lambda(), channels, row_between);
+  energy.fill_inside(s, e_between, between.lambda(), channels, row_between);
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row_between);
   return true;

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "linear/dense_solve.h"
+#include "linear/row_solutions.h"
 #include "run/newton_stage_solver.h"
 #include "run/placing.h"
 #include "system/path_follower.h"
@@ -15,9 +15,7 @@
 namespace freeplay {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -163,7 +161,7 @@ class Assembler {
   }
 
   struct Rows {
-    MatrixXd matrix;
+    SparseMatrix matrix;
     VectorXd residual;
     std::vector<int> row;   // of the closed system, -1 for a leading joint or a path
     std::vector<int> lead;  // joint that leads, -1
@@ -188,8 +186,6 @@ class Assembler {
   Rows rows(bool speeds) {
     evaluate(term_position | term_velocity);
     const int nc = closed_.layout().nc(), nv = closed_.layout().nv();
-    RowMajor jacobian(nc, nv);
-    closed_.dense_jacobian(e_, {jacobian.data(), at(nc * nv)});
     VectorXd flow(nc);
     closed_.multiply(e_, state_.v(), {flow.data(), at(nc)});
     Rows out;
@@ -204,34 +200,39 @@ class Assembler {
     for (const int j : leads) out.add(-1, j, -1);
     for (std::size_t p = 0; p < paths_.size(); ++p) out.add(-1, -1, static_cast<int>(p));
     const auto count = static_cast<Eigen::Index>(out.row.size());
-    out.matrix = MatrixXd::Zero(count, nv);
+    std::vector<SparseEntry> system_entries, entries;
+    closed_.jacobian_entries(e_, system_entries);
+    std::vector<int> place(at(nc), -1);
     out.residual = VectorXd::Zero(count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const int r = out.row[static_cast<std::size_t>(i)], j = out.lead[static_cast<std::size_t>(i)];
       if (r >= 0) {
-        out.matrix.row(i) = jacobian.row(r);
+        place[at(r)] = static_cast<int>(i);
         out.residual[i] = speeds ? flow[r] - e_.nu[at(r)] : e_.phi[at(r)];
         continue;
       }
       if (const int p = out.path[static_cast<std::size_t>(i)]; p >= 0) {
         const PathRow& path = paths_[at(p)];
-        double entries[3];
-        path.entries(e_, entries);
-        for (int c = 0; c < 3 && path.body != ground; ++c) out.matrix(i, 3 * path.body + c) = entries[c];
+        double row[3];
+        path.entries(e_, row);
+        for (int c = 0; c < 3 && path.body != ground; ++c) entries.emplace_back(i, 3 * path.body + c, row[c]);
         out.residual[i] = path.residual(closed_, point(state_), e_, path_value(path));
         continue;
       }
-      CoordinateRow marker_row;
       double row[6], bias = 0.0;
-      if (!closed_.coordinate_row(j, point(state_), e_, marker_row, row, bias)) throw_fault(model_, e_.fault);
+      closed_.coordinate_row(j, e_, row, bias);
       const JointElement& joint = model_.joints[at(j)];
       const int bodies[2] = {model_.markers[at(joint.marker_a)].body, model_.markers[at(joint.marker_b)].body};
       for (int k = 0; k < 2; ++k) {
-        for (int c = 0; c < 3 && bodies[k] != ground; ++c) out.matrix(i, 3 * bodies[k] + c) = row[3 * k + c];
+        for (int c = 0; c < 3 && bodies[k] != ground; ++c) entries.emplace_back(i, 3 * bodies[k] + c, row[3 * k + c]);
       }
       out.residual[i] =
           speeds ? e_.coordinate_rate[at(j)] - *joint.start_speed : e_.coordinate[at(j)] - *joint.start_coordinate;
     }
+    for (const SparseEntry& entry : system_entries) {
+      if (const int i = place[at(entry.row())]; i >= 0) entries.emplace_back(i, entry.col(), entry.value());
+    }
+    out.matrix = sparse_matrix(count, nv, entries);
     return out;
   }
 
@@ -367,26 +368,23 @@ class Assembler {
     const int nv = closed_.layout().nv();
     for (const InverseKinematics& entry : model_.kinematics) {
       evaluate(term_position | term_velocity);
-      const int nc = closed_.layout().nc();
-      RowMajor jacobian(nc, nv);
-      closed_.dense_jacobian(e_, {jacobian.data(), at(nc * nv)});
-      std::vector<int> kept;
-      for (int r = 0; r < nc; ++r) kept.push_back(r);
+      std::vector<SparseEntry> entries;
+      closed_.jacobian_entries(e_, entries);
       for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
-        std::erase(kept, closed_.layout().driver_row(d));
+        const int driven = closed_.layout().driver_row(d);
+        std::erase_if(entries, [&](const SparseEntry& e) { return e.row() == driven; });
       }
+      const int nc = closed_.layout().nc();
+      const SparseMatrix without = sparse_matrix(nc, nv, entries);
       const BodyId body = model_.markers[at(entry.marker)].body;
-      MatrixXd without(static_cast<Eigen::Index>(kept.size()), nv);
-      for (std::size_t i = 0; i < kept.size(); ++i) without.row(static_cast<Eigen::Index>(i)) = jacobian.row(kept[i]);
       const std::vector<PathRow> paths = path_rows(model_, static_cast<int>(&entry - model_.kinematics.data()));
       const int given = static_cast<int>(paths.size());
-      MatrixXd with = MatrixXd::Zero(without.rows() + given, nv);
-      with.topRows(without.rows()) = without;
       for (int i = 0; i < given && body != ground; ++i) {
         double row[3];
         paths[at(i)].entries(e_, row);
-        for (int c = 0; c < 3; ++c) with(without.rows() + i, 3 * body + c) = row[c];
+        for (int c = 0; c < 3; ++c) entries.emplace_back(nc + i, 3 * body + c, row[c]);
       }
+      const SparseMatrix with = sparse_matrix(nc + given, nv, entries);
       const int free = numerical_rank(without), prescribed = numerical_rank(with);
       if (prescribed < nv) {
         throw Error(Error::Category::input, "ik-underdetermined",
@@ -422,14 +420,8 @@ class Assembler {
     for (int pass = 0; pass < 3; ++pass) {
       const Rows now = rows(true);
       if (now.row.empty()) return;
-      VectorXd change = least_norm_solution(now.matrix, -now.residual);
-      if (pass == 0) {
-        const MatrixXd n = null_space(now.matrix, nv);
-        const MatrixXd reduced = n.transpose() * mass.asDiagonal() * n;
-        if (n.cols() > 0) {
-          change -= n * least_norm_solution(reduced, n.transpose() * mass.cwiseProduct(change));
-        }
-      }
+      const VectorXd change = pass == 0 ? least_weighted_solution(now.matrix, mass, -now.residual)
+                                        : least_norm_solution(now.matrix, -now.residual);
       for (int i = 0; i < nv; ++i) state_.v()[at(i)] += change[i];
     }
     const Rows last = rows(true);
@@ -523,16 +515,12 @@ class Assembler {
     if (!system_.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
     const int nc = system_.layout().nc(), nv = system_.layout().nv();
     const Eigen::Map<const VectorXd> mass(system_.mass().data(), nv);
-    if (mass.minCoeff() > 0.0) return;  // every motion carries mass
-    RowMajor jacobian(nc, nv);
-    system_.dense_jacobian(e, {jacobian.data(), at(nc * nv)});
-    const MatrixXd n = null_space(jacobian, nv);
-    if (n.cols() == 0) return;
-    const SmallestEigenpair lightest = smallest_eigenpair(n.transpose() * mass.asDiagonal() * n);
-    if (lightest.value > 1e-12 * mass.maxCoeff()) return;
-    const VectorXd motion = n * lightest.vector;
+    std::vector<SparseEntry> entries;
+    system_.jacobian_entries(e, entries);
+    const std::optional<VectorXd> motion = weightless_motion(sparse_matrix(nc, nv, entries), mass);
+    if (!motion) return;
     Eigen::Index worst = 0;
-    motion.cwiseAbs().maxCoeff(&worst);
+    motion->cwiseAbs().maxCoeff(&worst);
     const Body& body = model_.bodies[at(static_cast<int>(worst) / 3)];
     throw Error(Error::Category::input, "singular-mass",
                 fmt::format("body '{}' can move without moving any mass", body.name), body.location,
@@ -549,9 +537,11 @@ class Assembler {
     if (closed) std::ranges::copy(state_.h(), state.h().begin());
     if (!system.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
     const int nc = system.layout().nc(), nv = system.layout().nv(), joints = system.layout().first_driver_row();
-    RowMajor jacobian(nc, nv);
-    system.dense_jacobian(e, {jacobian.data(), at(nc * nv)});
-    const int all = numerical_rank(jacobian), own = numerical_rank(jacobian.topRows(joints));
+    std::vector<SparseEntry> entries;
+    system.jacobian_entries(e, entries);
+    const int all = numerical_rank(sparse_matrix(nc, nv, entries));
+    std::erase_if(entries, [&](const SparseEntry& entry) { return entry.row() >= joints; });
+    const int own = numerical_rank(sparse_matrix(joints, nv, entries));
     return {joints, own, joints - own, nv - own, nv - all, nc - all - (joints - own)};
   }
 

@@ -80,12 +80,14 @@ void EnergyAccount::add(double dt, std::span<const double> half_way, const Evalu
   }
 }
 
-void EnergyAccount::fill_inside(double s, std::span<const double> half_way, const Evaluation& e,
-                                std::span<const double> lambda, const Channels& channels, std::span<double> row) {
+void EnergyAccount::fill_inside(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
+                                std::span<double> row) {
   flow(e, lambda, integral_inside_);
   for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
-    const double sum = power_before_[i] + 4.0 * half_way[i] + integral_inside_[i];
-    integral_inside_[i] = integral_before_[i] + s * dt_ / 6.0 * sum;
+    // The power as the parabola through its values at both ends and here.
+    const double begin = power_before_[i], slope = power_[i] - begin;
+    const double room = s * (1.0 - s), bend = room > 1e-9 ? (integral_inside_[i] - begin - s * slope) / room : 0.0;
+    integral_inside_[i] = integral_before_[i] + dt_ * s * (begin + s * (0.5 * slope + bend * (0.5 - s / 3.0)));
   }
   fill(e, channels, row, integral_inside_,
        row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda)));

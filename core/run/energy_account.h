@@ -36,10 +36,9 @@ class EnergyAccount {
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row) {
     fill(e, channels, row, integral_, row_work_);
   }
-  /// The same at the fraction s of the last step, where `e` and `lambda` are: by Simpson's rule with the powers
-  /// half-way there.
-  void fill_inside(double s, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda,
-                   const Channels& channels, std::span<double> row);
+  /// The same at the fraction s of the last step, where `e` and `lambda` are: powers as parabolas over the step.
+  void fill_inside(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
+                   std::span<double> row);
   /// An event changed what acts at the end of the last step.
   void renew(const Evaluation& e, std::span<const double> lambda) {
     flow(e, lambda, power_);

@@ -65,7 +65,6 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   const int nv = system.layout().nv(), nc = system.layout().nc();
   for (int i = 0; i < kept_factors; ++i) factors_.push_back({.matrix = StageMatrix(system, true)});
   for (int i = 0; i < nv; ++i) unit_.push_back(i % 3 == 2 ? 1.0 : system.size());
-  dense_.resize(at(nc) * at(nv));
   right_.resize(at(nv + nc));
   update_.resize(at(nv + nc));
   increment_.resize(at(nv));
@@ -73,6 +72,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   right_a_.resize(at(nv));
   right_c_.resize(at(nc));
   work_.resize(at(nv + nc));
+  size_.resize(at(nv + nc));
   multipliers_.resize(at(nc));
   dependent_.assign(at(nc), 0);
 }
@@ -104,8 +104,8 @@ bool NewtonStageSolver::evaluate(const StateView& s, unsigned terms) {
 }
 
 bool NewtonStageSolver::find_dependent_rows() {
-  system_.dense_jacobian(e_, dense_);
-  rows_.analyse(dense_);
+  system_.jacobian_entries(e_, entries_);
+  rows_.analyse(entries_);
   rank_known_ = true;
   const bool same = std::ranges::equal(rows_.dependent(), dependent_);
   std::ranges::copy(rows_.dependent(), dependent_.begin());
@@ -196,8 +196,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     for (std::size_t r = 0; r < at(nc); ++r) out.lambda[r] += update_[at(nv) + r];
     bool internal_settled = true;
     if (!factor.matrix.internal().empty()) {
-      internal_settled = factor.matrix.internal().advance(std::span(update_).first(at(nv)), stage.beta_z, out.z, z_rate_) <=
-                         internal_tolerance;
+      internal_settled = factor.matrix.internal().advance(std::span(update_).first(at(nv)), stage.beta_z, out.z,
+                                                          z_rate_) <= internal_tolerance;
     }
 
     const double change = norm(std::span(update_).first(at(nv)));
@@ -294,9 +294,42 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
   return true;
 }
 
+bool NewtonStageSolver::holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c) {
+  const std::size_t nv = x_a.size();
+  for (std::size_t i = 0; i < nv; ++i) {
+    const double inertia = system_.mass()[i] * x_a[i];
+    work_[i] = right_a_[i] - inertia;
+    size_[i] = std::abs(right_a_[i]) + std::abs(inertia);
+  }
+  for (std::size_t r = 0; r < x_c.size(); ++r) {
+    work_[nv + r] = right_c_[r];
+    size_[nv + r] = std::abs(right_c_[r]);
+  }
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    const double* entry = &e_.jacobian[at(block.offset)];
+    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r) {
+      for (std::size_t c = at(3 * block.body); c < at(3 * block.body + 3); ++c, ++entry) {
+        const double force = *entry * x_c[r], motion = *entry * x_a[c];
+        work_[c] -= force;
+        size_[c] += std::abs(force);
+        work_[nv + r] -= motion;
+        size_[nv + r] += std::abs(motion);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < nv; ++i) {
+    if (!(std::abs(work_[i]) <= 8.0 * rounding * size_[i])) return false;
+  }
+  for (std::size_t r = 0; r < x_c.size(); ++r) {
+    if (!dependent_[r] && !(std::abs(work_[nv + r]) <= 8.0 * rounding * size_[nv + r])) return false;
+  }
+  return true;
+}
+
 bool NewtonStageSolver::project_velocity(StateView& state) {
   if (state.lambda.size == 0) return true;
-  if (!evaluate(state, term_position | term_velocity)) return false;
+  const Point here{*state.t, state.q, state.v, state.z, h_};
+  if (!e_.has_rows_at(here) && !evaluate(state, term_position | term_velocity)) return false;
   std::ranges::fill(right_a_, 0.0);
   system_.multiply(e_, state.v, right_c_);
   for (std::size_t r = 0; r < right_c_.size(); ++r) right_c_[r] = e_.nu[r] - right_c_[r];
@@ -314,18 +347,17 @@ bool NewtonStageSolver::project_position(StateView& state) {
   double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     if (!evaluate(state, term_position | term_velocity)) return false;
-    double largest = 0.0;
-    for (std::size_t r = 0; r < right_c_.size(); ++r) {
-      right_c_[r] = -e_.phi[r];
-      largest = std::max(largest, std::abs(e_.phi[r]));
+    const double gap = largest(e_.phi);
+    if (gap <= target || (gap < 1e-12 * system_.size() && gap > 0.5 * previous)) return true;
+    const bool slow = gap > slow_contraction * previous;
+    if ((!index_one_.valid || slow) && !refactor(index_one_)) return false;
+    previous = gap;
+    std::ranges::fill(right_, 0.0);
+    for (std::size_t r = 0; r < e_.phi.size(); ++r) {
+      if (!dependent_[r]) right_[increment_.size() + r] = -e_.phi[r];
     }
-    if (largest <= target || (largest < 1e-12 * system_.size() && largest > 0.5 * previous)) return true;
-    previous = largest;
-    std::ranges::fill(right_a_, 0.0);
-    std::ranges::fill(increment_, 0.0);
-    std::ranges::fill(multipliers_, 0.0);
-    if (!refine(increment_, multipliers_, 0.0)) return false;
-    planar::retract(state.q, increment_, state.q);
+    index_one_.matrix.solve(right_, update_);
+    planar::retract(state.q, std::span(update_).first(increment_.size()), state.q);
   }
   trouble_ = "positions could not be projected on the constraints";
   return false;
@@ -333,14 +365,21 @@ bool NewtonStageSolver::project_position(StateView& state) {
 
 bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!evaluate(state, term_position | term_velocity | term_acceleration | term_force)) return false;
+  if (!refactor(index_one_)) return false;
   std::ranges::copy(e_.force, right_a_.begin());
   std::ranges::copy(e_.gamma, right_c_.begin());
+  // Nothing of the past enters, so that the same state always has the same accelerations.
+  for (std::size_t i = 0; i < right_a_.size(); ++i) right_[i] = right_a_[i];
+  for (std::size_t r = 0; r < right_c_.size(); ++r) right_[right_a_.size() + r] = dependent_[r] ? 0.0 : right_c_[r];
+  index_one_.matrix.solve(right_, update_);
+  std::copy_n(update_.begin(), state.a.size, state.a.begin());
+  std::copy_n(update_.begin() + static_cast<std::ptrdiff_t>(state.a.size), state.lambda.size, state.lambda.begin());
   // Where drivers alone decide the motion, a is right at once and the multipliers are not.
-  if (!refine(state.a, state.lambda, 0.0, true)) return false;
+  if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
   std::ranges::copy(e_.internal_rate, z_rate.begin());
   if (any_dependent_) {
-    system_.dense_jacobian(e_, dense_);
-    rows_.analyse(dense_);
+    system_.jacobian_entries(e_, entries_);
+    rows_.analyse(entries_);
     rows_.least_norm(state.lambda, system_.layout().first_driver_row());
   }
   if (flows_ != nullptr) flows_->flow(e_, state.lambda, z_rate.part(e_.internal_rate.size(), at(flows_->flows())));

@@ -58,6 +58,8 @@ class NewtonStageSolver {
   /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
   bool mobility(const State& state, int joint, std::span<double> out);
 
+  /// The equations where they were looked at last.
+  const Evaluation& evaluation() const { return e_; }
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
   const Fault& fault() const { return e_.fault; }
   const char* trouble() const { return trouble_; }
@@ -85,6 +87,8 @@ class NewtonStageSolver {
   /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
   /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
   bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
+  /// Whether every equation of the index-1 system holds as well as its terms are rounded (Oettli and Prager 1964).
+  bool holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c);
 
   const System& system_;
   StageOptions options_;
@@ -94,7 +98,8 @@ class NewtonStageSolver {
   std::span<const double> h_;
   Factor index_one_;
   std::vector<Factor> factors_;  // of stages, one for each pair of betas
-  std::vector<double> unit_, dense_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, multipliers_;
+  std::vector<double> unit_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, size_, multipliers_;
+  std::vector<SparseEntry> entries_;
   std::vector<char> dependent_;
   bool any_dependent_ = false, rank_known_ = false;
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;

@@ -347,7 +347,9 @@ bool Simulation::Impl::refresh() {
     return fail(5, fmt::format("t = {:.9g} s: {} failed: {} [plugin-failed]", accepted.t(), integrator_words(model),
                                message.text));
   }
-  if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
+  if (!system.evaluate(point(accepted), all_terms, solver.evaluation(), e_accepted)) {
+    return fail_with(e_accepted.fault, accepted.t());
+  }
   energy.renew(e_accepted, accepted.lambda());
   return true;
 }

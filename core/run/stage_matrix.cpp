@@ -1,21 +1,26 @@
 #include "run/stage_matrix.h"
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
 
 namespace freeplay {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr MatrixEntry left_out{-1, -1};
+constexpr MatrixEntry nowhere{-1, -1};
+constexpr int left_out = -1;
+// A slot from 0 on is one of the factored matrix, one from `outside` down a coupling, and from `in_block` down a number
+// in the blocks of prescribed bodies.
+constexpr int outside = -2, in_block = -(1 << 29);
 
 }  // namespace
 
-void StageMatrix::set_pattern(std::span<const char> dependent) {
+// Every entry that factor() fills, in its order, at its place in the whole system.
+std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) const {
   const int nv = system_.layout().nv(), nc = system_.layout().nc();
-  std::vector<MatrixEntry> entries;
-  for (int i = 0; i < nv; ++i) entries.push_back({i, i});
-  for (int r = 0; r < nc; ++r) entries.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : left_out);
+  std::vector<MatrixEntry> all;
+  for (int i = 0; i < nv; ++i) all.push_back({i, i});
+  for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
   if (forces_) {
     for (const ForceBlock& block : system_.force_blocks()) {
       const BodyId bodies[2] = {block.a, block.b};
@@ -23,7 +28,7 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
         for (int c = 0; c < 6; ++c) {
           const BodyId row = bodies[r / 3], column = bodies[c / 3];
           const bool inside = row != ground && column != ground;
-          entries.push_back(inside ? MatrixEntry{3 * row + r % 3, 3 * column + c % 3} : left_out);
+          all.push_back(inside ? MatrixEntry{3 * row + r % 3, 3 * column + c % 3} : nowhere);
         }
       }
     }
@@ -31,55 +36,154 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     for (int r = block.row; r < block.row + block.rows; ++r) {
       for (int c = 3 * block.body; c < 3 * block.body + 3; ++c) {
-        entries.push_back(dependent[at(r)] ? left_out : MatrixEntry{nv + r, c});
-        entries.push_back(dependent[at(r)] ? left_out : MatrixEntry{c, nv + r});
+        all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{nv + r, c});
+        all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{c, nv + r});
       }
     }
   }
-  std::vector<MatrixEntry> inside;
-  std::ranges::copy_if(entries, std::back_inserter(inside), [](const MatrixEntry& e) { return e.row >= 0; });
-  const std::vector<int> found = matrix_.set_pattern(nv + nc, inside);
-  slots_.assign(entries.size(), -1);
-  for (std::size_t i = 0, next = 0; i < entries.size(); ++i) {
-    if (entries[i].row >= 0) slots_[i] = found[next++];
-  }
+  return all;
 }
 
-void StageMatrix::add_forces(const Evaluation& e, double beta_q, double beta_v, const int*& slot,
-                             std::span<double> values) const {
-  if (!internal_.empty()) {
-    internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
-      const int place = slot[36 * block + at(6 * r + c)];
-      if (place >= 0) values[at(place)] += value;
-    });
+void StageMatrix::set_pattern(std::span<const char> dependent) {
+  const int nv = system_.layout().nv(), size = nv + system_.layout().nc();
+  prescribed_.clear();
+  std::vector<int> owner(at(size), -1);  // of a coordinate or row: its prescribed body
+  for (const PrescribedBody& body : prescribed_bodies(system_, dependent)) {
+    const int index = static_cast<int>(prescribed_.size());
+    for (int c = 0; c < 3; ++c) owner[at(3 * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
+    prescribed_.emplace_back().who = body;
   }
-  for (std::size_t i = 0; i < 36 * system_.force_blocks().size(); ++i) {
-    const int place = *slot++;
-    if (place >= 0) values[at(place)] -= beta_v * e.force_v[i] + beta_q * e.force_q[i];
+  unknowns_.clear();
+  std::vector<int> place(at(size), -1);  // in rest_
+  for (int i = 0; i < size; ++i) {
+    if (owner[at(i)] >= 0) continue;
+    place[at(i)] = static_cast<int>(unknowns_.size());
+    unknowns_.push_back(i);
+  }
+
+  const std::vector<MatrixEntry> all = entries(dependent);
+  slots_.assign(all.size(), left_out);
+  std::vector<MatrixEntry> factored;
+  std::vector<std::size_t> factored_entry;
+  // Couplings in the order in which they are used: by kind and body.
+  struct Sorted {
+    int kind, body;
+    std::size_t entry;
+  };
+  std::vector<Sorted> sorted;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [row, column] = all[i];
+    if (row < 0) continue;
+    const int row_owner = owner[at(row)], column_owner = owner[at(column)];
+    if (row_owner < 0 && column_owner < 0) {
+      factored.push_back({place[at(row)], place[at(column)]});
+      factored_entry.push_back(i);
+    } else if (row_owner == column_owner && (row < nv) != (column < nv)) {
+      if (row < nv) continue;  // the transposed block
+      const PrescribedBody& who = prescribed_[at(row_owner)].who;
+      const auto r = std::ranges::find(who.rows, row - nv) - who.rows.begin();
+      slots_[i] = in_block - (9 * row_owner + 3 * (column - 3 * who.body) + static_cast<int>(r));
+    } else if (row_owner < 0) {
+      if (column < nv) sorted.push_back({2, 0, i});  // multipliers of prescribed bodies act on them alone
+    } else {
+      sorted.push_back({row < nv ? 1 : 0, row_owner, i});
+    }
+  }
+  std::ranges::stable_sort(sorted, {}, [](const Sorted& s) { return std::pair(s.kind, s.body); });
+  couplings_.clear();
+  for (const auto& [kind, body, entry] : sorted) {
+    slots_[entry] = outside - static_cast<int>(couplings_.size());
+    couplings_.push_back({all[entry].row, all[entry].column, 0.0});
+  }
+  const auto first_of = [&](int kind, int body) {
+    return static_cast<std::size_t>(
+        std::ranges::lower_bound(sorted, std::pair(kind, body), {},
+                                 [](const Sorted& s) { return std::pair(s.kind, s.body); }) -
+        sorted.begin());
+  };
+  for (int p = 0; p < static_cast<int>(prescribed_.size()); ++p) {
+    Prescribed& body = prescribed_[at(p)];
+    body.first_row_part = first_of(0, p);
+    body.end_row_part = first_of(0, p + 1);
+    body.first_motion_part = first_of(1, p);
+    body.end_motion_part = first_of(1, p + 1);
+    body.block = 9 * at(p);
+  }
+  first_free_part_ = first_of(2, 0);
+  blocks_.assign(9 * prescribed_.size(), 0.0);
+  rest_right_.assign(unknowns_.size(), 0.0);
+  rest_update_.assign(unknowns_.size(), 0.0);
+  const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
+  for (std::size_t i = 0; i < found.size(); ++i) slots_[factored_entry[i]] = found[i];
+}
+
+void StageMatrix::add(int slot, double value) {
+  if (slot >= 0) {
+    rest_.values()[at(slot)] += value;
+  } else if (slot <= in_block) {
+    blocks_[at(in_block - slot)] += value;
+  } else if (slot <= outside) {
+    couplings_[at(outside - slot)].value += value;
   }
 }
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
-  const std::span<double> values = matrix_.values();
+  std::ranges::fill(rest_.values(), 0.0);
+  std::ranges::fill(blocks_, 0.0);
+  for (Coupling& coupling : couplings_) coupling.value = 0.0;
   const int* slot = slots_.data();
-  std::ranges::fill(values, 0.0);
-  for (const double mass : system_.mass()) values[at(*slot++)] += mass;
-  for (int r = 0; r < system_.layout().nc(); ++r) {
-    if (*slot >= 0) values[at(*slot)] = 1.0;
-    ++slot;
-  }
+  for (const double mass : system_.mass()) add(*slot++, mass);
+  for (int r = 0; r < system_.layout().nc(); ++r) add(*slot++, 1.0);
   if (forces_) {
-    if (!internal_.empty()) internal_.prepare(e, beta_q, beta_v, beta_z);
-    add_forces(e, beta_q, beta_v, slot, values);
+    if (!internal_.empty()) {
+      internal_.prepare(e, beta_q, beta_v, beta_z);
+      internal_.add_to_matrix(
+          [&](std::size_t block, int r, int c, double value) { add(slot[36 * block + at(6 * r + c)], value); });
+    }
+    for (std::size_t i = 0; i < e.force_v.size(); ++i) add(*slot++, -(beta_v * e.force_v[i] + beta_q * e.force_q[i]));
   }
   for (const double entry : e.jacobian) {
-    if (*slot >= 0) {
-      values[at(slot[0])] += entry;
-      values[at(slot[1])] += entry;
-    }
-    slot += 2;
+    add(*slot++, entry);
+    add(*slot++, entry);
   }
-  return matrix_.factor();
+  double smallest = rest_.factor();
+  for (Prescribed& body : prescribed_) {
+    const Eigen::Map<const Eigen::Matrix3d> block(&blocks_[body.block]);
+    body.inverse = block.inverse();
+    const double size = block.cwiseAbs().maxCoeff() * body.inverse.cwiseAbs().maxCoeff();
+    smallest = std::min(smallest, size > 0.0 && std::isfinite(size) ? 1.0 / size : 0.0);
+  }
+  return smallest;
+}
+
+void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const double> update,
+                           std::span<double> right) const {
+  for (std::size_t i = first; i < end; ++i) {
+    const Coupling& c = couplings_[i];
+    right[at(c.row)] -= c.value * update[at(c.column)];
+  }
+}
+
+void StageMatrix::solve(std::span<double> right, std::span<double> update) const {
+  using Vector = Eigen::Vector3d;
+  const int nv = system_.layout().nv();
+  for (const Prescribed& body : prescribed_) {
+    subtract(body.first_row_part, body.end_row_part, update, right);
+    const auto& rows = body.who.rows;
+    const Vector b(right[at(nv + rows[0])], right[at(nv + rows[1])], right[at(nv + rows[2])]);
+    const Vector change = body.inverse * b;
+    std::copy_n(change.data(), 3, update.begin() + 3 * body.who.body);
+  }
+  subtract(first_free_part_, couplings_.size(), update, right);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) rest_right_[i] = right[at(unknowns_[i])];
+  rest_.solve(rest_right_, rest_update_);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) update[at(unknowns_[i])] = rest_update_[i];
+  for (std::size_t p = prescribed_.size(); p-- > 0;) {
+    const Prescribed& body = prescribed_[p];
+    subtract(body.first_motion_part, body.end_motion_part, update, right);
+    const Vector multipliers = body.inverse.transpose() * Eigen::Map<const Vector>(&right[at(3 * body.who.body)]);
+    for (int r = 0; r < 3; ++r) update[at(nv + body.who.rows[at(r)])] = multipliers[r];
+  }
 }
 
 }  // namespace freeplay

@@ -1,14 +1,20 @@
 // StageMatrix: the matrix of a stage's equations at one pair of betas, and its factors.
 //
-//   [ M - beta_v f_v - beta_q f_q   Phi_q^T ]
-//   [ Phi_q                         0       ]
+//   [ K      Phi_q^T ]      K = M - beta_v f_v - beta_q f_q
+//   [ Phi_q  0       ]
+//
+// Prescribed bodies p are taken out of the unknowns: their rows give da_p at once, what is left is solved without them,
+// and their motion equations then give the multipliers of their rows, with them the loads of the drivers.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "linear/kkt_matrix.h"
 #include "run/internal_elimination.h"
+#include "run/prescribed_bodies.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -24,17 +30,39 @@ class StageMatrix {
   /// Fills in the derivatives at `e` (Phi_q, with forces term_derivative) and factors. Returns the smallest pivot over
   /// the largest.
   double factor(Evaluation& e, double beta_q, double beta_v, double beta_z);
-  void solve(std::span<const double> right, std::span<double> update) const { matrix_.solve(right, update); }
+  /// The update (da, dlambda) for a right side, which is used up.
+  void solve(std::span<double> right, std::span<double> update) const;
   InternalElimination& internal() { return internal_; }
 
  private:
-  void add_forces(const Evaluation& e, double beta_q, double beta_v, const int*& slot, std::span<double> values) const;
+  /// An entry outside of the matrix that is factored: `right[row] -= value * update[column]`.
+  struct Coupling {
+    int row, column;
+    double value;
+  };
+  /// Ranges of couplings_ that are used with it, and Phi_q of its rows in its own columns.
+  struct Prescribed {
+    PrescribedBody who;
+    std::size_t first_row_part = 0, end_row_part = 0;        // its rows in the columns of bodies before it
+    std::size_t first_motion_part = 0, end_motion_part = 0;  // its motion equations without its own multipliers
+    std::size_t block = 0;                                   // of values_
+    Eigen::Matrix3d inverse;
+  };
+  std::vector<MatrixEntry> entries(std::span<const char> dependent) const;
+  void subtract(std::size_t first, std::size_t end, std::span<const double> update, std::span<double> right) const;
+  void add(int slot, double value);
 
   const System& system_;
   bool forces_;
-  KktMatrix matrix_;
   InternalElimination internal_;
-  std::vector<int> slots_;  // -1: left out
+  KktMatrix rest_;
+  std::vector<Prescribed> prescribed_;
+  std::vector<Coupling> couplings_;
+  std::size_t first_free_part_ = 0;  // couplings of what is factored with prescribed bodies stand from here to the end
+  std::vector<double> blocks_;       // 3 x 3 numbers for each prescribed body, by columns
+  std::vector<int> unknowns_;        // places of the unknowns of rest_ in the whole system
+  std::vector<int> slots_;           // by entry: where its value goes, see add()
+  mutable std::vector<double> rest_right_, rest_update_;
 };
 
 }  // namespace freeplay

@@ -118,7 +118,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   }
   std::ranges::copy(after.z(), between_.z().begin());
   std::ranges::copy(after.h(), between_.h().begin());
-  if (!system_.evaluate(point(between_), 0, e_between_)) {
+  if (!system_.evaluate(point(between_), term_event, e_between_)) {
     fault = e_between_.fault;
     return false;
   }
@@ -130,7 +130,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
   found = {};
   if (watched_.empty()) return true;
   DenseStep(before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
-  if (!system_.evaluate(point(between_), 0, e_between_)) {
+  if (!system_.evaluate(point(between_), term_event, e_between_)) {
     fault = e_between_.fault;
     return false;
   }

@@ -81,17 +81,17 @@ bool Motions::path(int kinematics, double t, PathPose& pose, MotionFault& fault)
   return true;
 }
 
-bool Motions::leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) const noexcept {
+Jet Motions::platform_angle(int driver, const PathPose& frame) const {
   const int kinematics = model_.drivers[static_cast<std::size_t>(driver)].kinematics;
-  PathPose frame;
-  if (!path(kinematics, t, frame, fault)) return false;
-  const double turn =
-      model_.markers[static_cast<std::size_t>(model_.kinematics[static_cast<std::size_t>(kinematics)].marker)].angle;
-  const Leg& leg = *legs_[static_cast<std::size_t>(driver)];
-  pose = solve_leg(leg, frame[0], frame[1], frame[2] - Jet::constant(turn));
+  const int marker = model_.kinematics[static_cast<std::size_t>(kinematics)].marker;
+  return frame[2] - Jet::constant(model_.markers[static_cast<std::size_t>(marker)].angle);
+}
+
+bool Motions::reaches(int driver, double t, const CrankPose& pose, MotionFault& fault) const noexcept {
   if (pose.reachable) return true;
+  const Leg& leg = *legs_[static_cast<std::size_t>(driver)];
   fault.driver = driver;
-  fault.kinematics = kinematics;
+  fault.kinematics = model_.drivers[static_cast<std::size_t>(driver)].kinematics;
   fault.id = "ik-unreachable";
   const auto end =
       fmt::format_to_n(fault.text, sizeof fault.text - 1,
@@ -100,6 +100,13 @@ bool Motions::leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) 
                        leg.name, t, pose.distance, std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler);
   *end.out = '\0';
   return false;
+}
+
+bool Motions::leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) const noexcept {
+  PathPose frame;
+  if (!path(model_.drivers[static_cast<std::size_t>(driver)].kinematics, t, frame, fault)) return false;
+  pose = solve_leg(*legs_[static_cast<std::size_t>(driver)], frame[0], frame[1], platform_angle(driver, frame));
+  return reaches(driver, t, pose, fault);
 }
 
 bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailure& failure) const noexcept {
@@ -120,12 +127,16 @@ bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailur
 }
 
 bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept {
+  PathPose frame;
+  int framed = -1;  // the entry that `frame` is of
   for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
-    if (model_.drivers[d].kinematics >= 0) {
+    if (const int kinematics = model_.drivers[d].kinematics; kinematics >= 0) {
       out[d] = {};
       if (!legs_[d]) continue;
-      LegPose pose;
-      if (!leg_pose(static_cast<int>(d), t, pose, fault)) return false;
+      if (framed != kinematics && !path(kinematics, t, frame, fault)) return false;
+      framed = kinematics;
+      const CrankPose pose = solve_crank(*legs_[d], frame[0], frame[1], platform_angle(static_cast<int>(d), frame));
+      if (!reaches(static_cast<int>(d), t, pose, fault)) return false;
       out[d] = {pose.crank.value + legs_[d]->coordinate_offset, pose.crank.rate, pose.crank.acceleration};
       continue;
     }

@@ -63,6 +63,8 @@ class Motions {
   bool leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) const noexcept;
 
  private:
+  Jet platform_angle(int driver, const PathPose& frame) const;
+  bool reaches(int driver, double t, const CrankPose& pose, MotionFault& fault) const noexcept;
   bool function(std::size_t driver, double t, TimeValue& out, EvaluationFailure& failure) const noexcept;
 
   const Model& model_;

@@ -29,8 +29,7 @@ PathFollower::Work::Work(const System& system, int rows)
       e(system),
       solver(rows, system.layout().nv()),
       right(at(rows)),
-      step(at(system.layout().nv())),
-      flat(at(system.layout().nc()) * at(system.layout().nv())) {}
+      step(at(system.layout().nv())) {}
 
 PathFollower::PathFollower(const System& closed, std::span<const double> q, std::span<const double> h)
     : model_(closed.model()), system_(closed.model(), Variant::closed), lost_(std::numeric_limits<double>::infinity()) {
@@ -47,6 +46,8 @@ PathFollower::PathFollower(const System& closed, std::span<const double> q, std:
     const std::vector<PathRow> rows = path_rows(model_, k);
     paths_.insert(paths_.end(), rows.begin(), rows.end());
   }
+  row_of_.assign(at(system_.layout().nc()), -1);
+  for (std::size_t i = 0; i < kept_.size(); ++i) row_of_[at(kept_[i])] = static_cast<int>(i);
   work_ = std::make_unique<Work>(system_, static_cast<int>(kept_.size() + paths_.size()));
   State start(system_.layout(), 0);
   start.t() = model_.settings.start;
@@ -121,13 +122,12 @@ bool PathFollower::assemble(double t, Work& work, MotionFault& fault) const noex
     }
     return false;
   }
-  const std::size_t nv = at(system_.layout().nv());
-  system_.dense_jacobian(work.e, work.flat);
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const double* row = &work.flat[at(kept_[i]) * nv];
-    for (std::size_t c = 0; c < nv; ++c) work.solver.matrix(static_cast<int>(i), static_cast<int>(c)) = row[c];
-    work.right[i] = -work.e.phi[at(kept_[i])];
+  system_.jacobian_entries(work.e, work.entries);
+  work.solver.matrix.setZero();
+  for (const SparseEntry& entry : work.entries) {
+    if (const int row = row_of_[at(entry.row())]; row >= 0) work.solver.matrix(row, entry.col()) += entry.value();
   }
+  for (std::size_t i = 0; i < kept_.size(); ++i) work.right[i] = -work.e.phi[at(kept_[i])];
   for (std::size_t p = 0; p < paths_.size(); ++p) {
     const PathRow& path = paths_[p];
     const int r = static_cast<int>(kept_.size() + p);
@@ -135,7 +135,6 @@ bool PathFollower::assemble(double t, Work& work, MotionFault& fault) const noex
     if (!system_.motions().path(path.kinematics, t, pose, fault)) return false;
     double row[3] = {};
     if (path.body != ground) path.entries(work.e, row);
-    work.solver.matrix.row(r).setZero();
     for (int c = 0; c < 3 && path.body != ground; ++c) work.solver.matrix(r, 3 * path.body + c) = row[c];
     work.right[at(r)] = -path.residual(system_, here, work.e, pose[at(path.component)].value);
   }
@@ -214,14 +213,8 @@ bool PathFollower::evaluate(double t, Span<TimeValue> out, MotionFault& fault) c
   for (const int d : drivers_) {
     const int j = model_.drivers[at(d)].joint;
     const JointElement& joint = model_.joints[at(j)];
-    CoordinateRow marker_row;
     double row[6], bias = 0.0;
-    if (!system_.coordinate_row(j, point(work.state), work.e, marker_row, row, bias)) {
-      fault.driver = d;
-      fault.id = "plugin-failed";
-      abi::copy_text(fault.text, sizeof fault.text, work.e.fault.message.text);
-      return false;
-    }
+    system_.coordinate_row(j, work.e, row, bias);
     TimeValue& value = out[at(d)];
     value = {work.e.coordinate[at(j)], 0.0, bias};
     const BodyId bodies[2] = {model_.markers[at(joint.marker_a)].body, model_.markers[at(joint.marker_b)].body};

@@ -31,7 +31,8 @@ class PathFollower final : public FollowedMotion {
     State state;
     Evaluation e;
     LeastSquares solver;
-    std::vector<double> right, step, flat;
+    std::vector<double> right, step;
+    std::vector<SparseEntry> entries;
   };
   enum class Found { yes, no, fault };
 
@@ -47,7 +48,8 @@ class PathFollower final : public FollowedMotion {
 
   const Model& model_;
   System system_;
-  std::vector<int> kept_;  ///< rows of the closed system that stay
+  std::vector<int> kept_;    ///< rows of the closed system that stay
+  std::vector<int> row_of_;  ///< by row of the closed system: its place in kept_, or -1
   std::vector<PathRow> paths_;
   std::vector<int> drivers_;  ///< that follow
   std::vector<State> way_;    ///< solutions in order of time

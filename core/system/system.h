@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "linear/sparse_matrix.h"
 #include "system/layout.h"
 #include "system/motion.h"
 #include "system/planar_kinematics.h"
@@ -33,6 +34,7 @@ enum Term : unsigned {
   term_force = 8,         ///< f
   term_derivative = 16,   ///< derivatives of f (with f)
   term_coordinate = 32,   ///< coordinates of all joints
+  term_event = 64,        ///< what JointRef::events() and on_event() read
 };
 
 /// Element that failed, and why.
@@ -97,21 +99,22 @@ class System {
 
   /// Fills the wanted terms; false with `Evaluation::fault` when an element fails. Does not allocate.
   bool evaluate(const Point& point, unsigned terms, Evaluation& out) const;
+  /// The same where `known` may hold the terms at this very point already, but for the joints' coordinates.
+  bool evaluate(const Point& point, unsigned terms, const Evaluation& known, Evaluation& out) const;
 
   /// out += Phi_q^T lambda and out = Phi_q v.
   void add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
   void multiply(const Evaluation& e, std::span<const double> v, std::span<double> out) const;
-  /// Phi_q as row-major nc x nv.
-  void dense_jacobian(const Evaluation& e, std::span<double> out) const;
+  /// Phi_q by its entries; `out` only grows the first time.
+  void jacobian_entries(const Evaluation& e, std::vector<SparseEntry>& out) const;
 
   std::span<const JacobianBlock> jacobian_blocks() const { return blocks_; }
   std::span<const ForceBlock> force_blocks() const { return force_blocks_; }
 
   /// What joint `index` sees at an evaluated point; valid while `e` and the point's arrays are.
   JointInput input(int index, const Point& point, const Evaluation& e) const;
-  /// Value, row and bias of a joint's coordinate in the columns of its two bodies (6 numbers).
-  bool coordinate_row(int index, const Point& point, Evaluation& e, CoordinateRow& marker_row, double* row,
-                      double& bias) const;
+  /// Row and bias of a joint's coordinate in the columns of its two bodies (6 numbers); the coordinate is evaluated.
+  void coordinate_row(int index, const Evaluation& e, double* row, double& bias) const;
   /// Force and torque (Fx, Fy, Mz) on the second body at its marker: constraint and applied parts together. Of a gear:
   /// what it exerts on the second body of its second joint at that joint.
   void reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const;
@@ -122,12 +125,14 @@ class System {
   double gravity_potential(std::span<const double> q) const;
 
  private:
-  bool evaluate_coordinates(const Point& point, bool all, Evaluation& e) const;
+  bool fill(const Point& point, unsigned terms, Evaluation& e) const;
+  bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
+  static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
   static bool refuse(int joint, const char* why, Evaluation& e);
   bool markers_are_finite(int joint, const Evaluation& e) const;
   bool evaluate_rows(const Point& point, Evaluation& e) const;
-  bool evaluate_gear_rows(const Point& point, Evaluation& e) const;
-  bool evaluate_driver_rows(const Point& point, Evaluation& e) const;
+  void evaluate_gear_rows(Evaluation& e) const;
+  void evaluate_driver_rows(Evaluation& e) const;
   bool evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const;
   bool evaluate_applied(const Point& point, Evaluation& e) const;
   void map_row(int joint, const double* marker_row, const Evaluation& e, double* row) const;
@@ -144,7 +149,7 @@ class System {
   std::vector<double> mass_, weight_;
   std::vector<planar::Mount> mounts_;
   std::vector<InitialOffset> offsets_;
-  std::vector<char> needs_coordinate_, has_forces_;
+  std::vector<unsigned> coordinate_terms_;  // by joint: terms that its coordinate is needed for
   std::vector<JacobianBlock> blocks_;
   std::vector<int> row_block_a_, row_block_b_;  // by joint: index into blocks_ of its rows, -1 on ground
   std::vector<int> driver_block_a_, driver_block_b_;
@@ -165,6 +170,7 @@ struct Evaluation {
   std::vector<double> force_q, force_v;             ///< 36 numbers per force block
   std::vector<double> internal_derivatives;         ///< of force blocks with internal variables
   std::vector<double> coordinate, coordinate_rate;  ///< by joint
+  std::vector<CoordinateRow> coordinate_rows;       ///< by joint, in marker space
   std::vector<TimeValue> motion;                    ///< by driver
   std::vector<double> potential;                    ///< stored energy by joint [J]
   std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
@@ -172,11 +178,18 @@ struct Evaluation {
   std::vector<double> applied;                      ///< by applied force: Fx, Fy, Mz in world axes at its marker
   Fault fault;
 
+  /// Whether phi, Phi_q and nu are those of this time and these coordinates.
+  bool has_rows_at(const Point& point) const;
+  /// Whether these terms were filled at this very point.
+  bool is_at(const Point& point, unsigned terms) const;
+
   // Work space.
   std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
   std::vector<double> row_space, rate_space, derivative_space;
   std::vector<planar::Turn> turns;
   double motion_time;
+  unsigned filled = 0;        ///< terms that `place` speaks of
+  std::vector<double> place;  ///< t, q, v, z, h of the last evaluation that did not fail
 };
 
 }  // namespace freeplay

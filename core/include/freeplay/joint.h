@@ -64,7 +64,8 @@ struct JointLayout {
   double clearance = 0.0;                  ///< radius of the massless link that stands for the play [m]; 0 without play
   Span<const Event> events;
   Span<const Channel> channels;
-  std::uint32_t rows_without_coordinate = 0;  ///< nonzero: constrain() does not read the coordinate, which saves time
+  std::uint32_t rows_without_coordinate = 0;    ///< nonzero: constrain() does not read the coordinate, which saves time
+  std::uint32_t forces_without_coordinate = 0;  ///< nonzero: apply() and the calls about steps and events do not either
 };
 
 /// Everything a joint may read. All views are valid during the call only.

@@ -12,7 +12,13 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-std::span<const double> numbers(const RowMajor& m) { return {m.data(), static_cast<std::size_t>(m.size())}; }
+std::vector<SparseEntry> entries(const RowMajor& m) {
+  std::vector<SparseEntry> all;
+  for (Eigen::Index r = 0; r < m.rows(); ++r) {
+    for (Eigen::Index c = 0; c < m.cols(); ++c) all.emplace_back(r, c, m(r, c));
+  }
+  return all;
+}
 
 RowMajor random_matrix(int rows, int columns, unsigned seed) {
   std::mt19937 engine(seed);
@@ -29,7 +35,7 @@ long dependent(const RowRank& rank) { return std::ranges::count(rank.dependent()
 
 TEST(RowRank, IndependentRowsAreAllKept) {
   RowRank rank(4, 7);
-  EXPECT_EQ(rank.analyse(numbers(random_matrix(4, 7, 1))), 4);
+  EXPECT_EQ(rank.analyse(entries(random_matrix(4, 7, 1))), 4);
   EXPECT_EQ(rank.rank(), 4);
   EXPECT_EQ(dependent(rank), 0);
 }
@@ -38,7 +44,7 @@ TEST(RowRank, OneOfTwoEqualRowsIsDependent) {
   RowMajor j = random_matrix(4, 6, 2);
   j.row(3) = j.row(1);
   RowRank rank(4, 6);
-  EXPECT_EQ(rank.analyse(numbers(j)), 3);
+  EXPECT_EQ(rank.analyse(entries(j)), 3);
   EXPECT_EQ(dependent(rank), 1);
   EXPECT_EQ(rank.dependent()[1] + rank.dependent()[3], 1);
 }
@@ -46,7 +52,7 @@ TEST(RowRank, OneOfTwoEqualRowsIsDependent) {
 TEST(RowRank, KeptRowsSpanTheOthers) {
   const RowMajor j = of_rank(3, 7, 9, 3);
   RowRank rank(7, 9);
-  ASSERT_EQ(rank.analyse(numbers(j)), 3);
+  ASSERT_EQ(rank.analyse(entries(j)), 3);
   EXPECT_EQ(dependent(rank), 4);
   RowMajor kept(3, 9);
   int next = 0;
@@ -58,10 +64,10 @@ TEST(RowRank, KeptRowsSpanTheOthers) {
 
 TEST(RowRank, MoreRowsThanColumnsAndZeroRows) {
   RowRank many(6, 3), none(0, 3), zero(2, 3);
-  EXPECT_EQ(many.analyse(numbers(random_matrix(6, 3, 4))), 3);
+  EXPECT_EQ(many.analyse(entries(random_matrix(6, 3, 4))), 3);
   EXPECT_EQ(dependent(many), 3);
   EXPECT_EQ(none.analyse({}), 0);
-  EXPECT_EQ(zero.analyse(numbers(RowMajor::Zero(2, 3))), 0);
+  EXPECT_EQ(zero.analyse(entries(RowMajor::Zero(2, 3))), 0);
   EXPECT_EQ(dependent(zero), 2);
 }
 
@@ -71,18 +77,18 @@ TEST(RowRank, ToleranceIsRelativeToTheLargestPivot) {
     RowMajor j(2, 3);
     j << 1.0, 0.0, 0.0, 1.0, 1e-12, 0.0;
     RowRank rank(2, 3);
-    EXPECT_EQ(rank.analyse(numbers(RowMajor(scale * j))), 1);
+    EXPECT_EQ(rank.analyse(entries(RowMajor(scale * j))), 1);
     j(1, 1) = 1e-8;
-    EXPECT_EQ(rank.analyse(numbers(RowMajor(scale * j))), 2);
+    EXPECT_EQ(rank.analyse(entries(RowMajor(scale * j))), 2);
   }
 }
 
 TEST(RowRank, CanBeUsedAgainAfterTheRankHasChanged) {
   RowRank rank(3, 4);
-  EXPECT_EQ(rank.analyse(numbers(of_rank(2, 3, 4, 5))), 2);
-  EXPECT_EQ(rank.analyse(numbers(random_matrix(3, 4, 6))), 3);
+  EXPECT_EQ(rank.analyse(entries(of_rank(2, 3, 4, 5))), 2);
+  EXPECT_EQ(rank.analyse(entries(random_matrix(3, 4, 6))), 3);
   EXPECT_EQ(dependent(rank), 0);
-  EXPECT_EQ(rank.analyse(numbers(of_rank(1, 3, 4, 7))), 1);
+  EXPECT_EQ(rank.analyse(entries(of_rank(1, 3, 4, 7))), 1);
   EXPECT_EQ(dependent(rank), 2);
 }
 
@@ -90,7 +96,7 @@ TEST(RowRank, CanBeUsedAgainAfterTheRankHasChanged) {
 void expect_least_norm(const RowMajor& j, int first_driver, unsigned seed) {
   const int rows = static_cast<int>(j.rows());
   RowRank rank(rows, static_cast<int>(j.cols()));
-  rank.analyse(numbers(j));
+  rank.analyse(entries(j));
   const Eigen::VectorXd before = random_matrix(rows, 1, seed);
   Eigen::VectorXd after = before;
   rank.least_norm({after.data(), static_cast<std::size_t>(rows)}, first_driver);
@@ -119,7 +125,7 @@ TEST(LeastNorm, DriversComeBeforeJoints) {
 TEST(LeastNorm, WithoutDriversJointsAloneAreLeast) {
   const RowMajor j = of_rank(2, 4, 3, 16);
   RowRank rank(4, 3);
-  rank.analyse(numbers(j));
+  rank.analyse(entries(j));
   Eigen::VectorXd lambda = random_matrix(4, 1, 17);
   const Eigen::VectorXd want =
       Eigen::MatrixXd(j.transpose()).completeOrthogonalDecomposition().solve(Eigen::VectorXd(j.transpose() * lambda));
@@ -129,7 +135,7 @@ TEST(LeastNorm, WithoutDriversJointsAloneAreLeast) {
 
 TEST(LeastNorm, FullRankIsLeftAlone) {
   RowRank rank(3, 5);
-  rank.analyse(numbers(random_matrix(3, 5, 18)));
+  rank.analyse(entries(random_matrix(3, 5, 18)));
   std::vector<double> lambda{1.0, -2.0, 3.0};
   rank.least_norm(lambda, 2);
   EXPECT_EQ(lambda, (std::vector<double>{1.0, -2.0, 3.0}));

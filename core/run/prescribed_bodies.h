@@ -1,0 +1,22 @@
+// Bodies whose motion rows alone decide: driven cranks, and what is held on them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "system/system.h"
+
+namespace freeplay {
+
+/// A body and the three rows that prescribe it: they touch no other body but ground and those before it in the list.
+struct PrescribedBody {
+  BodyId body = ground;
+  std::array<int, 3> rows{};
+};
+
+/// Found from the pattern of Phi_q alone, rows marked in `dependent` left out. A body on which more than three such
+/// rows act is not listed.
+std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent);
+
+}  // namespace freeplay

@@ -1,0 +1,155 @@
+// System: one look at a point, of which only the terms that are wanted are filled.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "system/finite.h"
+#include "system/system.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double rate_of(const double* row, const MarkerKinematics& a, const MarkerKinematics& b) {
+  double rate = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    rate += row[i] * a.velocity[i] + row[3 + i] * a.angular_velocity[i] + row[6 + i] * b.velocity[i] +
+            row[9 + i] * b.angular_velocity[i];
+  }
+  return rate;
+}
+
+bool same(std::span<const double> a, std::span<const double> b) {
+  return std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
+}
+
+}  // namespace
+
+bool Evaluation::has_rows_at(const Point& point) const {
+  return (filled & term_position) != 0 && place[0] == point.t && same(std::span(place).subspan(1), point.q);
+}
+
+bool Evaluation::is_at(const Point& point, unsigned terms) const {
+  if ((terms & ~filled) != 0 || place[0] != point.t) return false;
+  std::size_t next = 1;
+  for (const std::span<const double> part : {point.q, point.v, point.z.first(internal_rate.size()), point.h}) {
+    if (!same(std::span(place).subspan(next), part)) return false;
+    next += part.size();
+  }
+  return true;
+}
+
+bool System::evaluate(const Point& point, unsigned terms, const Evaluation& known, Evaluation& e) const {
+  if (!known.is_at(point, terms & ~unsigned{term_coordinate})) return evaluate(point, terms, e);
+  e = known;
+  return (terms & term_coordinate) == 0 || evaluate_coordinates(point, term_coordinate, e);
+}
+
+bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
+  e.filled = 0;
+  if (!fill(point, terms, e)) return false;
+  e.filled = terms;
+  e.place.front() = point.t;
+  auto next = e.place.begin() + 1;
+  // The integrator may carry integrals behind the internal variables.
+  for (const std::span<const double> part : {point.q, point.v, point.z.first(e.internal_rate.size()), point.h}) {
+    next = std::ranges::copy(part, next).out;
+  }
+  return true;
+}
+
+bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
+  e.fault.kind = Fault::Kind::none;
+  for (std::size_t b = 0; b < e.turns.size(); ++b) {
+    const double angle = point.q[3 * b + 2];
+    e.turns[b] = {std::cos(angle), std::sin(angle)};
+  }
+  for (std::size_t m = 0; m < mounts_.size(); ++m) {
+    const BodyId body = mounts_[m].body;
+    if (body == ground) continue;
+    planar::marker_kinematics(mounts_[m], &point.q[3 * at(body)], &point.v[3 * at(body)], e.turns[at(body)],
+                              e.markers[m], e.arms[m]);
+  }
+  if (variant_ == Variant::closed) {
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      if (!model_.joints[j].has_play) continue;
+      MarkerKinematics& k = e.shifted[j] = e.markers[at(model_.joints[j].marker_b)];
+      for (int i = 0; i < 3; ++i) {
+        k.position[i] -= offsets_[j].position[i];
+        k.velocity[i] -= offsets_[j].velocity[i];
+      }
+    }
+  }
+  if (!model_.drivers.empty() && (terms & (term_position | term_force)) != 0 && e.motion_time != point.t) {
+    e.motion_time = std::numeric_limits<double>::quiet_NaN();
+    if (!motions_->evaluate(point.t, {e.motion.data(), e.motion.size()}, e.fault.motion)) {
+      e.fault.kind = Fault::Kind::motion;
+      return false;
+    }
+    e.motion_time = point.t;
+  }
+  if (!evaluate_coordinates(point, terms, e)) return false;
+  if ((terms & term_position) != 0) {
+    if (!evaluate_rows(point, e)) return false;
+    evaluate_gear_rows(e);
+    evaluate_driver_rows(e);
+  }
+  if ((terms & term_force) != 0) {
+    return evaluate_forces(point, (terms & term_derivative) != 0, e) && evaluate_applied(point, e);
+  }
+  return true;
+}
+
+JointInput System::input(int index, const Point& point, const Evaluation& e) const {
+  const JointElement& element = model_.joints[at(index)];
+  const bool stands_off = variant_ == Variant::closed && element.has_play;
+  const Slice internal = layout_.internal(index), history = layout_.history(index);
+  return {point.t,
+          &e.markers[at(element.marker_a)],
+          stands_off ? &e.shifted[at(index)] : &e.markers[at(element.marker_b)],
+          e.coordinate[at(index)],
+          e.coordinate_rate[at(index)],
+          {point.z.data() + internal.offset, at(internal.size)},
+          {point.h.data() + history.offset, at(history.size)},
+          per_contact_};
+}
+
+bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const {
+  for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+    if (joint_layout(j).coordinate == Coordinate::none || (coordinate_terms_[at(j)] & terms) == 0) continue;
+    const JointInput in = input(j, point, e);
+    CoordinateRow& row = e.coordinate_rows[at(j)] = CoordinateRow{};
+    if (!joint(j).coordinate(in, row, e.fault.message)) {
+      e.fault.kind = Fault::Kind::plugin;
+      e.fault.joint = j;
+      return false;
+    }
+    if (!std::isfinite(row.value) && markers_are_finite(j, e)) {
+      return refuse(j, "it returned a coordinate that is not a finite number", e);
+    }
+    if (const int turn = layout_.turn(j); turn >= 0) {
+      // The turn nearest to the last accepted angle: a step never turns a joint by more than half a revolution.
+      row.value += 2.0 * M_PI * std::round((point.h[at(turn)] - row.value) / (2.0 * M_PI));
+    }
+    e.coordinate[at(j)] = row.value;
+    e.coordinate_rate[at(j)] = rate_of(row.jacobian, *in.a, *in.b);
+  }
+  return true;
+}
+
+/// Notes what a joint has done wrong. A point that is no number itself is nobody's fault but the iteration's.
+bool System::refuse(int joint, const char* why, Evaluation& e) {
+  abi::copy_text(e.fault.message.text, sizeof e.fault.message.text, why);
+  e.fault.kind = Fault::Kind::plugin;
+  e.fault.joint = joint;
+  return false;
+}
+
+bool System::markers_are_finite(int joint, const Evaluation& e) const {
+  const JointElement& element = model_.joints[at(joint)];
+  return is_finite(e.markers[at(element.marker_a)]) && is_finite(e.markers[at(element.marker_b)]);
+}
+
+}  // namespace freeplay
