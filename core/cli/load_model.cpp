@@ -7,6 +7,7 @@
 #include "cli/plugins.h"
 #include "io/channel_selection.h"
 #include "io/model_document.h"
+#include "io/yaml_document.h"
 #include "model/model_builder.h"
 #include "run/channel.h"
 
@@ -76,11 +77,8 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
   }
 }
 
-}  // namespace
-
-LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
-  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
-  loaded.document = read_model(file, loaded.diagnostics);
+/// Builds the model of the document that was read, if one was.
+void build_loaded(LoadedModel& loaded, const BuildOptions& build, const CommonOptions& common) {
   try {
     if (loaded.document) {
       const Registry registry = load_registry(common, &*loaded.document);
@@ -94,6 +92,22 @@ LoadedModel load_model(const std::string& file, const BuildOptions& build, const
     loaded.model.reset();
     if (loaded.exit_code == 0) loaded.exit_code = 3;
   }
+}
+
+}  // namespace
+
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
+  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
+  loaded.document = read_model(file, loaded.diagnostics);
+  build_loaded(loaded, build, common);
+  return loaded;
+}
+
+LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build,
+                      const CommonOptions& common) {
+  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
+  loaded.document = parse_yaml(std::move(text), file, loaded.diagnostics);
+  build_loaded(loaded, build, common);
   return loaded;
 }
 
