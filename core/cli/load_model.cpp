@@ -9,6 +9,7 @@
 #include "io/model_document.h"
 #include "io/yaml_document.h"
 #include "model/model_builder.h"
+#include "model/name_rule.h"
 #include "run/channel.h"
 
 namespace freeplay {
@@ -45,6 +46,21 @@ Location pattern_location(const Document& document, std::size_t index) {
   return node->location();
 }
 
+/// The columns that a sweep keeps something of. Their section has been checked.
+std::vector<const Node*> reduced_channels(const Document& document) {
+  const Node* node = &document.root();
+  for (const char* key : {"sweep", "reducers"}) {
+    node = node->is_map() ? node->find(key) : nullptr;
+    if (node == nullptr) return {};
+  }
+  std::vector<const Node*> channels;
+  for (const Node::Entry& entry : node->entries) {
+    const Node* channel = !is_note(entry.key->text) && entry.value->is_map() ? entry.value->find("channel") : nullptr;
+    if (channel != nullptr && channel->is_scalar()) channels.push_back(channel);
+  }
+  return channels;
+}
+
 /// A limit must have the dimension of its channel.
 void check_limit(const StopCondition& condition, const ChannelInfo& channel, Diagnostics& diagnostics) {
   const Dimension wanted = channel.unit.empty() ? dimension::none : parse_unit(channel.unit).dimension;
@@ -74,6 +90,10 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
     const std::string& pattern = model.settings.channels[i];
     if (matches_channel(pattern, channels)) continue;
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
+  }
+  for (const Node* channel : reduced_channels(document)) {
+    if (channels.find(channel->text) >= 0) continue;
+    unknown(channel->location(), channel->text, fmt::format("there is no channel '{}'", channel->text));
   }
 }
 

@@ -166,7 +166,7 @@ constexpr FormatKey assembly[] = {
 
 constexpr FormatKey simulation[] = {
     {"start", "quantity", "s", "0", "When the run begins.", "0 s"},
-    {"end", "quantity", "s", "start + 1 s", "When it ends, after its start.", "2 s"},
+    {"end", "quantity", "s", "1 s", "When it ends, after its start.", "2 s"},
     {"step", "quantity | map step", "s", "0.1 ms", "Fixed steps; a map may let the error choose.", "10 us"},
     {"accuracy", "quantity", "m", "", "In place of `step`: positions err by about this much per second.", "1 um"},
     {"integrator", "name | map integrator", "", "the preferred one", "`freeplay list integrators` shows them.",

@@ -26,6 +26,7 @@ MOTOR = "  m: {joint: A, kind: angle, value: 3*t}"
 
 # What is replaced (None: the whole file), by what; id, line, column and the suggestion, where there is one.
 MISTAKES = [
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, reducers: {r: {channel: joint.A.angel, reduce: max}}}', 'unknown-name', 2, 55, 'joint.A.angle'),
     ('mass: $a', 'mas: $a', 'unknown-key', 4, 9, 'mass'),
     ('bodies:\n', 'bodys:\n', 'unknown-key', 3, 1, 'bodies'),
     ('type: revolute, between: [ground', 'type: revolut, between: [ground', 'unknown-type', 7, 13, 'revolute'),
