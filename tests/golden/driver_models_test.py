@@ -287,6 +287,26 @@ simulation: {end: 1, step: 5 ms}
         self.assert_column(columns, "joint.A.angle",
                            lambda t: -math.acos((0.01 + x(t) ** 2 - 0.09) / (0.2 * x(t))))
 
+    def test_racks_and_pinions_follow_a_path(self):
+        text = """
+parameters: {r: 20 mm}
+bodies: {x: {mass: 1, inertia: 1}, y: {mass: 1, inertia: 1}, a: {mass: 1, inertia: 0.01}, b: {mass: 1, inertia: 0.01}}
+joints:
+  X: {type: prismatic, between: [ground, x]}
+  Y: {type: prismatic, between: [x/up, y/up]}
+  A: {type: revolute, between: [ground, a]}
+  B: {type: revolute, between: [x, b]}
+  a: {type: gear, of: [A, X], ratio: $r, offset: 0}
+  b: {type: gear, of: [B, Y], ratio: -$r, offset: 0 mm}
+frames: {x/up: {angle: 90 deg}, y/up: {angle: 90 deg}}
+drivers: {plot: {inverse_kinematics: {frame: y, path: {x: 0.2 + 0.1*cos(t), y: 0.1*sin(2*t)}, joints: [A, B]}}}
+simulation: {end: 3, step: 10 ms}
+"""
+        self.facts(text, drivers=2, constraints=10, dof=2, dof_driven=0)
+        columns = self.run_model(text)
+        self.assert_column(columns, "joint.A.angle", lambda t: 10 + 5 * math.cos(t))
+        self.assert_column(columns, "joint.B.angle", lambda t: -5 * math.sin(2 * t))
+
     def test_slides_by_inverse_kinematics(self):
         text = """
 bodies: {x: {mass: 1, inertia: 1}, y: {mass: 1, inertia: 1, frames: {pen: [0.1, 0]}}}

@@ -134,6 +134,27 @@ simulation: {end: 0.1, step: 10 ms}
         self.assertAlmostEqual(32, columns["joint.A.angle"][0], places=9)
 
 
+    def test_a_load_lets_down_a_braked_drum(self):
+        text = """
+gravity: [0, -9.81]
+parameters: {R: 0.1 m}
+bodies: {drum: {mass: 5, inertia: "0.5*5 kg*$R^2"}, load: {mass: 2, inertia: 0}}
+joints:
+  d: {type: revolute, between: [ground, drum]}
+  l: {type: prismatic, between: [ground/up, load/up]}
+  rope: {type: gear, of: [l, d], ratio: 1/$R}
+forces: {brake: {type: spring-damper, kind: rotational, between: [ground, drum], damping: 0.05 N*m*s}}
+frames: {ground/up: {position: [$R, 0], angle: 90 deg}, load/up: {angle: 90 deg}}
+simulation: {end: 1, output: {interval: 100 ms}, %s}
+""" % EXACT
+        self.facts(text, constraints=5, dof=1)
+        mass, damping = 2 + 0.5 * 5, 0.05 / 0.1 ** 2
+        speed = lambda t: -2 * G / damping * (1 - math.exp(-damping / mass * t))
+        columns = self.run_model(text)
+        self.assert_column(columns, "joint.l.speed", speed, 1e-8)
+        self.assert_column(columns, "joint.d.speed", lambda t: speed(t) / 0.1, 1e-8)
+
+
 class Slides(ModelTest):
     def test_a_block_runs_down_an_incline(self):
         text = """
@@ -383,6 +404,39 @@ simulation: {end: 0.6, output: {interval: 100 ms}, %s}
         columns = self.run_model(text)
         self.assert_column(columns, "body.one.angle", lambda t: rk4(rates, first, t, 3000)[0], 1e-8)
         self.assert_column(columns, "body.two.angle", lambda t: rk4(rates, first, t, 3000)[1], 1e-8)
+
+    def test_point_masses_on_slides_joined_by_a_rod(self):
+        text = """
+gravity: [0, -9.81]
+bodies: {h: {mass: 2, inertia: 0}, v: {mass: 3, inertia: 0}}
+joints:
+  x: {type: prismatic, between: [ground, h]}
+  y: {type: prismatic, between: [ground/up, v/up]}
+  rod: {type: distance, between: [h, v], length: 1}
+frames: {ground/up: {angle: 90 deg}, v/up: {angle: 90 deg}}
+initial: {joints: {x: 0.6, y: 0.8}}
+simulation: {end: 0.3, output: {interval: 50 ms}, %s}
+""" % EXACT
+        self.facts(text, constraints=5, dof=1)
+
+        def rates(t, y):
+            c, s = math.cos(y[0]), math.sin(y[0])
+            return [y[1], (-3 * G * c + s * c * y[1] ** 2) / (2 * s * s + 3 * c * c)]
+
+        columns = self.run_model(text)
+        self.assert_column(columns, "joint.x.position", lambda t: math.cos(rk4(
+            rates, [math.atan2(0.8, 0.6), 0.0], t, 3000)[0]), 1e-8)
+
+    def test_a_bead_leaves_along_a_turning_rod(self):
+        text = """
+bodies: {rod: {mass: 1, inertia: 1}, bead: {mass: 1, inertia: 0.1}}
+joints: {A: {type: revolute, between: [ground, rod]}, P: {type: point-on-line, between: [rod, bead]}}
+drivers: {d: {joint: A, kind: velocity, value: 2}}
+initial: {joints: {P: 0.5, A: 0}, speeds: {P: 0}}
+simulation: {end: 1, output: {interval: 100 ms}, %s}
+""" % EXACT
+        self.facts(text, constraints=3, dof=3, dof_driven=2)
+        self.assert_column(self.run_model(text), "joint.P.position", lambda t: 0.5 * math.cosh(2 * t), 1e-8)
 
     def test_a_point_mass_that_may_spin_is_refused(self):
         text = """

@@ -3,7 +3,7 @@ import json
 import math
 import unittest
 
-from model_cases import EXACT, ModelTest, rk4
+from model_cases import EXACT, ModelTest
 
 
 class Templates(ModelTest):
@@ -39,6 +39,42 @@ simulation: {end: 10 ms, output: {frames: [link3.bar/probe]}}
         # The last link cannot reach one that is not there.
         self.refusal(text.replace("link{$i-1}", "link{$i+1}"), id="unknown-name", line=9)
         self.refusal(text.replace("link{$i-1}", "link{$i/2}"), id="wrong-type", line=9)
+
+    def test_gears_of_instances_mesh_with_their_neighbours(self):
+        text = """
+parameters: {count: 5}
+bodies: {w0: {mass: 1, inertia: 0.1}}
+joints: {in: {type: revolute, between: [ground, w0]}}
+templates:
+  first:
+    bodies: {w: {mass: 1, inertia: 0.2}}
+    joints: {axle: {type: revolute, between: [ground/h, w]}, mesh: {type: gear, of: [in, axle], ratio: -2}}
+    frames: {ground/h: [1, 0]}
+  next:
+    parameters: {r: -(1 + 1/$i)}
+    bodies: {w: {mass: 1, inertia: 0.1*$i}}
+    joints:
+      axle: {type: revolute, between: [ground/h, w]}
+      mesh: {type: gear, of: ["g{$i-1}.axle", axle], ratio: $r, offset: 10 deg}
+    frames: {ground/h: [$i + 1, 0]}
+instances:
+  g0: {template: first}
+  g: {template: next, count: $count}
+drivers: {m: {joint: in, kind: torque, value: 1}}
+simulation: {end: 1, output: {interval: 100 ms}, %s}
+""" % EXACT
+        self.facts(text, bodies=7, joints=13, constraints=20, rank=20, dof=1)
+        ratio, inertia = [1.0, -2.0], [0.1, 0.2]
+        for i in range(1, 6):
+            ratio.append(-ratio[-1] * (1 + 1 / i))
+            inertia.append(0.1 * i)
+        a = 1 / sum(j * r * r for j, r in zip(inertia, ratio))
+        columns = self.run_model(text)
+        self.assert_column(columns, "joint.in.angle", lambda t: a * t * t / 2)
+        for i in range(1, 6):
+            before, here = (columns["joint.g%d.axle.angle" % k] for k in (i - 1, i))
+            for x, y in zip(before, here):
+                self.assertAlmostEqual(math.radians(10) - (1 + 1 / i) * x, y, places=9)
 
     def test_a_closed_ring_of_instances(self):
         text = """
