@@ -10,11 +10,18 @@ struct NoParameters final : Scope {
   std::vector<std::string> names() const override { return {}; }
 };
 
-/// "(0.24 m)", a factor of a formula.
+/// "(0.24 m^1)", a factor of a formula; exponents in full.
 std::string factor(const Quantity& quantity) {
-  const bool unit = quantity.kind == DimensionKind::dimensioned && !quantity.dimension.dimensionless();
-  return unit ? fmt::format("({} {})", quantity.value, si_unit(quantity.dimension))
-              : fmt::format("({})", quantity.value);
+  std::string unit;
+  const auto append = [&](const char* name, double exponent) {
+    if (exponent != 0.0) unit += fmt::format("{}{}^{}", unit.empty() ? " " : "*", name, exponent);
+  };
+  if (quantity.kind == DimensionKind::dimensioned) {
+    append("kg", quantity.dimension.kg);
+    append("m", quantity.dimension.m);
+    append("s", quantity.dimension.s);
+  }
+  return fmt::format("({}{})", quantity.value, unit);
 }
 
 /// The length of "$name" or "${name}" at the beginning of `text`.

@@ -78,7 +78,7 @@ joints:
   rail: {type: prismatic, between: [ground, sled]}
 templates:
   unit:
-    parameters: {m: 10 kg/m * $r, k: 7, at: required, phase: 30 deg}
+    parameters: {m: 10 kg/m * $r, k: 7, at: required, phase: 30 deg, arm: 20 cm, free: 2}
     bodies:
       ground: {frames: {mark: [$at, 1 m]}}
       wheel: {use: wheel, frames: {rim: {polar: [$r, 90 deg]}}}
@@ -88,6 +88,8 @@ templates:
     forces:
       wind: {type: force, at: wheel/rim, value: ["$i * 2 N * cos($k*t)", $n]}
       tie: {type: spring-damper, between: [ground/mark, "u{$i}.wheel/rim"], stiffness: 5 N/m * $k}
+      twist: {type: torque, on: wheel, value: $arm * 3 N * sin(t)}
+      odd: {type: torque, on: wheel, value: $free * 3 mm}
       moon: {type: gravity, on: ["wh*"], value: [0, -1.6]}
 instances:
   u: {template: unit, count: 2, with: {at: $r * $i, k: $k}}
