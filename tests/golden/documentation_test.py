@@ -126,6 +126,23 @@ class Documentation(ProgramTest):
         self.write("rocker.yaml", re.search(r"^```yaml\n(.*?)^```", text, re.M | re.S)[1])
         self.freeplay("run", "rocker.yaml")
 
+    def test_text_is_read_as_the_model_page_says(self):
+        with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
+            rows = re.findall(r"^\| `(.*)` \| (?:`([a-z-]+)`|([\d.]+)) \|$", file.read(), re.M)
+        self.assertLess(10, len(rows))
+        for written, wrong, number in rows:
+            with self.subTest(written):
+                self.write("m.yaml", "freeplay: 1\nbodies: {b: {mass: %s, inertia: 1}}\n" % written)
+                out, err = self.freeplay("show", "m.yaml", "--format", "json", code=3 if wrong else 0)
+                if wrong:
+                    self.assertIn("[%s]" % wrong, err)
+                else:
+                    self.assertEqual(float(number), json.loads(out)["bodies"]["b"]["mass"])
+        for written in ("yes", "on", "True", "1"):
+            self.write("m.yaml", "freeplay: 1\nbodies: {b: {mass: 1, inertia: 1}}\n"
+                                 "simulation: {step: {adaptive: %s}}\n" % written)
+            self.assertIn("[wrong-type]", self.freeplay("validate", "m.yaml", code=3)[1])
+
     def test_pieces_of_the_model_page_are_a_model(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
             pieces = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)
