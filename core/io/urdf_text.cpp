@@ -39,7 +39,11 @@ class UrdfWriter {
         q_(q),
         v_(v),
         urdf_file_(urdf_file),
-        target_(document.file_name(), "") {}
+        target_(document.file_name(), "") {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      body_ids_.emplace(model.bodies[b].name, static_cast<BodyId>(b));
+    }
+  }
 
   UrdfText write() {
     choose_tree();
@@ -137,16 +141,16 @@ class UrdfWriter {
   }
 
   std::optional<std::string> own_origin(const std::string& reference) {
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      const std::string& body = model_.bodies[b].name;
-      if (reference != body + "/origin") continue;
-      const Place moved = shift(static_cast<BodyId>(b));
-      if (moved.x == 0.0 && moved.y == 0.0) return std::nullopt;
-      std::string& name = origins_[static_cast<BodyId>(b)];
-      for (name = "body-origin"; frame(static_cast<BodyId>(b), name) != nullptr;) name += "_";
-      return body + "/" + name;
-    }
-    return std::nullopt;
+    constexpr std::string_view suffix = "/origin";
+    if (!reference.ends_with(suffix)) return std::nullopt;
+    const std::string body = reference.substr(0, reference.size() - suffix.size());
+    const auto found = body_ids_.find(body);
+    if (found == body_ids_.end()) return std::nullopt;
+    const Place moved = shift(found->second);
+    if (moved.x == 0.0 && moved.y == 0.0) return std::nullopt;
+    std::string& name = origins_[found->second];
+    for (name = "body-origin"; frame(found->second, name) != nullptr;) name += "_";
+    return body + "/" + name;
   }
 
   Place start(BodyId id) const {
@@ -462,7 +466,8 @@ class UrdfWriter {
   std::span<const double> q_, v_;
   std::string urdf_file_;
   Document target_;
-  std::vector<int> tree_joint_;                       ///< of each body; -1: it floats
+  std::vector<int> tree_joint_;  ///< of each body; -1: it floats
+  std::map<std::string, BodyId> body_ids_;
   std::map<BodyId, std::string> origins_;             ///< frames where origins were that are referred to
   std::vector<bool> in_tree_;                         ///< of each joint
   double size_ = 0.0, moving_ = 0.0, turning_ = 0.0;  ///< largest coordinate [m] and speeds at the start
