@@ -219,7 +219,11 @@ class UnitReader {
   }
 
   double named_exponent(std::size_t at) {
-    const std::size_t end = word_end(text_, at);
+    std::size_t end = word_end(text_, at);
+    // A name may be a path: "law.exponent".
+    while (exponents_ && end < text_.size() && text_[end] == '.' && word_end(text_, end + 1) > end + 1) {
+      end = word_end(text_, end + 1);
+    }
     const auto value = exponents_ ? exponents_(text_.substr(at, end - at)) : std::nullopt;
     if (!value) fail(at, std::max(end, at + 1), "the exponent of a unit must be a number");
     position_ = end;

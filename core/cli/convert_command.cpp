@@ -12,9 +12,13 @@
 #include "cli/load_model.h"
 #include "cli/terminal.h"
 #include "io/complete_model.h"
+#include "io/flat_model.h"
 #include "io/model_document.h"
+#include "io/moved_model.h"
 #include "io/urdf_text.h"
 #include "io/whole_file.h"
+#include "io/yaml_text.h"
+#include "model/readout.h"
 
 namespace freeplay {
 namespace {
@@ -44,15 +48,17 @@ void warn(LoadedModel& loaded, const char* id, const std::string& message) {
 }
 
 /// The name a body of the source has in what was written.
-std::string new_name(const Model& written, const std::string& name) {
+std::string new_name(const Model& written, const Renaming& renamed, const std::string& name) {
+  const auto found = renamed.find(name);
+  const std::string& flat = found == renamed.end() ? name : found->second;
   for (const Body& body : written.bodies) {
-    if (body.name == name) return name;
+    if (body.name == flat) return flat;
   }
-  return "_" + name;
+  return "_" + flat;
 }
 
 /// Reads what was written and compares: a conversion that changes the mechanism must not pass for one.
-void verify(const LoadedModel& loaded, const AssembledModel& source, const std::string& file,
+void verify(const LoadedModel& loaded, const AssembledModel& source, const Renaming& renamed, const std::string& file,
             const CommonOptions& common) {
   CommonOptions lenient = common;
   lenient.strict = false;
@@ -67,7 +73,7 @@ void verify(const LoadedModel& loaded, const AssembledModel& source, const std::
     differs("its facts differ");
   }
   for (std::size_t b = 0; b < loaded.model->bodies.size(); ++b) {
-    const std::string name = new_name(*again.model, loaded.model->bodies[b].name);
+    const std::string name = new_name(*again.model, renamed, loaded.model->bodies[b].name);
     const auto found = std::ranges::find(again.model->bodies, name, &Body::name);
     if (found == again.model->bodies.end()) return differs("a body is missing");
     const std::size_t other = static_cast<std::size_t>(found - again.model->bodies.begin());
@@ -78,29 +84,49 @@ void verify(const LoadedModel& loaded, const AssembledModel& source, const std::
   }
 }
 
+/// What is written counts paths from the folder it is written to.
+Document moved(const Document& document, const ConvertOptions& options) {
+  return moved_model(document, fs::path(options.in).parent_path(), fs::path(options.out).parent_path());
+}
+
 /// Files that were written, the one to read first.
 std::vector<std::string> to_yaml(LoadedModel& loaded, const ConvertOptions& options) {
   require_room(options.out, options.force);
   std::vector<std::string> renamed;
-  const std::string text = complete_model_text(*loaded.document, renamed);
+  const std::string text = complete_model_text(moved(*loaded.document, options), renamed);
   for (const std::string& name : renamed)
     warn(loaded, "urdf-renamed", fmt::format("'{}' is called '_{}' there", name, name));
   write_whole_file(options.out, text);
   return {options.out};
 }
 
-std::vector<std::string> to_urdf(LoadedModel& loaded, const AssembledModel& assembled, const ConvertOptions& options) {
+/// `loaded`: has no instances; `notes` are added to.
+std::vector<std::string> to_urdf(const LoadedModel& loaded, const Readout& readout, const AssembledModel& assembled,
+                                 const ConvertOptions& options, std::vector<std::string>& notes) {
   const std::string sidecar = options.out + ".sidecar.yaml";
   const State& start = assembled.start.state;
-  const UrdfText text =
-      write_urdf(*loaded.document, *loaded.model, start.q(), start.v(), fs::path(options.out).filename().string());
+  const UrdfText text = write_urdf(*loaded.document, *loaded.model, readout, start.q(), start.v(),
+                                   fs::path(options.out).filename().string());
   require_room(options.out, options.force);
-  if (!text.sidecar.empty()) require_room(sidecar, options.force);
-  for (const std::string& note : text.notes) warn(loaded, "converted", note);
+  if (text.sidecar) require_room(sidecar, options.force);
+  notes.insert(notes.end(), text.notes.begin(), text.notes.end());
   write_whole_file(options.out, text.urdf);
-  if (text.sidecar.empty()) return {options.out};
-  write_whole_file(sidecar, text.sidecar);
+  if (!text.sidecar) return {options.out};
+  write_whole_file(sidecar, yaml_text(moved(*text.sidecar, options).root()));
   return {sidecar, options.out};
+}
+
+/// The model with its instances written out under names of their own.
+LoadedModel load_flat(const FlatModel& flat, const std::string& file, Readout& readout, const CommonOptions& common) {
+  CommonOptions lenient = common;
+  lenient.strict = false;
+  BuildOptions build;
+  build.readout = &readout;
+  LoadedModel loaded = load_text(flat.text, file, build, lenient);
+  if (loaded.exit_code == 0) return loaded;
+  throw Error(Error::Category::internal, "internal",
+              "without its instances the model does not read back:\n" + loaded.diagnostics.format(1), {},
+              "please report this");
 }
 
 /// What --set says becomes the text of the parameter.
@@ -118,15 +144,32 @@ int convert(const ConvertOptions& options, const CommonOptions& common) {
                 fmt::format("'{}' must end in .yaml, .yml or .urdf: the suffix says what to write", options.out));
   }
   if (!options.build.ideal.empty()) not_in_this_release("--ideal of convert");
-  const BuildOptions build = build_options(options.build);
+  Readout readout;
+  BuildOptions build = build_options(options.build);
+  build.readout = &readout;
   LoadedModel loaded = load_model(options.in, build, common);
   if (loaded.exit_code == 0) write_overrides(build, *loaded.document);
   const auto assembled = loaded.exit_code == 0 ? assemble_model(loaded) : nullptr;
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
-  const std::vector<std::string> files =
-      is_yaml(options.out) ? to_yaml(loaded, options) : to_urdf(loaded, *assembled, options);
+  std::vector<std::string> files, notes;
+  Renaming renamed;
+  if (is_yaml(options.out)) {
+    files = to_yaml(loaded, options);
+  } else if (has_instances(*loaded.document)) {
+    FlatModel flat = flat_model(*loaded.document, *loaded.model, readout);
+    Readout flat_readout;
+    LoadedModel written_out = load_flat(flat, options.in, flat_readout, common);
+    const auto start = assemble_model(written_out);
+    if (!start) return report_failure(written_out.diagnostics, written_out.exit_code, common);
+    notes.push_back("instances are written out; a name such as 'leg1.crank' becomes 'leg1_crank'");
+    files = to_urdf(written_out, flat_readout, *start, options, notes);
+    renamed = std::move(flat.renamed);
+  } else {
+    files = to_urdf(loaded, readout, *assembled, options, notes);
+  }
+  for (const std::string& note : notes) warn(loaded, "converted", note);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
-  verify(loaded, *assembled, files.front(), common);
+  verify(loaded, *assembled, renamed, files.front(), common);
   if (common.json) {
     print_json(Json{{"files", files}});
   } else if (!common.quiet) {

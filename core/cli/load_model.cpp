@@ -7,7 +7,9 @@
 #include "cli/plugins.h"
 #include "io/channel_selection.h"
 #include "io/model_document.h"
+#include "io/yaml_document.h"
 #include "model/model_builder.h"
+#include "model/name_rule.h"
 #include "run/channel.h"
 
 namespace freeplay {
@@ -44,6 +46,21 @@ Location pattern_location(const Document& document, std::size_t index) {
   return node->location();
 }
 
+/// The columns that a sweep keeps something of. Their section has been checked.
+std::vector<const Node*> reduced_channels(const Document& document) {
+  const Node* node = &document.root();
+  for (const char* key : {"sweep", "reducers"}) {
+    node = node->is_map() ? node->find(key) : nullptr;
+    if (node == nullptr) return {};
+  }
+  std::vector<const Node*> channels;
+  for (const Node::Entry& entry : node->entries) {
+    const Node* channel = !is_note(entry.key->text) && entry.value->is_map() ? entry.value->find("channel") : nullptr;
+    if (channel != nullptr && channel->is_scalar()) channels.push_back(channel);
+  }
+  return channels;
+}
+
 /// A limit must have the dimension of its channel.
 void check_limit(const StopCondition& condition, const ChannelInfo& channel, Diagnostics& diagnostics) {
   const Dimension wanted = channel.unit.empty() ? dimension::none : parse_unit(channel.unit).dimension;
@@ -74,13 +91,14 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
     if (matches_channel(pattern, channels)) continue;
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
   }
+  for (const Node* channel : reduced_channels(document)) {
+    if (channels.find(channel->text) >= 0) continue;
+    unknown(channel->location(), channel->text, fmt::format("there is no channel '{}'", channel->text));
+  }
 }
 
-}  // namespace
-
-LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
-  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
-  loaded.document = read_model(file, loaded.diagnostics);
+/// Builds the model of the document that was read, if one was.
+void build_loaded(LoadedModel& loaded, const BuildOptions& build, const CommonOptions& common) {
   try {
     if (loaded.document) {
       const Registry registry = load_registry(common, &*loaded.document);
@@ -94,6 +112,22 @@ LoadedModel load_model(const std::string& file, const BuildOptions& build, const
     loaded.model.reset();
     if (loaded.exit_code == 0) loaded.exit_code = 3;
   }
+}
+
+}  // namespace
+
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
+  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
+  loaded.document = read_model(file, loaded.diagnostics);
+  build_loaded(loaded, build, common);
+  return loaded;
+}
+
+LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build,
+                      const CommonOptions& common) {
+  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
+  loaded.document = parse_yaml(std::move(text), file, loaded.diagnostics);
+  build_loaded(loaded, build, common);
   return loaded;
 }
 

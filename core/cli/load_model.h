@@ -25,6 +25,10 @@ struct LoadedModel {
 /// for and the model does not have.
 LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common);
 
+/// The same for the text of a YAML model that is at hand; `file` gives its name and the folder that paths count from.
+LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build,
+                      const CommonOptions& common);
+
 /// A model that is ready to move. The system refers to the model.
 struct AssembledModel {
   System system;

@@ -1,12 +1,36 @@
 #include "cli/plugins.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <span>
+
+#include <fmt/format.h>
 
 #include "cli/terminal.h"
 #include "component/library.h"
 #include "model/model_builder.h"
 
 namespace freeplay {
+namespace {
+
+/// A joint type with play needs its ideal twin, of whatever library. Judged when all libraries are there: an error for
+/// those that somebody named (the first `named`), a warning for those that only lie in the folders for plugins.
+void require_twins(const Registry& registry, std::size_t named, const CommonOptions& common) {
+  for (const RegisteredComponent& type : registry.components()) {
+    const Description& description = type.component->description;
+    if (type.component->kind != ComponentKind::joint || description.ideal == nullptr) continue;
+    if (registry.find(ComponentKind::joint, description.ideal) != nullptr) continue;
+    const std::string reason = fmt::format("plugin '{}': the ideal type '{}' of its joint '{}' is not there",
+                                           type.library, description.ideal, description.name);
+    const auto libraries = std::span(registry.libraries()).first(named);
+    if (std::ranges::find(libraries, type.library, &RegisteredLibrary::path) != libraries.end()) {
+      throw Error(Error::Category::plugin, "plugin-refused", reason);
+    }
+    print_messages("freeplay: warning: " + reason + "\n", common.no_color);
+  }
+}
+
+}  // namespace
 
 Registry load_registry(const CommonOptions& common, const Document* document) {
   Registry registry = Registry::with_builtins();
@@ -21,9 +45,11 @@ Registry load_registry(const CommonOptions& common, const Document* document) {
     }
   }
   for (const std::string& word : common.plugins) load_plugin(registry, find_plugin(word, {}));
+  const std::size_t named = registry.libraries().size();
   for (const std::string& reason : load_plugin_folders(registry)) {
     print_messages("freeplay: warning: " + reason + "\n", common.no_color);
   }
+  require_twins(registry, named, common);
   return registry;
 }
 

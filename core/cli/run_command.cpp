@@ -139,6 +139,11 @@ class RunJob {
   int execute() {
     note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
                      settings().start, settings().end));
+    for (const RegisteredLibrary& library : loaded_.model->instances.libraries()) {
+      if (library.path == "built-in") continue;
+      note(fmt::format("plugin {} {}, compiler {}, from {}", library.table->name(), library.table->version(),
+                       library.table->compiler(), library.path));
+    }
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
     Outcome outcome = run();
     for (const std::string& text : simulation_.warnings()) warn(text);

@@ -26,6 +26,7 @@ class Instances {
   Instances() = default;
   /// Keeps the tables of a library alive as long as what was created from them, and knows the library by its path.
   void keep(const RegisteredLibrary& library) { libraries_.push_back(library); }
+  const std::vector<RegisteredLibrary>& libraries() const { return libraries_; }
   Instances(Instances&&) = default;
   Instances& operator=(Instances&& other) noexcept {
     objects_ = std::move(other.objects_);  // what is replaced goes before its tables

@@ -47,6 +47,7 @@ Json alternative(std::string_view text) {
   if (text == "vector") return reference("vector");
   if (text == "text" || text == "name" || text == "frame") return reference("text");
   if (text == "boolean") return {{"type", "boolean"}};
+  if (text == "time function" || text == "integer") return reference(definition_name(text));
   return reference("quantity");  // every other scalar is an expression
 }
 
@@ -192,6 +193,8 @@ class ModelSchema {
   Json make() {
     definitions_["quantity"] = {{"type", {"number", "string"}},
                                 {"description", "A number or an expression, with a unit if it is not SI: 0.1 mm."}};
+    definitions_["time-function"] = {{"type", {"number", "string"}}, {"description", "A quantity that may hold t."}};
+    definitions_["integer"] = {{"type", {"number", "string"}}, {"description", "A quantity that is an integer."}};
     definitions_["text"] = {{"type", {"string", "number", "boolean"}}};
     definitions_["vector"] = {{"type", "array"}, {"items", reference("quantity")}, {"minItems", 2}, {"maxItems", 3}};
     for (const FormatMap& map : format_maps()) {

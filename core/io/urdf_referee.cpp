@@ -41,6 +41,11 @@ void append_escaped(std::string& out, const std::string& text) {
       case '"':
         out += "&quot;";
         break;
+      case '\t':  // blanks, as XML reads attributes; urdfdom takes no others between numbers
+      case '\n':
+      case '\r':
+        out += ' ';
+        break;
       default:
         out += c;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <set>
 #include <string_view>
 
@@ -10,7 +11,6 @@
 
 #include "base/expression.h"
 #include "io/number_text.h"
-#include "io/yaml_text.h"
 #include "model/name_rule.h"
 
 namespace freeplay {
@@ -31,28 +31,29 @@ bool same(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(1.0, 
 
 class UrdfWriter {
  public:
-  UrdfWriter(const Document& document, const Model& model, std::span<const double> q, std::span<const double> v,
-             const std::string& urdf_file)
-      : source_(document), model_(model), q_(q), v_(v), urdf_file_(urdf_file), target_("", "") {}
+  UrdfWriter(const Document& document, const Model& model, const Readout& readout, std::span<const double> q,
+             std::span<const double> v, const std::string& urdf_file)
+      : document_(document),
+        model_(model),
+        readout_(readout),
+        q_(q),
+        v_(v),
+        urdf_file_(urdf_file),
+        target_(document.file_name(), "") {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      body_ids_.emplace(model.bodies[b].name, static_cast<BodyId>(b));
+    }
+  }
 
   UrdfText write() {
-    require_flat();
     choose_tree();
-    UrdfText out;
-    out.urdf = robot_text();
-    out.sidecar = sidecar_text();
-    out.notes = std::move(notes_);
-    return out;
+    source_ = &with_own_origins(document_.root());
+    const std::string robot = robot_text();
+    const bool needed = make_sidecar();
+    return {robot, needed ? std::optional<Document>(std::move(target_)) : std::nullopt, std::move(notes_)};
   }
 
  private:
-  void require_flat() const {
-    const Node* instances = source_.root().is_map() ? source_.root().find("instances") : nullptr;
-    if (instances == nullptr || instances->is_null()) return;
-    throw Error(Error::Category::input, "not-in-this-release", "a model with instances cannot be written as URDF",
-                instances->location(), "not in this release");
-  }
-
   const Marker& first(const JointElement& joint) const { return model_.markers[at(joint.marker_a)]; }
   const Marker& second(const JointElement& joint) const { return model_.markers[at(joint.marker_b)]; }
 
@@ -120,6 +121,36 @@ class UrdfWriter {
     const double turn = second(joint).angle;
     return agrees(on_first, first(joint), slides(joint) ? first(joint).angle : first(joint).angle - turn) &&
            agrees(on_second, second(joint), slides(joint) ? turn : 0.0);
+  }
+
+  // --- origins -------------------------------------------------------------------------------------------------------
+
+  /// A copy in which every reference to the origin of a body whose frame moves names a frame at the old place.
+  const Node& with_own_origins(const Node& node) {
+    Node& made = target_.add(node.kind, 1, 1);
+    made.quoted = node.quoted;
+    made.foreign = node.foreign;
+    made.text = node.text;
+    const std::vector<std::string>* names = node.is_scalar() ? readout_.find("", node) : nullptr;
+    if (names != nullptr && names->size() == 1) made.text = own_origin(names->front()).value_or(node.text);
+    for (const Node* item : node.items) made.items.push_back(&with_own_origins(*item));
+    for (const Node::Entry& entry : node.entries) {
+      made.entries.push_back({&with_own_origins(*entry.key), &with_own_origins(*entry.value)});
+    }
+    return made;
+  }
+
+  std::optional<std::string> own_origin(const std::string& reference) {
+    constexpr std::string_view suffix = "/origin";
+    if (!reference.ends_with(suffix)) return std::nullopt;
+    const std::string body = reference.substr(0, reference.size() - suffix.size());
+    const auto found = body_ids_.find(body);
+    if (found == body_ids_.end()) return std::nullopt;
+    const Place moved = shift(found->second);
+    if (moved.x == 0.0 && moved.y == 0.0) return std::nullopt;
+    std::string& name = origins_[found->second];
+    for (name = "body-origin"; frame(found->second, name) != nullptr;) name += "_";
+    return body + "/" + name;
   }
 
   Place start(BodyId id) const {
@@ -210,14 +241,15 @@ class UrdfWriter {
   }
   void put(Node& owner, const std::string& key, const Node& value) { owner.entries.push_back({&scalar(key), &value}); }
 
-  std::string sidecar_text() {
+  /// Makes the root of the target; false when the URDF says everything.
+  bool make_sidecar() {
     const Node& bodies = body_section();
     const Node& joints = joint_section();
     Node& root = map();
     put(root, "freeplay", scalar("1"));
-    if (source_.root().find("name") != nullptr) put(root, "name", scalar(model_.name));
+    if (source_->find("name") != nullptr) put(root, "name", scalar(model_.name));
     std::vector<Node::Entry> rest;
-    for (const Node::Entry& entry : source_.root().entries) {
+    for (const Node::Entry& entry : source_->entries) {
       static const std::set<std::string, std::less<>> own = {"freeplay", "name",   "urdf",       "bodies",
                                                              "frames",   "joints", "parameters", "presets"};
       if (!own.contains(entry.key->text) && !is_note(entry.key->text) && !is_empty(*entry.value)) rest.push_back(entry);
@@ -229,11 +261,12 @@ class UrdfWriter {
     keep_presets(root, content);
     keep_parameters(root, content);
     const bool needed = !bodies.entries.empty() || !joints.entries.empty() || !rest.empty();
-    if (!needed) return {};
+    if (!needed) return false;
     root.entries.insert(root.entries.end(), rest.begin(), rest.end());
     if (!bodies.entries.empty()) put(root, "bodies", bodies);
     if (!joints.entries.empty()) put(root, "joints", joints);
-    return yaml_text(root);
+    target_.set_root(root);
+    return true;
   }
 
   static bool is_empty(const Node& node) { return node.is_null() || (node.is_map() && node.entries.empty()); }
@@ -312,6 +345,8 @@ class UrdfWriter {
       put(map_form, "angle", scalar(n(one->angle)));
       put(frames, name, map_form);
     }
+    if (const auto own = origins_.find(body); own != origins_.end())
+      put(frames, own->second, point(-moved.x, -moved.y));
     if (!frames.entries.empty()) put(entry, "frames", frames);
   }
 
@@ -325,7 +360,7 @@ class UrdfWriter {
 
   const Node& joint_section() {
     Node& section = map();
-    const Node* joints = source_.root().find("joints");
+    const Node* joints = source_->find("joints");
     if (joints == nullptr || !joints->is_map()) return section;
     for (const Node::Entry& entry : joints->entries) {
       if (is_note(entry.key->text)) continue;
@@ -349,7 +384,7 @@ class UrdfWriter {
     if (!entry.is_map()) return nullptr;
     if (const Node* own = entry.find(key)) return own;
     const Node* use = entry.find("use");
-    const Node* presets = source_.root().find("presets");
+    const Node* presets = source_->find("presets");
     if (use == nullptr || presets == nullptr) return nullptr;
     const std::vector<const Node*> names = use->is_list() ? use->items : std::vector<const Node*>{use};
     for (auto name = names.rbegin(); name != names.rend(); ++name) {  // a later preset wins
@@ -384,7 +419,7 @@ class UrdfWriter {
   /// Keeps the entries of a section of the source that `wanted` names, and what these name in turn.
   template <class Collect>
   void keep(Node& root, Node& content, const char* section, std::set<std::string> wanted, Collect collect) {
-    const Node* all = source_.root().find(section);
+    const Node* all = source_->find(section);
     if (all == nullptr || !all->is_map()) return;
     for (std::size_t before = 0; before != wanted.size();) {
       before = wanted.size();
@@ -409,11 +444,11 @@ class UrdfWriter {
   }
 
   void keep_parameters(Node& root, Node& content) {
-    const Node* all = source_.root().find("parameters");
+    const Node* all = source_->find("parameters");
     if (all == nullptr || !all->is_map() || all->entries.empty()) return;
     std::set<std::string> wanted;
     collect_parameters(content, wanted);
-    if (const Node* sweep = source_.root().find("sweep"); sweep != nullptr && sweep->is_map()) {
+    if (const Node* sweep = source_->find("sweep"); sweep != nullptr && sweep->is_map()) {
       const Node* swept = sweep->find("parameters");
       for (const Node::Entry& entry : swept == nullptr ? std::vector<Node::Entry>{} : swept->entries) {
         wanted.insert(entry.key->text);
@@ -424,12 +459,16 @@ class UrdfWriter {
     notes_.push_back("bodies and frames are written as numbers: parameters no longer change them");
   }
 
-  const Document& source_;
+  const Document& document_;
+  const Node* source_ = nullptr;  ///< root of the document, references made fit
   const Model& model_;
+  const Readout& readout_;
   std::span<const double> q_, v_;
   std::string urdf_file_;
   Document target_;
-  std::vector<int> tree_joint_;                       ///< of each body; -1: it floats
+  std::vector<int> tree_joint_;  ///< of each body; -1: it floats
+  std::map<std::string, BodyId> body_ids_;
+  std::map<BodyId, std::string> origins_;             ///< frames where origins were that are referred to
   std::vector<bool> in_tree_;                         ///< of each joint
   double size_ = 0.0, moving_ = 0.0, turning_ = 0.0;  ///< largest coordinate [m] and speeds at the start
   std::vector<std::string> notes_;
@@ -437,9 +476,9 @@ class UrdfWriter {
 
 }  // namespace
 
-UrdfText write_urdf(const Document& document, const Model& model, std::span<const double> q, std::span<const double> v,
-                    const std::string& urdf_file) {
-  return UrdfWriter(document, model, q, v, urdf_file).write();
+UrdfText write_urdf(const Document& document, const Model& model, const Readout& readout, std::span<const double> q,
+                    std::span<const double> v, const std::string& urdf_file) {
+  return UrdfWriter(document, model, readout, q, v, urdf_file).write();
 }
 
 }  // namespace freeplay

@@ -451,6 +451,11 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
     return std::nullopt;
   }
   if (!builder.trusted()) return std::nullopt;
+  if (const auto fault = find_directive_fault(document.text(), document.root().is_map())) {
+    const TextPlace at = TextPlaces(document.text()).at(fault->position);
+    diagnostics.error({file_name, at.line, at.column}, 1, "yaml-syntax", fault->message, {}, fault->hint);
+    return std::nullopt;
+  }
   return document;
 }
 

@@ -22,16 +22,18 @@ int indentation(std::string_view text, std::size_t line_begin) {
   return static_cast<int>(std::min(end, text.size()) - line_begin);
 }
 
-/// A line that continues a value must be indented by blanks.
+/// A line that continues a value must be indented by blanks. Between brackets comments need not be; and a bracket that
+/// closes may stand below the key, as many people write it, although YAML is stricter there.
 std::optional<YamlFault> find_indentation_fault(std::string_view text, std::size_t line_begin, int indent,
-                                                bool tabs_only) {
+                                                bool between_brackets) {
   const int blanks = indentation(text, line_begin);
   const std::size_t first = line_begin + static_cast<std::size_t>(blanks);
   const std::size_t content = text.find_first_not_of(" \t\r", line_begin);
   if (content == none || text[content] == '\n' || blanks > indent) return std::nullopt;
   if (text[first] == '\t') return YamlFault{first, "a tab cannot indent a line", "indent with blanks"};
-  if (tabs_only) return std::nullopt;
-  return YamlFault{first, "this line of a quoted text must be indented"};
+  if (!between_brackets) return YamlFault{first, "this line of a quoted text must be indented"};
+  if (is_one_of(text[first], "]}#")) return std::nullopt;
+  return YamlFault{first, "this line between brackets must be indented more than the lines around the brackets"};
 }
 
 /// Walks through a list in brackets or a map in braces.
@@ -43,6 +45,8 @@ class FlowScanner {
     do {
       if (auto fault = step()) return fault;
     } while (depth_ > 0 && at_ < text_.size());
+    if (depth_ > 0) return std::nullopt;  // an open bracket is the fault, and the parser's to tell
+    if (outdented_) return outdented_;
     if (at_ < text_.size() && text_[at_] == '#') return YamlFault{at_, comment_without_blank};
     return std::nullopt;
   }
@@ -50,7 +54,7 @@ class FlowScanner {
  private:
   std::optional<YamlFault> step() {
     const char c = text_[at_];
-    if (c == '\n') return find_indentation_fault(text_, ++at_, indent_, true);
+    if (c == '\n') return line();
     if (is_blank(c)) {
       ++at_;
     } else if (c == '#' && is_blank(text_[at_ - 1])) {
@@ -71,6 +75,13 @@ class FlowScanner {
       content(false);
       token_begins_ = colon;
     }
+    return std::nullopt;
+  }
+
+  std::optional<YamlFault> line() {
+    const std::optional<YamlFault> fault = find_indentation_fault(text_, ++at_, indent_, true);
+    if (fault && text_[fault->position] == '\t') return fault;
+    if (!outdented_) outdented_ = fault;
     return std::nullopt;
   }
 
@@ -98,9 +109,10 @@ class FlowScanner {
   std::size_t at_;
   int indent_;
   int depth_ = 0;
-  bool token_begins_ = true;   // a quote would open a quoted scalar here
-  bool entry_begins_ = false;  // nothing of the entry has come
-  bool after_json_ = false;    // behind a quoted scalar or a bracket a ':' needs no blank
+  std::optional<YamlFault> outdented_;  // the first line with too few blanks
+  bool token_begins_ = true;            // a quote would open a quoted scalar here
+  bool entry_begins_ = false;           // nothing of the entry has come
+  bool after_json_ = false;             // behind a quoted scalar or a bracket a ':' needs no blank
 };
 
 }  // namespace
@@ -117,6 +129,24 @@ std::optional<YamlFault> find_bad_character(std::string_view text) {
     }
     i += length;
   }
+  return std::nullopt;
+}
+
+std::optional<YamlFault> find_directive_fault(std::string_view text, bool map) {
+  constexpr const char* alone = "a line that begins with '%' is a directive and needs a '---' behind it";
+  std::size_t directive = none;
+  bool content = false;
+  for (std::size_t at = 0; at < text.size(); at = line_end(text, at) + 1) {
+    if (text[at] == '%' && (map || !content)) {
+      if (content) return YamlFault{at, "a line cannot begin with '%' here", "quote the value"};
+      directive = at;
+    }
+    const std::size_t first = text.find_first_not_of(" \t\r", at);
+    if (content || text[at] == '%' || first == none || is_one_of(text[first], "\n#")) continue;
+    if (directive != none && !text.substr(at).starts_with("---")) return YamlFault{directive, alone};
+    content = true;
+  }
+  if (directive != none && !content) return YamlFault{directive, alone};
   return std::nullopt;
 }
 
@@ -144,6 +174,8 @@ std::optional<YamlFault> find_quoted_fault(std::string_view text, std::size_t be
 std::optional<YamlFault> find_block_scalar_fault(std::string_view text, std::size_t begin, int indent) {
   const std::size_t header_end = line_end(text, begin);
   const std::string_view header = text.substr(begin, header_end - begin);
+  const std::size_t behind = header.find_first_not_of("+-0123456789", 1);
+  if (behind != none && header[behind] == '#') return YamlFault{begin + behind, comment_without_blank};
   if (header.substr(0, header.find('#')).find_first_of("123456789") != none) return std::nullopt;
   int widest = 0;
   std::size_t widest_begin = header_end;

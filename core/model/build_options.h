@@ -8,12 +8,15 @@
 
 namespace freeplay {
 
+class Readout;
+
 struct BuildOptions {
   std::vector<std::pair<std::string, std::string>> set;  ///< parameter and text; the last one of a name wins
   std::vector<std::string> ideal;                        ///< names or patterns of joints with play, or "all"
   std::optional<double> end, step;                       ///< [s]
   std::optional<double> accuracy = std::nullopt;         ///< [m per s]; in place of any step
   std::optional<std::string> integrator;                 ///< name
+  Readout* readout = nullptr;                            ///< is told what values and names came to
   bool finer = false;                                    ///< half the fixed step, or a tenth of the error allowed
 };
 

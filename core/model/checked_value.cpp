@@ -1,12 +1,14 @@
 #include "model/checked_value.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "model/parameter_scope.h"
+#include "model/readout.h"
 
 namespace freeplay {
 namespace {
@@ -151,6 +153,7 @@ std::optional<double> CheckedValue::quantity(const Dimension& dimension, const R
     return std::nullopt;
   }
   const double value = expression->constant().value;
+  if (reading_->readout != nullptr) reading_->readout->note_number(reading_->instance, *node_, value);
   if (range.contains(value)) return value;
   const std::string unit = si_unit(dimension);
   fail("out-of-range", "'" + path_ + "' must be " + range.text(unit) + ", not " + with_unit(value, unit));
@@ -182,6 +185,9 @@ std::optional<Expression> CheckedValue::time_function(const Dimension& dimension
     return std::nullopt;
   }
   if (!tried(*expression)) return std::nullopt;
+  if (reading_->readout != nullptr) {
+    reading_->readout->note_function(reading_->instance, *node_, *expression, *reading_->scope);
+  }
   return expression;
 }
 
@@ -299,6 +305,14 @@ std::optional<std::string> CheckedValue::expand(const Node& text_node) const {
     done = close + 1;
   }
   return expanded + text.substr(done);
+}
+
+void CheckedValue::note_names(std::vector<std::string> names) const {
+  if (reading_->readout != nullptr) reading_->readout->note_names(reading_->instance, *node_, std::move(names));
+}
+
+void CheckedValue::note_key(std::string name) const {
+  if (reading_->readout != nullptr) reading_->readout->note_names(reading_->instance, *key_, {std::move(name)});
 }
 
 std::optional<std::string> CheckedValue::reference() const {

@@ -60,6 +60,10 @@ class CheckedValue {
   /// The key, read the same way.
   std::optional<std::string> key_reference() const;
 
+  /// For the readout: full names that the value or the key refers to.
+  void note_names(std::vector<std::string> names) const;
+  void note_key(std::string name) const;
+
   CheckedValue item(std::size_t index) const;
 
   /// Reports at the value, at the key.

@@ -81,6 +81,7 @@ std::optional<BodyId> Draft::body(const CheckedValue& value, const Part& part) c
   if (!name) return std::nullopt;
   const std::optional<BodyId> found = find_body(*name, part);
   if (!found) unknown(value, "body", *name, bodies, part);
+  if (found) value.note_names({body_name(*found)});
   return found;
 }
 
@@ -89,6 +90,7 @@ std::optional<int> Draft::joint(const CheckedValue& value, const Part& part) con
   if (!name) return std::nullopt;
   const std::optional<int> found = find_joint(*name, part);
   if (!found) unknown(value, "joint", *name, joints, part);
+  if (found) value.note_names({joints.names()[static_cast<std::size_t>(*found)]});
   return found;
 }
 
@@ -103,6 +105,9 @@ std::optional<std::vector<int>> Draft::joint_list(const CheckedValue& value, con
       const std::vector<int> found = matching(joints, *name, part);
       all.insert(all.end(), found.begin(), found.end());
       good = good && !found.empty();
+      std::vector<std::string> full;
+      for (const int joint : found) full.push_back(joints.names()[static_cast<std::size_t>(joint)]);
+      item.note_names(std::move(full));
       if (found.empty() && !excused(*name)) {
         item.fail("unknown-name", "no joint matches the pattern '" + *name + "'");
       }
@@ -148,6 +153,7 @@ std::optional<int> Draft::marker(const CheckedValue& value, const Part& part) {
   if (!reference) return std::nullopt;
   const std::optional<std::string> name = frame_name(value, *reference, part);
   if (!name) return std::nullopt;
+  value.note_names({*name});
   return marker(*name);
 }
 

@@ -172,7 +172,7 @@ class DriverEntry {
     kinematics.path = *components;
     kinematics.first_driver = static_cast<int>(draft_.model.drivers.size());
     kinematics.driver_count = static_cast<int>(count);
-    for (std::size_t i = 0; i < count; ++i) expand((*driven)[i], (*modes)[i], joints->location());
+    for (std::size_t i = 0; i < count; ++i) expand((*driven)[i], (*modes)[i], elbow.has_value(), joints->location());
     if (elbow) draft_.elbows.emplace_back(static_cast<int>(draft_.model.kinematics.size()), *elbow);
     draft_.model.kinematics.push_back(std::move(kinematics));
   }
@@ -197,7 +197,7 @@ class DriverEntry {
     return good;
   }
 
-  void expand(int joint, int mode, const Location& place) {
+  void expand(int joint, int mode, bool mode_given, const Location& place) {
     Driver driver;
     driver.name = element(joint).name;
     driver.location = place;
@@ -206,6 +206,7 @@ class DriverEntry {
         element(joint).ideal_layout.coordinate == Coordinate::angle ? DriverKind::angle : DriverKind::position;
     driver.kinematics = static_cast<int>(draft_.model.kinematics.size());
     driver.elbow = mode;
+    driver.elbow_given = mode_given;
     draft_.model.drivers.push_back(std::move(driver));
   }
 
@@ -231,7 +232,7 @@ void warn_ignored_elbows(const Draft& draft) {
   for (const auto& [index, place] : draft.elbows) {
     const InverseKinematics& entry = model.kinematics[static_cast<std::size_t>(index)];
     for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
-      if (closed_form_leg(model, d)) continue;
+      if (find_leg_chain(model, model.drivers[static_cast<std::size_t>(d)].joint, entry.marker)) continue;
       place.warn_at_key("elbow-ignored", "joint '" + model.drivers[static_cast<std::size_t>(d)].name +
                                              "' does not move a crank and a coupler that carry the frame; it follows "
                                              "the start, not 'elbow'");

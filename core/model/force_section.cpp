@@ -100,6 +100,9 @@ class ForceEntry {
     if (found.empty() && !draft_.excused(*name)) {
       item.fail("unknown-name", "no body matches the pattern '" + *name + "'");
     }
+    std::vector<std::string> full;
+    for (const BodyId body : found) full.push_back(draft_.body_name(body));
+    item.note_names(std::move(full));
     return found;
   }
 

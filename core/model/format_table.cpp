@@ -165,8 +165,8 @@ constexpr FormatKey assembly[] = {
     {"max_iterations", "integer", "", "50", "Of Newton's method.", "100"}};
 
 constexpr FormatKey simulation[] = {
-    {"start", "quantity", "s", "0", "", "0 s"},
-    {"end", "quantity", "s", "start + 1 s", "", "2 s"},
+    {"start", "quantity", "s", "0", "When the run begins.", "0 s"},
+    {"end", "quantity", "s", "1 s", "When it ends, after its start.", "2 s"},
     {"step", "quantity | map step", "s", "0.1 ms", "Fixed steps; a map may let the error choose.", "10 us"},
     {"accuracy", "quantity", "m", "", "In place of `step`: positions err by about this much per second.", "1 um"},
     {"integrator", "name | map integrator", "", "the preferred one", "`freeplay list integrators` shows them.",
@@ -212,9 +212,9 @@ constexpr FormatKey analysis[] = {
     {"grid", "map pose_grid", "", "", "Poses.", "{x: {linspace: [0, 0.1, 11]}, y: 0}"},
     {"error", "map error", "", "", "Play that is looked at.", "{input: 0.1 deg}"}};
 
-constexpr FormatKey pose_grid[] = {{"x", "grid", "m", "", "", "{linspace: [0, 0.1, 11]}"},
-                                   {"y", "grid", "m", "", "", "[0, 0.05]"},
-                                   {"angle", "grid", "rad", "0", "", "10 deg"}};
+constexpr FormatKey pose_grid[] = {{"x", "grid", "m", "", "Of the frame.", "{linspace: [0, 0.1, 11]}"},
+                                   {"y", "grid", "m", "", "Of the frame.", "[0, 0.05]"},
+                                   {"angle", "grid", "rad", "0", "Of the frame.", "10 deg"}};
 
 constexpr FormatKey grid[] = {
     {"linspace", "list of quantity", "", "", "First value, last value, number of points.", "[0, 1, 11]"},

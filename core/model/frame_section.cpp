@@ -71,7 +71,9 @@ void add_body_frames(Draft& draft, const CheckedValue& body_entry, const Part& p
     if (!check_frame_name(entry, entry.key())) continue;
     // A template that adds a frame to an outer body marks it as its own.
     const bool outer = *id == ground;
-    add_frame(draft, entry, *id, outer ? part.full(entry.key()) : entry.key());
+    const std::string name = outer ? part.full(entry.key()) : entry.key();
+    entry.note_key(name);
+    add_frame(draft, entry, *id, name);
   }
 }
 
@@ -92,7 +94,9 @@ void add_listed_frame(Draft& draft, const CheckedValue& entry, const Part& part)
   }
   if (!check_frame_name(entry, name)) return;
   const bool own = !part.prefix.empty() && draft.body_name(*body).starts_with(part.prefix);
-  add_frame(draft, entry, *body, own ? name : part.full(name));
+  const std::string full = own ? name : part.full(name);
+  entry.note_key(draft.body_name(*body) + "/" + full);
+  add_frame(draft, entry, *body, full);
 }
 
 }  // namespace

@@ -35,23 +35,32 @@ Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y};
 
 }  // namespace
 
-std::optional<Leg> find_leg(const Model& model, int driven, int frame) {
-  const auto marker = [&](int m) -> const Marker& { return model.markers[static_cast<std::size_t>(m)]; };
-  const auto at = [&](int m) { return Point{marker(m).position[0], marker(m).position[1]}; };
+std::optional<LegChain> find_leg_chain(const Model& model, int driven, int frame) {
+  const auto body_of = [&](int m) { return model.markers[static_cast<std::size_t>(m)].body; };
   const auto is_pin = [&](int j) { return model.joints[static_cast<std::size_t>(j)].ideal_layout.pin != 0; };
 
   const JointElement& a = model.joints[static_cast<std::size_t>(driven)];
-  if (!is_pin(driven) || marker(a.marker_a).body != ground) return std::nullopt;
-  const BodyId crank = marker(a.marker_b).body, platform = marker(frame).body;
-  if (crank == platform) return std::nullopt;
+  const BodyId base = body_of(a.marker_a), crank = body_of(a.marker_b), platform = body_of(frame);
+  if (!is_pin(driven) || crank == ground || crank == platform || base == platform) return std::nullopt;
   const OtherEnd b = only_other_joint(model, crank, driven);
   if (b.joint < 0 || !is_pin(b.joint)) return std::nullopt;
-  const BodyId coupler = marker(b.far).body;
-  if (coupler == ground || coupler == platform) return std::nullopt;
+  const BodyId coupler = body_of(b.far);
+  if (coupler == ground || coupler == platform || coupler == base) return std::nullopt;
   const OtherEnd c = only_other_joint(model, coupler, b.joint);
-  if (c.joint < 0 || !is_pin(c.joint) || marker(c.far).body != platform) return std::nullopt;
+  if (c.joint < 0 || !is_pin(c.joint) || body_of(c.far) != platform) return std::nullopt;
+  return LegChain{a.marker_b, b.near, b.far, c.near, c.far};
+}
 
-  const Point ab = at(b.near) - at(a.marker_b), bc = at(c.near) - at(b.far), fc = at(c.far) - at(frame);
+std::optional<Leg> find_leg(const Model& model, int driven, int frame) {
+  const auto marker = [&](int m) -> const Marker& { return model.markers[static_cast<std::size_t>(m)]; };
+  const auto at = [&](int m) { return Point{marker(m).position[0], marker(m).position[1]}; };
+
+  const JointElement& a = model.joints[static_cast<std::size_t>(driven)];
+  if (marker(a.marker_a).body != ground) return std::nullopt;
+  const std::optional<LegChain> chain = find_leg_chain(model, driven, frame);
+  if (!chain) return std::nullopt;
+  const Point ab = at(chain->crank_at_b) - at(a.marker_b), bc = at(chain->coupler_at_c) - at(chain->coupler_at_b);
+  const Point fc = at(chain->platform_at_c) - at(frame);
   Leg leg;
   leg.name = a.name;
   leg.ax = at(a.marker_a).x;
@@ -64,12 +73,12 @@ std::optional<Leg> find_leg(const Model& model, int driven, int frame) {
   leg.crank_direction = std::atan2(ab.y, ab.x);
   leg.coupler_direction = std::atan2(bc.y, bc.x);
   leg.coordinate_offset = marker(a.marker_b).angle - marker(a.marker_a).angle;
-  leg.crank_body = crank;
-  leg.coupler_body = coupler;
+  leg.crank_body = marker(a.marker_b).body;
+  leg.coupler_body = marker(chain->coupler_at_b).body;
   leg.crank_pin_x = at(a.marker_b).x;
   leg.crank_pin_y = at(a.marker_b).y;
-  leg.coupler_pin_x = at(b.far).x;
-  leg.coupler_pin_y = at(b.far).y;
+  leg.coupler_pin_x = at(chain->coupler_at_b).x;
+  leg.coupler_pin_y = at(chain->coupler_at_b).y;
   return leg;
 }
 

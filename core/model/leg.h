@@ -27,7 +27,17 @@ struct Leg {
   double coupler_pin_x = 0.0, coupler_pin_y = 0.0;  ///< pin B in the coupler's body frame [m]
 };
 
-/// The leg that drives joint `driven` under a path of marker `frame`; nothing when the chain has another shape.
+/// Pin A - crank - pin B - coupler - pin C on the platform, as markers of the model. The crank hangs on ground or on
+/// another body.
+struct LegChain {
+  int crank_at_a = 0, crank_at_b = 0, coupler_at_b = 0, coupler_at_c = 0, platform_at_c = 0;
+};
+
+/// The chain that joint `driven` moves below marker `frame`; nothing when it has another shape.
+std::optional<LegChain> find_leg_chain(const Model& model, int driven, int frame);
+
+/// The leg on ground that drives joint `driven` under a path of marker `frame`; nothing when the chain has another
+/// shape.
 std::optional<Leg> find_leg(const Model& model, int driven, int frame);
 
 /// The leg of a driver by inverse kinematics whose path gives x, y and angle; nothing for other drivers.

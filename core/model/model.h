@@ -83,6 +83,7 @@ struct Driver {
   std::shared_ptr<const TimeTable> table;
   int kinematics = -1;  ///< index into Model::kinematics: motion by inverse kinematics
   int elbow = 1;        ///< working mode of the leg, 1 or -1
+  bool elbow_given = false;
 };
 
 /// The frame of an inverse-kinematics entry and its path. Its drivers are neighbours in Model::drivers.

@@ -35,7 +35,7 @@ class ModelBuilder {
         overrides_(options, diagnostics),
         parameters_(used_),
         presets_(used_),
-        reading_{&diagnostics, &parameters_, &presets_} {
+        reading_{&diagnostics, &parameters_, &presets_, options.readout} {
     draft_.top = &reading_;
     draft_.ideal_matched.assign(options.ideal.size(), false);
     for (const RegisteredLibrary& library : registry.libraries()) draft_.model.instances.keep(library);

@@ -139,7 +139,7 @@ class ParameterCheck {
     } else if (parameter.kind == ParameterKind::choice) {
       value.word = static_cast<int>(given);
     } else if (parameter.kind == ParameterKind::function) {
-      set_function(value, Expression(), given * unit.factor);
+      set_function(value, given * unit.factor);
     } else {
       value.number = given * unit.factor;
     }
@@ -218,7 +218,7 @@ class ParameterCheck {
   static bool read_function(const Unit& unit, const CheckedValue& written, ParameterValue& value) {
     std::optional<Expression> expression = written.time_function(unit.dimension);
     if (!expression) return false;
-    set_function(value, std::move(*expression), std::nullopt);
+    set_function(value, std::move(*expression), written.node());
     return true;
   }
 

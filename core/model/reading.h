@@ -9,12 +9,14 @@ namespace freeplay {
 
 class ParameterScope;
 class PresetTable;
+class Readout;
 
 /// One for the top level, one for each instance of a template. Referred to by every value that is read in it.
 struct Reading {
   Diagnostics* diagnostics;
   const ParameterScope* scope;
   const PresetTable* presets = nullptr;
+  Readout* readout = nullptr;  ///< keeps what is read, when somebody wants it
   std::string instance{};   ///< full name of the instance; empty at top level
   double start_time = 0.0;  ///< time functions are tried here [s]
 };

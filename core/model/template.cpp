@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "model/name_rule.h"
+#include "model/readout.h"
 
 namespace freeplay {
 namespace {
@@ -100,6 +101,7 @@ class InstanceExpansion {
     const CheckedValue body(inside, content.node(), content.key_node(), content.path());
     MapReader map(body, "template");
     add_parameters(entry, map.find("parameters"), with, given, inside, scope);
+    if (outer.readout != nullptr) outer.readout->add_instance(full, content.node());
     Part& part = draft_.parts.emplace_back();
     part.prefix = full + ".";
     for (const char* name : part_sections) {

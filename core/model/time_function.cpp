@@ -3,35 +3,50 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace freeplay {
 namespace {
 
-struct ServedFunction {
+struct WrittenFunction {
   Expression expression;
-  std::optional<double> constant;
+  Location begin;
+  bool places_inside;  ///< the text stands in the file as it is: characters of it are places there
 };
 
-Status evaluate(const void* self, double t, TimeValue* out, Message* message) noexcept {
-  const auto& function = *static_cast<const ServedFunction*>(self);
-  if (function.constant) {
-    *out = {*function.constant, 0.0, 0.0};
-    return Status::ok;
-  }
+Status evaluate_written(const void* self, double t, TimeValue* out, Message* message) noexcept {
+  const auto& function = *static_cast<const WrittenFunction*>(self);
   Jet jet;
   EvaluationFailure failure;
-  if (!function.expression.evaluate(t, jet, failure)) {
-    abi::copy_text(message->text, sizeof message->text, failure.reason);
-    return Status::failed;
+  if (function.expression.evaluate(t, jet, failure)) {
+    *out = {jet.value, jet.rate, jet.acceleration};
+    return Status::ok;
   }
-  *out = {jet.value, jet.rate, jet.acceleration};
+  const int column = function.begin.column + (function.places_inside ? failure.offset : 0);
+  const auto end = fmt::format_to_n(message->text, sizeof message->text - 1, "{}:{}:{}: {}", function.begin.file,
+                                    function.begin.line, column, failure.reason);
+  *end.out = '\0';
+  abi::copy_text(message->id, sizeof message->id, failure.id);
+  return Status::bad_parameter;
+}
+
+Status evaluate_constant(const void* self, double, TimeValue* out, Message*) noexcept {
+  *out = {*static_cast<const double*>(self), 0.0, 0.0};
   return Status::ok;
 }
 
 }  // namespace
 
-void set_function(ParameterValue& value, Expression expression, std::optional<double> constant) {
-  const auto served = std::make_shared<const ServedFunction>(ServedFunction{std::move(expression), constant});
-  value.function = {&evaluate, served.get()};
+void set_function(ParameterValue& value, double constant) {
+  const auto served = std::make_shared<const double>(constant);
+  value.function = {&evaluate_constant, served.get()};
+  value.function_owner = served;
+}
+
+void set_function(ParameterValue& value, Expression expression, const Node& node) {
+  const auto served = std::make_shared<const WrittenFunction>(
+      WrittenFunction{std::move(expression), node.location_at(0), node.verbatim});
+  value.function = {&evaluate_written, served.get()};
   value.function_owner = served;
 }
 

@@ -1,14 +1,17 @@
 // Time functions of components: an expression behind the plain function that crosses the plugin boundary.
 #pragma once
 
-#include <optional>
-
 #include "base/expression.h"
 #include "component/parameter_block.h"
+#include "model/document.h"
 
 namespace freeplay {
 
-/// Makes `value` serve the expression, or the constant when there is one.
-void set_function(ParameterValue& value, Expression expression, std::optional<double> constant);
+/// Makes `value` serve a constant.
+void set_function(ParameterValue& value, double constant);
+/// Makes `value` serve the expression that is written at `node`. Where it has no value, its call fails with
+/// Status::bad_parameter, the id of the failure and a text that begins with the place: so a type that passes the
+/// failure on tells that not it but the model file is at fault.
+void set_function(ParameterValue& value, Expression expression, const Node& node);
 
 }  // namespace freeplay

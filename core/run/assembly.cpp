@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "linear/row_solutions.h"
+#include "run/gear_turns.h"
+#include "run/leg_modes.h"
 #include "run/newton_stage_solver.h"
 #include "run/placing.h"
 #include "system/path_follower.h"
@@ -23,6 +27,10 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 [[noreturn]] void throw_fault(const Model& model, const Fault& fault) {
   if (fault.kind == Fault::Kind::motion) throw_motion_fault(model, fault.motion, Error::Category::input);
   const JointElement& joint = model.joints[at(fault.joint)];
+  if (fault.of_expression()) {
+    throw Error(Error::Category::input, fault.message.id, fmt::format("joint '{}': {}", joint.name, fault.message.text),
+                joint.location);
+  }
   throw Error(Error::Category::plugin, "plugin-failed",
               fmt::format("joint '{}' of {} failed while the model was assembled: {}", joint.name,
                           model.instances.words_of(*joint.component), fault.message.text),
@@ -63,6 +71,8 @@ class Assembler {
   }
 
   void evaluate(unsigned terms) {
+    if (!closed_.evaluate(point(state_), terms | term_coordinate, e_)) throw_fault(model_, e_.fault);
+    if (!gear_turns_ || !gear_turns_->recount(e_.coordinate, state_.h())) return;
     if (!closed_.evaluate(point(state_), terms | term_coordinate, e_)) throw_fault(model_, e_.fault);
   }
 
@@ -108,12 +118,19 @@ class Assembler {
     }
   }
 
-  // Angles are counted from the value that a joint leads or is driven to, else from (-pi, pi].
+  // Angles are counted from the value that a joint leads or is driven to, else as a gear says, else from (-pi, pi].
   void remember_turns() {
+    count_gears(false);
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const int turn = closed_.layout().turn(j);
       if (turn >= 0) state_.h()[at(turn)] = std::isnan(held_[at(j)]) ? 0.0 : held_[at(j)];
     }
+  }
+
+  void count_gears(bool from_slides) {
+    std::vector<bool> counted;
+    for (const double held : held_) counted.push_back(!std::isnan(held));
+    gear_turns_.emplace(model_, closed_.layout(), std::move(counted), from_slides);
   }
 
   // Driven joints without a closed form: the ideal mechanism stands on the paths, which tells where the joints are now
@@ -121,6 +138,11 @@ class Assembler {
   void follow_paths() {
     hold_followed_drivers(false);
     solve_positions();
+    bool bent = false;
+    for (std::size_t k = 0; k < followed_.size(); ++k) {
+      if (followed_[k]) bent = bend_legs(model_, model_.kinematics[k], state_.q()) || bent;
+    }
+    if (bent) solve_positions();
     check_paths();
     system_.motions().follow(std::make_shared<const PathFollower>(closed_, state_.q(), state_.h()));
     hold_followed_drivers(true);
@@ -269,6 +291,17 @@ class Assembler {
     return now;
   }
 
+  // A rack that other joints put far away has turned its pinion more than half a turn.
+  bool converge_from_slides(const std::vector<double>& guess) {
+    const auto fixed = [](const Gear& gear) { return gear.offset.has_value(); };
+    if (std::ranges::none_of(model_.gears, fixed)) return false;
+    count_gears(true);
+    std::ranges::copy(guess, state_.q().begin());
+    if (holds(converge())) return true;
+    count_gears(false);
+    return false;
+  }
+
   bool holds(const Rows& now) const { return largest(now.residual) <= model_.settings.assembly_tolerance; }
 
   // Newton cannot leave a guess with all links in one line, where no small turn changes the gap at first order: files
@@ -289,13 +322,10 @@ class Assembler {
     const std::vector<double> guess(state_.q().begin(), state_.q().end());
     Rows now = converge();
     if (!holds(now)) {
-      if (!paths_.empty()) {
-        check_paths();
-        report_gap(now);
-      }
       const std::vector<double> nearest(state_.q().begin(), state_.q().end());
-      if (!converge_from_turned(guess)) {
+      if (!converge_from_slides(guess) && !converge_from_turned(guess)) {
         std::ranges::copy(nearest, state_.q().begin());
+        if (!paths_.empty()) check_paths();
         report_gap(rows(false));
       }
     }
@@ -554,6 +584,7 @@ class Assembler {
   std::vector<int> leads_;      // joints that lead and are not driven
   std::vector<char> held_row_;  // rows of the closed system that hold positions
   std::vector<char> followed_;  // inverse-kinematics entries with drivers without a closed form
+  std::optional<GearTurns> gear_turns_;
   std::vector<PathRow> paths_;  // that hold positions in place of their drivers
 };
 

@@ -267,17 +267,20 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
     factor.matrix.solve(right_, update_);
     for (std::size_t i = 0; i < nv; ++i) x_a[i] += update_[i];
     for (std::size_t r = 0; r < nc; ++r) x_c[r] += update_[nv + r];
-    double change = norm(std::span(update_).first(nv)) / std::max({norm(x_a), scale, smallest});
+    const double moved = norm(std::span(update_).first(nv)), pressed = largest(std::span(update_).subspan(nv));
+    if (!std::isfinite(moved) || !std::isfinite(pressed)) {
+      trouble_ = "a number in the state is not finite";
+      return false;
+    }
+    double change = moved / std::max({norm(x_a), scale, smallest});
     if (multipliers) {
       // Multipliers that vanish are right to the rounding of the forces and inertias that leave nothing over.
       double forces = std::max(largest(x_c), largest(right_a_));
       for (std::size_t i = 0; i < nv; ++i) forces = std::max(forces, std::abs(system_.mass()[i] * x_a[i]));
-      change = std::max(change, largest(std::span(update_).subspan(nv)) / std::max(forces, smallest));
+      change = std::max(change, pressed / std::max(forces, smallest));
     }
-    if (!std::isfinite(change)) {
-      trouble_ = "a number in the state is not finite";
-      return false;
-    }
+    // What becomes exactly zero has no relative change.
+    change = std::min(change, std::numeric_limits<double>::max());
     const double ratio = change / previous;
     previous = change;
     const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;

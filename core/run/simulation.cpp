@@ -136,6 +136,10 @@ bool Simulation::Impl::fail_with(const Fault& fault, double t) {
     return fail(4, fmt::format("t = {:.9g} s: {}{} [{}]", t, who, motion.text, motion.id));
   }
   const JointElement& joint = model.joints[at(fault.joint)];
+  if (fault.of_expression()) {
+    return fail(4,
+                fmt::format("t = {:.9g} s: joint '{}': {} [{}]", t, joint.name, fault.message.text, fault.message.id));
+  }
   return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
                              model.instances.words_of(*joint.component), fault.message.text));
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "linear/sparse_matrix.h"
@@ -42,7 +43,13 @@ struct Fault {
   enum class Kind { none, plugin, motion } kind = Kind::none;
   int joint = -1;      ///< index into Model::joints
   MotionFault motion;  ///< kind motion
-  Message message;     ///< kind plugin
+  Message message{};   ///< kind plugin
+
+  /// A joint failed because an expression of the model file, which it evaluates, has no value.
+  bool of_expression() const {
+    const std::string_view id = message.id;
+    return kind == Kind::plugin && (id == "bad-expression" || id == "bad-number");
+  }
 };
 
 /// Rows of one element in the columns of one body: `rows` x 3 numbers from `offset` of Evaluation::jacobian.

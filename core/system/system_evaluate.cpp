@@ -141,6 +141,7 @@ bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation
 
 /// Notes what a joint has done wrong. A point that is no number itself is nobody's fault but the iteration's.
 bool System::refuse(int joint, const char* why, Evaluation& e) {
+  e.fault.message.id[0] = '\0';
   abi::copy_text(e.fault.message.text, sizeof e.fault.message.text, why);
   e.fault.kind = Fault::Kind::plugin;
   e.fault.joint = joint;

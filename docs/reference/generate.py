@@ -31,7 +31,9 @@ def sort_of(schema):
     """What may stand under a key, in words."""
     if "$ref" in schema:
         name = schema["$ref"].split("/")[-1]
-        return name if name in ("quantity", "vector", "text") else "[%s](#%s)" % (name, name)
+        if name in ("quantity", "integer", "time-function", "vector", "text"):
+            return name.replace("-", " ")
+        return "[%s](#%s)" % (name, name)
     if "anyOf" in schema:
         return " or ".join(sort_of(one) for one in schema["anyOf"])
     if "enum" in schema:
@@ -39,6 +41,8 @@ def sort_of(schema):
         return ", ".join(code(word) for word in words) if len(words) < 9 else "name"
     if "const" in schema:
         return code(schema["const"])
+    if schema.get("type") == "boolean":
+        return "`true`, `false`"
     if schema.get("type") == "array":
         return "list of " + sort_of(schema["items"])
     if isinstance(schema.get("additionalProperties"), dict):
@@ -74,8 +78,9 @@ def model_page(schema):
                    "this page is for looking up. Parameters of types are on the pages of [joints](joints.md), "
                    "[contact laws](contact-laws.md), [friction laws](friction-laws.md) and "
                    "[integrators](integrators.md). Keys that begin with `x-` are notes and are ignored everywhere.\n\n"
-                   "A *quantity* is a number or an expression, with a unit if it is not SI; where it may depend on "
-                   "time, it may hold `t`. A *vector* is a list of two quantities.\n\n")
+                   "A *quantity* is a number or an expression, with a unit if it is not SI; a *time function* is one "
+                   "that may hold `t`, an *integer* one that comes to a whole number. A *vector* is a list of two "
+                   "quantities.\n\n")
     text += map_section("", schema)
     for name, definition in schema["$defs"].items():
         if "x-where" in definition and name not in ("joint", "force", "integrator"):

@@ -74,7 +74,7 @@ NOT_LOADED = {
 }
 
 # Probes that have tests of their own below.
-APART = {"closes_files", "never_returns", "hangs_at_load", "eats_memory", "prints", "mixed"}
+APART = {"closes_files", "never_returns", "hangs_at_load", "eats_memory", "prints", "mixed", "absent_ideal"}
 
 
 def probe(name):

@@ -18,6 +18,44 @@ def commands(page):
     return [line for block in blocks for line in block.splitlines() if line and not line.startswith("#")]
 
 
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def words_and_numbers(text):
+    """Printed text with its numbers apart; what depends on the hour and on rounding left out."""
+    text = re.sub(r"[^ ]+ s wall|position residual .*", "...", text)
+    return NUMBER.sub("#", text), [float(number) for number in NUMBER.findall(text)]
+
+
+class Tutorial:
+    """A page that is followed: files and changes of files in yaml blocks behind a comment, commands in sh blocks, and
+    behind these what they print."""
+
+    PIECES = re.compile(r"^(?:<!-- (?P<what>[^\n]*) -->\n)?```(?P<kind>sh|yaml|)\n(?P<text>.*?)^```$", re.M | re.S)
+
+    def __init__(self, page):
+        with open(os.path.join(ROOT, "docs", page), encoding="utf-8") as file:
+            self.page = file.read()
+
+    def pieces(self):
+        return self.PIECES.finditer(self.page)
+
+    @staticmethod
+    def change(folder, what, text):
+        """`file NAME`, `in NAME from "A" to "B"` (B stays), or `in NAME the line "A"`."""
+        new, part, line = (re.fullmatch(pattern, what) for pattern in (
+            r"file (.*)", r'in (.*) from "(.*)" to "(.*)"', r'in (.*) the line "(.*)"'))
+        name = os.path.join(folder, (new or part or line)[1])
+        if not new:
+            with open(name, encoding="utf-8") as file:
+                old = file.read()
+            begin = old.index("\n" + (part or line)[2]) + 1
+            end = old.index("\n" + part[3]) if part else old.index("\n", begin) + 1
+            text = old[:begin] + text + old[end:]
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
+
+
 class Documentation(ProgramTest):
     """In an empty folder that sees the mechanisms; ./dev stands for the program where it only passes on."""
 
@@ -42,6 +80,30 @@ class Documentation(ProgramTest):
     def test_getting_started(self):
         self.run_page(os.path.join("docs", "getting-started.md"))
 
+    def test_first_mechanism(self):
+        printed = shown = None
+        for piece in Tutorial("first-mechanism.md").pieces():
+            if piece["kind"] == "yaml":
+                Tutorial.change(self.folder, piece["what"], piece["text"])
+            elif piece["kind"] == "sh":
+                printed = ""
+                for line in piece["text"].splitlines():
+                    command, _, code = line.partition("  # exit code ")
+                    words = shlex.split(command)
+                    self.assertEqual("./dev", words[0], line)
+                    out, err = self.freeplay(*words[1:], code=int(code or 0))
+                    printed = out + err
+            else:
+                shown = piece["text"]
+                words, numbers = words_and_numbers(printed)
+                expected_words, expected = words_and_numbers(shown)
+                self.assertEqual(expected_words, words)
+                for x, y in zip(expected, numbers, strict=True):
+                    self.assertLessEqual(abs(x - y), 1e-6 * abs(x), shown)
+        self.assertIsNotNone(shown)
+        with open(os.path.join(ROOT, "docs", "images", "press.svg"), encoding="utf-8") as file:
+            self.assertEqual(self.read("press.svg"), file.read())
+
     def test_check_plugin_page(self):
         page = os.path.join("docs", "check-plugin.md")
         self.run_page(page)
@@ -63,6 +125,23 @@ class Documentation(ProgramTest):
         self.write("rocker.urdf", re.search(r"^```xml\n(.*?)^```", text, re.M | re.S)[1])
         self.write("rocker.yaml", re.search(r"^```yaml\n(.*?)^```", text, re.M | re.S)[1])
         self.freeplay("run", "rocker.yaml")
+
+    def test_text_is_read_as_the_model_page_says(self):
+        with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
+            rows = re.findall(r"^\| `(.*)` \| (?:`([a-z-]+)`|([\d.]+)) \|$", file.read(), re.M)
+        self.assertLess(10, len(rows))
+        for written, wrong, number in rows:
+            with self.subTest(written):
+                self.write("m.yaml", "freeplay: 1\nbodies: {b: {mass: %s, inertia: 1}}\n" % written)
+                out, err = self.freeplay("show", "m.yaml", "--format", "json", code=3 if wrong else 0)
+                if wrong:
+                    self.assertIn("[%s]" % wrong, err)
+                else:
+                    self.assertEqual(float(number), json.loads(out)["bodies"]["b"]["mass"])
+        for written in ("yes", "on", "True", "1"):
+            self.write("m.yaml", "freeplay: 1\nbodies: {b: {mass: 1, inertia: 1}}\n"
+                                 "simulation: {step: {adaptive: %s}}\n" % written)
+            self.assertIn("[wrong-type]", self.freeplay("validate", "m.yaml", code=3)[1])
 
     def test_pieces_of_the_model_page_are_a_model(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:

@@ -75,6 +75,14 @@ class HonestJoints(ProgramTest):
         report = json.loads(self.freeplay("check-plugin", LIBRARY, "--json")[0])
         self.assertTrue(report["ok"])
 
+    def test_an_expression_that_a_joint_evaluates_fails_at_its_own_place(self):
+        self.write("m.yaml", PIN.replace("0.1 m * sin(8*t)", "0.1 m * log(0.25 - t)"))
+        _, err = self.freeplay("run", "m.yaml", "--plugin", LIBRARY, "--out", "r", code=4)
+        self.assertRegex(err, r"joint 'pin': m\.yaml:4:70: logarithm of a number that is not positive \[bad-expression\]")
+        self.assertNotIn("plugin", err)
+        rows = self.read("r", "results.csv").splitlines()
+        self.assertAlmostEqual(0.25, float(rows[-1].split(",")[0]), delta=0.0101)
+
 
 if __name__ == "__main__":
     unittest.main()

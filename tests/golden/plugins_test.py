@@ -137,6 +137,20 @@ class ProbesTest(ProgramTest):
         _, err = self.freeplay("list", "--plugin", "./text.so", code=5)
         self.assertIn("cannot be loaded", err)
 
+    def test_an_ideal_type_that_is_not_there_is_refused_before_it_is_used(self):
+        for command in (("run", mechanism("pendulum")), ("list",)):
+            _, err = self.freeplay(*command, "--plugin", probe("absent_ideal"), code=5)
+            self.assertRegex(err, "the ideal type 'no-such-pin' of its joint 'probe' is not there.*plugin-refused")
+        os.mkdir(self.path("found"))
+        shutil.copy(probe("absent_ideal"), self.path("found"))
+        _, err = self.freeplay("validate", mechanism("pendulum"), environment={"FREEPLAY_PLUGIN_PATH": self.path("found")})
+        self.assertIn("warning: plugin", err)
+
+    def test_the_log_of_a_run_names_its_plugins(self):
+        self.write("m.yaml", TWISTED % ("plugins: [%s]\n" % EXAMPLE))
+        self.freeplay("run", "m.yaml", "--out", "r", "--end", "1 ms")
+        self.assertRegex(self.read("r", "run.log"), r"note: plugin \S+ \S+, compiler .+, from %s" % re.escape(EXAMPLE))
+
     def test_a_name_of_a_built_in_type_is_refused(self):
         _, err = self.freeplay("run", mechanism("pendulum"), "--plugin", probe("name_clash"), code=5)
         self.assertIn("brings the joint 'revolute', which 'built-in' has already [plugin-clash]", err)

@@ -3,6 +3,7 @@ import csv
 import json
 import math
 import os
+import re
 import subprocess
 import unittest
 
@@ -35,7 +36,26 @@ LOOPS = {
       <axis><xyz>0 -1 0</xyz></axis>
     </joint>
   </gazebo>""",
+    "two-parents": """<link name="end"/>
+  <joint name="weld" type="fixed">
+    <parent link="right_rod"/> <child link="end"/> <origin xyz="0.25 0 0"/>
+  </joint>
+  <joint name="tip" type="continuous">
+    <parent link="left_rod"/> <child link="end"/> <origin xyz="0.25 0 0"/> <axis xyz="0 -1 0"/>
+  </joint>""",
 }
+
+
+def four_bar_loop(dialect):
+    """The closing element of the four-bar of four_bar_loop.urdf, in the plane xy."""
+    text = LOOPS[dialect].replace("0 -1 0", "0 0 1").replace('"tip"', '"C"')
+    text = text.replace("left_rod", "coupler").replace("right_rod", "rocker")
+    # 0.25 m is right for the rocker, which is where gazebo counts from; the coupler is 0.3 m long.
+    if dialect == "gazebo":
+        return text
+    at = text.index("coupler")
+    place = text.index("0.25 0 0", at)
+    return text[:place] + "0.3 0 0" + text[place + len("0.25 0 0"):]
 
 
 def link(name, mass, com, inertia):
@@ -62,6 +82,16 @@ def knee_angles():
     height = math.sqrt(0.25 ** 2 - half ** 2)
     tip = (knees[0][0] + dx / 2 - dy / (2 * half) * height, knees[0][1] + dy / 2 + dx / (2 * half) * height)
     return a, b, [math.atan2(tip[1] - y, tip[0] - x) for x, y in knees]
+
+
+def closed_four_bar():
+    """Angles of crank, coupler and rocker of four_bar_twin.yaml: two circles about the crank's tip and the far pin."""
+    a = math.radians(60)
+    x, y = 0.4 - 0.1 * math.cos(a), -0.1 * math.sin(a)
+    gap = math.hypot(x, y)
+    coupler = math.atan2(y, x) + math.acos((0.3 ** 2 + gap ** 2 - 0.25 ** 2) / (2 * 0.3 * gap))
+    tip = (0.1 * math.cos(a) + 0.3 * math.cos(coupler), 0.1 * math.sin(a) + 0.3 * math.sin(coupler))
+    return a, coupler, math.atan2(tip[1], tip[0] - 0.4)
 
 
 def five_bar(dialect):
@@ -108,6 +138,28 @@ class Loops(UrdfTest):
         self.assertEqual(self.read("four_bar_loop.urdf"),
                          self.read("four_bar_sidecar.yaml.out", "inputs", "four_bar_loop.urdf"))
 
+    def test_a_four_bar_in_every_dialect_runs_like_its_twin(self):
+        twin = self.columns(self.copy("four_bar_twin.yaml"))
+        sidecar, robot = self.read_data("four_bar_sidecar.yaml"), self.read_data("four_bar_loop.urdf")
+        self.assertIn("  <loop ", robot)
+        for dialect in LOOPS:
+            with self.subTest(dialect=dialect):
+                text = robot[:robot.index("  <loop ")] + "  " + four_bar_loop(dialect) + "\n</robot>\n"
+                side = sidecar.replace("four_bar_loop.urdf", "{file: %s.urdf, loops: %s}" % (
+                    dialect, "two-parents" if dialect == "two-parents" else "elements"))
+                if dialect == "gazebo":
+                    # Such a joint stands where the tree puts its link, so the tree stands closed.
+                    a, coupler, rocker = closed_four_bar()
+                    for name, place, turn in (("crank", "", a), ("coupler", "0.1 0 0", coupler - a),
+                                              ("rocker", "0.4 0 0", rocker)):
+                        old = '<child link="%s"/>\n' % name + ('    <origin xyz="%s"/>\n' % place if place else "")
+                        self.assertIn(old, text)
+                        text = text.replace(old, '<child link="%s"/>\n    <origin xyz="%s" rpy="0 0 %r"/>\n' % (
+                            name, place or "0 0 0", turn))
+                    side = re.sub(r"bodies:\n(  .*\n)+|initial: .*\n", "", side)
+                self.write(dialect + ".urdf", text)
+                self.assert_same_motion(twin, self.columns(self.write(dialect + ".yaml", side)))
+
     def test_a_five_bar_in_every_dialect_runs_like_its_twin(self):
         twin = self.columns(self.copy("five_bar_twin.yaml"))
         text = self.read("five_bar_twin.yaml")
@@ -115,7 +167,9 @@ class Loops(UrdfTest):
         for dialect in LOOPS:
             with self.subTest(dialect=dialect):
                 self.write(dialect + ".urdf", five_bar(dialect))
-                head = "freeplay: 1\nurdf: {file: %s.urdf, plane: xz}\ngravity: [0, -9.81]\n" % dialect
+                loops = "two-parents" if dialect == "two-parents" else "elements"
+                head = "freeplay: 1\nurdf: {file: %s.urdf, plane: xz, loops: %s}\ngravity: [0, -9.81]\n" % (
+                    dialect, loops)
                 if dialect == "gazebo":
                     tail = rest[:rest.index("initial:")] + rest[rest.index("simulation:"):]
                 else:

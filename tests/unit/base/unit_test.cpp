@@ -64,6 +64,8 @@ TEST(Unit, TakesTheUnitThatAWordChooses) {
 
 TEST(Unit, TakesAnExponentFromANamedParameter) {
   const auto lookup = [](std::string_view name) { return name == "exponent" ? std::optional(1.5) : std::nullopt; };
+  const auto nested = [](std::string_view name) { return name == "law.n" ? std::optional(2.0) : std::nullopt; };
+  EXPECT_EQ(parse_unit("N/m^law.n*s", nested).dimension, (Dimension{1, -1, -1}));
   const Unit unit = parse_unit("N/mm^exponent", lookup);
   EXPECT_NEAR(unit.factor, 31622.776601683795, 1e-9);  // 10^4.5
   EXPECT_EQ(unit.dimension, (Dimension{1, -0.5, -2}));

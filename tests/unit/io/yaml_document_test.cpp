@@ -154,6 +154,17 @@ TEST(ReadYaml, IsAsStrictAsTheSpecification) {
   EXPECT_EQ(errors("a: [\n\t1]\n"), "2:1 yaml-syntax");
   EXPECT_EQ(errors("a:\n\tb: 1\n"), "2:1 yaml-syntax");
   EXPECT_EQ(errors("%YAML 1.2\n"), "1:1 yaml-syntax");
+  EXPECT_EQ(errors("%YAML 1.2\n...\n"), "1:1 yaml-syntax");
+  EXPECT_EQ(errors("# x\n%YAML 1.2\na: 1\n"), "2:1 yaml-syntax");
+  EXPECT_EQ(errors("a: 1\n%YAML 1.2\n"), "2:1 yaml-syntax");
+  EXPECT_EQ(errors("%YAML 1.2\n\n# x\n---\na: 1\n"), "");
+  EXPECT_EQ(errors("a: [b,\nc]\n"), "2:1 yaml-syntax");
+  EXPECT_EQ(errors("a:\n  b: {c: 1,\n  d: 2}\n"), "3:3 yaml-syntax");
+  EXPECT_EQ(errors("- [a,\nb]\n"), "2:1 yaml-syntax");
+  EXPECT_EQ(errors("a: [b,\n# x\n\n c\n]\nd: {\n  e: 1\n}\n"), "");
+  EXPECT_EQ(errors("[a,\nb]\n"), "");
+  EXPECT_EQ(errors("a: ># x\n  b\n"), "1:5 yaml-syntax");
+  EXPECT_EQ(errors("a: >2- # x\n  b\n"), "");
   EXPECT_EQ(errors("a: [x#y, -1, 'it''s', \"b\": 2, c:d] # fine\n"), "");
   EXPECT_EQ(errors("? a\n? b\n"), "");
 }

@@ -1,0 +1,176 @@
+"""A sound model with one mistake at a time: its id, its place, the word that was meant."""
+import json
+import unittest
+
+from program import ProgramTest
+
+SOUND = """freeplay: 1
+parameters: {a: 1}
+bodies:
+  rod: {mass: $a, inertia: 1, com: [0.5, 0], frames: {tip: [1, 0]}}
+  bob: {mass: 1, inertia: 1}
+joints:
+  A: {type: revolute, between: [ground, rod]}
+  B: {type: revolute, between: [rod/tip, bob]}
+drivers:
+  m: {joint: A, kind: angle, value: 3*t}
+forces:
+  w: {type: force, at: bob, value: [1, 0]}
+initial: {joints: {B: 30 deg}}
+simulation: {end: 2, step: 1 ms}
+"""
+LEG = "freeplay: 1\ntemplates: {leg: {parameters: {l: required, k: 1}, bodies: {b: {mass: $l, inertia: $k}}}}\n"
+FORCE = "  w: {type: force, at: bob, value: [1, 0]}"
+PIN = "  B: {type: revolute, between: [rod/tip, bob]}"
+MOTOR = "  m: {joint: A, kind: angle, value: 3*t}"
+
+# What is replaced (None: the whole file), by what; id, line, column and the suggestion, where there is one.
+MISTAKES = [
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, reducers: {r: {channel: joint.A.angel, reduce: max}}}', 'unknown-name', 2, 55, 'joint.A.angle'),
+    ('mass: $a', 'mas: $a', 'unknown-key', 4, 9, 'mass'),
+    ('bodies:\n', 'bodys:\n', 'unknown-key', 3, 1, 'bodies'),
+    ('type: revolute, between: [ground', 'type: revolut, between: [ground', 'unknown-type', 7, 13, 'revolute'),
+    ('rod/tip, bob', 'rod/tipp, bob', 'unknown-name', 8, 33, 'tip'),
+    ('rod/tip, bob', 'rodd/tip, bob', 'unknown-name', 8, 33, 'rod'),
+    ('joint: A', 'joint: a', 'unknown-name', 10, 14, 'A'),
+    ('kind: angle', 'kind: angel', 'wrong-type', 10, 23, 'angle'),
+    ('kind: angle', 'kind: position', 'wrong-type', 10, 23),
+    ('kind: angle', 'kind: force', 'wrong-type', 10, 23),
+    ('value: 3*t}', 'value: 3*t, table: x.csv}', 'conflicting-keys', 10, 42),
+    ('value: 3*t}', 'table: x.csv}', 'file-not-found', 10, 37),
+    (', value: 3*t}', '}', 'missing-key', 10, 3),
+    ('value: 3*t', 'value: 3 m', 'dimension-mismatch', 10, 37),
+    ('value: 3*t', 'value: sqrt(t-1)', 'bad-expression', 10, 37),
+    ('at: bob', 'at: bobb', 'unknown-name', 12, 24, 'bob'),
+    ('value: [1, 0]', 'value: [1]', 'wrong-length', 12, 36),
+    ('value: [1, 0]', 'value: 1', 'wrong-type', 12, 36),
+    ('value: [1, 0]', 'value: [1, 0, 0]', 'wrong-length', 12, 36),
+    ('B: 30 deg', 'A: 30 deg', 'conflicting-keys', 13, 20),
+    ('B: 30 deg', 'C: 30 deg', 'unknown-name', 13, 20),
+    ('B: 30 deg', 'B: 30 mm', 'dimension-mismatch', 13, 23),
+    ('B: 30 deg', 'B: 30 grad', 'bad-unit', 13, 26),
+    ('end: 2', 'end: -1', 'out-of-range', 14, 19),
+    ('end: 2', 'end: 2 m', 'dimension-mismatch', 14, 19),
+    ('step: 1 ms', 'step: 0', 'out-of-range', 14, 28),
+    ('step: 1 ms', 'step: {size: 1 ms, adaptiv: true}', 'unknown-key', 14, 41, 'adaptive'),
+    ('step: 1 ms', 'step: {size: 1 ms, adaptive: yes}', 'wrong-type', 14, 51),
+    ('step: 1 ms', 'step: 1 ms, accuracy: 1 um', 'conflicting-keys', 14, 34),
+    ('step: 1 ms', 'step: 1 ms, integrator: bath', 'unknown-type', 14, 46, 'bathe'),
+    ('step: 1 ms', 'step: 1 ms, integrator: {type: bathe, rho: 1}', 'unknown-key', 14, 60),
+    ('step: 1 ms', 'step: 1 ms, integrator: {type: bathe, split: 1.2}', 'out-of-range', 14, 67),
+    ('step: 1 ms', 'step: 1 ms, integrator: {split: 0.2}', 'missing-key', 14, 34),
+    ('step: 1 ms', 'step: 1 ms, integrator: {type: newmark, newton: {tolerence: 1}}', 'unknown-key', 14, 71, 'tolerance'),
+    ('step: 1 ms', 'step: 1 ms, output: {channels: [joint.Z.*]}', 'unknown-name', 14, 54),
+    ('step: 1 ms', 'step: 1 ms, output: {frames: [rod/tap]}', 'unknown-name', 14, 52, 'tip'),
+    ('step: 1 ms', 'step: 1 ms, output: {format: xls}', 'wrong-type', 14, 51),
+    ('step: 1 ms', 'step: 1 ms, stop: [{channel: joint.A.angle}]', 'missing-key', 14, 41),
+    ('step: 1 ms', 'step: 1 ms, stop: [{channel: joint.A.angle, above: 1, below: 2}]', 'conflicting-keys', 14, 76),
+    ('step: 1 ms', 'step: 1 ms, stop: [{channel: joint.A.angel, above: 1}]', 'unknown-name', 14, 51, 'joint.A.angle'),
+    ('step: 1 ms', 'step: 1 ms, stop: [{channel: joint.A.angle, above: 1 m}]', 'dimension-mismatch', 14, 73),
+    ('[ground, rod]', '[ground, ground]', 'same-body', 7, 32),
+    ('[ground, rod]', '[rod, rod/tip]', 'same-body', 7, 32),
+    ('[ground, rod]', '[ground]', 'wrong-length', 7, 32),
+    ('[ground, rod]', 'ground', 'wrong-type', 7, 32),
+    ('  bob: {mass', '  ground: {mass', 'unknown-key', 5, 12),
+    ('  bob: {mass: 1', '  bob: {mass: 0', 'out-of-range', 5, 15),
+    ('  bob: {mass: 1', '  bob: {mass: -1 kg', 'out-of-range', 5, 15),
+    ('  bob: {mass: 1', '  bob: {mass: 1, mass: 2', 'duplicate-key', 5, 18),
+    ('  bob: {mass: 1, inertia: 1', '  bob: {mass: 1', 'missing-key', 5, 3),
+    ('  bob:', '  rod:', 'duplicate-key', 5, 3),
+    ('  bob:', '  2bob:', 'bad-name', 5, 3),
+    ('  bob:', '  bob.x:', 'bad-name', 5, 3),
+    ('tip: [1, 0]', 'com: [1, 0]', 'reserved-name', 4, 55),
+    ('tip: [1, 0]', 'origin: [1, 0]', 'reserved-name', 4, 55),
+    ('tip: [1, 0]', 'tip: {polar: [1, 0], position: [1, 0]}', 'conflicting-keys', 4, 61),
+    ('tip: [1, 0]', 'tip: {polar: [1 m, 30]}, tap: {polar: [1, 2 m]}', 'dimension-mismatch', 4, 97),
+    ('parameters: {a: 1}', 'parameters: {a: $b, b: $a}', 'cyclic-parameter', 2, 14),
+    ('parameters: {a: 1}', 'parameters: {a: $a}', 'cyclic-parameter', 2, 14),
+    ('parameters: {a: 1}', 'parameters: {a: 1, t: 2}', 'reserved-name', 2, 20),
+    ('parameters: {a: 1}', 'parameters: {a: 1, b-c: 2}', 'bad-name', 2, 20),
+    ('parameters: {a: 1}', 'parameters: {a: t}', 'time-not-allowed', 2, 17),
+    ('parameters: {a: 1}', 'parameters: {b: 1}', 'unknown-name', 4, 15),
+    ('mass: $a', 'use: pp, mass: $a', 'unknown-name', 4, 14),
+    ('freeplay: 1', 'freeplay: 2', 'bad-version', 1, 11),
+    ('freeplay: 1', 'freeplay: 1\nspace: plan', 'wrong-type', 2, 8),
+    ('freeplay: 1', 'freeplay: 1\nspace: spatial', 'type-space', 2, 8),
+    ('freeplay: 1', 'freeplay: 1\ngravity: -9.81', 'wrong-type', 2, 10),
+    ('freeplay: 1', 'freeplay: 1\ngravity: [0, -9.81 m/s]', 'dimension-mismatch', 2, 14),
+    ('freeplay: 1', 'freeplay: 1\nplugins: [./no.so]', 'plugin-not-found', 2, 11),
+    ('freeplay: 1', 'freeplay: 1\nplugins: x', 'wrong-type', 2, 10),
+    ('freeplay: 1', 'freeplay: 1\nurdf: no.urdf', 'file-not-found', 2, 7),
+    ('freeplay: 1', 'freeplay: 1\nurdf: {file: no.urdf, plane: zx}', 'wrong-type', 2, 30),
+    ('freeplay: 1', 'freeplay: 1\ninstances: {x: {template: y}}', 'unknown-name', 2, 27),
+    ('freeplay: 1', 'freeplay: 1\ninstances: {x: {count: 1}}', 'missing-key', 2, 13),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg}}', 'missing-key', 3, 13),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, with: {l: 1, j: 2}}}', 'unknown-key', 3, 45),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, count: 0, with: {l: 1}}}', 'out-of-range', 3, 39),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, count: 1.5, with: {l: 1}}}', 'wrong-type', 3, 39),
+    ('freeplay: 1', LEG + 'instances: {x: {template: legg, with: {l: 1}}}', 'unknown-name', 3, 27, 'leg'),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, with: {l: 1 m}}}', 'dimension-mismatch', 2, 71),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, with: {l: 1}}}\nframes: {x.b/p: [0, 0], x.c/p: [0, 0]}', 'unknown-name', 4, 25),
+    ('freeplay: 1', 'freeplay: 1\nframes: {rod/tip: [0, 0]}', 'duplicate-name', 2, 10),
+    ('freeplay: 1', 'freeplay: 1\nframes: {rod: [0, 0]}', 'bad-name', 2, 10),
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {z: [1]}}', 'unknown-name', 2, 22),
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: {linspace: [0, 1]}}}', 'wrong-length', 2, 36),
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: {logspace: [0, 1, 3]}}}', 'out-of-range', 2, 37),
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, combine: mix}', 'wrong-type', 2, 40),
+    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, reducers: {r: {channel: joint.A.angle, reduce: mx}}}', 'wrong-type', 2, 78, 'max'),
+    ('freeplay: 1', 'freeplay: 1\nanalysis: {frame: rod/tup}', 'unknown-name', 2, 19),
+    ('  m: {joint', '  n: {joint: A, kind: velocity, value: 1}\n  m: {joint', 'duplicate-driver', 11, 3),
+    ('  w: {type: force', '  w: {type: forse', 'unknown-type', 12, 13, 'force'),
+    (FORCE, '  w: {type: spring-damper, between: [ground, bob], stiffness: -1}', 'out-of-range', 12, 63),
+    (FORCE, '  w: {type: spring-damper, between: [ground, bob], stiffness: 1 N}', 'dimension-mismatch', 12, 63),
+    (FORCE, '  w: {type: spring-damper, kind: rotational, between: [ground, bob], stiffness: 1, free_length: 1}', 'conflicting-keys', 12, 84),
+    (FORCE, '  w: {type: torque, on: bobb, value: 1}', 'unknown-name', 12, 25, 'bob'),
+    (FORCE, '  w: {type: gravity, on: [z*], value: [0, 1]}', 'unknown-name', 12, 27),
+    (PIN, '  B: {type: gear, of: [A, A], ratio: 2}', 'duplicate-name', 8, 27),
+    (PIN, '  B: {type: gear, of: [A], ratio: 2}', 'wrong-length', 8, 23),
+    (PIN, '  B: {type: distance, between: [rod/tip, bob]}', 'missing-key', 8, 3),
+    (PIN, '  B: {type: distance, between: [rod/tip, bob], length: 0}', 'out-of-range', 8, 56),
+    (PIN, '  B: {type: spherical, between: [rod/tip, bob]}', 'unknown-type', 8, 13),
+    (PIN, '  B: {type: revolute, between: [rod/tip, bob], bearing: rod}', 'conflicting-keys', 8, 48),
+    (PIN, '  B: {type: revolute, bearing: rod/tip}', 'missing-key', 8, 3),
+    (PIN, '  B: {type: revolute, between: [rod/tip, bob], axis: [0, 0, 1]}', 'unknown-key', 8, 48),
+    (PIN, '  B: {type: prismatic, between: [rod/tip, bob], clearance: {radial_clearance: 1}}', 'unknown-key', 8, 49),
+    ('value: 3*t', 'value: atan2(1, 2)', 'bad-expression', 10, 42),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 1}, joints: [A, C]}}', 'unknown-name', 10, 66),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 1}, joints: [A]}}', 'ik-underdetermined', 10, 35),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 1, z: 2}, joints: [A]}}', 'unknown-key', 10, 53),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {}, joints: [A]}}', 'missing-key', 10, 40),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 0}, joints: [A], elbow: 2}}', 'out-of-range', 10, 74),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 0, y: 1}, joints: [A, B], elbow: [1]}}', 'wrong-length', 10, 83),
+    ('bodies:\n', 'bodies: []\nx: [\n', 'yaml-syntax', 4, 4),
+    ('bodies:\n', 'bodies: 3\nq:\n', 'wrong-type', 3, 9),
+    (None, 'freeplay: 1\n', 'empty-model', 1, 1),
+    (None, '- 1\n', 'wrong-type', 1, 1),
+    (None, 'freeplay: 1\nbodies: {a: }\n', 'wrong-type', 2, 10),
+    (None, 'freeplay: 1\nbodies: {a: {mass: , inertia: 1}}\n', 'wrong-type', 2, 14),
+    (None, 'freeplay: 1\nbodies: {a: {mass: [1], inertia: {x: 1}}}\n', 'wrong-type', 2, 20),
+    (None, 'freeplay: 1\nbodies: {a: {mass: 1, inertia: [1, 2, 3]}}\n', 'wrong-type', 2, 32),
+    (None, 'freeplay: 1\nbodies: {a: {mass: 1, inertia: -1}}\n', 'out-of-range', 2, 32),
+    (None, 'freeplay: 1\nbodies: {a: {mass: 1, inertia: 1, pose: {angle: 30 deg, rpy: [0,0,0]}}}\n', 'unknown-key', 2, 57),
+    (None, 'freeplay: 1\nbodies: {a: {mass: 1, inertia: 1, velocity: {angular: 1 m}}}\n', 'dimension-mismatch', 2, 55),
+    (None, 'freeplay: 1\nbodies: {a: {mass: 1, inertia: 1, com: [0, 1, 2]}}\n', 'wrong-length', 2, 40),
+    (None, 'freeplay: 1\nname: [a]\nbodies: {a: {mass: 1, inertia: 1}}\n', 'wrong-type', 2, 7),
+    (None, 'bodies: {a: {mass: 1, inertia: 1}}\n', 'missing-key', 1, 1),
+]
+
+
+class Mistakes(ProgramTest):
+    def test_every_mistake_has_its_place(self):
+        self.write("sound.yaml", SOUND)
+        self.freeplay("validate", "sound.yaml", "--strict")
+        for old, new, *expected in MISTAKES:
+            with self.subTest(new):
+                if old is not None:
+                    self.assertIn(old, SOUND)
+                self.write("m.yaml", new if old is None else SOUND.replace(old, new, 1))
+                plugin = expected[0].startswith("plugin-")
+                out, _ = self.freeplay("validate", "m.yaml", "--json", code=5 if plugin else 3)
+                messages = json.loads(out)["messages"]
+                found = [[m["id"], m["line"], m["column"], m["suggestion"]][:len(expected)] for m in messages]
+                self.assertIn(expected, found)
+
+
+if __name__ == "__main__":
+    unittest.main()
