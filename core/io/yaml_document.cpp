@@ -15,8 +15,8 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "base/input_text.h"
 #include "base/text.h"
-#include "io/input_text.h"
 #include "io/text_place.h"
 #include "io/yaml_strictness.h"
 
@@ -452,15 +452,6 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
   }
   if (!builder.trusted()) return std::nullopt;
   return document;
-}
-
-std::optional<Document> read_yaml(const std::string& file_name, Diagnostics& diagnostics) {
-  std::string text;
-  if (const std::string why = read_input(file_name, text); !why.empty()) {
-    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
-    return std::nullopt;
-  }
-  return parse_yaml(std::move(text), file_name, diagnostics);
 }
 
 }  // namespace freeplay

@@ -3,37 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/input_text.h"
 #include "base/text.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t largest_file = 16u << 20;
-
 /// Times and values in SI.
 struct Points {
   std::vector<double> times, values;
 };
-
-/// Why the file cannot be read, or nothing and its text.
-std::optional<std::string> fault_of_file(const std::filesystem::path& path, std::string& text) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  if (!std::filesystem::exists(status)) return "there is no such file";
-  if (!std::filesystem::is_regular_file(status)) return "it is not a regular file";
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return "it cannot be opened";
-  text.assign(largest_file + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) return "reading it failed";
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return std::nullopt;
-}
 
 /// The name, or NAME-2 and so on when it is taken.
 std::string free_name(const std::vector<InputFile>& inputs, const std::filesystem::path& path) {
@@ -183,11 +166,11 @@ class TableReader {
     const auto known = draft_.tables.find(path.string());
     if (known != draft_.tables.end()) return known->second.get();
     std::string text;
-    if (const auto fault = fault_of_file(path, text)) {
-      file.fail("file-not-found", fmt::format("cannot read '{}': {}", path.string(), *fault));
+    if (const std::string fault = read_input(path.string(), text); !fault.empty()) {
+      file.fail("file-not-found", fmt::format("cannot read '{}': {}", path.string(), fault));
       return nullptr;
     }
-    if (text.size() > largest_file) {
+    if (text.size() > largest_input) {
       file.fail("too-large", fmt::format("the table '{}' is larger than 16 MiB", path.string()));
       return nullptr;
     }

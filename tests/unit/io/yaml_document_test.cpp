@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "io/model_document.h"
+
 namespace freeplay {
 namespace {
 
@@ -196,7 +198,7 @@ TEST(ReadYaml, ReadsAFile) {
   const auto path = std::filesystem::temp_directory_path() / "freeplay_yaml_document_test.yaml";
   std::ofstream(path) << "a: 1\n";
   Diagnostics diagnostics;
-  const auto document = read_yaml(path.string(), diagnostics);
+  const auto document = read_model(path.string(), diagnostics);
   std::filesystem::remove(path);
   ASSERT_TRUE(document);
   EXPECT_EQ(document->root().find("a")->location().file, path.string());
@@ -205,7 +207,7 @@ TEST(ReadYaml, ReadsAFile) {
 TEST(ReadYaml, DoesNotOpenDirectoriesAndDevices) {
   for (const char* path : {"/nowhere/model.yaml", "/", "/dev/zero"}) {
     Diagnostics diagnostics;
-    EXPECT_FALSE(read_yaml(path, diagnostics));
+    EXPECT_FALSE(read_model(path, diagnostics));
     ASSERT_EQ(diagnostics.sorted().size(), 1u);
     EXPECT_EQ(diagnostics.sorted()[0].id, "file-not-found");
   }
