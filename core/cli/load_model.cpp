@@ -1,23 +1,31 @@
 #include "cli/load_model.h"
 
+#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+
 #include <fmt/format.h>
 
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "cli/failure.h"
 #include "cli/plugins.h"
 #include "io/channel_selection.h"
 #include "io/model_document.h"
+#include "model/checked_value.h"
 #include "model/model_builder.h"
+#include "model/name_rule.h"
 #include "run/channel.h"
 
 namespace freeplay {
 namespace {
 
+constexpr std::size_t most_comparisons = 50'000'000;  // of patterns with names of channels
+
 /// Takes what was thrown while `loaded` was made into its messages.
 void keep(const Error& error, LoadedModel& loaded, bool strict) {
   if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw error;
   Diagnostic diagnostic = as_diagnostic(error);
-  if (error.location().file.empty()) diagnostic.location = {loaded.document->file_name(), 0, 0};
+  if (error.location().file.empty() && loaded.document) diagnostic.location = {loaded.document->file_name(), 0, 0};
   loaded.exit_code = error.exit_code();
   if (error.category() == Error::Category::plugin) {
     // Reported alone: without the plugin the rest of the file cannot be judged.
@@ -58,20 +66,27 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
   const Channels channels(model);
   const std::vector<std::string> names = channel_names(channels);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
-    diagnostics.error(location, static_cast<int>(name.size()), "unknown-name", message,
-                      suggestion(name, names).value_or(""));
+    diagnostics.error(location, character_count(name), "unknown-name", message, nearest(name, names));
   };
+  std::unordered_map<std::string_view, const ChannelInfo*> by_name;
+  for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
   for (const StopCondition& condition : model.settings.stop) {
-    const int index = channels.find(condition.channel);
-    if (index >= 0) {
-      check_limit(condition, channels.all()[static_cast<std::size_t>(index)], diagnostics);
+    if (const auto known = by_name.find(condition.channel); known != by_name.end()) {
+      check_limit(condition, *known->second, diagnostics);
       continue;
     }
     unknown(condition.location, condition.channel, fmt::format("there is no channel '{}'", condition.channel));
   }
+  const auto patterns = static_cast<std::size_t>(std::ranges::count_if(model.settings.channels, is_pattern));
+  if (patterns * names.size() > most_comparisons) {
+    diagnostics.error(pattern_location(document, 0), 1, "too-large",
+                      fmt::format("{} patterns for {} channels are too many", patterns, names.size()));
+    return;
+  }
   for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {
     const std::string& pattern = model.settings.channels[i];
-    if (matches_channel(pattern, channels)) continue;
+    if (!is_pattern(pattern) && by_name.contains(pattern)) continue;
+    if (is_pattern(pattern) && matches_channel(pattern, channels)) continue;
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
   }
 }
@@ -80,8 +95,8 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
 
 LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
   LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
-  loaded.document = read_model(file, loaded.diagnostics);
   try {
+    loaded.document = read_model(file, loaded.diagnostics);
     if (loaded.document) {
       const Registry registry = load_registry(common, &*loaded.document);
       loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics);

@@ -23,7 +23,7 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t most_nodes = 1'000'000;
+constexpr std::size_t most_nodes = 1'000'000, most_anchors = 10'000;
 constexpr int deepest_level = 64;
 
 /// Ends the parsing after an error that has been reported.
@@ -144,6 +144,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void finish(const Built& built, YAML::anchor_t anchor) {
+    if (anchor != 0 && anchors_.size() == most_anchors && !frames_.empty()) refuse_size("more than 10 000 anchors");
     if (anchor != 0) anchors_[anchor] = built;
     attach(built, {built.node->line, built.node->column});
   }
@@ -434,6 +435,11 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
   if (const auto fault = find_bad_character(text)) {
     const TextPlace at = TextPlaces(text).at(fault->position);
     diagnostics.error({file_name, at.line, at.column}, 1, "yaml-syntax", fault->message, {}, fault->hint);
+    return std::nullopt;
+  }
+  if (const auto flood = find_flood(text)) {
+    const TextPlace at = TextPlaces(text).at(flood->position);
+    diagnostics.error({file_name, at.line, at.column}, 1, "too-large", flood->message);
     return std::nullopt;
   }
   Document document(file_name, std::move(text));

@@ -85,15 +85,14 @@ void check_messages(const Diagnostics& diagnostics, const std::string& file_name
 void check_model(std::string text, const std::string& file_name) {
   Diagnostics diagnostics;
   std::unique_ptr<Model> model;
-  std::optional<Document> document = parse_model(text, file_name, diagnostics);
+  std::optional<Document> document;
   bool thrown = false;
-  if (document) {
-    try {
-      model = build_model(*document, builtin_types(), {}, diagnostics);
-    } catch (const Error& error) {
-      require(error.category() != Error::Category::internal, "no input is an internal error");
-      thrown = true;
-    }
+  try {
+    document = parse_model(text, file_name, diagnostics);
+    if (document) model = build_model(*document, builtin_types(), {}, diagnostics);
+  } catch (const Error& error) {
+    require(error.category() != Error::Category::internal, "no input is an internal error");
+    thrown = true;
   }
   require(thrown || (model != nullptr) != diagnostics.has_errors(), "there is a model or an error");
   check_messages(diagnostics, file_name, text);

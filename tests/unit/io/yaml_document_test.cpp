@@ -239,5 +239,20 @@ TEST(Document, KeepsItsNodesWhenItIsMoved) {
   EXPECT_EQ(list->items[1]->location().file, "m.yaml");
 }
 
+TEST(Yaml, RefusesFloodsOfBracketsBeforeTheyAreParsed) {
+  const auto report = [](const std::string& text) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(parse_yaml(text, "m.yaml", diagnostics));
+    return diagnostics.sorted().front();
+  };
+  const Diagnostic deep = report("a: 1\nb: " + std::string(10'001, '['));
+  EXPECT_EQ(deep.id, "too-large");
+  EXPECT_EQ(deep.location.line, 2);
+  EXPECT_EQ(deep.location.column, 4);
+  const Diagnostic wide = report("[1" + std::string(1'500'000, ',') + "]");
+  EXPECT_EQ(wide.id, "too-large");
+  EXPECT_EQ(wide.location.column, 1);
+}
+
 }  // namespace
 }  // namespace freeplay
