@@ -26,8 +26,9 @@ TARGETS = {
 }
 ENDING = {"model": "yaml", "urdf": "urdf", "table": "csv"}
 UNITS = ["m", "kg*m^2", "N/m^1.5", "rad/s", "1/s", "N/m^exponent", "kind: N/m | N*m/rad", "kg * m / s^-2", "m^(", "Hz"]
-EXPRESSIONS = ["2*pi/3", "1 mm + 2 in", "${a}*sin(2*pi*t/1 s)", "smooth(t, 0 s, 0.1 s)*$l", "-2^-2 deg", "atan2($f, t)",
-               "min(1, max(t, 2)) * sqrt(t^2 + 1)", "3 N*m", "1e-3", "abs(acos(cos(t)))^$a", "((1))", "exp(-t) / log(2)"]
+EXPRESSIONS = ["2*pi/3", "1 mm + 2 in", "${a}*sin(2*pi*t/1 s)", "smooth(t, 0 s, 0.1 s)*$l", "-2^-2 deg", "3 N*m",
+               "atan2($f, t)", "min(1, max(t, 2)) * sqrt(t^2 + 1)", "1e-3", "abs(acos(cos(t)))^$a", "((1))",
+               "exp(-t) / log(2)"]
 TABLES = ["time,value\n0,0\n0.5,1\n1,0\n", "# s, rad\n t , x \n0,+1e-3\n\n1,2\n2,1e-3\n", "t,a,b\n0,1,2\n1,2,3,4\n2,\n"]
 
 
@@ -37,7 +38,8 @@ def scalars(text):
 
 
 def files(ending):
-    folders = [os.path.join(ROOT, "mechanisms"), os.path.join(ROOT, "tests", "data"), os.environ.get("FREEPLAY_CASES", "")]
+    folders = [os.path.join(ROOT, "mechanisms"), os.path.join(ROOT, "tests", "data"),
+               os.environ.get("FREEPLAY_CASES", "")]
     found = [path for folder in folders if folder
              for path in glob.glob(os.path.join(folder, "**", "*." + ending), recursive=True)]
     return sorted(path for path in found if os.path.getsize(path) <= 1 << 16)

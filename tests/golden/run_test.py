@@ -230,7 +230,8 @@ class Run(ProgramTest):
     def test_what_a_failed_run_leaves_is_told_from_other_files(self):
         model = self.pendulum(end="20 s")
         limit = (20000, 20000)
-        self.freeplay("run", model, "--out", "r", code=6, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+        self.freeplay("run", model, "--out", "r", code=6,
+                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
         _, err = self.freeplay("run", model, "--out", "r", code=6)
         self.assertIn("error: 'r' holds the result of a run that did not end: it has no summary.json", err)
         self.freeplay("run", model, "--out", "r", "--end", "1 ms", "--force")
