@@ -116,7 +116,8 @@ std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
   try {
     System system(*loaded.model);
     Start start = assemble(system);
-    return std::make_unique<AssembledModel>(std::move(system), std::move(start));
+    // Not make_unique: clang 14 knows no aggregates in parentheses.
+    return std::unique_ptr<AssembledModel>(new AssembledModel{std::move(system), std::move(start)});
   } catch (const Error& error) {
     keep(error, loaded, false);
     return nullptr;
