@@ -1,7 +1,6 @@
 #include "base/diagnostics.h"
 
 #include <algorithm>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -49,9 +48,21 @@ void Diagnostics::add_source(const std::string& file, std::string text) {
 
 void Diagnostics::add(Diagnostic diagnostic) {
   if (strict_) diagnostic.severity = Severity::error;
-  if (diagnostic.severity == Severity::error) ++errors_;
-  source(diagnostic.location.file);
-  diagnostics_.push_back(std::move(diagnostic));
+  const bool error = diagnostic.severity == Severity::error;
+  if (error) ++errors_;
+  const Location at = diagnostic.location;
+  std::string key = fmt::format("{}\n{}:{}\n{}\n{}", at.file, at.line, at.column, diagnostic.id, diagnostic.message);
+  if (!error && known_.size() >= most_messages) {
+    left_out_ += known_.contains(key) ? 0 : 1;
+  } else if (known_.insert(std::move(key)).second) {
+    if (error) ++kept_errors_;
+    source(at.file);
+    diagnostics_.push_back(std::move(diagnostic));
+  }
+  if (full_ || (kept_errors_ < most_messages && errors_ < most_errors)) return;
+  full_ = true;
+  throw Error(Error::Category::input, "too-large",
+              fmt::format("there are {} errors up to here; what is left of the file is not checked", errors_), at);
 }
 
 void Diagnostics::error(Location location, int length, std::string id, std::string message, std::string suggestion,
@@ -87,10 +98,10 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   std::stable_sort(order.begin(), order.end(), [&](auto* a, auto* b) { return place(*a) < place(*b); });
 
   std::vector<Diagnostic> result;
-  std::set<std::tuple<std::size_t, int, int, std::string_view, std::string_view>> seen;
-  for (const Diagnostic* d : order) {
-    const auto key = std::tuple_cat(place(*d), std::tuple(std::string_view(d->id), std::string_view(d->message)));
-    if (seen.insert(key).second) result.push_back(*d);
+  for (const Diagnostic* d : order) result.push_back(*d);
+  if (left_out_ > 0) {
+    const std::string& file = diagnostics_.front().location.file;
+    result.push_back({Severity::warning, "too-large", fmt::format("{} more warnings", left_out_), {file, 0, 0}});
   }
   return result;
 }
@@ -151,8 +162,9 @@ void Diagnostics::append_source(std::string& out, const Diagnostic& diagnostic) 
   const char* const before = begin > 0 ? "..." : "";
   const char* const after = end < total ? "..." : "";
   const std::string shown = printable(characters(line, begin, end - begin));
-  const int tildes = std::max(0, std::min(diagnostic.length, end - caret) - 1);
-  const int indent = caret - begin + (begin > 0 ? 3 : 0);
+  const auto width = [&](int from, int count) { return display_width(printable(characters(line, from, count))); };
+  const int tildes = std::max(0, width(caret, std::min(diagnostic.length, end - caret)) - 1);
+  const int indent = width(begin, caret - begin) + (begin > 0 ? 3 : 0);
   out += fmt::format("{:>5} | {}{}{}\n      | {:>{}}^{}\n", at.line, before, shown, after, "", indent,
                      std::string(static_cast<std::size_t>(tildes), '~'));
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "base/error.h"
@@ -25,15 +26,22 @@ struct Diagnostic {
   std::vector<std::string> notes{};  ///< more lines, such as "in instance 'leg2'"
 };
 
-/// Collects messages and prints them. Nothing is thrown; a reader goes on after an error as long as it makes sense.
+/// Collects messages and prints them. A reader goes on after an error as long as it makes sense. A message with the
+/// same place, id and text as an earlier one (an error in a template, say, once more for the next instance) is not
+/// kept.
 class Diagnostics {
  public:
+  /// Limits for a text that is hostile or no model at all: messages that are kept, and errors that are reported.
+  static constexpr int most_messages = 10'000, most_errors = 20'000;
+
   /// With `strict`, warnings are errors.
   explicit Diagnostics(bool strict = false) : strict_(strict) {}
 
   /// Makes the text of `file` known, so that its lines can be shown. The order of these calls is the order of files.
   void add_source(const std::string& file, std::string text);
 
+  /// Throws Error{input} `too-large`, once, when errors reach one of the limits; the caller keeps it as the last
+  /// message. Warnings beyond the limit are only counted.
   void add(Diagnostic diagnostic);
 
   /// Shorthands for the common case.
@@ -44,7 +52,7 @@ class Diagnostics {
 
   bool has_errors() const { return errors_ > 0; }
 
-  /// All messages by order of files, line, column; of messages with the same place, id and text only the first.
+  /// All messages by order of files, line, column; last how many warnings were only counted.
   std::vector<Diagnostic> sorted() const;
 
   /// The messages as section 17 prints them, one after the other, each line ended by a line feed. After `max_errors`
@@ -65,8 +73,10 @@ class Diagnostics {
   void append_source(std::string& out, const Diagnostic& diagnostic) const;
 
   bool strict_;
-  int errors_ = 0;
+  int errors_ = 0, kept_errors_ = 0, left_out_ = 0;
+  bool full_ = false;
   std::vector<Diagnostic> diagnostics_;
+  std::unordered_set<std::string> known_;  // what makes each message the same as another
   std::map<std::string, Source> sources_;
 };
 

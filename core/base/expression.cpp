@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,8 @@ namespace {
 // Formulas that people write need a handful of places; the deepest that 10 000 characters can ask for is one operand
 // and one operator a level.
 constexpr int usual_stack = 32, deepest_stack = 5001;
+
+constexpr std::size_t longest_readable = 40'000;  // bytes; anything longer has too many characters to be compiled
 
 /// Why the operands are outside of the operation's domain, or null.
 const char* power_domain(double base, double exponent) {
@@ -175,11 +179,13 @@ void Expression::require(const Dimension& field) const {
 
 std::vector<std::string> referenced_parameters(std::string_view text) {
   std::vector<std::string> names;
+  if (text.size() > longest_readable) return names;
+  std::unordered_set<std::string> known;
   for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
     std::size_t begin = at + 1;
     if (begin < text.size() && text[begin] == '{') begin = skip_blanks(text, begin + 1);
-    const std::string name(text.substr(begin, word_end(text, begin) - begin));
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    std::string name(text.substr(begin, word_end(text, begin) - begin));
+    if (!name.empty() && known.insert(name).second) names.push_back(std::move(name));
   }
   return names;
 }

@@ -392,15 +392,15 @@ class ExpressionCompiler {
     return position_ < text_.size() ? text_[position_] : '\0';
   }
 
-  /// Characters in the bytes [begin, end). Places are asked for in rising order nearly always, so that counting on from
-  /// the last one keeps a long text linear.
+  /// Characters in the bytes [begin, end). Places are asked for in nearly rising order (an operator after its
+  /// operands), so that counting from the last one, forth or back, keeps a long text linear.
   int characters(std::size_t begin, std::size_t end) {
     if (begin > 0) return character_count(text_.substr(begin, end - begin));
     if (end < counted_bytes_) {
-      counted_ = 0;
-      counted_bytes_ = 0;
+      counted_ -= character_count(text_.substr(end, counted_bytes_ - end));
+    } else {
+      counted_ += character_count(text_.substr(counted_bytes_, end - counted_bytes_));
     }
-    counted_ += character_count(text_.substr(counted_bytes_, end - counted_bytes_));
     counted_bytes_ = end;
     return counted_;
   }

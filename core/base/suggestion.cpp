@@ -1,6 +1,7 @@
 #include "base/suggestion.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -16,20 +17,24 @@ bool same_but_for_case(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// Levenshtein distance: insertions, deletions and replacements of one byte.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+/// Levenshtein distance of words of at most longest_word bytes: insertions, deletions and replacements of one byte.
+/// Anything above `limit` where it is larger than that.
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > limit) return limit + 1;
+  std::array<std::size_t, longest_word + 1> row;
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    std::size_t diagonal = row[0], least = i;
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      least = std::min(least, row[j]);
     }
+    if (least > limit) return least;
   }
-  return row.back();
+  return row[b.size()];
 }
 
 constexpr std::size_t contains_it = 100, is_contained = 101, unrelated = std::numeric_limits<std::size_t>::max();
@@ -39,7 +44,7 @@ std::size_t rank(std::string_view word, std::string_view candidate) {
   if (candidate.size() > longest_word) return unrelated;
   if (same_but_for_case(word, candidate)) return word == candidate ? 0 : 1;
   const std::size_t limit = word.size() >= 8 ? 3 : 2;
-  const std::size_t distance = edit_distance(word, candidate);
+  const std::size_t distance = edit_distance(word, candidate, limit);
   // A distance as large as the word means that every letter was replaced.
   if (distance <= limit && distance < std::max(word.size(), candidate.size())) return distance;
   if (candidate.find(word) != std::string_view::npos) return contains_it;

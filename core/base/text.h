@@ -14,6 +14,10 @@ std::size_t character_bytes(std::string_view text, std::size_t position);
 /// Number of characters. A byte that belongs to no valid character counts as one.
 int character_count(std::string_view text);
 
+/// Columns that a terminal takes for a printable text: two for a wide character (Chinese, Japanese, Korean, emoji),
+/// none for one that is put on the character before it, else one. Unicode 15, EastAsianWidth.txt, by blocks.
+int display_width(std::string_view text);
+
 /// The text with each control character (C0, DEL, C1, line and paragraph separators), direction override and invalid
 /// byte replaced by one '?', and each tab by one blank. The number of characters stays the same.
 std::string printable(std::string_view text);

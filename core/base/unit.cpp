@@ -189,7 +189,8 @@ class UnitReader {
     const Dimension dimension = power(named->dimension, n);
     const Unit result = sign == '*' ? Unit{unit.factor * scale, unit.dimension * dimension}
                                     : Unit{unit.factor / scale, unit.dimension / dimension};
-    if (!std::isfinite(result.factor) || result.factor == 0.0) {
+    const Dimension& d = result.dimension;
+    if (!std::isfinite(result.factor) || result.factor == 0.0 || !std::isfinite(d.kg + d.m + d.s)) {
       fail(begin, position_, fmt::format("the exponent of '{}' is too large", name));
     }
     return result;

@@ -1,6 +1,7 @@
 #include "cli/interrupt.h"
 
 #include <csignal>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -11,7 +12,12 @@ std::atomic<int> watched = 0, interrupts = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void on_interrupt(int) {
-  if (watched == 0 || interrupts.fetch_add(1) > 0) _exit(130);
+  if (watched != 0 && interrupts.fetch_add(1) == 0) return;
+  if (watched != 0) {
+    constexpr std::string_view last_words = "freeplay: interrupted at once, the result directory is unfinished\n";
+    [[maybe_unused]] const auto unheard = write(STDERR_FILENO, last_words.data(), last_words.size());
+  }
+  _exit(130);
 }
 
 void on_closed_pipe(int) { _exit(0); }

@@ -1,13 +1,20 @@
 #include "cli/load_model.h"
 
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+
 #include <fmt/format.h>
 
-#include "base/suggestion.h"
+#include "base/text.h"
 #include "cli/failure.h"
 #include "cli/plugins.h"
 #include "io/channel_selection.h"
 #include "io/model_document.h"
 #include "io/yaml_document.h"
+#include "model/checked_value.h"
 #include "model/model_builder.h"
 #include "model/name_rule.h"
 #include "run/channel.h"
@@ -15,11 +22,13 @@
 namespace freeplay {
 namespace {
 
+constexpr std::size_t most_comparisons = 50'000'000;  // of patterns with names of channels
+
 /// Takes what was thrown while `loaded` was made into its messages.
 void keep(const Error& error, LoadedModel& loaded, bool strict) {
   if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw error;
   Diagnostic diagnostic = as_diagnostic(error);
-  if (error.location().file.empty()) diagnostic.location = {loaded.document->file_name(), 0, 0};
+  if (error.location().file.empty() && loaded.document) diagnostic.location = {loaded.document->file_name(), 0, 0};
   loaded.exit_code = error.exit_code();
   if (error.category() == Error::Category::plugin) {
     // Reported alone: without the plugin the rest of the file cannot be judged.
@@ -75,20 +84,27 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
   const Channels channels(model);
   const std::vector<std::string> names = channel_names(channels);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
-    diagnostics.error(location, static_cast<int>(name.size()), "unknown-name", message,
-                      suggestion(name, names).value_or(""));
+    diagnostics.error(location, character_count(name), "unknown-name", message, nearest(name, names));
   };
+  std::unordered_map<std::string_view, const ChannelInfo*> by_name;
+  for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
   for (const StopCondition& condition : model.settings.stop) {
-    const int index = channels.find(condition.channel);
-    if (index >= 0) {
-      check_limit(condition, channels.all()[static_cast<std::size_t>(index)], diagnostics);
+    if (const auto known = by_name.find(condition.channel); known != by_name.end()) {
+      check_limit(condition, *known->second, diagnostics);
       continue;
     }
     unknown(condition.location, condition.channel, fmt::format("there is no channel '{}'", condition.channel));
   }
+  const auto patterns = static_cast<std::size_t>(std::ranges::count_if(model.settings.channels, is_pattern));
+  if (patterns * names.size() > most_comparisons) {
+    diagnostics.error(pattern_location(document, 0), 1, "too-large",
+                      fmt::format("{} patterns for {} channels are too many", patterns, names.size()));
+    return;
+  }
   for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {
     const std::string& pattern = model.settings.channels[i];
-    if (matches_channel(pattern, channels)) continue;
+    if (!is_pattern(pattern) && by_name.contains(pattern)) continue;
+    if (is_pattern(pattern) && matches_channel(pattern, channels)) continue;
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
   }
   for (const Node* channel : reduced_channels(document)) {
@@ -97,9 +113,12 @@ void check_channels(const Model& model, const Document& document, Diagnostics& d
   }
 }
 
-/// Builds the model of the document that was read, if one was.
-void build_loaded(LoadedModel& loaded, const BuildOptions& build, const CommonOptions& common) {
+using Read = std::function<std::optional<Document>(Diagnostics&)>;
+
+LoadedModel load(const Read& read, const BuildOptions& build, const CommonOptions& common) {
+  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
   try {
+    loaded.document = read(loaded.diagnostics);
     if (loaded.document) {
       const Registry registry = load_registry(common, &*loaded.document);
       loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics);
@@ -112,30 +131,26 @@ void build_loaded(LoadedModel& loaded, const BuildOptions& build, const CommonOp
     loaded.model.reset();
     if (loaded.exit_code == 0) loaded.exit_code = 3;
   }
+  return loaded;
 }
 
 }  // namespace
 
 LoadedModel load_model(const std::string& file, const BuildOptions& build, const CommonOptions& common) {
-  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
-  loaded.document = read_model(file, loaded.diagnostics);
-  build_loaded(loaded, build, common);
-  return loaded;
+  return load([&](Diagnostics& diagnostics) { return read_model(file, diagnostics); }, build, common);
 }
 
 LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build,
                       const CommonOptions& common) {
-  LoadedModel loaded{Diagnostics(common.strict), {}, {}, 0};
-  loaded.document = parse_yaml(std::move(text), file, loaded.diagnostics);
-  build_loaded(loaded, build, common);
-  return loaded;
+  return load([&](Diagnostics& diagnostics) { return parse_yaml(std::move(text), file, diagnostics); }, build, common);
 }
 
 std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
   try {
     System system(*loaded.model);
     Start start = assemble(system);
-    return std::make_unique<AssembledModel>(std::move(system), std::move(start));
+    // Not make_unique: clang 14 knows no aggregates in parentheses.
+    return std::unique_ptr<AssembledModel>(new AssembledModel{std::move(system), std::move(start)});
   } catch (const Error& error) {
     keep(error, loaded, false);
     return nullptr;

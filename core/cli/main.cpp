@@ -72,6 +72,7 @@ int execute(int argc, char** argv, CommonOptions& common) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
+    refuse_unknown_words(program);
     print(program.help());
     return 0;
   } catch (const CLI::ParseError& error) {

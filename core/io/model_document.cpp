@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "io/input_text.h"
+#include "base/input_text.h"
 #include "io/urdf_document.h"
 #include "io/urdf_sidecar.h"
 #include "io/yaml_document.h"
@@ -35,12 +35,7 @@ void set_root_of_robot(Document& document, const urdf::Sections& sections) {
   document.set_root(root);
 }
 
-std::optional<Document> read_robot(const std::string& file_name, Diagnostics& diagnostics) {
-  std::string text;
-  if (const std::string why = read_input(file_name, text); !why.empty()) {
-    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
-    return std::nullopt;
-  }
+std::optional<Document> parse_robot(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
   if (text.size() > largest_input) {
     diagnostics.error({file_name, 1, 1}, 1, "too-large", "the file is larger than 16 MiB");
     return std::nullopt;
@@ -59,13 +54,22 @@ std::optional<Document> read_robot(const std::string& file_name, Diagnostics& di
 
 bool is_urdf(const std::string& file_name) { return std::filesystem::path(file_name).extension() == ".urdf"; }
 
-std::optional<Document> read_model(const std::string& file_name, Diagnostics& diagnostics) {
-  if (is_urdf(file_name)) return read_robot(file_name, diagnostics);
-  std::optional<Document> document = read_yaml(file_name, diagnostics);
+std::optional<Document> parse_model(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
+  if (is_urdf(file_name)) return parse_robot(std::move(text), file_name, diagnostics);
+  std::optional<Document> document = parse_yaml(std::move(text), file_name, diagnostics);
   if (document && document->root().is_map() && document->root().find("urdf") != nullptr) {
     if (!add_robot(*document, diagnostics)) return std::nullopt;
   }
   return document;
+}
+
+std::optional<Document> read_model(const std::string& file_name, Diagnostics& diagnostics) {
+  std::string text;
+  if (const std::string why = read_input(file_name, text); !why.empty()) {
+    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
+    return std::nullopt;
+  }
+  return parse_model(std::move(text), file_name, diagnostics);
 }
 
 }  // namespace freeplay

@@ -35,6 +35,19 @@ bool holds_result(const fs::path& path) {
          summary["freeplay"].contains("schema");
 }
 
+/// What a run leaves that was ended before it could write its summary: its log and nothing but files of a result.
+bool holds_unfinished_result(const fs::path& path) {
+  std::error_code error;
+  bool log = false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool part = name.starts_with('.') && name.ends_with(".part");
+    if (!part && std::ranges::find(own_files, name) == std::end(own_files)) return false;
+    log = log || name == "run.log";
+  }
+  return log && !error;
+}
+
 }  // namespace
 
 std::string result_name(std::string_view model_name, bool ideal) {
@@ -60,6 +73,10 @@ void check_result_directory(const fs::path& path, bool force) {
   const bool empty = fs::is_empty(path, error);
   require(error, "read", path);
   if (empty || force || holds_result(path)) return;
+  if (holds_unfinished_result(path)) {
+    fail(fmt::format("'{}' holds the result of a run that did not end: it has no summary.json", path.string()),
+         "if that run is not going on, replace it with --force, or choose another directory with --out");
+  }
   fail(fmt::format("'{}' holds other files than a result", path.string()),
        "choose another directory with --out, or write beside them with --force");
 }

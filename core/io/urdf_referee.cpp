@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <set>
+#include <string_view>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
@@ -79,17 +80,29 @@ std::string robot_text(const XmlElement& root, const std::string& content) {
   return out + ">" + content + "</robot>";
 }
 
+std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
+  std::string out;
+  for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {
+    out.append(text.substr(0, at)).append(to);
+    text.remove_prefix(at + from.size());
+  }
+  return out.append(text);
+}
+
+// urdfdom logs words of the file as formats of printf, where a '%' reads or writes memory that is not there.
+constexpr std::string_view percent = "%", wide_percent = "\uFF05";
+
 /// Why urdfdom refuses the text, or "".
 std::string refusal(const std::string& text) {
   Listener listener;
   try {
-    const bool taken = ::urdf::parseURDF(text) != nullptr;
+    const bool taken = ::urdf::parseURDF(replaced(text, percent, wide_percent)) != nullptr;
     // A model can come back although an error was logged: part of it is then missing.
     if (taken && listener.first().empty()) return {};
   } catch (const std::exception& error) {
-    if (listener.first().empty()) return error.what();
+    if (listener.first().empty()) return replaced(error.what(), wide_percent, percent);
   }
-  return listener.first().empty() ? "no reason given" : listener.first();
+  return listener.first().empty() ? "no reason given" : replaced(listener.first(), wide_percent, percent);
 }
 
 /// An element alone, with links for the ends of a joint and a link where there would be none.

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "io/input_text.h"
+#include "base/input_text.h"
 #include "io/urdf_document.h"
 #include "model/map_reader.h"
 #include "model/name_rule.h"
@@ -23,7 +23,7 @@ using Words = std::vector<std::string>;
 class UrdfSection {
  public:
   UrdfSection(const CheckedValue& section, const std::string& model_file)
-      : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section, "urdf")), section_(section) {
+      : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section, "urdf")) {
     const auto file = section.node().is_scalar() ? std::optional<CheckedValue>(section) : map_.require("file");
     good_ = map_.good() && file.has_value();
     if (file) read_file(*file, model_file);
@@ -71,7 +71,6 @@ class UrdfSection {
   }
 
   MapReader map_;
-  const CheckedValue& section_;
   bool good_ = true;
 };
 

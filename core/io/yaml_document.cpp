@@ -15,15 +15,15 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include "base/input_text.h"
 #include "base/text.h"
-#include "io/input_text.h"
 #include "io/text_place.h"
 #include "io/yaml_strictness.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t most_nodes = 1'000'000;
+constexpr std::size_t most_nodes = 1'000'000, most_anchors = 10'000;
 constexpr int deepest_level = 64;
 
 /// Ends the parsing after an error that has been reported.
@@ -144,6 +144,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void finish(const Built& built, YAML::anchor_t anchor) {
+    if (anchor != 0 && anchors_.size() == most_anchors && !frames_.empty()) refuse_size("more than 10 000 anchors");
     if (anchor != 0) anchors_[anchor] = built;
     attach(built, {built.node->line, built.node->column});
   }
@@ -436,6 +437,11 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
     diagnostics.error({file_name, at.line, at.column}, 1, "yaml-syntax", fault->message, {}, fault->hint);
     return std::nullopt;
   }
+  if (const auto flood = find_flood(text)) {
+    const TextPlace at = TextPlaces(text).at(flood->position);
+    diagnostics.error({file_name, at.line, at.column}, 1, "too-large", flood->message);
+    return std::nullopt;
+  }
   Document document(file_name, std::move(text));
   TreeBuilder builder(document, diagnostics);
   try {
@@ -457,15 +463,6 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
     return std::nullopt;
   }
   return document;
-}
-
-std::optional<Document> read_yaml(const std::string& file_name, Diagnostics& diagnostics) {
-  std::string text;
-  if (const std::string why = read_input(file_name, text); !why.empty()) {
-    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
-    return std::nullopt;
-  }
-  return parse_yaml(std::move(text), file_name, diagnostics);
 }
 
 }  // namespace freeplay

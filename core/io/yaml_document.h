@@ -9,14 +9,11 @@
 
 namespace freeplay {
 
-/// Reads a model file: UTF-8, one document, at most 16 MiB, 64 levels and 1 000 000 nodes after aliases are expanded.
-/// Reports `file-not-found`, `too-large`, `yaml-syntax`, `yaml-feature`, `duplicate-key`, and `wrong-type` for a list
-/// or map as key; makes the text known to `diagnostics`. Nothing is returned if the text cannot be trusted as a tree;
-/// after a duplicate key (the first one counts) or a key of the wrong type (left out) the rest is returned. An empty
-/// file is a null node at 1:1. Directories and devices are not opened.
-std::optional<Document> read_yaml(const std::string& file_name, Diagnostics& diagnostics);
-
-/// The same for a text that is at hand; `file_name` is for messages only.
+/// Reads the text of a model file: UTF-8, one document, at most 16 MiB, 64 levels and 1 000 000 nodes after aliases are
+/// expanded. Reports `too-large`, `yaml-syntax`, `yaml-feature`, `duplicate-key`, and `wrong-type` for a list or map as
+/// key; makes the text known to `diagnostics`. Nothing is returned if the text cannot be trusted as a tree; after a
+/// duplicate key (the first one counts) or a key of the wrong type (left out) the rest is returned. An empty file is a
+/// null node at 1:1. `file_name` is for messages only.
 std::optional<Document> parse_yaml(std::string text, const std::string& file_name, Diagnostics& diagnostics);
 
 }  // namespace freeplay

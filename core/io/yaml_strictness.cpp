@@ -150,6 +150,27 @@ std::optional<YamlFault> find_directive_fault(std::string_view text, bool map) {
   return std::nullopt;
 }
 
+std::optional<YamlFault> find_flood(std::string_view text) {
+  // A line of 1 000 000 values, the most that a file may hold, has fewer signs; nesting beyond 64 levels is refused
+  // with more care where the parser bears it.
+  constexpr int most_signs = 1'500'000, most_open = 10'000;
+  int open = 0, signs = 0;
+  std::size_t outermost = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') signs = 0;
+    if (!is_one_of(c, "[]{},")) continue;
+    if (++signs > most_signs) return YamlFault{outermost, "more than 1 000 000 values"};
+    if (is_one_of(c, "[{")) {
+      if (open == 0) outermost = i;
+      if (++open > most_open) return YamlFault{outermost, "more than 64 levels of nesting"};
+    } else if (c != ',') {
+      open = std::max(0, open - 1);
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<YamlFault> find_flow_fault(std::string_view text, std::size_t begin, int indent) {
   return FlowScanner(text, begin, indent).scan();
 }

@@ -25,6 +25,10 @@ std::optional<YamlFault> find_directive_fault(std::string_view text, bool map);
 /// The first byte that is not UTF-8 or character that YAML forbids, in a text without byte-order mark.
 std::optional<YamlFault> find_bad_character(std::string_view text);
 
+/// So many brackets and commas that the parser, which reads a line with brackets ahead, would run out of memory before
+/// it says anything. No sound text comes near, wherever it has its brackets; `too-large`.
+std::optional<YamlFault> find_flood(std::string_view text);
+
 /// In a list in brackets or map in braces: missing entries, a dash as entry, a comment without a blank before it,
 /// indentation by tabs or by too few blanks.
 std::optional<YamlFault> find_flow_fault(std::string_view text, std::size_t begin, int indent);

@@ -30,8 +30,7 @@ bool is_integer(double x) { return std::abs(x - std::round(x)) <= 1e-9 && std::a
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& allowed) {
-  constexpr std::size_t too_many = 5000;
-  if (allowed.size() > too_many) return {};
+  if (allowed.size() > most_candidates) return {};
   return suggestion(word, allowed).value_or("");
 }
 

@@ -94,7 +94,10 @@ class CheckedValue {
   std::string user_{};
 };
 
-/// The nearest of `allowed`, or "" when there is none; a long list is not searched.
+/// A longer list of names is not searched for the one that was meant: a file may hold as many that are wrong.
+inline constexpr std::size_t most_candidates = 2000;
+
+/// The nearest of `allowed`, or "" when there is none; at most most_candidates are searched.
 std::string nearest(std::string_view word, const std::vector<std::string>& allowed);
 
 /// "a, b or c".

@@ -29,12 +29,16 @@ CsvText::CsvText(std::string file, std::string text) : file_(std::move(file)), t
     const std::string_view content = trimmed(line);
     if (content.empty() || content.starts_with('#')) continue;
     if (!header) {
+      too_large_ = too_large_ || rows_.size() == most_rows;
+      if (too_large_) return;
       rows_.push_back({lines_, line});
       continue;
     }
     header = false;
     for (std::string_view names = line;;) {
       const std::size_t comma = names.find(',');
+      too_large_ = names_.size() == most_columns;
+      if (too_large_) return;
       names_.emplace_back(trimmed(names.substr(0, comma)));
       if (comma == std::string_view::npos) break;
       names.remove_prefix(comma + 1);

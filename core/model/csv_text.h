@@ -1,6 +1,7 @@
 // CsvText: a table of text with commas, comments and one header row, whose fields know their places.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,9 +12,12 @@
 namespace freeplay {
 
 /// Fields are separated by commas, lines that begin with '#' are comments, and the first other line names the columns.
-/// Blanks around a field and empty lines do not count; there are no quotes.
+/// Blanks around a field and empty lines do not count; there are no quotes. Columns and rows beyond the limits are left
+/// out.
 class CsvText {
  public:
+  static constexpr std::size_t most_columns = 10'000, most_rows = 2'000'000;
+
   CsvText(std::string file, std::string text);
   CsvText(const CsvText&) = delete;
   CsvText& operator=(const CsvText&) = delete;
@@ -26,6 +30,8 @@ class CsvText {
 
   const std::string& text() const { return text_; }
   const std::vector<std::string>& names() const { return names_; }
+  /// Was anything left out?
+  bool too_large() const { return too_large_; }
   std::size_t rows() const { return rows_.size(); }
   Field field(std::size_t row, std::size_t column) const;
   /// Of the first row of numbers, or of the end of the text.
@@ -41,6 +47,7 @@ class CsvText {
   std::vector<std::string> names_;
   std::vector<Row> rows_;
   int lines_ = 1;
+  bool too_large_ = false;
 };
 
 /// A finite number with a decimal point, whatever the locale; nothing else may stand beside it.

@@ -7,6 +7,8 @@
 namespace freeplay {
 namespace {
 
+constexpr std::size_t most_comparisons = 300'000'000;
+
 bool is_dotted(const std::string& name) { return name.find('.') != std::string::npos; }
 
 std::optional<int> look_up(const NameTable& table, const std::string& name, const Part& part) {
@@ -19,8 +21,13 @@ std::optional<int> look_up(const NameTable& table, const std::string& name, cons
 
 }  // namespace
 
-std::vector<int> matching(const NameTable& table, const std::string& pattern, const Part& part) {
+std::vector<int> matching(const Draft& draft, const NameTable& table, const CheckedValue& value,
+                          const std::string& pattern, const Part& part) {
   std::vector<int> found;
+  draft.compared += 2 * table.names().size();
+  if (draft.compared > most_comparisons) {
+    throw Error(Error::Category::input, "too-large", "the patterns of the file fit too many names", value.location());
+  }
   const auto collect = [&](const std::string& full_pattern) {
     const std::vector<std::string>& names = table.names();
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -54,7 +61,8 @@ void Draft::unknown(const CheckedValue& value, const char* kind, const std::stri
                     const Part& part) const {
   if (excused(name)) return;
   std::vector<std::string> candidates;
-  for (const std::string& full : table.names()) {
+  const bool few = table.names().size() <= most_candidates;
+  for (const std::string& full : few ? table.names() : candidates) {
     if (!part.prefix.empty() && full.starts_with(part.prefix)) candidates.push_back(full.substr(part.prefix.size()));
     candidates.push_back(full);
   }
@@ -102,7 +110,7 @@ std::optional<std::vector<int>> Draft::joint_list(const CheckedValue& value, con
   for (const CheckedValue& item : *items) {
     const std::optional<std::string> name = item.reference();
     if (name && is_pattern(*name)) {
-      const std::vector<int> found = matching(joints, *name, part);
+      const std::vector<int> found = matching(*this, joints, item, *name, part);
       all.insert(all.end(), found.begin(), found.end());
       good = good && !found.empty();
       std::vector<std::string> full;
@@ -139,8 +147,10 @@ std::optional<std::string> Draft::frame_name(const CheckedValue& value, const st
   if (frames.contains(stem + frame)) return stem + frame;
   if (excused(frame)) return std::nullopt;
   std::vector<std::string> candidates;
-  for (const auto& [name, unused] : frames) {
-    if (name.starts_with(stem)) candidates.push_back(name.substr(stem.size()));
+  if (frames.size() <= most_candidates) {
+    for (const auto& [name, unused] : frames) {
+      if (name.starts_with(stem)) candidates.push_back(name.substr(stem.size()));
+    }
   }
   std::sort(candidates.begin(), candidates.end());
   // In the words of the file, so that the instances of a template share the message.

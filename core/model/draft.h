@@ -40,9 +40,14 @@ struct Draft {
   std::vector<bool> ideal_matched;  ///< by index of options.ideal
 
   std::map<std::string, std::unique_ptr<const CsvText>> tables;  ///< files with tables, by path
-  std::unordered_map<BodyId, std::string> own_gravity;           ///< bodies that a force gives theirs, and its name
+  /// What drivers have made of them, by all that it depends on; the instances of a template share theirs.
+  std::map<std::string, std::shared_ptr<const TimeTable>> time_tables;
+  std::size_t table_bytes = 0, table_points = 0;
+  std::unordered_map<BodyId, std::string> own_gravity;  ///< bodies that a force gives theirs, and its name
   /// Inverse-kinematics entries that say `elbow`, and where.
   std::vector<std::pair<int, CheckedValue>> elbows;
+
+  mutable std::size_t compared = 0;  ///< names with patterns
 
   std::unordered_map<int, std::string> prescribed;  ///< joints whose coordinate a driver prescribes, and its name
 
@@ -81,7 +86,9 @@ struct Draft {
                                         const Part& part) const;
 };
 
-/// The joints among `names` that match, looked up among the part's own first.
-std::vector<int> matching(const NameTable& names, const std::string& pattern, const Part& part);
+/// Numbers of the `names` that match the pattern at `value`, looked up among the part's own first. Throws Error{input}
+/// `too-large` there when all patterns of the file together have been compared with too many names.
+std::vector<int> matching(const Draft& draft, const NameTable& names, const CheckedValue& value,
+                          const std::string& pattern, const Part& part);
 
 }  // namespace freeplay

@@ -43,6 +43,7 @@ class ForceEntry {
       for (const CheckedValue& item : *items) good = append(item, dimension::force, force) && good;
     }
     if (!good) return;
+    if (draft_.model.markers[static_cast<std::size_t>(*marker)].body == ground) warn_of_ground(*at, "a force");
     force.marker = *marker;
     force.frame_axes = *word == 1;
     add(std::move(force));
@@ -55,8 +56,13 @@ class ForceEntry {
     const std::optional<BodyId> body = on ? draft_.body(*on, part_) : std::nullopt;
     const bool good = value && append(*value, dimension::torque, torque);
     if (!good || !body) return;
+    if (*body == ground) warn_of_ground(*on, "a torque");
     torque.marker = draft_.marker(draft_.body_name(*body) + (*body == ground ? "/origin" : "/com"));
     add(std::move(torque));
+  }
+
+  static void warn_of_ground(const CheckedValue& value, const std::string& what) {
+    value.warn("unused", what + " on ground moves nothing");
   }
 
   void add(AppliedForce force) {
@@ -72,6 +78,7 @@ class ForceEntry {
     if (!items) return;
     for (const CheckedValue& item : *items) {
       for (const BodyId body : bodies(item)) {
+        if (body == ground) warn_of_ground(item, "gravity");
         if (acceleration && body != ground && claim(body, item)) {
           draft_.model.bodies[static_cast<std::size_t>(body)].gravity = *acceleration;
         }
@@ -96,7 +103,7 @@ class ForceEntry {
       const std::optional<BodyId> body = draft_.body(item, part_);
       return body ? std::vector<BodyId>{*body} : std::vector<BodyId>{};
     }
-    const std::vector<int> found = matching(draft_.bodies, *name, part_);
+    const std::vector<int> found = matching(draft_, draft_.bodies, item, *name, part_);
     if (found.empty() && !draft_.excused(*name)) {
       item.fail("unknown-name", "no body matches the pattern '" + *name + "'");
     }

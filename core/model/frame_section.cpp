@@ -88,8 +88,9 @@ void add_listed_frame(Draft& draft, const CheckedValue& entry, const Part& part)
   const std::optional<BodyId> body = draft.find_body(body_word, part);
   if (!body) {
     if (draft.excused(body_word)) return;
-    std::vector<std::string> known = draft.bodies.names();
-    known.push_back("ground");
+    std::vector<std::string> known{"ground"};
+    const std::vector<std::string>& bodies = draft.bodies.names();
+    if (bodies.size() <= most_candidates) known.insert(known.end(), bodies.begin(), bodies.end());
     return entry.fail_at_key("unknown-name", "unknown body '" + body_word + "'", nearest(body_word, known));
   }
   if (!check_frame_name(entry, name)) return;

@@ -29,13 +29,16 @@ class JointEntry {
       return;
     }
     const Component* named = type ? find_type(draft_.registry, ComponentKind::joint, *type, other_words()) : nullptr;
+    // The other keys are judged by the type that was meant.
+    known_ = named != nullptr;
+    if (!known_ && type) named = meant_type(draft_.registry, ComponentKind::joint, *type, other_words());
     read_ends(named);
     // Without a type nobody knows which keys are allowed.
     if (named == nullptr || !serves_space(*named, *type)) return;
     choose_twins(*named);
     create();
     map_.finish();
-    if (element().is_force) require_force(*type);
+    if (known_ && element().is_force) require_force(*type);
   }
 
  private:
@@ -161,7 +164,7 @@ class JointEntry {
     element().joint = play ? joint : ideal;
     element().layout = play ? layout : element().ideal_layout;
     element().has_play = play;
-    draft_.joint_usable[index_] = usable;
+    draft_.joint_usable[index_] = usable && known_;
   }
 
   bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {
@@ -189,6 +192,7 @@ class JointEntry {
   const CheckedValue& entry_;
   MapReader map_;
   std::size_t index_;
+  bool known_ = false;  // else the type is the one that was probably meant
   const Component* component_ = nullptr;
   const Component* ideal_ = nullptr;
 };

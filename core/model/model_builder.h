@@ -24,8 +24,8 @@ std::vector<NamedPlugin> named_plugins(const Document& document);
 
 /// Checks the whole document and reports every mistake to `diagnostics`; null when there is an error. Throws
 /// Error{usage} for an option that fits no model (`--set` of an unknown parameter or of a text that does not parse,
-/// `--ideal` without a match, an unknown `--integrator`) and Error{plugin} for a component that fails. The model keeps
-/// what it uses of the registry alive.
+/// `--ideal` without a match, an unknown `--integrator`), Error{plugin} for a component that fails, and Error{input}
+/// when `diagnostics` is full. The model keeps what it uses of the registry alive.
 std::unique_ptr<Model> build_model(const Document& document, const Registry& registry, const BuildOptions& options,
                                    Diagnostics& diagnostics);
 

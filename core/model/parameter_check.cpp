@@ -237,11 +237,13 @@ class ParameterCheck {
     MapReader map(written);
     const std::optional<CheckedValue> name = map.require("law");
     const Component* law = name ? find_type(registry_, kind, *name) : nullptr;
-    // Which keys a law has is unknown when the law is.
+    const bool known = law != nullptr;
+    // Keys are judged by the law that was meant; which ones a law has is unknown when that is.
+    if (!known && name) law = meant_type(registry_, kind, *name);
     if (law == nullptr) return false;
     const bool good = read_law(*law, map, parameter.name, value);
     map.finish();
-    return good;
+    return known && good;
   }
 
   bool read_law(const Component& law, MapReader& map, const std::string& path, ParameterValue& value) {
@@ -277,6 +279,13 @@ const Component* find_type(const Registry& registry, ComponentKind kind, const C
   value.fail("unknown-type", "unknown type '" + *word + "' in '" + value.path() + "'", suggested,
              suggested.empty() ? "not in this release, which has " + either(names) : "");
   return nullptr;
+}
+
+const Component* meant_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,
+                            const std::vector<std::string>& others) {
+  std::vector<std::string> names = registry.names(kind);
+  names.insert(names.end(), others.begin(), others.end());
+  return value.node().is_scalar() ? registry.find(kind, nearest(value.node().text, names)) : nullptr;
 }
 
 void report_fault(const CreationFault& fault, const CheckedParameters& parameters, const CheckedValue& entry) {

@@ -26,6 +26,10 @@ CheckedParameters check_parameters(const Component& component, MapReader& entry,
 const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,
                            const std::vector<std::string>& others = {});
 
+/// The type that an unknown word probably means, so that the keys beside it can be judged; null when there is none.
+const Component* meant_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,
+                            const std::vector<std::string>& others = {});
+
 /// Reports a constructor's complaint at the place in `entry` that it names. Throws Error{plugin} when the constructor
 /// failed for another reason.
 void report_fault(const CreationFault& fault, const CheckedParameters& parameters, const CheckedValue& entry);

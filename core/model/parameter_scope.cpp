@@ -59,6 +59,7 @@ const Node* ParameterScope::override_of(std::string_view name) const {
 
 std::vector<std::string> ParameterScope::names() const {
   std::vector<std::string> names;
+  if (entries_.size() > most_candidates) return names;
   for (const Entry& own : entries_) names.push_back(own.name);
   if (outer_ == nullptr) return names;
   for (std::string& name : outer_->names()) {

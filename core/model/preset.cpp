@@ -8,6 +8,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t deepest_chain = 64;  // of presets that use presets
+constexpr std::size_t most_presets = 256;  // of one entry
 
 }  // namespace
 
@@ -25,19 +26,19 @@ void PresetTable::read(const CheckedValue& section) {
     if (is_note(entry.key->text)) continue;
     const CheckedValue preset(section.reading(), *entry.value, entry.key, "presets." + entry.key->text);
     if (!is_name(entry.key->text)) preset.fail_at_key("bad-name", "'" + entry.key->text + "' is not a valid name");
+    index_.emplace(entry.key->text, presets_.size());
     presets_.push_back({entry.key->text, entry.key, entry.value});
   }
 }
 
 const PresetTable::Preset* PresetTable::find(std::string_view name) const {
-  for (const Preset& preset : presets_) {
-    if (preset.name == name) return &preset;
-  }
-  return nullptr;
+  const auto found = index_.find(std::string(name));
+  return found == index_.end() ? nullptr : &presets_[found->second];
 }
 
 std::vector<std::string> PresetTable::names() const {
   std::vector<std::string> names;
+  if (presets_.size() > most_candidates) return names;
   for (const Preset& preset : presets_) names.push_back(preset.name);
   return names;
 }
@@ -74,6 +75,9 @@ void PresetTable::include(const CheckedValue& name, Walk& walk) const {
     return name.fail("too-large", "presets that use presets are nested too deeply");
   }
   if (std::find(walk.visited.begin(), walk.visited.end(), preset) != walk.visited.end()) return;
+  if (walk.visited.size() == most_presets) {
+    return name.fail("too-large", "an entry uses more than " + std::to_string(most_presets) + " presets");
+  }
   walk.visited.push_back(preset);
   CheckedValue content(name.reading(), *preset->value, preset->key, "presets." + preset->name);
   content.set_user(walk.user);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "model/checked_value.h"
@@ -43,6 +44,7 @@ class PresetTable {
 
   UsedKeys* used_;
   std::vector<Preset> presets_;
+  std::unordered_map<std::string, std::size_t> index_;
 };
 
 }  // namespace freeplay

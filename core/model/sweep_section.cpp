@@ -32,7 +32,7 @@ void check_ideal(const Draft& draft, const CheckedValue& value) {
   for (const CheckedValue& item : *items) {
     const auto name = item.string();
     if (!name || *name == "all" || draft.excused(*name)) continue;
-    if (is_pattern(*name) && !matching(draft.joints, *name, draft.parts.front()).empty()) continue;
+    if (is_pattern(*name) && !matching(draft, draft.joints, item, *name, draft.parts.front()).empty()) continue;
     if (draft.find_joint(*name, draft.parts.front())) continue;
     item.fail("unknown-name", "unknown joint '" + *name + "'", nearest(*name, draft.joints.names()));
   }

@@ -1,39 +1,25 @@
 #include "model/table_keys.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/input_text.h"
 #include "base/text.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t largest_file = 16u << 20;
+constexpr std::size_t most_bytes = 2 * largest_input, most_points = CsvText::most_rows;  // of all tables of a model
 
 /// Times and values in SI.
 struct Points {
   std::vector<double> times, values;
 };
-
-/// Why the file cannot be read, or nothing and its text.
-std::optional<std::string> fault_of_file(const std::filesystem::path& path, std::string& text) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  if (!std::filesystem::exists(status)) return "there is no such file";
-  if (!std::filesystem::is_regular_file(status)) return "it is not a regular file";
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return "it cannot be opened";
-  text.assign(largest_file + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) return "reading it failed";
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return std::nullopt;
-}
 
 /// The name, or NAME-2 and so on when it is taken.
 std::string free_name(const std::vector<InputFile>& inputs, const std::filesystem::path& path) {
@@ -77,17 +63,40 @@ class TableReader {
       return nullptr;
     }
     const bool periodic = *interpolation == 0 && *ends == 2;
+    const std::string key = file ? key_of(*file, time_column, value_column, {*interpolation, *ends, *outside}) : "";
+    if (const auto known = draft_.time_tables.find(key); known != draft_.time_tables.end()) {
+      return tried(*known->second) ? known->second : nullptr;
+    }
     Points table;
     const bool good =
         file ? read_file(*file, time_column, value_column, periodic, table) : read_points(*points, periodic, table);
     if (!good) return nullptr;
+    draft_.table_points += table.times.size();
+    if (draft_.table_points > most_points) {
+      value_.fail("too-large", fmt::format("the tables of the model have more than {} rows", most_points));
+      return nullptr;
+    }
     auto made = std::make_shared<const TimeTable>(std::move(table.times), std::move(table.values),
                                                   static_cast<Interpolation>(*interpolation),
                                                   static_cast<SplineEnds>(*ends), static_cast<Outside>(*outside));
+    if (file) draft_.time_tables.emplace(key, made);
     return tried(*made) ? made : nullptr;
   }
 
  private:
+  std::filesystem::path path_of(const std::string& name) const {
+    return (std::filesystem::path(draft_.model.file).parent_path() / name).lexically_normal();
+  }
+
+  std::string key_of(const CheckedValue& file, const std::optional<CheckedValue>& time_column,
+                     const std::optional<CheckedValue>& value_column, const std::array<int, 3>& words) const {
+    const auto word = [](const std::optional<CheckedValue>& value) {
+      return value ? "=" + value->string().value_or("") : std::string();
+    };
+    return fmt::format("{}\n{}\n{}\n{} {} {} {} {}", path_of(file.string().value_or("")).string(), word(time_column),
+                       word(value_column), *time_unit_, *unit_, words[0], words[1], words[2]);
+  }
+
   std::optional<double> unit(const std::optional<CheckedValue>& value, const Dimension& wanted) const {
     if (!value) return 1.0;
     const auto text = value->string();
@@ -158,6 +167,11 @@ class TableReader {
                  const std::optional<CheckedValue>& value_column, bool periodic, Points& table) {
     const CsvText* text = open(file);
     if (text == nullptr) return false;
+    if (text->too_large()) {
+      file.fail("too-large",
+                fmt::format("a table has at most {} columns and {} rows", CsvText::most_columns, CsvText::most_rows));
+      return false;
+    }
     const auto time = column(*text, file, time_column, 0), values = column(*text, file, value_column, 1);
     if (!time || !values) return false;
     for (std::size_t row = 0; row < text->rows(); ++row) {
@@ -179,16 +193,21 @@ class TableReader {
   const CsvText* open(const CheckedValue& file) const {
     const auto name = file.string();
     if (!name) return nullptr;
-    const std::filesystem::path path = std::filesystem::path(draft_.model.file).parent_path() / *name;
+    const std::filesystem::path path = path_of(*name);
     const auto known = draft_.tables.find(path.string());
     if (known != draft_.tables.end()) return known->second.get();
     std::string text;
-    if (const auto fault = fault_of_file(path, text)) {
-      file.fail("file-not-found", fmt::format("cannot read '{}': {}", path.string(), *fault));
+    if (const std::string fault = read_input(path.string(), text); !fault.empty()) {
+      file.fail("file-not-found", fmt::format("cannot read '{}': {}", path.string(), fault));
       return nullptr;
     }
-    if (text.size() > largest_file) {
+    if (text.size() > largest_input) {
       file.fail("too-large", fmt::format("the table '{}' is larger than 16 MiB", path.string()));
+      return nullptr;
+    }
+    draft_.table_bytes += text.size();
+    if (draft_.table_bytes > most_bytes) {
+      file.fail("too-large", "the tables of the model are larger than 32 MiB together");
       return nullptr;
     }
     draft_.diagnostics.add_source(path.string(), text);

@@ -1,6 +1,7 @@
 #include "model/template.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -22,6 +23,16 @@ long element_count(const Node& content) {
     const Node* section = content.find(name);
     if (section != nullptr) count += static_cast<long>(section->entries.size());
   }
+  return count;
+}
+
+constexpr long most_values = 2'000'000, usual_text = 32;
+
+/// Values of a template, what is long counted as several: each instance reads them all again.
+long value_count(const Node& node) {
+  long count = 1 + static_cast<long>(node.text.size()) / usual_text;
+  for (const Node* item : node.items) count += value_count(*item);
+  for (const Node::Entry& entry : node.entries) count += value_count(*entry.value);
   return count;
 }
 
@@ -52,6 +63,13 @@ class InstanceExpansion {
       draft_.broken_instances.push_back(entry.key());
       return;
     }
+    values_ += *copies * value_count_of(content->node());
+    if (values_ > most_values) {
+      (count ? *count : entry)
+          .fail("too-large", fmt::format("the instances would have more than {} values", most_values));
+      draft_.broken_instances.push_back(entry.key());
+      return;
+    }
     for (long i = 1; i <= *copies; ++i) {
       const std::string full = count ? fmt::format("{}{}", entry.key(), i) : entry.key();
       if (!names_.add(full)) {
@@ -63,6 +81,12 @@ class InstanceExpansion {
   }
 
  private:
+  long value_count_of(const Node& content) {
+    const auto [known, fresh] = counted_.try_emplace(&content, 0);
+    if (fresh) known->second = value_count(content);
+    return known->second;
+  }
+
   std::optional<CheckedValue> find_template(const CheckedValue& name) {
     const std::optional<std::string> word = name.string();
     if (!word) return std::nullopt;
@@ -148,7 +172,8 @@ class InstanceExpansion {
   UsedKeys& used_;
   InstanceStorage& storage_;
   NameTable names_;
-  long elements_ = 0;
+  long elements_ = 0, values_ = 0;
+  std::unordered_map<const Node*, long> counted_;
 };
 
 }  // namespace

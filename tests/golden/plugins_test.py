@@ -225,7 +225,8 @@ class ProbesTest(ProgramTest):
     def test_a_second_interrupt_ends_a_function_that_never_returns(self):
         model = self.write("probed.yaml", PROBED)
         running = subprocess.Popen([PROGRAM, "run", model, "--plugin", probe("never_returns"), "--out", "r"],
-                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   text=True)
         self.addCleanup(running.kill)
         deadline = time.monotonic() + 20.0
         while not os.path.exists(self.path("r", "results.csv")):
@@ -236,7 +237,12 @@ class ProbesTest(ProgramTest):
         time.sleep(0.3)
         self.assertIsNone(running.poll())
         running.send_signal(signal.SIGINT)
-        self.assertEqual(130, running.wait(10))
+        self.assertEqual("freeplay: interrupted at once, the result directory is unfinished\n",
+                         running.communicate(timeout=10)[1])
+        self.assertEqual(130, running.returncode)
+        _, err = self.freeplay("run", model, "--plugin", probe("never_returns"), "--out", "r", code=6)
+        self.assertIn("'r' holds the result of a run that did not end: it has no summary.json", err)
+        self.assertIn("--force", err)
 
 
 if __name__ == "__main__":

@@ -227,6 +227,19 @@ class Run(ProgramTest):
         rows = self.rows("r", "results.csv")
         self.assertEqual({len(rows[0])}, {len(row) for row in rows})
 
+    def test_what_a_failed_run_leaves_is_told_from_other_files(self):
+        model = self.pendulum(end="20 s")
+        limit = (20000, 20000)
+        self.freeplay("run", model, "--out", "r", code=6,
+                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+        _, err = self.freeplay("run", model, "--out", "r", code=6)
+        self.assertIn("error: 'r' holds the result of a run that did not end: it has no summary.json", err)
+        self.freeplay("run", model, "--out", "r", "--end", "1 ms", "--force")
+        os.remove(self.path("r", "summary.json"))
+        self.write(os.path.join("r", "thesis.txt"), "two years of work")
+        _, err = self.freeplay("run", model, "--out", "r", code=6)
+        self.assertIn("'r' holds other files than a result", err)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -61,6 +61,12 @@ class Words(ProgramTest):
         for command in LATER_COMMANDS:
             _, err = self.freeplay(command, "x", "--out", "y", code=2)
             self.assertEqual("freeplay: error: %s: not in this release [not-in-this-release]\n" % command, err)
+            self.assertEqual(("", err), self.freeplay(command, "--help", code=2))
+
+    def test_help_of_an_unknown_command(self):
+        out, err = self.freeplay("rnu", "--help", code=2)
+        self.assertEqual("", out)
+        self.assertIn("did you mean 'run'?", err)
 
     def test_later_options(self):
         model = mechanism("pendulum")

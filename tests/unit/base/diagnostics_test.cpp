@@ -67,6 +67,51 @@ TEST(Diagnostics, StopAtTheLimitAndSayHowManyAreLeft) {
   EXPECT_EQ(diagnostics.format(0).find("more"), std::string::npos);
 }
 
+TEST(Diagnostics, PutTheCaretBelowWideCharacters) {
+  // Each of the two signs and the emoji take two columns of a terminal, the accent none.
+  Diagnostics diagnostics = with_source("\u9023\u6746: {e\u0301: \U0001F600, mas: 1}\n");
+  diagnostics.error({"m.yaml", 1, 13}, 3, "i", "bad");
+  diagnostics.error({"m.yaml", 1, 1}, 2, "i", "bad");
+  EXPECT_EQ(diagnostics.format(0),
+            "m.yaml:1:1: error: bad [i]\n"
+            "    1 | \u9023\u6746: {e\u0301: \U0001F600, mas: 1}\n"
+            "      | ^~~~\n"
+            "m.yaml:1:13: error: bad [i]\n"
+            "    1 | \u9023\u6746: {e\u0301: \U0001F600, mas: 1}\n"
+            "      |               ^~~\n");
+}
+
+TEST(Diagnostics, EndTheReadingAfterTooManyErrors) {
+  Diagnostics diagnostics;
+  const auto report = [&](int line) { diagnostics.error({"m.yaml", line, 1}, 1, "i", "bad"); };
+  for (int i = 1; i < Diagnostics::most_messages; ++i) report(i);
+  try {
+    report(Diagnostics::most_messages);
+    FAIL() << "nothing is thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.category(), Error::Category::input);
+    EXPECT_EQ(error.id(), "too-large");
+    EXPECT_EQ(error.location().line, Diagnostics::most_messages);
+  }
+  report(1);  // whoever adds the last word need not be careful
+}
+
+TEST(Diagnostics, EndTheReadingWhenTheSameErrorComesTooOften) {
+  Diagnostics diagnostics;
+  const auto report = [&] { diagnostics.error({"m.yaml", 1, 1}, 1, "i", "bad"); };
+  for (int i = 1; i < Diagnostics::most_errors; ++i) report();
+  EXPECT_THROW(report(), Error);
+  EXPECT_EQ(diagnostics.sorted().size(), 1u);
+}
+
+TEST(Diagnostics, CountTheWarningsThatAreTooMany) {
+  Diagnostics diagnostics;
+  for (int i = 1; i <= Diagnostics::most_messages + 7; ++i) diagnostics.warning({"m.yaml", i, 1}, 1, "i", "odd");
+  const auto messages = diagnostics.sorted();
+  EXPECT_EQ(messages.size(), Diagnostics::most_messages + 1u);
+  EXPECT_EQ(messages.back().message, "7 more warnings");
+}
+
 TEST(Diagnostics, TurnWarningsIntoErrorsWhenStrict) {
   Diagnostics diagnostics(true);
   diagnostics.warning({"m.yaml", 1, 1}, 1, "unused", "not used");

@@ -84,6 +84,14 @@ TEST(Unit, RefusesUnknownNamesWithAPlaceAndASuggestion) {
   }
 }
 
+TEST(Unit, RefusesAProductWhoseExponentsOverflow) {
+  // N has s^-2: its power has s^-2e308, which no double holds.
+  const ExpressionError error = error_of("m*N^1e308");
+  EXPECT_EQ(error.id, "bad-unit");
+  EXPECT_EQ(error.offset, 2);
+  EXPECT_EQ(error.message, "the exponent of 'N' is too large");
+}
+
 TEST(Unit, RefusesHertzWithAHint) {
   EXPECT_EQ(error_of("Hz").id, "bad-unit");
   EXPECT_EQ(error_of("Hz").hint, "write 'rev/s' or 'rad/s'");

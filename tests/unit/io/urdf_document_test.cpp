@@ -143,5 +143,11 @@ TEST(ReadUrdf, AsksUrdfdomAboutWhatItDoesNotReadItself) {
   EXPECT_NE(out.report.find("r.urdf:1:18: error: urdfdom refuses this link"), std::string::npos) << out.report;
 }
 
+TEST(ReadUrdf, TakesPercentSignsThatUrdfdomWouldPrintWith) {
+  const Read out = read(robot("<link name='a'/><material name='%s%n'><color rgba='%s%s%n 1 1 1'/></material>"));
+  EXPECT_FALSE(out.sections);
+  EXPECT_NE(out.report.find("%s%s%n"), std::string::npos) << out.report;
+}
+
 }  // namespace
 }  // namespace freeplay::urdf

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "io/model_document.h"
+
 namespace freeplay {
 namespace {
 
@@ -207,7 +209,7 @@ TEST(ReadYaml, ReadsAFile) {
   const auto path = std::filesystem::temp_directory_path() / "freeplay_yaml_document_test.yaml";
   std::ofstream(path) << "a: 1\n";
   Diagnostics diagnostics;
-  const auto document = read_yaml(path.string(), diagnostics);
+  const auto document = read_model(path.string(), diagnostics);
   std::filesystem::remove(path);
   ASSERT_TRUE(document);
   EXPECT_EQ(document->root().find("a")->location().file, path.string());
@@ -216,7 +218,7 @@ TEST(ReadYaml, ReadsAFile) {
 TEST(ReadYaml, DoesNotOpenDirectoriesAndDevices) {
   for (const char* path : {"/nowhere/model.yaml", "/", "/dev/zero"}) {
     Diagnostics diagnostics;
-    EXPECT_FALSE(read_yaml(path, diagnostics));
+    EXPECT_FALSE(read_model(path, diagnostics));
     ASSERT_EQ(diagnostics.sorted().size(), 1u);
     EXPECT_EQ(diagnostics.sorted()[0].id, "file-not-found");
   }
@@ -246,6 +248,21 @@ TEST(Document, KeepsItsNodesWhenItIsMoved) {
   const Document second = std::move(first);
   EXPECT_EQ(second.root().find("a"), list);
   EXPECT_EQ(list->items[1]->location().file, "m.yaml");
+}
+
+TEST(Yaml, RefusesFloodsOfBracketsBeforeTheyAreParsed) {
+  const auto report = [](const std::string& text) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(parse_yaml(text, "m.yaml", diagnostics));
+    return diagnostics.sorted().front();
+  };
+  const Diagnostic deep = report("a: 1\nb: " + std::string(10'001, '['));
+  EXPECT_EQ(deep.id, "too-large");
+  EXPECT_EQ(deep.location.line, 2);
+  EXPECT_EQ(deep.location.column, 4);
+  const Diagnostic wide = report("[1" + std::string(1'500'000, ',') + "]");
+  EXPECT_EQ(wide.id, "too-large");
+  EXPECT_EQ(wide.location.column, 1);
 }
 
 }  // namespace

@@ -78,6 +78,33 @@ TEST(DriverTable, ReadsColumnsOfAFileOnceAndKeepsItAsAnInput) {
   EXPECT_EQ(built.model->inputs.front().text, folder.read("motor.csv"));
 }
 
+TEST(DriverTable, IsSharedByAllThatReadTheSameColumnsTheSameWay) {
+  const ScratchFolder folder;
+  folder.write("motor.csv", "t,x\n0,1\n1,2\n");
+  const auto table = [&](const std::string& name) { return folder.file(name).string(); };
+  std::string text = "freeplay: 1\nbodies:\n", joints = "joints:\n", drivers = "drivers:\n";
+  const std::string files[] = {table("motor.csv"), table("./motor.csv"),
+                               "{file: " + table("motor.csv") + ", unit: deg}"};
+  for (int i = 0; i < 3; ++i) {
+    const std::string n = std::to_string(i);
+    text += "  b" + n + ": {mass: 1, inertia: 1}\n";
+    joints += "  j" + n + ": {type: pin, between: [ground, b" + n + "]}\n";
+    drivers += "  d" + n + ": {joint: j" + n + ", kind: angle, table: " + files[i] + "}\n";
+  }
+  const Built built = build(text + joints + drivers);
+  ASSERT_TRUE(built.model) << built.report;
+  const auto& made = built.model->drivers;
+  EXPECT_EQ(made[0].table, made[1].table);
+  EXPECT_NE(made[0].table, made[2].table);
+  EXPECT_EQ(built.model->inputs.size(), 1u);
+}
+
+TEST(DriverTable, RefusesAFileWithTooManyColumns) {
+  const ScratchFolder folder;
+  folder.write("wide.csv", std::string(20'000, ',') + "\n0,1\n1,2\n");
+  EXPECT_EQ(driven(folder.file("wide.csv").string()).places, "6:41 too-large ");
+}
+
 TEST(DriverTable, ReportsMistakesInTheFile) {
   const ScratchFolder folder;
   const std::string file = folder.file("motor.csv").string();

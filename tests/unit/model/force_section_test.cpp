@@ -32,6 +32,16 @@ TEST(ForceSection, RefusesJointsWithRowsOrPlay) {
   EXPECT_NE(built.report.find("did you mean 'spring'?"), std::string::npos);
 }
 
+TEST(ForceSection, WarnsOfWhatActsOnGround) {
+  const Built built =
+      build(with_rod("forces:\n"
+                     "  f: {type: force, at: ground/origin, value: [1, 0]}\n"
+                     "  t: {type: torque, on: ground, value: 1}\n"
+                     "  g: {type: gravity, on: [ground, rod], value: [0, 1]}\n"));
+  EXPECT_TRUE(built.model);
+  EXPECT_EQ(built.places, "5:24 unused 6:25 unused 7:27 unused ");
+}
+
 TEST(ForceSection, AForceIsNoJointForOthers) {
   const Built built =
       build(with_rod("joints: {A: {type: pin, between: [ground, rod]}}\n"

@@ -42,6 +42,13 @@ TEST(JointTwins, IdealClosesThePlayButItsBlockIsStillChecked) {
   EXPECT_EQ(build(wrong, options).places, "4:49 missing-key 4:74 unknown-type ");
 }
 
+TEST(JointTypes, ThatAreMisspeltAreJudgedAsWhatWasMeant) {
+  EXPECT_EQ(build(with_rod("joints:\n  A: {type: pinn, betwen: [ground, rod]}\n")).places,
+            "5:3 missing-key 5:13 unknown-type 5:19 unknown-key ");
+  EXPECT_EQ(build(with_rod("joints:\n  A: {type: nothing-like-it, betwen: [ground, rod]}\n")).places,
+            "5:13 unknown-type ");
+}
+
 TEST(JointTwins, IdealNeedsAMatch) {
   BuildOptions options;
   options.ideal = {"a", "b*"};

@@ -42,6 +42,16 @@ TEST(Presets, MustExistAndNotUseThemselves) {
             "4:12 cyclic-preset 7:12 unknown-name ");
 }
 
+TEST(Presets, OfOneEntryAreLimited) {
+  std::string presets = "freeplay: 1\npresets:\n", use;
+  for (int i = 0; i < 300; ++i) {
+    presets += "  p" + std::to_string(i) + ": {mass: 1}\n";
+    use += (i > 0 ? ", p" : "p") + std::to_string(i);
+  }
+  const Built built = build(presets + "bodies: {b: {inertia: 1, use: [" + use + "]}}\n");
+  EXPECT_NE(built.report.find("an entry uses more than 256 presets [too-large]"), std::string::npos);
+}
+
 TEST(Presets, ServeTheBlockOfAJointWithPlay) {
   const Built built =
       build(with_rod("presets: {fit: {gap: 1 mm, contact: {law: power, K: 1}}}\n"

@@ -97,6 +97,20 @@ TEST(Templates, ReportAMistakeOnceAndNameTheInstance) {
             "      = in instance 'a1'\n");
 }
 
+TEST(Instances, HoldALimitedNumberOfValues) {
+  const auto places = [](int frames, long count) {
+    std::string list;
+    for (int i = 0; i < frames; ++i) list += (i > 0 ? ", f" : "f") + std::to_string(i) + ": [0, 0]";
+    return build(
+               "freeplay: 1\n"
+               "templates: {t: {bodies: {b: {mass: 1, inertia: 1, frames: {" +
+               list + "}}}}}\ninstances: {i: {template: t, count: " + std::to_string(count) + "}}\n")
+        .places;
+  };
+  EXPECT_EQ(places(100, 10), "");
+  EXPECT_EQ(places(100, 10'000), "3:37 too-large ");  // 300 values each
+}
+
 TEST(Instances, AreChecked) {
   const auto places = [](const std::string& instances) { return build(head + "instances:\n" + instances).places; };
   EXPECT_EQ(places("  a: {template: lag, with: {at: 1}}\n"), "14:17 unknown-name ");

@@ -1,4 +1,4 @@
-#include "io/input_text.h"
+#include "base/input_text.h"
 
 #include <algorithm>
 #include <cstdint>

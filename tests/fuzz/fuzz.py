@@ -1,0 +1,161 @@
+"""Runs fuzz targets: fuzz.py [--short | --seconds N | --runs N] FOLDER [TARGET...]. FOLDER holds the programs.
+
+First the inputs that once did harm (regressions/TARGET), then new ones that libFuzzer makes from the project's own
+files, from what earlier runs found (FOLDER/found/TARGET, long runs only) and, where FREEPLAY_CASES names a folder with
+files of other people, from those. An input may take 2 s and 512 MiB and must leave no memory behind.
+"""
+import argparse
+import glob
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+# Executions of the short run, some seconds each; and the longest input: beyond a limit of the reader, where it has one.
+TARGETS = {
+    "expression": {"short": 40000, "longest": 10500},
+    "model": {"short": 6000, "longest": 16384},
+    "table": {"short": 8000, "longest": 4096},
+    "unit": {"short": 30000, "longest": 256},
+    "urdf": {"short": 3000, "longest": 16384},
+}
+ENDING = {"model": "yaml", "urdf": "urdf", "table": "csv"}
+UNITS = ["m", "kg*m^2", "N/m^1.5", "rad/s", "1/s", "N/m^exponent", "kind: N/m | N*m/rad", "kg * m / s^-2", "m^(", "Hz"]
+EXPRESSIONS = ["2*pi/3", "1 mm + 2 in", "${a}*sin(2*pi*t/1 s)", "smooth(t, 0 s, 0.1 s)*$l", "-2^-2 deg", "3 N*m",
+               "atan2($f, t)", "min(1, max(t, 2)) * sqrt(t^2 + 1)", "1e-3", "abs(acos(cos(t)))^$a", "((1))",
+               "exp(-t) / log(2)"]
+TABLES = ["time,value\n0,0\n0.5,1\n1,0\n", "# s, rad\n t , x \n0,+1e-3\n\n1,2\n2,1e-3\n", "t,a,b\n0,1,2\n1,2,3,4\n2,\n"]
+
+
+def scalars(text):
+    """Most values of a YAML file, found without reading it: some files are there to be refused."""
+    return [match.strip() for match in re.findall(rb"[:\[,]\s+\"?([^\"#{}\[\],\n]{1,200})", text)]
+
+
+def files(ending):
+    folders = [os.path.join(ROOT, "mechanisms"), os.path.join(ROOT, "tests", "data"),
+               os.environ.get("FREEPLAY_CASES", "")]
+    found = [path for folder in folders if folder
+             for path in glob.glob(os.path.join(folder, "**", "*." + ending), recursive=True)]
+    return sorted(path for path in found if os.path.getsize(path) <= 1 << 16)
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def seeds(target):
+    """Texts to begin with."""
+    if target == "unit":
+        return [text.encode() for text in UNITS]
+    texts = [read(path) for path in files(ENDING[target])] if target in ENDING else []
+    if target == "table":
+        texts += [text.encode() for text in TABLES]
+    if target == "expression":
+        texts = [text.encode() for text in EXPRESSIONS]
+        for path in files("yaml"):
+            texts += scalars(read(path))
+    return sorted(set(texts))
+
+
+def write_seeds(target, folder):
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    for text in seeds(target):
+        with open(os.path.join(folder, hashlib.sha256(text).hexdigest()[:16]), "wb") as file:
+            file.write(text)
+
+
+def dictionary(target, build):
+    """Words to build inputs from: those of the program's own tables for YAML, a list for others that have one."""
+    if target != "model":
+        path = os.path.join(HERE, target + ".dict")
+        return path if os.path.exists(path) else None
+    path = os.path.join(build, "model.dict")
+    with open(path, "wb") as file:
+        file.write(subprocess.run([os.path.join(build, "fuzz_words")], check=True, stdout=subprocess.PIPE).stdout)
+    return path
+
+
+def run(command):
+    environment = {**os.environ, "ASAN_OPTIONS": "quarantine_size_mb=16:malloc_context_size=12",
+                   "UBSAN_OPTIONS": "print_stacktrace=1"}
+    return subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def report(target, crash, output):
+    sys.stdout.write(output.decode(errors="replace")[-8000:])
+    print("%s: FAILED. Replay: ./dev fuzz %s %s" % (target, target, crash))
+
+
+def replay(target, program, limits, paths):
+    """True if all inputs are taken; names the first that is not."""
+    if not paths or run([program, *limits, *paths]).returncode == 0:
+        return True
+    for path in paths:
+        done = run([program, *limits, path])
+        if done.returncode != 0:
+            report(target, os.path.relpath(path), done.stdout)
+            return False
+    return True
+
+
+def fuzz(target, build, options):
+    program = os.path.join(build, "fuzz_" + target)
+    limits = ["-timeout=2", "-rss_limit_mb=512", "-max_len=%d" % TARGETS[target]["longest"]]
+    inputs = options.input or sorted(glob.glob(os.path.join(HERE, "regressions", target, "*")))
+    if not replay(target, program, limits, inputs):
+        return False
+    print("%-10s %d known inputs pass" % (target, len(inputs)), flush=True)
+    if options.input:
+        return True
+    seed_folder, found = os.path.join(build, "seeds", target), os.path.join(build, "found", target)
+    write_seeds(target, seed_folder)
+    os.makedirs(found, exist_ok=True)
+    crashes = os.path.join(build, "crashes", target + "-")
+    os.makedirs(os.path.dirname(crashes), exist_ok=True)
+    command = [program, *limits, "-print_final_stats=1", "-verbosity=0", "-artifact_prefix=" + crashes]
+    words = dictionary(target, build)
+    if words:
+        command.append("-dict=" + words)
+    if options.short:
+        command += ["-seed=1", "-runs=%d" % TARGETS[target]["short"], seed_folder]
+    else:
+        length = "-runs=%d" % options.runs if options.runs else "-max_total_time=%d" % options.seconds
+        command += [length, found, seed_folder]
+    begin = time.monotonic()
+    done = run(command)
+    seconds = time.monotonic() - begin
+    if done.returncode != 0:
+        crash = re.search(rb"Test unit written to (\S+)", done.stdout)
+        report(target, os.path.relpath(crash.group(1).decode(), os.getcwd()) if crash else "?", done.stdout)
+        return False
+    count = int(re.search(rb"number_of_executed_units: (\d+)", done.stdout).group(1))
+    peak = int(re.search(rb"peak_rss_mb: *(\d+)", done.stdout).group(1))
+    print("%-10s %d executions, %.0f/s, peak %d MiB, no crash" % (target, count, count / max(seconds, 1e-3), peak),
+          flush=True)
+    return True
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev fuzz")
+    parser.add_argument("--short", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--seconds", type=int, default=300, help="time for each target, default 300")
+    parser.add_argument("--runs", type=int, help="executions of each target instead")
+    parser.add_argument("build", help=argparse.SUPPRESS)
+    parser.add_argument("target", nargs="?", choices=sorted(TARGETS), help="default: all")
+    parser.add_argument("input", nargs="*", help="files to replay")
+    options = parser.parse_args()
+    targets = [options.target] if options.target else sorted(TARGETS)
+    results = [fuzz(target, options.build, options) for target in targets]
+    return 0 if all(results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,102 @@
+#include "fuzz/harness.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "io/complete_model.h"
+#include "io/model_document.h"
+#include "io/yaml_document.h"
+#include "model/model_builder.h"
+
+namespace freeplay::fuzz {
+namespace {
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<std::string_view> lines;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+bool is_printable(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return c == '\n' || static_cast<unsigned char>(c) >= 0x20; });
+}
+
+/// What a model with a robot is converted to must be YAML again.
+void check_conversion(const Document& document) {
+  std::vector<std::string> renamed;
+  const std::string text = complete_model_text(document, renamed);
+  Diagnostics diagnostics;
+  const bool read = parse_yaml(text, "converted.yaml", diagnostics).has_value();
+  if (!read || diagnostics.has_errors()) std::fputs((text + diagnostics.format(5)).c_str(), stderr);
+  require(read && !diagnostics.has_errors(), "a converted model can be read");
+}
+
+}  // namespace
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "does not hold: %s\n", what);
+  std::abort();
+}
+
+const Registry& builtin_types() {
+  static const Registry registry = Registry::with_builtins();
+  return registry;
+}
+
+MemoryFile::MemoryFile() : descriptor_(memfd_create("input", 0)), path_(fmt::format("/proc/self/fd/{}", descriptor_)) {
+  require(descriptor_ >= 0, "a file in memory can be made");
+}
+
+void MemoryFile::write(std::string_view text) const {
+  require(ftruncate(descriptor_, 0) == 0, "the file in memory can be emptied");
+  const auto written = pwrite(descriptor_, text.data(), text.size(), 0);
+  require(written == static_cast<ssize_t>(text.size()), "the file in memory can be written");
+}
+
+void check_messages(const Diagnostics& diagnostics, const std::string& file_name, std::string_view text) {
+  require(is_printable(diagnostics.format(0)), "messages hold no control characters");
+  const std::vector<std::string_view> lines = lines_of(text);
+  for (const Diagnostic& message : diagnostics.sorted()) {
+    require(!message.id.empty() && !message.message.empty(), "a message has an id and a text");
+    if (message.location.file != file_name || message.location.line == 0) continue;
+    const auto line = static_cast<std::size_t>(message.location.line);
+    require(message.location.line > 0 && line <= lines.size(), "a message points to a line of the file");
+    const int width = character_count(lines[line - 1]);
+    const bool inside = message.location.column >= 1 && message.location.column <= width + 1;
+    if (!inside) std::fputs(diagnostics.format(0).c_str(), stderr);
+    require(inside, "a message points to a column of its line");
+  }
+}
+
+void check_model(std::string text, const std::string& file_name) {
+  Diagnostics diagnostics;
+  std::unique_ptr<Model> model;
+  std::optional<Document> document;
+  bool thrown = false;
+  try {
+    document = parse_model(text, file_name, diagnostics);
+    if (document) model = build_model(*document, builtin_types(), {}, diagnostics);
+  } catch (const Error& error) {
+    require(error.category() != Error::Category::internal, "no input is an internal error");
+    thrown = true;
+  }
+  require(thrown || (model != nullptr) != diagnostics.has_errors(), "there is a model or an error");
+  check_messages(diagnostics, file_name, text);
+  if (model && !document->attachments().empty()) check_conversion(*document);
+}
+
+}  // namespace freeplay::fuzz
