@@ -38,6 +38,8 @@ LIBRARIES = {
     "urdf_model": {"io"},
     "console_bridge": {"io"},
     "hdf5.h": {"io"},
+    "klu.h": {"linear"},
+    "SuiteSparseQR.hpp": {"linear"},
     "openssl": {"io"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
