@@ -22,7 +22,7 @@ double rate_of(const double* row, const MarkerKinematics& a, const MarkerKinemat
 
 // A sum is finite only if every term is; differences of infinities are not finite either.
 bool is_finite(const JointForces& f) {
-  double sum = f.potential;
+  double sum = f.potential + (std::isnan(f.potential_rate) ? 0.0 : f.potential_rate);
   for (int i = 0; i < 6; ++i) sum += f.wrench_a[i] + f.wrench_b[i];
   return std::isfinite(sum);
 }
@@ -160,6 +160,7 @@ Evaluation::Evaluation(const System& system) {
   coordinate_rate.resize(joints);
   motion.resize(model.drivers.size());
   potential.resize(joints);
+  potential_rate.resize(joints);
   wrench.resize(12 * joints);
   internal_rate.resize(at(layout.nz()));
   applied.resize(3 * model.forces.size());
@@ -432,6 +433,7 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     std::copy_n(out.wrench_a, 6, wrench);
     std::copy_n(out.wrench_b, 6, wrench + 6);
     e.potential[at(j)] = out.potential;
+    e.potential_rate[at(j)] = out.potential_rate;
     const JointElement& element = model_.joints[at(j)];
     if (block.a != ground) planar::add_wrench(wrench, e.arms[at(element.marker_a)], &e.force[3 * at(block.a)]);
     if (block.b != ground) planar::add_wrench(wrench + 6, e.arms[at(element.marker_b)], &e.force[3 * at(block.b)]);
