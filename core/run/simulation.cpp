@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "component/declared.h"
+#include "component/joint_answer.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
@@ -226,8 +227,10 @@ bool Simulation::Impl::prepare_trial(double dt) {
     const Slice h = system.layout().history(j);
     MarkerAccelerations accelerations;
     system.marker_accelerations(j, e_accepted, accepted.a(), accelerations);
-    if (!system.joint(j).begin_step(system.input(j, here, e_accepted), accelerations, dt,
-                                    Span<double>(trial.h()).part(at(h.offset), at(h.size)), e_trial.fault.message)) {
+    const Span<double> history = Span<double>(trial.h()).part(at(h.offset), at(h.size));
+    if (!system.joint(j).begin_step(system.input(j, here, e_accepted), accelerations, dt, history,
+                                    e_trial.fault.message) ||
+        !keeps_finite({}, history, "begin_step", e_trial.fault.message)) {
       e_trial.fault.kind = Fault::Kind::plugin;
       e_trial.fault.joint = j;
       return fail_with(e_trial.fault, accepted.t());
@@ -315,9 +318,10 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located) {
   }
   for (const int j : with_history) {
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
+    const Span<double> history = Span<double>(trial.h()).part(at(h.offset), at(h.size));
     if (!system.joint(j).commit(system.input(j, point(trial), e_trial),
-                                {trial.lambda().data() + rows.offset, at(rows.size)},
-                                Span<double>(trial.h()).part(at(h.offset), at(h.size)), fault.message)) {
+                                {trial.lambda().data() + rows.offset, at(rows.size)}, history, fault.message) ||
+        !keeps_finite({}, history, "commit", fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
       return fail_with(fault, trial.t());
