@@ -333,10 +333,11 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located) {
   }
   std::swap(accepted, trial);
   std::swap(e_accepted, e_trial);
-  ++outcome.steps;
   outcome.time = accepted.t();
   if (!events.happenings().empty() && !refresh()) return false;
-  return record_row() && note_warnings() && tell_sinks();
+  if (!record_row()) return false;
+  ++outcome.steps;  // from now on its row may be written
+  return note_warnings() && tell_sinks();
 }
 
 // An event changes history or internal variables, and with them what acts: the integrator starts again from here.

@@ -137,7 +137,7 @@ TEST(FailedRun, NumbersOfAJointThatAreNotFiniteEndItAndAreNamed) {
     EXPECT_EQ(run.outcome().exit_code, 5) << c.fault;
     EXPECT_THAT(run.outcome().reason, HasSubstr("joint 'bad'"));
     EXPECT_THAT(run.outcome().reason, HasSubstr(c.words));
-    expect_sound_rows(run, 0.252);
+    expect_sound_rows(run, 0.251);
   }
 }
 

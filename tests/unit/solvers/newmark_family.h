@@ -115,7 +115,7 @@ inline void expect_order_with_varying_steps(const std::string& name, const Numbe
     return std::array{run.q[0] - (std::cos(1.0) + 0.3 * std::sin(1.0)),
                       run.v[0] - (0.3 * std::cos(1.0) - std::sin(1.0)), run.z[0] - 2.0 * std::exp(-0.7)};
   };
-  const auto coarse = error(40), fine = error(80);
+  const auto coarse = error(200), fine = error(400);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::log2(coarse[i] / fine[i]), 2.0, 0.1) << i;
 }
 
