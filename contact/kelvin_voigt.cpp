@@ -18,8 +18,8 @@ class KelvinVoigt final : public ContactLaw {
     const double elastic = stiffness_ * state.penetration, potential = 0.5 * elastic * state.penetration;
     const double damping = state.approach_speed > 0.0 ? damping_ : 0.0;
     const double force = elastic + damping * state.rate;
-    if (force <= 0.0) return {0.0, 0.0, 0.0, potential};
-    return {force, stiffness_, damping, potential};
+    if (force <= 0.0) return {0.0, 0.0, 0.0, potential, elastic};
+    return {force, stiffness_, damping, potential, elastic};
   }
 
  private:

@@ -54,8 +54,8 @@ struct ElasticForce {
 inline ContactForce with_loss(const ElasticForce& elastic, double chi, const ContactState& state) {
   const double damping = state.approach_speed > 0.0 ? chi / state.approach_speed : 0.0;
   const double factor = 1.0 + damping * state.rate;
-  if (factor <= 0.0) return {0.0, 0.0, 0.0, elastic.potential};
-  return {elastic.force * factor, elastic.slope * factor, elastic.force * damping, elastic.potential};
+  if (factor <= 0.0) return {0.0, 0.0, 0.0, elastic.potential, elastic.force};
+  return {elastic.force * factor, elastic.slope * factor, elastic.force * damping, elastic.potential, elastic.force};
 }
 
 }  // namespace freeplay

@@ -172,6 +172,7 @@ class RevoluteClearance final : public Joint {
   }
   void apply(const JointInput& in, JointForces& out) const override {
     const Gap gap(in, radii_);
+    out.potential_rate = 0.0;
     if (!touches(in, gap)) return;
     const Forces f = forces(in, gap, out.internal_rate);
     const Eigen::Vector2d on_b = -f.normal.normal * gap.n + f.friction.tangential * gap.t;
@@ -182,6 +183,9 @@ class RevoluteClearance final : public Joint {
     out.wrench_a[5] = -arm_a(gap) * f.friction.tangential;
     out.wrench_b[5] = arm_b(gap) * f.friction.tangential;
     out.potential = f.normal.potential;
+    const bool told = !std::isnan(f.normal.elastic);
+    out.potential_rate =
+        gap.rate * (told ? f.normal.elastic : contact_law_.evaluate({gap.penetration, 0.0, 0.0}).normal);
     if (!out.derivatives.empty()) differentiate(in, gap, f, out.derivatives);
   }
 

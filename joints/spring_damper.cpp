@@ -67,16 +67,19 @@ class SpringDamper final : public Joint {
     return value + 2.0 * M_PI * std::round((in.history[0] - value) / (2.0 * M_PI));
   }
 
-  double effort(double stretch, double rate) const { return stiffness_ * stretch + damping_ * rate + preload_; }
+  double restoring(double stretch) const { return stiffness_ * stretch + preload_; }
+  double effort(double stretch, double rate) const { return restoring(stretch) + damping_ * rate; }
   double stored(double stretch) const { return (0.5 * stiffness_ * stretch + preload_) * stretch; }
 
   void pull(const JointInput& in, JointForces& out) const {
     const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
     const double length = d.norm();
     out.potential = stored(length - free_);
+    out.potential_rate = 0.0;
     if (length < smallest_length) return;
     const Eigen::Vector2d u = d / length;
     const double f = effort(length - free_, u.dot(rate));
+    out.potential_rate = restoring(length - free_) * u.dot(rate);
     for (int i = 0; i < 2; ++i) {
       out.wrench_a[i] = f * u[i];
       out.wrench_b[i] = -f * u[i];
@@ -96,8 +99,9 @@ class SpringDamper final : public Joint {
 
   void twist(const JointInput& in, JointForces& out) const {
     const double stretch = angle(in) - free_;
-    const double torque = effort(stretch, angular_velocity(*in.b) - angular_velocity(*in.a));
+    const double rate = angular_velocity(*in.b) - angular_velocity(*in.a), torque = effort(stretch, rate);
     out.potential = stored(stretch);
+    out.potential_rate = restoring(stretch) * rate;
     out.wrench_a[5] = torque;
     out.wrench_b[5] = -torque;
     if (out.derivatives.size == 0) return;

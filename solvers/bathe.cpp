@@ -35,7 +35,7 @@ class Bathe final : public Integrator {
   void declare(IntegratorLayout& layout) const override {
     const Sizes& n = layout.sizes;
     layout.memory = n.nz;  // z' at the accepted state
-    layout.scratch = n.nq + 4 * n.nv + 2 * n.nz + StepError::scratch(n);
+    layout.scratch = n.nq + 4 * n.nv + 3 * n.nz + StepError::scratch(n);
     layout.order = 2;
     layout.error_estimate = 1;
     layout.newton_tolerance = tolerance_;
@@ -55,7 +55,8 @@ class Bathe final : public Integrator {
     solver.accelerate(to, to.memory);
     if (!solver.estimates()) return {.converged = 1, .error = 0.0};
     StepError error(to, scratch.part(n.used, scratch.size - n.used));
-    return {.converged = 1, .error = error(dt, n.q, n.v, n.a, n.z, n.increment_known, to, solver)};
+    return {.converged = 1,
+            .error = error(dt, {n.q, n.v, n.a, n.z, n.z_rate}, n.increment_known, to, to.memory, solver)};
   }
 
  private:
@@ -73,14 +74,16 @@ class Bathe final : public Integrator {
       v_known = take(state.v.size);
       increment_known = take(state.v.size);
       z_known = take(state.z.size);
+      z_rate = take(state.z.size);
       std::copy(state.q.begin(), state.q.end(), q.begin());
       std::copy(state.v.begin(), state.v.end(), v.begin());
       std::copy(state.a.begin(), state.a.end(), a.begin());
       std::copy(state.z.begin(), state.z.end(), z.begin());
+      std::copy(state.memory.begin(), state.memory.end(), z_rate.begin());
     }
     double t;
     std::size_t used = 0;
-    Span<double> q, v, a, z, v_known, increment_known, z_known;
+    Span<double> q, v, a, z, v_known, increment_known, z_known, z_rate;
   };
 
   bool trapezoid(double dt, Start& n, StateView& to, StageSolver& solver) const {

@@ -34,7 +34,7 @@ class Dopri5 final : public Integrator {
   void declare(IntegratorLayout& layout) const override {
     const Sizes& n = layout.sizes;
     layout.memory = n.nz;  // z' at the accepted state
-    layout.scratch = n.nq + stages * (2 * n.nv + n.nz) + 2 * n.nv + n.nz;
+    layout.scratch = n.nq + stages * (2 * n.nv + n.nz) + 2 * n.nv + 2 * n.nz;
     layout.order = 5;
     layout.error_order = 5;
     layout.error_estimate = 1;
@@ -62,7 +62,7 @@ class Dopri5 final : public Integrator {
       std::copy(to.a.begin(), to.a.end(), k.a(s).begin());
     }
     std::copy_n(k.z_rate(stages - 1).begin(), to.z.size, to.memory.begin());
-    return {.converged = 1, .error = error(dt, k, solver)};
+    return {.converged = 1, .error = error(dt, k, to, solver)};
   }
 
  private:
@@ -76,6 +76,7 @@ class Dopri5 final : public Integrator {
       increment = rest.part(stages * (2 * nv + nz), nv);
       spare = rest.part(stages * (2 * nv + nz) + nv, nv);
       z_start = rest.part(stages * (2 * nv + nz) + 2 * nv, nz);
+      z_spare = rest.part(stages * (2 * nv + nz) + 2 * nv + nz, nz);
       std::copy(s.q.begin(), s.q.end(), q.begin());
       std::copy(s.v.begin(), s.v.end(), v(0).begin());
       std::copy(s.a.begin(), s.a.end(), a(0).begin());
@@ -88,7 +89,7 @@ class Dopri5 final : public Integrator {
     std::size_t offset(int s) const { return static_cast<std::size_t>(s) * (2 * nv + nz); }
 
     std::size_t nv, nz;
-    Span<double> q, rest, increment, spare, z_start;
+    Span<double> q, rest, increment, spare, z_start, z_spare;
   };
 
   /// increment, v and z of stage s from the derivatives of those before.
@@ -107,18 +108,20 @@ class Dopri5 final : public Integrator {
     }
   }
 
-  static double error(double dt, const Stages& k, StageSolver& solver) {
+  static double error(double dt, const Stages& k, const StateView& end, StageSolver& solver) {
     std::fill(k.increment.begin(), k.increment.end(), 0.0);
     std::fill(k.spare.begin(), k.spare.end(), 0.0);
+    std::fill(k.z_spare.begin(), k.z_spare.end(), 0.0);
     for (int j = 0; j < stages; ++j) {
       const double w = dt * error_weight[j];
-      const Span<double> v = k.v(j), a = k.a(j);
+      const Span<double> v = k.v(j), a = k.a(j), z_rate = k.z_rate(j);
       for (std::size_t i = 0; i < k.nv; ++i) {
         k.increment[i] += w * v[i];
         k.spare[i] += w * a[i];
       }
+      for (std::size_t i = 0; i < k.nz; ++i) k.z_spare[i] += w * z_rate[i];
     }
-    return solver.error_norm(k.increment, k.spare);
+    return std::max(solver.error_norm(k.increment, k.spare), solver.internal_error_norm(dt, end, k.z_spare));
   }
 };
 

@@ -23,14 +23,18 @@ struct NewmarkWeights {
 /// Internal variables z follow the rule of v with an auxiliary rate Z. Constraints hold at position level; then v is
 /// projected and a, lambda are solved again at the accepted state, which is the a_n of the next step. A keeps the
 /// acceleration of the stage, and with it the damping of the method; where alpha_m = alpha_f = 0 it is a itself, as
-/// otherwise a disturbance across the constraints would alternate for ever. A restart sets A = a. Order 2 where gamma =
-/// 1/2 - alpha_m + alpha_f. Arnold and Bruls 2007.
+/// otherwise a disturbance across the constraints would alternate for ever. Order 2 where gamma = 1/2 - alpha_m +
+/// alpha_f. Arnold and Bruls 2007.
+///
+/// For smooth motion A is the acceleration at another instant: A_n = a(t_n + s h), s = alpha_m - alpha_f. A step of
+/// another size than the last thus needs another A: a_n + (A_n - a_n) h/h_last keeps the order where steps vary. A
+/// restart sets A = a, of order 1 in its first step; runs that control their error look ahead by one step for a'.
 class NewmarkStep : public Integrator {
  public:
   void declare(IntegratorLayout& layout) const final {
     const Sizes& n = layout.sizes;
-    layout.memory = n.nv + 2 * n.nz;
-    layout.scratch = n.nq + 4 * n.nv + 2 * n.nz + StepError::scratch(n);
+    layout.memory = n.nv + 2 * n.nz + 1;
+    layout.scratch = n.nq + 4 * n.nv + 3 * n.nz + StepError::scratch(n);
     layout.error_estimate = 1;
     layout.order = std::abs(weights_.gamma - 0.5 + weights_.alpha_m - weights_.alpha_f) < 1e-12 ? 2 : 1;
     layout.newton_tolerance = tolerance_;
@@ -41,12 +45,15 @@ class NewmarkStep : public Integrator {
     const Memory m(state);
     if (!state.z.empty()) solver.accelerate(state, m.z_rate);
     take_over(state, m);
+    m.last_step[0] = 0.0;
   }
 
   Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const final {
     const Known n(to, scratch);
     const Memory m(to);
     const double beta_v = weights_.gamma * k1_ * dt, beta_q = weights_.beta * k1_ * dt * dt;
+    if (auxiliary_) fit_auxiliary(dt, to, m, scratch.part(n.used, scratch.size - n.used), solver);
+    m.last_step[0] = dt;
     predict(dt, to, n, m);
     const Stage stage{.t = *to.t + dt,
                       .q_base = n.q,
@@ -57,7 +64,7 @@ class NewmarkStep : public Integrator {
                       .beta_v = beta_v,
                       .beta_z = beta_v,
                       .level = ConstraintLevel::position};
-    if (solver.estimates()) n.keep_start(to);
+    if (solver.estimates()) n.keep_start(to, m.z_rate);
     if (solver.solve(stage, to).converged == 0) return {.converged = 0, .error = 0.0};
     for (std::size_t i = 0; i < n.v.size; ++i) n.increment[i] += beta_q * to.a[i];  // the whole increment
     for (std::size_t i = 0; i < m.a.size; ++i) m.a[i] += k1_ * to.a[i];
@@ -67,7 +74,9 @@ class NewmarkStep : public Integrator {
     if (!auxiliary_) take_over(to, m);
     if (!solver.estimates()) return {.converged = 1, .error = 0.0};
     StepError error(to, scratch.part(n.used, scratch.size - n.used));
-    return {.converged = 1, .error = error(dt, n.q, n.v_start, n.a_start, n.z_start, n.increment, to, solver)};
+    return {
+        .converged = 1,
+        .error = error(dt, {n.q, n.v_start, n.a_start, n.z_start, n.rate_start}, n.increment, to, m.z_rate, solver)};
   }
 
  protected:
@@ -85,8 +94,9 @@ class NewmarkStep : public Integrator {
     explicit Memory(const StateView& s)
         : a(s.memory.part(0, s.v.size)),
           z(s.memory.part(s.v.size, s.z.size)),
-          z_rate(s.memory.part(s.v.size + s.z.size, s.z.size)) {}
-    Span<double> a, z, z_rate;
+          z_rate(s.memory.part(s.v.size + s.z.size, s.z.size)),
+          last_step(s.memory.part(s.v.size + 2 * s.z.size, 1)) {}
+    Span<double> a, z, z_rate, last_step;  ///< the last [s]; 0 after a restart
   };
   /// The base and the known terms of the stage, in slices of the scratch.
   struct Known {
@@ -102,21 +112,39 @@ class NewmarkStep : public Integrator {
       v_start = take(s.v.size);
       a_start = take(s.v.size);
       z_start = take(s.z.size);
+      rate_start = take(s.z.size);
       std::copy(s.q.begin(), s.q.end(), q.begin());
     }
     /// Before the stage overwrites it.
-    void keep_start(const StateView& s) const {
+    void keep_start(const StateView& s, Span<const double> z_rate) const {
       std::copy(s.v.begin(), s.v.end(), v_start.begin());
       std::copy(s.a.begin(), s.a.end(), a_start.begin());
       std::copy(s.z.begin(), s.z.end(), z_start.begin());
+      std::copy(z_rate.begin(), z_rate.end(), rate_start.begin());
     }
     std::size_t used = 0;
-    Span<double> q, v, increment, z, v_start, a_start, z_start;
+    Span<double> q, v, increment, z, v_start, a_start, z_start, rate_start;
   };
 
   static void take_over(const StateView& state, const Memory& m) {
     std::copy(state.a.begin(), state.a.end(), m.a.begin());
     std::copy(m.z_rate.begin(), m.z_rate.end(), m.z.begin());
+  }
+
+  /// Brings A and Z to the step at hand.
+  void fit_auxiliary(double dt, const StateView& now, const Memory& m, Span<double> scratch,
+                     StageSolver& solver) const {
+    if (m.last_step[0] > 0.0) {
+      const double ratio = dt / m.last_step[0];
+      for (std::size_t i = 0; i < m.a.size; ++i) m.a[i] = now.a[i] + ratio * (m.a[i] - now.a[i]);
+      for (std::size_t i = 0; i < m.z.size; ++i) m.z[i] = m.z_rate[i] + ratio * (m.z[i] - m.z_rate[i]);
+    } else if (solver.estimates()) {
+      StepError ahead(now, scratch);
+      const double shift = weights_.alpha_m - weights_.alpha_f;
+      ahead.look(dt, now, m.z_rate, solver);
+      for (std::size_t i = 0; i < m.a.size; ++i) m.a[i] += shift * (ahead.acceleration()[i] - now.a[i]);
+      for (std::size_t i = 0; i < m.z.size; ++i) m.z[i] += shift * (ahead.rate()[i] - m.z_rate[i]);
+    }
   }
 
   /// Fills the known terms from the start of the step; leaves k0 in place of A and Z.

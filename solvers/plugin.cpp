@@ -7,10 +7,11 @@ Component newmark();
 Component hht();
 Component generalized_alpha();
 Component dopri5();
+Component sundials_arkode();  // absent where SUNDIALS is not
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(solvers) {
   using namespace freeplay;
-  static const Component components[] = {bathe(), newmark(), hht(), generalized_alpha(), dopri5()};
+  static const Component components[] = {bathe(), newmark(), hht(), generalized_alpha(), dopri5(), sundials_arkode()};
   return publish(*host, *manifest, "solvers", "0.1.0", components);
 }

@@ -19,7 +19,14 @@
 namespace freeplay {
 namespace {
 
-[[noreturn]] void unknown(const std::vector<Json>& entries, const std::string& name) {
+[[noreturn]] void unknown(const std::vector<Json>& entries, const std::string& name, const Registry& registry) {
+  for (const ComponentKind kind :
+       {ComponentKind::joint, ComponentKind::contact_law, ComponentKind::friction_law, ComponentKind::integrator}) {
+    const char* remedy = registry.remedy(kind, name);
+    if (remedy == nullptr) continue;
+    throw Error(Error::Category::usage, "unknown-name", fmt::format("the type '{}' is not in this build", name), {},
+                remedy);
+  }
   std::vector<std::string> names;
   for (const Json& entry : entries) names.push_back(entry["name"]);
   const auto nearest = suggestion(name, names);
@@ -88,7 +95,7 @@ int describe(const std::string& name, const CommonOptions& common) {
     found.push_back(entry);
     found.back()["channels"] = channels_json(entry, registry);
   }
-  if (found.empty()) unknown(entries, name);
+  if (found.empty()) unknown(entries, name, registry);
   if (common.json) {
     print_json(found.size() == 1 ? found.front() : found);
     return 0;

@@ -277,6 +277,9 @@ int run(const RunOptions& options, const CommonOptions& common) {
   const auto assembled = assemble_model(loaded);
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  // What it refuses is told before the directory is cleared of an earlier result.
+  const Channels channels(*loaded.model);
+  Simulation(assembled->system, assembled->start, channels, {});
   if (options.dry_run) return dry_run(loaded, *assembled, common);
   return RunJob(loaded, *assembled, path, options, common).execute();
 }

@@ -123,6 +123,10 @@ void PluginTable::copy_row(const Component& row, const Manifest& manifest) {
   if (row.kind > ComponentKind::integrator) refuse("publishes a type of an unknown kind");
   if (row.description.name == nullptr || *row.description.name == '\0') refuse("publishes a type without a name");
   const std::string named = "publishes '" + std::string(row.description.name) + "' ";
+  if (row.description.missing != nullptr) {
+    missing_.push_back(row);
+    return;
+  }
   if (row.table == nullptr) refuse(named + "without a function table");
   if (row.create == nullptr) refuse(named + "without a way to create it");
   if (row.description.parameters.size > most_parameters) refuse(named + "with an impossible number of parameters");

@@ -20,6 +20,8 @@ class PluginTable {
   PluginTable& operator=(const PluginTable&) = delete;
 
   const std::deque<Component>& components() const { return components_; }
+  /// Types that it could bring but does not.
+  const std::deque<Component>& missing() const { return missing_; }
   const std::string& name() const { return name_; }
   const std::string& version() const { return version_; }
   const std::string& compiler() const { return compiler_; }
@@ -33,7 +35,7 @@ class PluginTable {
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string library_, name_, version_, compiler_;
-  std::deque<Component> components_;
+  std::deque<Component> components_, missing_;
   std::deque<std::vector<Parameter>> parameters_;
   std::deque<abi::JointTable> joints_;
   std::deque<abi::ContactLawTable> contact_laws_;

@@ -106,6 +106,16 @@ const Component* Registry::find(ComponentKind kind, std::string_view name) const
   return nullptr;
 }
 
+const char* Registry::remedy(ComponentKind kind, std::string_view name) const {
+  if (find(kind, name) != nullptr) return nullptr;  // another library brings it
+  for (const RegisteredLibrary& library : libraries_) {
+    for (const Component& row : library.table->missing()) {
+      if (row.kind == kind && row.description.name == name) return row.description.missing;
+    }
+  }
+  return nullptr;
+}
+
 const Component* Registry::preferred(ComponentKind kind, std::uint32_t use) const {
   for (const RegisteredComponent& entry : components_) {
     if (entry.component->kind == kind && entry.component->description.preferred == use) return entry.component;

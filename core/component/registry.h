@@ -37,6 +37,8 @@ class Registry {
   const std::vector<RegisteredLibrary>& libraries() const { return libraries_; }
   /// Null when there is no such type.
   const Component* find(ComponentKind kind, std::string_view name) const;
+  /// What a type needs that a library could bring but does not; null when none speaks of it.
+  const char* remedy(ComponentKind kind, std::string_view name) const;
   /// The type used where a model names none; null when the kind has none. `use`: as Description::preferred.
   const Component* preferred(ComponentKind kind, std::uint32_t use = 1) const;
   /// The joint type with play that stands for a joint of type `ideal` with the key `block`; null without one.

@@ -143,6 +143,8 @@ class ContactLawCheck {
     }
   }
 
+  static bool same_but_rounding(double a, double b) { return std::abs(a - b) <= 1e-12 * std::abs(b); }
+
   void check_elastic_part() {
     double force = 0.0, energy = 0.0, from = 0.0;
     // A potential may be a difference of terms as large as this, whatever the penetration.
@@ -164,6 +166,11 @@ class ContactLawCheck {
         findings_.expect("potential", damped.potential == still.potential && moving.potential == still.potential, [&] {
           return "the stored energy depends on a speed " + words({penetration, rate, 0.4});
         });
+        findings_.expect("elastic-part", std::isnan(damped.elastic) || same_but_rounding(damped.elastic, still.normal),
+                         [&] {
+                           return fmt::format("`elastic` is {:.9g} N, the force without approach speed {:.9g} N {}",
+                                              damped.elastic, still.normal, words({penetration, rate, 0.4}));
+                         });
       }
       // Powers are exact to 1e-6; logarithms of the penetration cost two digits in the piece that starts at zero.
       energy += integral(from, penetration);

@@ -88,7 +88,11 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
                const auto& me = *static_cast<FailingStageSolver*>(self);
                me.inner_.retract(me.inner_.self, q_base, increment, q);
              },
-             inner.estimates},
+             inner.estimates,
+             [](void* self, double dt, const StateView* end, Span<const double> error) noexcept {
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               return me.inner_.internal_error_norm(me.inner_.self, dt, end, error);
+             }},
       good_stages_(good_stages) {}
 
 IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const ReferenceSystem& reference, double tolerance,

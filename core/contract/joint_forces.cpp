@@ -113,6 +113,15 @@ void check_energy(const JointProbe& probe, const JointMoment& moment, const Forc
         "largest power {:.6g} W), {}",
         balance.done, balance.stored, balance.error, balance.largest, words_of(moment));
   });
+  if (std::isnan(f.potential_rate)) return;
+  const EnergyBalance here = energy_balance(probe, moment, f);
+  const double off = std::abs(f.potential_rate - here.stored);
+  findings.expect("potential-rate", off <= 1e-4 * std::max(here.largest, std::abs(here.stored)) + 20.0 * here.error,
+                  [&] {
+                    return fmt::format(
+                        "potential_rate is {:.6g} W while the stored energy changes at {:.6g} W (error {:.3g} W), {}",
+                        f.potential_rate, here.stored, here.error, words_of(moment));
+                  });
 }
 
 /// Flat list of what the derivatives are of: wrenches and z'.

@@ -150,7 +150,7 @@ ForceValues JointProbe::forces(const JointMoment& moment, bool derivatives) cons
   wrench.insert(wrench.end(), out.wrench_b, out.wrench_b + 6);
   const GuardedNumbers given(wrench), potential(std::vector<double>{out.potential});
   if (!watch("apply", fed, {&rate, &table, &given, &potential})) return {};
-  return {wrench, out.potential, rate.values(), table.values()};
+  return {wrench, out.potential, rate.values(), table.values(), out.potential_rate};
 }
 
 EventValues JointProbe::events(const JointMoment& moment) const {

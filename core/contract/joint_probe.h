@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ForceValues {
   std::vector<double> wrench;  ///< on a and on b, 12 numbers
   double potential = 0.0;
   std::vector<double> z_rate, derivatives;
+  double potential_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not told
 };
 struct EventValues {
   std::vector<double> g, rate;

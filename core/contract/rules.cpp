@@ -81,6 +81,9 @@ constexpr Rule rules[] = {
     {"energy", joints,
      "The power of the wrenches plus the rate of the stored energy is not positive: what is not stored is dissipated. "
      "Look at the sign of the damping and at `potential`."},
+    {"potential-rate", joints,
+     "`potential_rate`, where apply() fills it, is the derivative of `potential` in time. Look at terms that depend on "
+     "speeds."},
     {"energy-cycle", joints,
      "A closed motion takes no energy out of the joint. Look at internal variables that push instead of relaxing."},
     {"derivatives", joints,
@@ -107,7 +110,10 @@ constexpr Rule rules[] = {
      "The force starts from zero with the penetration; a damped contact may begin with a jump only if `validity` says "
      "that there is a jump."},
     {"monotone", contact_laws, "The elastic force grows with penetration."},
-    {"elastic-part", contact_laws, "An approach speed of zero leaves the elastic force, whatever the rate."},
+    {"elastic-part", contact_laws,
+     "An approach speed of zero leaves the elastic force, whatever the rate; `elastic`, where it is told, is that "
+     "force "
+     "at any approach speed."},
     {"potential", contact_laws,
      "`potential` is the integral of the elastic force over penetration and depends on penetration alone."},
     {"derivatives", contact_laws, "d_penetration and d_rate agree with differences of the normal force."},

@@ -273,6 +273,10 @@ const Component* find_type(const Registry& registry, ComponentKind kind, const C
   if (!word) return nullptr;
   const Component* found = registry.find(kind, *word);
   if (found != nullptr) return found;
+  if (const char* remedy = registry.remedy(kind, *word)) {
+    value.fail("unknown-type", "the type '" + *word + "' in '" + value.path() + "' is not in this build", {}, remedy);
+    return nullptr;
+  }
   std::vector<std::string> names = registry.names(kind);
   names.insert(names.end(), others.begin(), others.end());
   const std::string suggested = nearest(*word, names);

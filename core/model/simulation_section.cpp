@@ -254,6 +254,9 @@ class SimulationSection {
   const Component* asked_for(const std::string& name) const {
     const Component* found = draft_.registry.find(ComponentKind::integrator, name);
     if (found != nullptr) return found;
+    if (const char* remedy = draft_.registry.remedy(ComponentKind::integrator, name)) {
+      throw Error(Error::Category::usage, "usage", "--integrator " + name + ": it is not in this build", {}, remedy);
+    }
     const std::vector<std::string> names = draft_.registry.names(ComponentKind::integrator);
     const std::string suggested = nearest(name, names);
     throw Error(Error::Category::usage, "usage", "--integrator " + name + ": there is no such integrator", {},

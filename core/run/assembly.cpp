@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "component/joint_answer.h"
 #include "linear/row_solutions.h"
 #include "run/gear_turns.h"
 #include "run/leg_modes.h"
@@ -529,9 +530,10 @@ class Assembler {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice z = system_.layout().internal(j), h = system_.layout().history(j);
       Message message;
-      if (!system_.joint(j).initialize(system_.input(j, point(state), e),
-                                       Span<double>(state.z()).part(at(z.offset), at(z.size)),
-                                       Span<double>(state.h()).part(at(h.offset), at(h.size)), message)) {
+      const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                         history = Span<double>(state.h()).part(at(h.offset), at(h.size));
+      if (!system_.joint(j).initialize(system_.input(j, point(state), e), internal, history, message) ||
+          !keeps_finite(internal, history, "initialize", message)) {
         throw Error(Error::Category::plugin, "plugin-failed",
                     fmt::format("joint '{}' of {} failed at its start: {}", model_.joints[at(j)].name,
                                 model_.instances.words_of(*model_.joints[at(j)].component), message.text),

@@ -1,6 +1,7 @@
 #include "run/energy_account.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace freeplay {
 namespace {
@@ -39,7 +40,9 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
   for (const ForceBlock& block : system_.force_blocks()) {
     const JointElement& joint = model.joints[at(block.joint)];
     const double* wrench = &e.wrench[12 * at(block.joint)];
-    out[flow++] = power(wrench, e.markers[at(joint.marker_a)]) + power(wrench + 6, e.markers[at(joint.marker_b)]);
+    const double rate = e.potential_rate[at(block.joint)];
+    out[flow++] = power(wrench, e.markers[at(joint.marker_a)]) + power(wrench + 6, e.markers[at(joint.marker_b)]) +
+                  (std::isnan(rate) ? 0.0 : rate);
   }
 }
 
@@ -101,7 +104,8 @@ void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::spa
   for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
   for (const ForceBlock& block : system_.force_blocks()) {
     const std::size_t j = at(block.joint);
-    joint_loss_[j] = -integral[flow++] - (e.potential[j] - stored_start_[j]);
+    joint_loss_[j] = -integral[flow++];
+    if (std::isnan(e.potential_rate[j])) joint_loss_[j] -= e.potential[j] - stored_start_[j];
     lost += joint_loss_[j];
   }
   const double total = row[at(channels.energy.kinetic)] + row[at(channels.energy.potential)];

@@ -51,6 +51,7 @@ class NewtonStageSolver {
     allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * norm(v);
   }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
+  double internal_error_norm(double dt, const StateView& end, std::span<const double> error);
   /// Index into v of the largest part of the last error_norm().
   int worst_component() const { return worst_component_; }
   /// accelerate() appends the powers of the account to z'; z of the states handed in then has as many numbers more.
@@ -100,6 +101,7 @@ class NewtonStageSolver {
   std::vector<Factor> factors_;  // of stages, one for each pair of betas
   std::vector<double> unit_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, size_, multipliers_;
   std::vector<SparseEntry> entries_;
+  std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   std::vector<char> dependent_;
   bool any_dependent_ = false, rank_known_ = false;
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;

@@ -1,7 +1,9 @@
 #include "run/observer.h"
 
 #include <cmath>
+#include <cstdio>
 
+#include "component/joint_answer.h"
 #include "run/energy_account.h"
 #include "system/path_row.h"
 
@@ -56,9 +58,13 @@ bool Observer::observe_joint(int index, const Point& point, const Evaluation& e,
   const std::size_t own = system_.joint_layout(index).channels.size;
   if (own == 0) return true;
   const Slice rows = system_.layout().rows(index);
-  if (system_.joint(index).observe(system_.input(index, point, e), {lambda.data() + rows.offset, at(rows.size)},
-                                   {row.data() + columns.own, own}, fault.message)) {
-    return true;
+  const Span<double> values(row.data() + columns.own, own);
+  if (system_.joint(index).observe(system_.input(index, point, e), {lambda.data() + rows.offset, at(rows.size)}, values,
+                                   fault.message)) {
+    const std::size_t wild = first_wild(values);
+    if (wild == own) return true;
+    const char* name = system_.joint_layout(index).channels[wild].name;
+    std::snprintf(fault.message.text, sizeof fault.message.text, "its channel '%s' is not a finite number", name);
   }
   fault.kind = Fault::Kind::plugin;
   fault.joint = index;

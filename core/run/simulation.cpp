@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "component/declared.h"
+#include "component/joint_answer.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
@@ -230,8 +231,10 @@ bool Simulation::Impl::prepare_trial(double dt) {
     const Slice h = system.layout().history(j);
     MarkerAccelerations accelerations;
     system.marker_accelerations(j, e_accepted, accepted.a(), accelerations);
-    if (!system.joint(j).begin_step(system.input(j, here, e_accepted), accelerations, dt,
-                                    Span<double>(trial.h()).part(at(h.offset), at(h.size)), e_trial.fault.message)) {
+    const Span<double> history = Span<double>(trial.h()).part(at(h.offset), at(h.size));
+    if (!system.joint(j).begin_step(system.input(j, here, e_accepted), accelerations, dt, history,
+                                    e_trial.fault.message) ||
+        !keeps_finite({}, history, "begin_step", e_trial.fault.message)) {
       e_trial.fault.kind = Fault::Kind::plugin;
       e_trial.fault.joint = j;
       return fail_with(e_trial.fault, accepted.t());
@@ -319,9 +322,10 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located) {
   }
   for (const int j : with_history) {
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
+    const Span<double> history = Span<double>(trial.h()).part(at(h.offset), at(h.size));
     if (!system.joint(j).commit(system.input(j, point(trial), e_trial),
-                                {trial.lambda().data() + rows.offset, at(rows.size)},
-                                Span<double>(trial.h()).part(at(h.offset), at(h.size)), fault.message)) {
+                                {trial.lambda().data() + rows.offset, at(rows.size)}, history, fault.message) ||
+        !keeps_finite({}, history, "commit", fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
       return fail_with(fault, trial.t());
@@ -333,10 +337,11 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located) {
   }
   std::swap(accepted, trial);
   std::swap(e_accepted, e_trial);
-  ++outcome.steps;
   outcome.time = accepted.t();
   if (!events.happenings().empty() && !refresh()) return false;
-  return record_row() && note_warnings() && tell_sinks();
+  if (!record_row()) return false;
+  ++outcome.steps;  // from now on its row may be written
+  return note_warnings() && tell_sinks();
 }
 
 // An event changes history or internal variables, and with them what acts: the integrator starts again from here.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
+#include "component/joint_answer.h"
 #include "run/event_finder.h"
 
 namespace freeplay {
@@ -11,6 +13,15 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = 1e-15;  // of a located event function, in its unit
 constexpr int most_per_step = 8;    // of one joint; more are rounding, not motion
+
+// A field may be left NaN, which is recorded as empty.
+bool fields_make_sense(const Event& event, Span<const double> fields, Message& message) {
+  const auto wild = std::find_if(fields.begin(), fields.end(), [](double x) { return std::isinf(x); });
+  if (wild == fields.end()) return true;
+  std::snprintf(message.text, sizeof message.text, "the field '%s' of its event '%s' is not a finite number",
+                event.fields[static_cast<std::size_t>(wild - fields.begin())].name, event.name);
+  return false;
+}
 }  // namespace
 
 StepEvents::StepEvents(const System& system, bool located, int flows)
@@ -46,7 +57,12 @@ bool StepEvents::functions(int joint, const Point& point, const Evaluation& e, s
                            std::span<double> rate, Fault& fault) const {
   if (system_.joint(joint).events(system_.input(joint, point, e), {g.data(), g.size()}, {rate.data(), rate.size()},
                                   fault.message)) {
-    return true;
+    const auto wild = [&](std::size_t i) { return std::isinf(g[i]) || (!std::isnan(g[i]) && !std::isfinite(rate[i])); };
+    std::size_t i = 0;
+    while (i < g.size() && !wild(i)) ++i;
+    if (i == g.size()) return true;
+    std::snprintf(fault.message.text, sizeof fault.message.text, "its event '%s' has a %s that is not a finite number",
+                  system_.joint_layout(joint).events[i].name, std::isinf(g[i]) ? "value" : "rate");
   }
   fault.kind = Fault::Kind::plugin;
   fault.joint = joint;
@@ -212,9 +228,12 @@ bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation&
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
   JointInput in = system_.input(joint, here, e);
   in.mobility = mobility;
-  if (!system_.joint(joint).on_event(event, in, Span<double>(state.z()).part(at(z.offset), at(z.size)),
-                                     Span<double>(state.h()).part(at(h.offset), at(h.size)),
-                                     {values_.data() + first, count}, fault.message)) {
+  const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                     history = Span<double>(state.h()).part(at(h.offset), at(h.size));
+  if (!system_.joint(joint).on_event(event, in, internal, history, {values_.data() + first, count}, fault.message) ||
+      !keeps_finite(internal, history, "on_event", fault.message) ||
+      !fields_make_sense(system_.joint_layout(joint).events[at(event)], {values_.data() + first, count},
+                         fault.message)) {
     fault.kind = Fault::Kind::plugin;
     fault.joint = joint;
     return false;

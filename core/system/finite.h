@@ -9,7 +9,7 @@ namespace freeplay {
 
 // A sum is finite only if every term is; differences of infinities are not finite either.
 inline bool is_finite(const JointForces& f) {
-  double sum = f.potential;
+  double sum = f.potential + (std::isnan(f.potential_rate) ? 0.0 : f.potential_rate);
   for (int i = 0; i < 6; ++i) sum += f.wrench_a[i] + f.wrench_b[i];
   return std::isfinite(sum);
 }

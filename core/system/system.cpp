@@ -132,6 +132,7 @@ Evaluation::Evaluation(const System& system) {
   coordinate_rows.resize(joints);
   motion.resize(model.drivers.size());
   potential.resize(joints);
+  potential_rate.resize(joints);
   wrench.resize(12 * joints);
   internal_rate.resize(at(layout.nz()));
   applied.resize(3 * model.forces.size());

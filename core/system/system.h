@@ -180,6 +180,7 @@ struct Evaluation {
   std::vector<CoordinateRow> coordinate_rows;       ///< by joint, in marker space
   std::vector<TimeValue> motion;                    ///< by driver
   std::vector<double> potential;                    ///< stored energy by joint [J]
+  std::vector<double> potential_rate;               ///< its time derivative [W]; NaN where the joint does not tell
   std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
   std::vector<double> internal_rate;                ///< z'
   std::vector<double> applied;                      ///< by applied force: Fx, Fy, Mz in world axes at its marker

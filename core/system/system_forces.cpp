@@ -50,6 +50,7 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     std::copy_n(out.wrench_a, 6, wrench);
     std::copy_n(out.wrench_b, 6, wrench + 6);
     e.potential[at(j)] = out.potential;
+    e.potential_rate[at(j)] = out.potential_rate;
     const JointElement& element = model_.joints[at(j)];
     if (block.a != ground) planar::add_wrench(wrench, e.arms[at(element.marker_a)], &e.force[3 * at(block.a)]);
     if (block.b != ground) planar::add_wrench(wrench + 6, e.arms[at(element.marker_b)], &e.force[3 * at(block.b)]);

@@ -37,6 +37,7 @@ enum class Flaw {
   no_moment,
   negative_damping,
   silent_potential,
+  potential_rate,
   derivative_entry,
   derivative_by_speed,
   derivative_by_z,

@@ -34,7 +34,10 @@ void Cage::apply(const JointInput& in, JointForces& out) const {
       out.wrench_b[i] = -force * gap.n[i];
       out.wrench_a[i] = force * gap.n[i];
     }
-    if (flaw_ != Flaw::silent_potential) out.potential = 0.5 * k_ * gap.delta * gap.delta;
+    if (flaw_ != Flaw::silent_potential) {
+      out.potential = 0.5 * k_ * gap.delta * gap.delta;
+      out.potential_rate = (flaw_ == Flaw::potential_rate ? 1.01 : 1.0) * k_ * gap.delta * gap.rate;
+    }
     if (!out.derivatives.empty()) differentiate(gap, force, out.derivatives);
   }
   break_forces(in, out);

@@ -136,6 +136,7 @@ TEST(JointContract, FindsWrongForces) {
                       {Flaw::negative_damping, "energy"},
                       {Flaw::negative_damping, "energy-cycle"},
                       {Flaw::silent_potential, "energy"},
+                      {Flaw::potential_rate, "potential-rate"},
                       {Flaw::derivative_entry, "derivatives"},
                       {Flaw::derivative_by_speed, "derivatives"},
                       {Flaw::force_with_derivatives, "unused-derivatives"},

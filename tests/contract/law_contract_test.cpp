@@ -110,6 +110,7 @@ TEST(ContactLawContract, FindsWrongDerivatives) {
 
 TEST(ContactLawContract, FindsAWrongPotential) {
   expect_found("potential", with([](ContactForce& f, const ContactState&) { f.potential *= 1.01; }));
+  expect_found("elastic-part", with([](ContactForce& f, const ContactState&) { f.elastic = 1.01 * f.normal; }));
   expect_found("potential", with([](ContactForce& f, const ContactState& s) { f.potential *= 1.0 + s.rate; }));
 }
 

@@ -108,6 +108,35 @@ class Compare(ProgramTest):
         _, err = self.freeplay("compare", "a", "broken.csv", code=6)
         self.assertIn("'two' is not a number", err)
 
+    def test_a_refused_accuracy_leaves_an_earlier_result_alone(self):
+        self.freeplay("run", mechanism("pendulum"), "--end", "0.1 s", "--out", "r")
+        before = self.read("r", "results.csv")
+        self.freeplay("run", mechanism("pendulum"), "--accuracy", "1e-17 m", "--out", "r", code=3)
+        self.freeplay("run", mechanism("pendulum"), "--accuracy", "1e-17 m", "--dry-run", code=3)
+        self.assertEqual(before, self.read("r", "results.csv"))
+
+    def test_the_reference_integrator_agrees_or_says_how_to_get_it(self):
+        names = {entry["name"] for entry in json.loads(self.freeplay("list", "--json")[0])}
+        ask = ["run", mechanism("slider-crank"), "--end", "8 ms", "--accuracy", "1nm", "--integrator", "arkode", "--out", "a"]
+        if "arkode" not in names:
+            _, err = self.freeplay(*ask, code=2)
+            self.assertIn("libsundials-dev", err)
+            _, err = self.freeplay("describe", "arkode", code=2)
+            self.assertIn("libsundials-dev", err)
+            return
+        self.freeplay(*ask)
+        self.freeplay("run", mechanism("slider-crank"), "--end", "8 ms", "--accuracy", "1nm", "--out", "b")
+        # Impacts make an error ten times as large each.
+        self.freeplay("compare", "a", "b", "--channels", "body.*.x", "--absolute", "1e-7")
+        events = []
+        for folder in "ab":
+            lines = [line.split(",") for line in self.read(folder, "events.csv").splitlines()[1:]]
+            events.append([(line[1], line[2], float(line[0])) for line in lines])
+        self.assertGreater(len(events[0]), 20)
+        self.assertEqual(*[[event[:2] for event in one] for one in events])
+        for ours, theirs in zip(*events):
+            self.assertAlmostEqual(ours[2], theirs[2], delta=1e-8)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -18,6 +18,11 @@ def commands(page):
     return [line for block in blocks for line in block.splitlines() if line and not line.startswith("#")]
 
 
+def without_arkode(page):
+    """The page as a program without SUNDIALS writes it."""
+    return re.sub(r"\n## arkode\n.*?(?=\n## |\Z)", "", page, flags=re.S).replace(", `arkode`", "")
+
+
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -158,7 +163,12 @@ class Documentation(ProgramTest):
         self.assertLess(4, len(pages))
         for page in pages:
             with open(os.path.join(folder, page), encoding="utf-8") as file:
-                self.assertEqual(self.read(page), file.read(), "%s is old: ./dev docs" % page)
+                kept = file.read()
+            self.assertEqual(self.read(page), kept if self.has_sundials() else without_arkode(kept),
+                             "%s is old: ./dev docs" % page)
+
+    def has_sundials(self):
+        return "arkode" in self.freeplay("list", "integrators")[0]
 
     def test_links_lead_somewhere(self):
         pages = ["README.md"] + [os.path.relpath(os.path.join(folder, name), ROOT)

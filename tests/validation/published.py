@@ -3,7 +3,8 @@
 usage: published.py PROGRAM FOLDER [PAGE]
 
 FOLDER holds models and published.json: for each model its source and a list of time [s], channel, published value and
-tolerance. Prints a table; writes it to PAGE as well. Exit 7 when a number is off by more than its tolerance.
+tolerance. In place of a channel may stand a quantity with a name, the sum of channels times factors less an offset.
+Prints a table; writes it to PAGE as well. Exit 7 when a number is off by more than its tolerance.
 """
 import csv
 import json
@@ -31,6 +32,14 @@ def row_at(rows, time, model):
     return nearest
 
 
+def quantity(row, value):
+    """Name and value in a row of results."""
+    if "channel" in value:
+        return value["channel"], float(row[value["channel"]])
+    total = sum(factor * float(row[channel]) for channel, factor in value["sum"].items())
+    return value["quantity"], total - value.get("offset", 0.0)
+
+
 def table(program, folder):
     lines, good = [], True
     with open(os.path.join(folder, "published.json"), encoding="utf-8") as file:
@@ -39,11 +48,11 @@ def table(program, folder):
         for case in cases:
             rows = results(program, os.path.join(folder, case["model"]), scratch)
             for value in case["values"]:
-                ours = float(row_at(rows, value["time"], case["model"])[value["channel"]])
+                name, ours = quantity(row_at(rows, value["time"], case["model"]), value)
                 error = abs(ours - value["published"])
                 holds = error <= value["tolerance"]
                 good = good and holds
-                lines.append((case["model"][:-len(".yaml")], "%.6g" % value["time"], value["channel"],
+                lines.append((case["model"][:-len(".yaml")], "%.6g" % value["time"], name,
                               "%.12g" % value["published"], "%.12g" % ours, "%.1e" % error, "%.0e" % value["tolerance"],
                               "" if holds else "OFF"))
     return lines, good, cases

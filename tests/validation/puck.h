@@ -14,13 +14,14 @@ struct Puck {
   double x = 0.0, y = 0.0, vx = 0.0, vy = 0.0;  ///< eccentricity and its rate at the start
   std::string sections = "";                    ///< gravity, forces
   double end = 1e-3, step = 1e-7;
+  std::string integrator = "bathe";
 
   std::string text() const {
     return "freeplay: 1\n" + sections + "bodies: {puck: {mass: " + number(mass) + ", inertia: " + number(inertia) +
            "}}\njoints:\n  ring:\n    type: revolute\n    between: [ground, puck]\n    clearance: {" + ring +
            ", contact: " + contact + more + ", initial: {eccentricity: [" + number(x) + ", " + number(y) +
            "], velocity: [" + number(vx) + ", " + number(vy) + "]}}\nsimulation: {end: " + number(end) +
-           ", step: " + number(step) + ", output: {interval: " + number(end) + "}}\n";
+           ", step: " + number(step) + ", integrator: " + integrator + ", output: {interval: " + number(end) + "}}\n";
   }
   ModelRun run() const { return ModelRun(text()); }
 };

@@ -33,6 +33,9 @@ struct ContactForce {
   double d_penetration;  ///< partial derivative with respect to penetration [N/m]
   double d_rate;         ///< partial derivative with respect to rate [N s/m]
   double potential;      ///< energy stored by the elastic part [J]
+  // Appended.
+  /// The elastic part itself, d(potential)/d(penetration) [N]; NaN: what evaluate() gives for an approach speed of 0.
+  double elastic = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A contact-force law. Immutable after construction: the memory of an impact belongs to the joint, which

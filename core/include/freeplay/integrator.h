@@ -48,6 +48,7 @@ struct StageSolverTable {
   double (*error_norm)(void*, Span<const double> position, Span<const double> velocity) noexcept;
   void (*retract)(void*, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept;
   std::uint32_t estimates;
+  double (*internal_error_norm)(void*, double dt, const StateView* end, Span<const double> error) noexcept;
 };
 }  // namespace abi
 
@@ -85,6 +86,13 @@ class StageSolver {
   /// rad/s], nv numbers each. At most 1 is acceptable. 0 in runs that do not control their steps.
   double error_norm(Span<const double> position, Span<const double> velocity) const {
     return table_->error_norm(table_->self, position, velocity);
+  }
+  /// The same for local errors of internal variables, nz numbers: their units are the joints', so each counts as the
+  /// velocity that it is about to change, by the other accelerations that it makes, in one more step of length `dt`
+  /// from `end` (where a and lambda are solved).
+  double internal_error_norm(double dt, const StateView& end, Span<const double> error) const {
+    if (error.empty() || table_->internal_error_norm == nullptr) return 0.0;
+    return table_->internal_error_norm(table_->self, dt, &end, error);
   }
   /// q = retract(q_base, increment); for methods that make their own stages.
   void retract(Span<const double> q_base, Span<const double> increment, Span<double> q) const {

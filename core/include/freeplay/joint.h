@@ -112,6 +112,10 @@ struct JointForces {
   /// [pose a, pose b, twist a, twist b, z]; a pose changes by a displacement and a rotation vector in world axes.
   /// Empty when not wanted.
   Span<double> derivatives;
+  // Appended.
+  /// Time derivative of `potential` at this state [W]. With it what is dissipated is known at every instant: minus the
+  /// power of the wrenches and this. NaN (as the host leaves it): the host takes differences of `potential` over steps.
+  double potential_rate = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Start of a joint with play: where its second marker stands in the first, world axes.
@@ -147,6 +151,7 @@ class Joint {
                         Span<double> /*fields*/) const {}
   /// After a step was accepted and its events were told. `lambda` are the joint's multipliers.
   virtual void commit(const JointInput&, Span<const double> /*lambda*/, Span<double> /*history*/) const {}
+  /// Values of the channels, all finite.
   virtual void observe(const JointInput&, Span<const double> /*lambda*/, Span<double> /*channels*/) const {}
   /// Largest sensible step from here [s].
   virtual double step_limit(const JointInput&) const { return unbounded; }

@@ -36,6 +36,9 @@ struct Description {
   // Joints: other words for the first and the second of `between`, such as bearing and journal.
   const char* first_end = nullptr;
   const char* second_end = nullptr;
+  /// Of a type that the library could bring but does not, as what it stands on was not there when it was built: what it
+  /// needs and how to get that. Such a row has neither table nor `create`, and is told to those who ask for the type.
+  const char* missing = nullptr;
 };
 
 /// One row of a plugin's table.
@@ -64,6 +67,10 @@ template <class T>
 Component integrator(const Description& d) {
   return {ComponentKind::integrator, &abi::integrator_table<T>,
           reinterpret_cast<void (*)()>(&abi::create_integrator<T>), d};
+}
+
+inline Component missing_type(ComponentKind kind, const char* name, const char* remedy) {
+  return {kind, nullptr, nullptr, {.name = name, .missing = remedy}};
 }
 
 /// Sizes of the structs that cross the boundary, in this order. They only ever grow at their end, so that a library

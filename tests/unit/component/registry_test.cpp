@@ -40,6 +40,25 @@ TEST(Registry, KnowsTheTwinForABlock) {
   EXPECT_EQ(registry.twin("slide", "play"), nullptr);
 }
 
+TEST(Registry, TellsWhatATypeThatIsMissingNeedsUnlessAnotherLibraryBringsIt) {
+  Registry registry;
+  registry.add(
+      [](const Host* host, Manifest* manifest) noexcept {
+        static const Component rows[] = {joint<toy::Slide>({.name = "glide", .space = Space::planar}),
+                                         missing_type(ComponentKind::joint, "pin", "it needs a lathe")};
+        return publish(*host, *manifest, "half", "1", rows);
+      },
+      "half");
+  EXPECT_EQ(registry.find(ComponentKind::joint, "pin"), nullptr);
+  EXPECT_EQ(registry.names(ComponentKind::joint), (std::vector<std::string>{"glide"}));
+  EXPECT_STREQ(registry.remedy(ComponentKind::joint, "pin"), "it needs a lathe");
+  EXPECT_EQ(registry.remedy(ComponentKind::integrator, "pin"), nullptr);
+  EXPECT_EQ(registry.remedy(ComponentKind::joint, "pins"), nullptr);
+  registry.add(&toy::publish_toys, "toys");
+  EXPECT_NE(registry.find(ComponentKind::joint, "pin"), nullptr);
+  EXPECT_EQ(registry.remedy(ComponentKind::joint, "pin"), nullptr);
+}
+
 TEST(Registry, RefusesANameThatIsTaken) {
   Registry registry;
   registry.add(&toy::publish_toys, "toys");

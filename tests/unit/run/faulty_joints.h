@@ -9,26 +9,58 @@
 
 namespace freeplay {
 
-/// From time `at` on: throws, or gives a force that is not a number.
+/// From time `at` on: throws, or fills one of the numbers that it is asked for with one that is not finite.
 class FaultyJoint final : public Joint {
  public:
-  explicit FaultyJoint(const Parameters& p) : at_(p.number("at")), throws_(p.word("fault") == 0) {}
-  void declare(JointLayout& layout) const override { layout.forces = 1; }
+  explicit FaultyJoint(const Parameters& p) : at_(p.number("at")), fault_(static_cast<Fault>(p.word("fault"))) {}
+  void declare(JointLayout& layout) const override {
+    layout.forces = 1;
+    layout.history = 2;
+    layout.internal_variables = 1;
+    layout.channels = channels;
+    layout.events = events_;
+  }
   void apply(const JointInput& in, JointForces& out) const override {
     if (in.t < at_) return;
-    if (throws_) throw std::runtime_error("out of order");
-    out.wrench_b[0] = std::numeric_limits<double>::quiet_NaN();
+    if (fault_ == throws) throw std::runtime_error("out of order");
+    if (fault_ == force) out.wrench_b[0] = not_a_number;
+  }
+  void begin_step(const JointInput& in, const MarkerAccelerations&, double, Span<double> history) const override {
+    if (in.t >= at_ && fault_ == step) history[1] = not_a_number;
+  }
+  void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
+    if (in.t >= at_ && fault_ == committed) history[0] = unbounded;
+  }
+  void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
+    g[0] = in.t - at_ - 1e-4;
+    rate[0] = in.t >= at_ && fault_ == event_rate ? not_a_number : 1.0;
+    if (in.t >= at_ && fault_ == event_value) g[0] = unbounded;
+  }
+  void on_event(int, const JointInput&, Span<double> z, Span<double>, Span<double> fields) const override {
+    if (fault_ == internal) z[0] = not_a_number;
+    if (fault_ == field) fields[0] = unbounded;
+  }
+  void observe(const JointInput& in, Span<const double>, Span<double> values) const override {
+    values[0] = 1.0;
+    values[1] = in.t >= at_ && fault_ == channel ? not_a_number : 2.0;
   }
 
  private:
+  enum Fault { throws, force, step, committed, event_rate, event_value, internal, field, channel };
+  static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  static constexpr Channel channels[] = {{"wear", "1"}, {"heat", "J"}}, fields_[] = {{"size", "m"}};
+  static constexpr Event events_[] = {{"alarm", Crossing::rising, 0, fields_}};
   double at_;
-  bool throws_;
+  Fault fault_;
 };
 
 inline const Registry& types_with_faulty_joint() {
   static constexpr Parameter parameters[] = {
       {.name = "at", .unit = "s"},
-      {.name = "fault", .kind = ParameterKind::choice, .default_value = 0, .choices = "throw|nan"}};
+      {.name = "fault",
+       .kind = ParameterKind::choice,
+       .default_value = 0,
+       .choices = "throw|nan|step|commit|event-rate|event-value|internal|field|channel"}};
   static const Component components[] = {
       joint<FaultyJoint>({.name = "faulty", .space = Space::planar, .parameters = parameters})};
   static const Registry registry = [] {

@@ -120,6 +120,27 @@ TEST(FailedRun, AJointThatThrowsEndsItAndIsNamed) {
   expect_sound_rows(run, 0.25);
 }
 
+// Whatever a joint leaves behind: the run ends, the joint and the number are named, and no such number is written.
+TEST(FailedRun, NumbersOfAJointThatAreNotFiniteEndItAndAreNamed) {
+  const struct {
+    const char *fault, *words;
+  } cases[] = {{"step", "number 2 of its history is not finite after begin_step()"},
+               {"commit", "number 1 of its history is not finite after commit()"},
+               {"event-rate", "its event 'alarm' has a rate that is not a finite number"},
+               {"event-value", "its event 'alarm' has a value that is not a finite number"},
+               {"internal", "number 1 of its internal variables is not finite after on_event()"},
+               {"field", "the field 'size' of its event 'alarm' is not a finite number"},
+               {"channel", "its channel 'heat' is not a finite number"}};
+  for (const auto& c : cases) {
+    const ModelRun run = run_faulty(c.fault);
+    EXPECT_EQ(run.outcome().status, RunStatus::failed) << c.fault;
+    EXPECT_EQ(run.outcome().exit_code, 5) << c.fault;
+    EXPECT_THAT(run.outcome().reason, HasSubstr("joint 'bad'"));
+    EXPECT_THAT(run.outcome().reason, HasSubstr(c.words));
+    expect_sound_rows(run, 0.251);
+  }
+}
+
 // Four iterations for a stage are too few for long steps: they are halved until they converge, and counted.
 TEST(Recovery, StepsThatDoNotConvergeAreHalvedAndCounted) {
   const std::string text = pendulum(

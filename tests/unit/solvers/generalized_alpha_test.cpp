@@ -72,6 +72,10 @@ TEST(GeneralizedAlpha, TableHoldsDefaultAndRange) {
   EXPECT_EQ(rho.open, Open::none);
 }
 
+TEST(GeneralizedAlpha, KeepsItsOrderWhereStepsVary) {
+  expect_order_with_varying_steps("generalized-alpha", {{"rho_inf", 0.0}});
+}
+
 TEST(GeneralizedAlpha, HasOneStageAndProjectsVelocities) { expect_one_projected_stage("generalized-alpha"); }
 
 TEST(GeneralizedAlpha, DeclaresWhatItNeedsAndPassesTheNewtonParameters) {

@@ -66,6 +66,8 @@ TEST(Hht, TableHoldsDefaultAndRange) {
   EXPECT_EQ(alpha.open, Open::none);
 }
 
+TEST(Hht, KeepsItsOrderWhereStepsVary) { expect_order_with_varying_steps("hht", {{"alpha", -0.3}}); }
+
 TEST(Hht, HasOneStageAndProjectsVelocities) { expect_one_projected_stage("hht"); }
 
 TEST(Hht, DeclaresWhatItNeedsAndPassesTheNewtonParameters) { expect_newton_parameters("hht"); }

@@ -36,7 +36,8 @@ struct Oscillator {
             accelerate,
             error_norm,
             retract,
-            0};
+            0,
+            nullptr};
   }
   static Oscillator& self(void* s) { return *static_cast<Oscillator*>(s); }
   static Status solve(void* s, const Stage* stage, StateView* out, StageResult* result, Message*) noexcept {

@@ -1,0 +1,149 @@
+"""Every heading of docs/trouble-shooting.md is a message that the program prints, and each of them is provoked here."""
+import os
+import re
+import subprocess
+import unittest
+
+from program import BUILD, PROGRAM, ROOT, ProgramTest
+
+PENDULUM = """freeplay: 1
+name: pendulum
+gravity: [0, -9.81]
+bodies:
+  rod: {mass: 1 kg, inertia: 1 kg*m^2 / 12, com: [0.5 m, 0], frames: {tip: [1 m, 0]}}
+joints:
+  pivot: {type: revolute, between: [ground, rod]}
+initial: {joints: {pivot: 0 deg}}
+simulation: {end: 0.1 s, step: 1 ms}
+"""
+JOURNAL = """freeplay: 1
+name: journal
+gravity: [0, -9.81]
+bodies:
+  ball: {mass: 1 kg, inertia: 1 kg*m^2}
+joints:
+  B:
+    type: revolute
+    between: [ground, ball]
+    clearance:
+      bearing_radius: 10 mm
+      radial_clearance: 0.1 mm
+      length: 10 mm
+      material: {E: 207 GPa, nu: 0.3}
+      contact: {law: lankarani-nikravesh, restitution: 0.9}
+      friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}
+simulation: {end: 20 ms, step: 10 us}
+"""
+DRIVEN = PENDULUM.replace("initial: {joints: {pivot: 0 deg}}", "drivers: {motor: {joint: pivot, kind: angle, value: t}}")
+SHORT_ROD = DRIVEN.replace("bodies:", "bodies:\n  slider: {mass: 1 kg, inertia: 1 kg*m^2}").replace("drivers:", """\
+  guide: {type: prismatic, between: [ground, slider]}
+  link: {type: distance, between: [rod/tip, slider], length: 0.5 m}
+drivers:""").replace("value: t", "value: 10*t")
+RUN = ["run", "model.yaml", "--force"]
+
+
+def pendulum(old, new, text=PENDULUM):
+    assert old in text
+    return text.replace(old, new)
+
+
+def journal(old, new):
+    return pendulum(old, new, JOURNAL)
+
+
+def driven(old, new):
+    return pendulum(old, new, DRIVEN)
+
+
+# Heading: exit code, model, words of the command.
+CASES = {
+    # What the model file says
+    "unknown key '...' in '...' [unknown-key]": (3, pendulum("com:", "con:"), RUN),
+    "missing key '...' in '...' [missing-key]": (3, pendulum("mass: 1 kg, ", ""), RUN),
+    "the key '...' is given twice [duplicate-key]": (3, pendulum("mass: 1 kg,", "mass: 1 kg, mass: 2 kg,"), RUN),
+    "unknown type '...' in '...' [unknown-type]": (3, pendulum("type: revolute", "type: revolut"), RUN),
+    "unknown body '...' [unknown-name]": (3, pendulum("[ground, rod]", "[ground, rodd]"), RUN),
+    "body '...' has no frame '...' [unknown-name]": (3, pendulum("[ground, rod]", "[ground, rod/tp]"), RUN),
+    "unknown parameter '...' [unknown-name]": (3, pendulum("mass: 1 kg", "mass: $m"), RUN),
+    "expected ..., but this is ... [dimension-mismatch]": (3, pendulum("mass: 1 kg", "mass: 1 m"), RUN),
+    "'...' is not a unit [bad-unit]": (3, pendulum("1 kg,", "1 gramm,"), RUN),
+    "'...' must be ..., not ... [out-of-range]": (3, journal("restitution: 0.9", "restitution: 1.2"), RUN),
+    "'v1' must be above 'v0' [out-of-range]": (3, journal("v0: 1e-4", "v0: 1e-2"), RUN),
+    "'...' must be a list of 2, not ... [wrong-type]": (3, pendulum("[0.5 m, 0]", "0.5 m"), RUN),
+    "'...' must have 2 items, not 3 [wrong-length]": (3, pendulum("[0.5 m, 0]", "[0.5 m, 0, 0]"), RUN),
+    "a ',' cannot stand inside a number [bad-expression]": (3, pendulum("[0.5 m", "['0,5 m'"), RUN),
+    "'t' is not allowed here: the value must be constant [time-not-allowed]": (3, pendulum("1 kg,", "1 + t,"), RUN),
+    "not valid YAML: ... [yaml-syntax]": (3, pendulum("[0.5 m, 0]", "[0.5 m, 0"), RUN),
+    "'radial_clearance' is not 'bearing_radius' minus 'journal_radius' [conflicting-keys]":
+        (3, journal("length: 10 mm", "journal_radius: 5 mm"), RUN),
+    "'K' is required, as it cannot be computed without ... [missing-key]":
+        (3, journal("      material: {E: 207 GPa, nu: 0.3}\n", ""), RUN),
+    "joint '...' has clearance; it cannot be driven [driver-on-clearance]":
+        (3, journal("simulation:", "drivers: {m: {joint: B, kind: angle, value: t}}\nsimulation:"), RUN),
+    "a driver moves joint '...'; it has no start value of its own [conflicting-keys]":
+        (3, driven("simulation:", "initial: {joints: {pivot: 0}}\nsimulation:"), RUN),
+    "cannot read '...': there is no such file [file-not-found]": (3, PENDULUM, ["run", "modell.yaml"]),
+    # Before the first step
+    "the mechanism cannot be put together: ... [assembly-failed]":
+        (3, pendulum("initial:", "  far: {type: revolute, between: [ground/far, rod/tip]}\n"
+                                 "frames: {ground/far: [5 m, 0]}\ninitial:"), RUN),
+    "drivers and start speeds contradict each other: ... [assembly-failed]":
+        (3, pendulum("{pivot: 0 deg}}", "{pivot: 0 deg}, speeds: {pivot: 1 rad/s, twin: 2 rad/s}}").replace(
+            "initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
+    "a step may err by ... m, but positions of a model of ... m are rounded to ... m [out-of-range]":
+        (3, PENDULUM, RUN + ["--accuracy", "1e-17 m"]),
+    "integrator '...' gives no error estimate: it takes fixed steps only":
+        (2, PENDULUM, RUN + ["--accuracy", "1 um", "--integrator", "my-type", "--plugin", "TEMPLATE"]),
+    "--integrator ...: there is no such integrator": (2, PENDULUM, RUN + ["--integrator", "rk4"]),
+    # While it runs
+    "a step of ... s is needed, the smallest allowed is ... s; joint '...' asks for it":
+        (4, journal("step: 10 us", "step: {adaptive: true, size: 1 ms, min: 1 ms}"), RUN),
+    "a step of ... s is needed, the smallest allowed is ... s; the error is largest in body '...' (...)":
+        (4, pendulum("step: 1 ms", "step: {adaptive: true, size: 50 ms, min: 50 ms, tolerance: 1e-9}"), RUN),
+    "no step of ... s or longer could be made: ...; try a smaller step":
+        (4, SHORT_ROD, RUN),
+    "driver '...': a negative number to a power that is not an integer [bad-expression]": (4, driven("value: t", "value: (0.0501 - t)^2.5"), RUN),
+    "joint '...' of ... failed: ... [plugin-failed]":
+        (5, journal("lankarani-nikravesh, restitution: 0.9", "johnson").replace("ball: {mass: 1 kg", "ball: {mass: 1e6 kg"), RUN),
+    "The penetration passes a tenth of the radial clearance: ...":
+        (0, journal("mass: 1 kg", "mass: 100 kg"), RUN),
+    "The law of ... rebounds faster than asked for a restitution below ...":
+        (0, journal("restitution: 0.9", "restitution: 0.3"), RUN),
+    # After a run
+    "steps per impact: ... or more; ... of ... impacts took fewer than 20: --step ..., or an accuracy in its place, would do":
+        (0, journal("step: 10 us", "step: 500 us"), RUN),
+    "'...' holds other files than a result": (6, PENDULUM, ["run", "model.yaml", "--out", "."]),
+    "'...' exists already": (6, PENDULUM, ["convert", "model.yaml", "model.yaml"]),
+    "plugin '...' cannot be loaded: ... [plugin-refused]": (5, PENDULUM, RUN + ["--plugin", "./model.so"]),
+    "there is no plugin '...' in ...": (5, PENDULUM, RUN + ["--plugin", "mine"]),
+}
+
+
+def headings():
+    with open(os.path.join(ROOT, "docs", "trouble-shooting.md"), encoding="utf-8") as file:
+        return re.findall(r"^### `(.*)`$", file.read(), re.M)
+
+
+def pattern(heading):
+    return ".+".join(re.escape(part) for part in heading.split("..."))
+
+
+class TroubleShooting(ProgramTest):
+    def test_every_heading_is_provoked_here_once(self):
+        self.assertEqual(sorted(CASES), sorted(headings()))
+
+    def test_every_heading_is_what_the_program_prints(self):
+        self.write("model.so", "no library")
+        for heading, (code, model, words) in CASES.items():
+            with self.subTest(heading):
+                self.write("model.yaml", model)
+                words = [os.path.join(BUILD, "plugins", "template", "template_integrator.so") if word == "TEMPLATE" else word
+                         for word in words]
+                done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=60)
+                said = done.stdout + done.stderr
+                self.assertEqual(code, done.returncode, said)
+                self.assertRegex(said, pattern(heading))
+
+
+if __name__ == "__main__":
+    unittest.main()
