@@ -77,7 +77,7 @@ System::System(const Model& model, Variant variant)
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int joint = model.drivers[at(d)].joint;
     const int row = layout_.driver_row(d);
-    coordinate_terms_[at(joint)] |= row < 0 ? term_force : term_position;
+    coordinate_terms_[at(joint)] |= term_position | term_force;  // its rate makes the driver's power
     driver_block_a_.push_back(row < 0 ? -1 : add_block(body_a(joint), row, 1));
     driver_block_b_.push_back(row < 0 ? -1 : add_block(body_b(joint), row, 1));
   }

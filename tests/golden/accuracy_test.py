@@ -14,7 +14,7 @@ class Accuracy(ProgramTest):
     def test_accuracy_chooses_integrator_and_steps(self):
         settings = self.run_json(mechanism("pendulum"), "--accuracy", "1um", "--end", "0.1 s", "--out", "r")["settings"]
         self.assertEqual("dopri5", settings["integrator"]["type"])
-        self.assertEqual((True, 1e-6, 20.0),
+        self.assertEqual((True, 1e-6, 5.0),
                          tuple(settings["step"][key] for key in ("adaptive", "accuracy", "per_contact")))
         settings = self.run_json(mechanism("pendulum"), "--accuracy", "1um", "--integrator", "bathe", "--end", "0.1 s",
                                  "--out", "r")["settings"]

@@ -74,7 +74,7 @@ TEST(Leg, DerivativesAreThoseOfThePose) {
     for (const double t : {0.1, 0.8, 1.5}) {
       std::array<LegPose, 5> near;
       for (int i = -2; i <= 2; ++i) near[static_cast<std::size_t>(i + 2)] = pose_at(leg, t + i * h);
-      for (const auto member : {&LegPose::crank, &LegPose::coupler}) {
+      for (const auto member : std::initializer_list<Jet LegPose::*>{&LegPose::crank, &LegPose::coupler}) {
         const auto slope = [&](auto value) {
           return (8.0 * (value(3) - value(1)) - (value(4) - value(0))) / (12.0 * h);
         };
