@@ -95,10 +95,10 @@ double unit_rebound(const std::string& integrator, double step, double phase) {
   puck.sections = "forces: {push: {type: force, at: puck, value: [0, " + number(-push) + "]}}\n";
   puck.step = step;
   puck.end = 5.0;
+  puck.integrator = integrator;
   const std::string h = number(step);
-  const ModelRun run(with_steps(puck.text(), step,
-                                "integrator: " + integrator + ", step: {size: " + h + ", max: " + h +
-                                    ", adaptive: true, tolerance: 0.1, per_contact: 2}"));
+  const ModelRun run(with_steps(
+      puck.text(), step, "step: {size: " + h + ", max: " + h + ", adaptive: true, tolerance: 0.1, per_contact: 2}"));
   EXPECT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
   const auto all = contacts(run);
   EXPECT_EQ(all.size(), 1u);
