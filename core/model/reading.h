@@ -17,8 +17,8 @@ struct Reading {
   const ParameterScope* scope;
   const PresetTable* presets = nullptr;
   Readout* readout = nullptr;  ///< keeps what is read, when somebody wants it
-  std::string instance{};   ///< full name of the instance; empty at top level
-  double start_time = 0.0;  ///< time functions are tried here [s]
+  std::string instance{};      ///< full name of the instance; empty at top level
+  double start_time = 0.0;     ///< time functions are tried here [s]
 };
 
 }  // namespace freeplay
