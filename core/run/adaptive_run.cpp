@@ -114,7 +114,9 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   const double past = hunted.value;
   const bool sharp = past <= event_rounding || past <= event_time * hunted.rate || tries > most_tries / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
-  if (ends_there && past >= 0.0 && past <= StepEvents::tolerance && sharp) {
+  // An event may lie so close to the start of the step that the time cannot tell them apart.
+  const double least = std::nextafter(accepted.t(), unbounded) - accepted.t();
+  if (ends_there && past >= 0.0 && ((past <= StepEvents::tolerance && sharp) || dt <= least)) {
     done = true;
     return true;
   }
@@ -130,7 +132,7 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   double next = near ? newton : (found.joint >= 0 ? found.fraction * dt : dt);
   if (next == dt) next = past < 0.0 ? dt * (1.0 + 4.0 * rounding) : dt * (1.0 - 4.0 * rounding);
   if (!(next > 0.0)) next = 0.5 * dt;
-  dt = next;
+  dt = std::max(next, least);
   return true;
 }
 

@@ -15,6 +15,7 @@
 #include "run/leg_modes.h"
 #include "run/newton_stage_solver.h"
 #include "run/placing.h"
+#include "run/start_rows.h"
 #include "system/path_follower.h"
 
 namespace freeplay {
@@ -394,44 +395,9 @@ class Assembler {
                 "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
   }
 
-  // With its frame prescribed the ideal mechanism must be still, and the frame must be able to follow.
   void check_paths() {
-    const int nv = closed_.layout().nv();
-    for (const InverseKinematics& entry : model_.kinematics) {
-      evaluate(term_position | term_velocity);
-      std::vector<SparseEntry> entries;
-      closed_.jacobian_entries(e_, entries);
-      for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
-        const int driven = closed_.layout().driver_row(d);
-        std::erase_if(entries, [&](const SparseEntry& e) { return e.row() == driven; });
-      }
-      const int nc = closed_.layout().nc();
-      const SparseMatrix without = sparse_matrix(nc, nv, entries);
-      const BodyId body = model_.markers[at(entry.marker)].body;
-      const std::vector<PathRow> paths = path_rows(model_, static_cast<int>(&entry - model_.kinematics.data()));
-      const int given = static_cast<int>(paths.size());
-      for (int i = 0; i < given && body != ground; ++i) {
-        double row[3];
-        paths[at(i)].entries(e_, row);
-        for (int c = 0; c < 3; ++c) entries.emplace_back(nc + i, 3 * body + c, row[c]);
-      }
-      const SparseMatrix with = sparse_matrix(nc + given, nv, entries);
-      const int free = numerical_rank(without), prescribed = numerical_rank(with);
-      if (prescribed < nv) {
-        throw Error(Error::Category::input, "ik-underdetermined",
-                    fmt::format("with its frame on the path of '{}' the mechanism still has {} freedom(s)", entry.name,
-                                nv - prescribed),
-                    entry.frame_location);
-      }
-      if (prescribed < free + given) {
-        throw Error(
-            Error::Category::input, "ik-unreachable",
-            fmt::format(
-                "the frame of '{}' cannot follow {} component(s) of a path: the mechanism leaves it {} freedom(s)",
-                entry.name, given, prescribed - free),
-            entry.path_location);
-      }
-    }
+    evaluate(term_position | term_velocity);
+    freeplay::check_paths(closed_, e_);
   }
 
   // Least change of the given velocities in kinetic energy; in m and rad where the mass says nothing.
@@ -510,7 +476,9 @@ class Assembler {
       if (const int turn = system_.layout().turn(j); turn >= 0) state.h()[at(turn)] = e_.coordinate[at(j)];
     }
     initialize_joints(state);
-    refuse_massless_motion(state);
+    Evaluation released(system_);
+    if (!system_.evaluate(point(state), term_position | term_velocity, released)) throw_fault(model_, released.fault);
+    refuse_massless_motion(system_, released);
     NewtonStageSolver solver(system_, {});
     solver.use_history(state.h());
     StateView view = state.view();
@@ -542,23 +510,6 @@ class Assembler {
     }
   }
 
-  void refuse_massless_motion(const State& state) {
-    Evaluation e(system_);
-    if (!system_.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
-    const int nc = system_.layout().nc(), nv = system_.layout().nv();
-    const Eigen::Map<const VectorXd> mass(system_.mass().data(), nv);
-    std::vector<SparseEntry> entries;
-    system_.jacobian_entries(e, entries);
-    const std::optional<VectorXd> motion = weightless_motion(sparse_matrix(nc, nv, entries), mass);
-    if (!motion) return;
-    Eigen::Index worst = 0;
-    motion->cwiseAbs().maxCoeff(&worst);
-    const Body& body = model_.bodies[at(static_cast<int>(worst) / 3)];
-    throw Error(Error::Category::input, "singular-mass",
-                fmt::format("body '{}' can move without moving any mass", body.name), body.location,
-                "give it inertia, or hold that motion by a joint");
-  }
-
   ConstraintFacts facts_of(const System& system) {
     const bool closed = system.variant() == Variant::closed;
     Evaluation e(system);
@@ -568,13 +519,7 @@ class Assembler {
     std::ranges::copy(state_.v(), state.v().begin());
     if (closed) std::ranges::copy(state_.h(), state.h().begin());
     if (!system.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
-    const int nc = system.layout().nc(), nv = system.layout().nv(), joints = system.layout().first_driver_row();
-    std::vector<SparseEntry> entries;
-    system.jacobian_entries(e, entries);
-    const int all = numerical_rank(sparse_matrix(nc, nv, entries));
-    std::erase_if(entries, [&](const SparseEntry& entry) { return entry.row() >= joints; });
-    const int own = numerical_rank(sparse_matrix(joints, nv, entries));
-    return {joints, own, joints - own, nv - own, nv - all, nc - all - (joints - own)};
+    return constraint_facts(system, e);
   }
 
   System& system_;
