@@ -486,7 +486,9 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
         continue;
       }
       if (last) trial.t() = goal;
-      if (!system.evaluate(point(trial), all_terms, e_trial)) return fail_with(e_trial.fault, trial.t());
+      if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
+        return fail_with(e_trial.fault, trial.t());
+      }
       if (!accept({}) || !check_stop() || !check_interrupt(hooks)) return false;
     }
   }
