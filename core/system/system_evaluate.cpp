@@ -22,7 +22,7 @@ double rate_of(const double* row, const MarkerKinematics& a, const MarkerKinemat
 }
 
 bool same(std::span<const double> a, std::span<const double> b) {
-  return std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
+  return b.empty() || std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
 }
 
 }  // namespace
@@ -51,11 +51,11 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   e.filled = 0;
   if (!fill(point, terms, e)) return false;
   e.filled = terms;
-  e.place.front() = point.t;
-  auto next = e.place.begin() + 1;
+  double* next = e.place.data();
+  *next++ = point.t;
   // The integrator may carry integrals behind the internal variables.
   for (const std::span<const double> part : {point.q, point.v, point.z.first(e.internal_rate.size()), point.h}) {
-    next = std::ranges::copy(part, next).out;
+    next = std::copy_n(part.data(), part.size(), next);
   }
   return true;
 }

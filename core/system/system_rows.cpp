@@ -48,19 +48,19 @@ bool System::evaluate_rows(const Point& point, Evaluation& e) const {
       if (!guard::intact(filled.end())) return refuse(j, beside, e);
     }
     out = {phi, jacobian, nu, gamma};
-    std::ranges::copy(phi, e.phi.begin() + rows.offset);
-    std::ranges::copy(nu, e.nu.begin() + rows.offset);
-    std::ranges::copy(gamma, e.gamma.begin() + rows.offset);
     if (!is_finite(out) && markers_are_finite(j, e))
       return refuse(j, "it returned a row that is not a finite number", e);
     const int block_a = row_block_a_[at(j)], block_b = row_block_b_[at(j)];
     for (int r = 0; r < rows.size; ++r) {
       const double* marker_row = jacobian.data + 12 * r;
+      const std::size_t to = at(rows.offset + r), from = at(r);
       double row[6];
       map_row(j, marker_row, e, row);
-      if (block_a >= 0) std::copy_n(row, 3, e.jacobian.begin() + blocks_[at(block_a)].offset + 3 * r);
-      if (block_b >= 0) std::copy_n(row + 3, 3, e.jacobian.begin() + blocks_[at(block_b)].offset + 3 * r);
-      e.gamma[at(rows.offset + r)] -= row_velocity_product(j, marker_row, e);
+      if (block_a >= 0) std::copy_n(row, 3, &e.jacobian[at(blocks_[at(block_a)].offset + 3 * r)]);
+      if (block_b >= 0) std::copy_n(row + 3, 3, &e.jacobian[at(blocks_[at(block_b)].offset + 3 * r)]);
+      e.phi[to] = phi[from];
+      e.nu[to] = nu[from];
+      e.gamma[to] = gamma[from] - row_velocity_product(j, marker_row, e);
       if (variant_ == Variant::closed) {
         for (int i = 0; i < 3; ++i) e.nu[at(rows.offset + r)] += marker_row[6 + i] * offsets_[at(j)].velocity[i];
       }
