@@ -162,7 +162,7 @@ TEST(PathFollower, KeepsItsBranchThroughManyTurns) {
   for (const double t : {0.01, 0.5, 0.99}) EXPECT_NEAR(bars.at(t)[0].value, first[0].value, 1e-11);
 }
 
-TEST(PathFollower, EndsWhereThePathLeavesTheWorkspace) {
+TEST(PathFollower, EndsWhereThePathLeavesTheWorkspaceLong) {
   // Both arms are stretched at a distance of 0.35 m from their pins: y = sqrt(0.35^2 - 0.1^2) = 0.335 m.
   Assembled bars(five_bar("x: 0, y: 0.26 + 0.1*t"));
   bars.at(0.7);
