@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "cli/component_entry.h"
 #include "cli/terminal.h"
 #include "component/library.h"
 #include "freeplay/plugin.h"
@@ -58,8 +59,12 @@ class Doctor {
       return add("problem", "built-in types", error.message());
     }
     const auto count = [&](ComponentKind kind) { return registry_.names(kind).size(); };
-    const std::size_t joints = count(ComponentKind::joint), contact = count(ComponentKind::contact_law),
-                      friction = count(ComponentKind::friction_law), integrators = count(ComponentKind::integrator);
+    // Counted as `list joints` does: the gear is a joint of the core.
+    const auto is_joint = [](const Json& entry) { return entry["kind"] == "joint"; };
+    const std::vector<Json> types = all_entries(registry_);
+    const auto joints = static_cast<std::size_t>(std::ranges::count_if(types, is_joint));
+    const std::size_t contact = count(ComponentKind::contact_law), friction = count(ComponentKind::friction_law),
+                      integrators = count(ComponentKind::integrator);
     const bool complete = joints > 0 && contact > 0 && friction > 0 && integrators > 0;
     add(complete ? "ok" : "problem", "built-in types",
         fmt::format("{} joints, {} contact laws, {} friction laws, {} integrators", joints, contact, friction,

@@ -86,8 +86,8 @@ class Writer {
     for (std::size_t i = 0; i < robot_.links.size(); ++i) {
       const Link& link = robot_.links[i];
       link_names_.push_back(links_.give(link.name, link.spot));
-      if (link_names_.back() == "ground" && static_cast<int>(i) != robot_.root) {
-        messages_.error(link.spot, "reserved-name", "only the root link may be called 'ground'");
+      if (link_names_.back() == "ground" && robot_.mounts[i].body == static_cast<int>(i)) {
+        messages_.error(link.spot, "reserved-name", "only the root link or a mere frame may be called 'ground'");
       }
     }
     for (const Joint& joint : robot_.joints) joint_names_.push_back(joints_.give(joint.name, joint.spot));

@@ -1,6 +1,7 @@
 #include "io/urdf_element.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -18,6 +19,11 @@ bool holds(const std::vector<std::string>& words, const std::string& word) {
   return std::ranges::find(words, word) != words.end();
 }
 
+std::string lower(std::string word) {
+  for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return word;
+}
+
 std::vector<std::string_view> split(std::string_view text) {
   std::vector<std::string_view> words;
   for (std::size_t begin = text.find_first_not_of(blanks); begin != std::string_view::npos;) {
@@ -28,7 +34,47 @@ std::vector<std::string_view> split(std::string_view text) {
   return words;
 }
 
+/// Letters added, lost or replaced, or neighbours that changed places; anything above `limit` where it is larger.
+std::size_t slips(std::string_view a, std::string_view b, std::size_t limit) {
+  constexpr std::size_t longest = 32;
+  const std::size_t more = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
+  if (more > limit || a.size() >= longest || b.size() >= longest) return limit + 1;
+  std::array<std::array<std::size_t, longest>, longest> cost{};
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        cost[i][j] = i + j;
+        continue;
+      }
+      const bool same = a[i - 1] == b[j - 1];
+      cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same ? 0 : 1)});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
+    }
+  }
+  return cost[a.size()][b.size()];
+}
+
+bool differs_by_a_replaced_letter(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) different += a[i] == b[i] ? 0 : 1;
+  return different == 1;
+}
+
 }  // namespace
+
+std::string misspelt(const std::string& word, const std::vector<std::string>& words) {
+  constexpr std::size_t short_word = 6;
+  for (const std::string& candidate : words) {
+    const bool is_short = candidate.size() < short_word;
+    // 'line' and 'point' are one letter from 'link' and 'joint', and words of their own.
+    if (is_short && differs_by_a_replaced_letter(word, candidate) && lower(word) != candidate) continue;
+    const std::size_t limit = is_short ? 1 : 2;
+    if (lower(word) == candidate || slips(word, candidate, limit) <= limit) return candidate;
+  }
+  return {};
+}
 
 Spot spot_of(const XmlAttribute& attribute) {
   return {attribute.place.line, attribute.place.column, character_count(attribute.name)};
@@ -141,27 +187,33 @@ std::optional<double> Element::required_number(const std::string& name) {
 }
 
 std::optional<Eigen::Vector3d> Element::vector(const std::string& name) {
+  const std::vector<double> read = numbers(name, 3);
+  return read.empty() ? std::nullopt : std::optional(Eigen::Vector3d(read[0], read[1], read[2]));
+}
+
+std::vector<double> Element::numbers(const std::string& name, std::size_t count) {
   const XmlAttribute* attribute = find(name);
-  if (attribute == nullptr) return std::nullopt;
+  if (attribute == nullptr) return {};
   const std::vector<std::string_view> words = split(attribute->value);
-  if (words.size() != 3) {
+  if (words.size() != count) {
     const bool comma = attribute->value.find(',') != std::string::npos;
-    messages_.error(spot_of(*attribute), "bad-urdf",
-                    fmt::format("'{}' of {} must be three numbers, not {}", name, owner_, words.size()), {},
-                    comma ? "numbers are separated by blanks, not by commas" : "");
-    return std::nullopt;
+    messages_.error(
+        spot_of(*attribute), "bad-urdf",
+        fmt::format("'{}' of {} must be {} numbers, not {}", name, owner_, count == 3 ? "three" : "four", words.size()),
+        {}, comma ? "numbers are separated by blanks, not by commas" : "");
+    return {};
   }
-  Eigen::Vector3d vector;
-  for (std::size_t i = 0; i < 3; ++i) {
+  std::vector<double> read;
+  for (const std::string_view word : words) {
     std::string why, hint;
-    const auto value = read_number(words[i], why, hint);
+    const auto value = read_number(word, why, hint);
     if (!value) {
       messages_.error(spot_of(*attribute), "bad-urdf", fmt::format("'{}' of {}: {}", name, owner_, why), {}, hint);
-      return std::nullopt;
+      return {};
     }
-    vector[static_cast<Eigen::Index>(i)] = *value;
+    read.push_back(*value);
   }
-  return vector;
+  return read;
 }
 
 const XmlElement* Element::child(const std::string& name) {
@@ -232,7 +284,7 @@ void Element::finish_children() {
                       "this is a xacro file; expand it first");
       continue;
     }
-    const std::string meant = messages_.suggest(child.name, unwritten);
+    const std::string meant = exact_ ? messages_.suggest(child.name, unwritten) : misspelt(child.name, unwritten);
     if (!exact_ && meant.empty()) {
       messages_.ignore(fmt::format("element '{}'", child.name));
       continue;

@@ -45,6 +45,11 @@ class Messages {
   std::unordered_map<std::string, std::size_t> ignored_index_;
 };
 
+/// The one of `words` of which an element's name is a slip of the pen, or "": other case, one letter too many or too
+/// few or two that changed places; in words of six letters or more two such slips, replaced letters among them. Other
+/// programs have elements of their own, so nothing that is merely near will do.
+std::string misspelt(const std::string& word, const std::vector<std::string>& words);
+
 /// A finite decimal number, whatever the locale. On failure says why: "'0,5' is not a number".
 std::optional<double> read_number(std::string_view text, std::string& why, std::string& hint);
 
@@ -67,6 +72,8 @@ class Element {
   double number(const std::string& name, double standard);
   std::optional<double> required_number(const std::string& name);
   std::optional<Eigen::Vector3d> vector(const std::string& name);
+  /// `count` (3 or 4) numbers; empty when they are not there or, after a message, when they are not that.
+  std::vector<double> numbers(const std::string& name, std::size_t count);
 
   /// The child of that name. A second one is reported, and so is an absent one at the '<' of this element.
   const XmlElement* child(const std::string& name);

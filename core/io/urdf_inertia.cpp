@@ -87,7 +87,8 @@ void check_inertia(Robot& robot, const Options& options, bool planar, const Eige
       messages.warning(
           spot, "urdf-ignored",
           fmt::format("inertia of link '{}': {} ({} kg*m^2); only the moment about the normal of the plane is used",
-                      link.name, fault, values));
+                      link.name, fault, values),
+          options.repair_inertia ? "'repair: inertia' leaves it as it is: that moment is possible" : "");
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "io/urdf_loops.h"
 #include "io/urdf_reference.h"
+#include "io/urdf_shape.h"
 
 namespace freeplay::urdf {
 namespace {
@@ -60,6 +61,9 @@ class RobotReader {
     }
     if (const XmlElement* inertial = element.child("inertial")) read_inertial(*inertial, element.owner(), link);
     for (const char* known : {"visual", "collision"}) element.pass_over(known);
+    for (const XmlElement& child : xml.children) {
+      if (child.name == "visual" || child.name == "collision") check_shape(child, element.owner(), messages_);
+    }
     element.finish();
     robot_.links.push_back(std::move(link));
   }
@@ -354,7 +358,7 @@ class RobotReader {
         continue;
       }
       const bool known = std::ranges::find(other_parts, child.name) != std::end(other_parts);
-      const std::string meant = known ? "" : messages_.suggest(child.name, words);
+      const std::string meant = known ? "" : misspelt(child.name, words);
       if (meant.empty()) {
         messages_.ignore(child.name);
       } else {

@@ -164,6 +164,14 @@ void ask_referee(const XmlElement& root, Messages& messages) {
     why = refusal(robot_text(root, all));
     if (why.empty()) return;
     std::string own = why;
+    // What is refused of a robot with one bare link is the fault of its start tag.
+    const XmlAttribute* version = root.attribute("version");
+    const std::string of_tag = version == nullptr ? "" : refusal(robot_text(root, "<link name=\"link\"/>"));
+    if (!of_tag.empty()) {
+      messages.error(spot_of(*version), "bad-urdf",
+                     fmt::format("urdfdom refuses the version of the robot: {}", printable(of_tag)));
+      return;
+    }
     culprit = find_culprit(root, own);
     why = own;
   }

@@ -114,6 +114,7 @@ class TreeBuilder {
     if (index == robot_.root) {
       if (!names_ground && here.has_mass()) mount.body = index;
       if (names_ground && here.has_mass()) messages_.ignore("mass of ground, link", here.name);
+      note_massless(here);
       return;
     }
     const Joint& parent = joint(robot_.parent_joint[at(index)]);
@@ -121,9 +122,7 @@ class TreeBuilder {
       const Mount& carrier = robot_.mounts[at(parent.parent.link)];
       mount = {carrier.body, carrier.pose * parent.parent.frame};
       if (here.has_mass() && mount.body == world_link) messages_.ignore("mass of ground, link", here.name);
-      if (here.has_inertial && !here.has_mass() && !here.inertia.isZero(0.0)) {
-        messages_.ignore("inertia without mass of link", here.name);
-      }
+      note_massless(here);
       return;
     }
     mount.body = index;
@@ -131,6 +130,13 @@ class TreeBuilder {
     messages_.error(here.spot, "urdf-massless",
                     fmt::format("link '{}' has no mass, but joint '{}' moves it", here.name, parent.name), {},
                     "a body needs mass; only on a fixed joint a link without mass is a mere frame");
+  }
+
+  /// What a link says of its inertia counts for nothing without mass.
+  void note_massless(const Link& link) {
+    if (!link.has_inertial || link.has_mass()) return;
+    if (!link.inertia.isZero(0.0)) messages_.ignore("inertia without mass of link", link.name);
+    if (!link.inertial.translation().isZero(0.0)) messages_.ignore("centre of mass without mass of link", link.name);
   }
 
   Robot& robot_;

@@ -20,6 +20,10 @@ class Doctor(ProgramTest):
         self.assertTrue(answer["ok"])
         self.assertEqual(len(self.freeplay("doctor")[0].splitlines()), len(answer["findings"]))
 
+    def test_counts_the_joints_that_list_shows(self):
+        shown = len(self.freeplay("list", "joints")[0].splitlines()) - 1
+        self.assertIn(f" {shown} joints,", self.freeplay("doctor")[0])
+
     def test_a_plugin_that_is_refused_is_a_problem(self):
         self.write("libbroken.so", "no library")
         out, _ = self.freeplay("doctor", environment={"FREEPLAY_PLUGIN_PATH": self.folder}, code=1)

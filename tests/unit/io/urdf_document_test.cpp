@@ -138,7 +138,7 @@ TEST(ReadUrdf, KeepsThePlacesOfTheFile) {
 }
 
 TEST(ReadUrdf, AsksUrdfdomAboutWhatItDoesNotReadItself) {
-  const Read out = read(robot("<link name='a'><visual><geometry><box size='1 2'/></geometry></visual></link>"));
+  const Read out = read(robot("<link name='a'><visual><geometry><cone/></geometry></visual></link>"));
   EXPECT_FALSE(out.sections);
   EXPECT_NE(out.report.find("r.urdf:1:18: error: urdfdom refuses this link"), std::string::npos) << out.report;
 }
@@ -147,6 +147,85 @@ TEST(ReadUrdf, TakesPercentSignsThatUrdfdomWouldPrintWith) {
   const Read out = read(robot("<link name='a'/><material name='%s%n'><color rgba='%s%s%n 1 1 1'/></material>"));
   EXPECT_FALSE(out.sections);
   EXPECT_NE(out.report.find("%s%s%n"), std::string::npos) << out.report;
+}
+
+std::string arm(const std::string& content, const std::string& link_content = "") {
+  return robot(
+      "<link name='world'/><link name='a'><inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='2' "
+      "iyz='0' izz='3'/></inertial>" +
+      link_content +
+      "</link><joint name='j' type='continuous'><parent link='world'/><child link='a'/><axis xyz='0 0 1'/>"
+      "</joint>" +
+      content);
+}
+
+TEST(ReadUrdf, FindsEveryMistakeInShapesAtItsPlace) {
+  const Read out = read(
+      "<robot name='r'><link name='a'>\n<visual>\n<origin xyz='0,1 0 0'/>\n<geometry><box size='1 2'/></geometry>\n"
+      "<material name='m'><color rgba='1 1 1 x'/></material></visual>\n<collision>\n<origin xzy='0 0 0'/>\n"
+      "<geometry><cylinder radius='1' lenght='2'/></geometry></collision>\n</link></robot>");
+  EXPECT_FALSE(out.sections);
+  for (const char* message :
+       {"r.urdf:3:9: error: 'xyz' of the origin of a visual of link 'a': '0,1' is not a number",
+        "r.urdf:4:16: error: 'size' of the box of a visual of link 'a' must be three numbers, not 2",
+        "r.urdf:5:27: error: 'rgba' of the color of a visual of link 'a': 'x' is not a number",
+        "r.urdf:7:9: error: unknown attribute 'xzy'", "did you mean 'xyz'?",
+        "r.urdf:8:32: error: unknown attribute 'lenght'", "did you mean 'length'?"}) {
+    EXPECT_NE(out.report.find(message), std::string::npos) << message << "\n" << out.report;
+  }
+}
+
+TEST(ReadUrdf, BlamesTheVersionOfTheRobotWhereItStands) {
+  const Read out = read("<robot name='r'\n version='1.1'><link name='a'/></robot>");
+  EXPECT_FALSE(out.sections);
+  EXPECT_NE(out.report.find("r.urdf:2:2: error: urdfdom refuses the version"), std::string::npos) << out.report;
+}
+
+TEST(ReadUrdf, TakesElementsOfOtherProgramsForWhatTheyAre) {
+  const Read out = read(arm("<tool/><root/><line/><point/><gripper/><skin/>"));
+  EXPECT_TRUE(out.sections) << out.report;
+  EXPECT_NE(out.report.find("not used: tool, root, line, point, gripper, skin"), std::string::npos) << out.report;
+}
+
+TEST(ReadUrdf, SeesSlipsOfThePenInTheNamesOfElements) {
+  for (const auto& [word, meant] : {std::pair("lnik", "link"), std::pair("Joint", "joint"), std::pair("jont", "joint"),
+                                    std::pair("loops", "loop"), std::pair("constaint", "constraint")}) {
+    const Read out = read(arm("<" + std::string(word) + "/>"));
+    EXPECT_FALSE(out.sections) << word;
+    EXPECT_NE(out.report.find("did you mean '" + std::string(meant) + "'?"), std::string::npos) << out.report;
+  }
+}
+
+TEST(ReadUrdf, AMereFrameMayBeCalledGround) {
+  const std::string text =
+      robot("<link name='world'/><link name='ground'/>" + link("a") +
+            "<joint name='f' type='fixed'><parent link='world'/><child link='ground'/><origin xyz='1 0 0'/></joint>"
+            "<joint name='j' type='continuous'><parent link='ground'/><child link='a'/><axis xyz='0 0 1'/></joint>");
+  const Read out = read(text);
+  ASSERT_TRUE(out.sections) << out.report;
+  EXPECT_EQ(number(at(out.sections->bodies, {"ground", "frames", "j"}).items[0]), 1.0);
+}
+
+TEST(ReadUrdf, SaysThatARootWithoutMassLosesItsInertia) {
+  const Read out = read(robot(
+      "<link name='base'><inertial><origin xyz='0.5 0 0'/><mass value='0'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+      "iyz='0' izz='1'/></inertial></link>"));
+  ASSERT_TRUE(out.sections) << out.report;
+  EXPECT_NE(out.report.find("inertia without mass of link 'base', centre of mass without mass of link 'base'"),
+            std::string::npos)
+      << out.report;
+}
+
+TEST(ReadUrdf, SaysThatRepairLeavesInertiaThatThePlaneDoesNotUse) {
+  const std::string text = robot(
+      "<link name='world'/><link name='a'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "
+      "izz='9'/></inertial></link>"
+      "<joint name='j' type='continuous'><parent link='world'/><child link='a'/><axis xyz='0 0 1'/></joint>");
+  Options options;
+  const std::string words = "'repair: inertia' leaves it as it is";
+  EXPECT_EQ(read(text, options).report.find(words), std::string::npos);
+  options.repair_inertia = true;
+  EXPECT_NE(read(text, options).report.find(words), std::string::npos) << read(text, options).report;
 }
 
 }  // namespace
