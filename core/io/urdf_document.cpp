@@ -320,6 +320,7 @@ std::optional<Sections> add_sections(const std::string& text, const std::string*
   if (!messages.failed()) ask_referee(*root, messages);
   if (robot.mounts.empty()) return std::nullopt;
   const PlanarRobot planar = choose_plane(robot, options);
+  robot.mounts = planar.mounts;
   const Eigen::Vector3d normal = plane_axes(planar.plane).row(2);
   check_inertia(robot, options, planar.planar(), normal, messages);
   if (!planar.planar()) report_not_planar(robot, planar, messages);

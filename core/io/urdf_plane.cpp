@@ -46,9 +46,36 @@ PlanarPose inverse(const PlanarPose& a) {
 double off_normal(const Eigen::Vector3d& axis) { return std::atan2(std::hypot(axis[0], axis[1]), std::abs(axis[2])); }
 double off_plane(const Eigen::Vector3d& axis) { return std::atan2(std::abs(axis[2]), std::hypot(axis[0], axis[1])); }
 
+/// Turns a tilted joint frame upright: `turn` times the result has the plane's normal as third axis. Taken from the
+/// joint's own numbers, so that rounded right angles do not add up along a chain: the normal is the axis of a pin, else
+/// the axis of the frame that comes near it; x is the first axis of the frame that lies in the plane. Identity for a
+/// frame that is upright already, or whose joint does not move in the plane.
+Eigen::Matrix3d upright(const Eigen::Matrix3d& turn, const Eigen::Vector3d& axis, JointType type) {
+  if (tilt(turn) <= planar_tolerance) return Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d moved = turn * axis;
+  if (type == JointType::prismatic && off_plane(moved) > planar_tolerance) return Eigen::Matrix3d::Identity();
+  if (type == JointType::revolute && off_normal(moved) > planar_tolerance) return Eigen::Matrix3d::Identity();
+  Eigen::Vector3d normal = turn.transpose().col(2), x = turn.transpose().col(0);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
+    if (normal.cross(unit).norm() <= planar_tolerance) normal = normal[i] < 0.0 ? Eigen::Vector3d(-unit) : unit;
+  }
+  if (type == JointType::revolute) normal = moved[2] < 0.0 ? Eigen::Vector3d(-axis) : axis;
+  for (Eigen::Index i = 2; i >= 0; --i) {
+    if (std::abs(normal[i]) <= planar_tolerance) x = Eigen::Vector3d::Unit(i);
+  }
+  x = (x - x.dot(normal) * normal).normalized();
+  Eigen::Matrix3d out;
+  out << x, normal.cross(x), normal;
+  return out;
+}
+
 class Projector {
  public:
-  Projector(const Robot& robot, Options::Plane plane) : robot_(robot), axes_(plane_axes(plane)) { out_.plane = plane; }
+  Projector(const Robot& robot, Options::Plane plane) : robot_(robot), axes_(plane_axes(plane)) {
+    out_.plane = plane;
+    out_.mounts = robot.mounts;
+  }
 
   PlanarRobot project() {
     out_.joints.resize(robot_.joints.size());
@@ -64,14 +91,15 @@ class Projector {
  private:
   const Mount& mount(int link) const {
     static const Mount world;
-    return link == world_link ? world : robot_.mounts[at(link)];
+    return link == world_link ? world : out_.mounts[at(link)];
   }
 
   void place(int link) {
-    const Mount& here = mount(link);
+    Mount& here = out_.mounts[at(link)];
+    const int parent = robot_.parent_joint[at(link)];
+    if (parent >= 0) set_upright(robot_.joints[at(parent)], link, here);
     const Frame frame = seen(here.pose, axes_);
     out_.frames[at(link)] = flat(frame);
-    const int parent = robot_.parent_joint[at(link)];
     if (parent < 0) return;
     const Joint& joint = robot_.joints[at(parent)];
     const PlanarPose& carrier = body_pose(joint.parent.link);
@@ -81,7 +109,23 @@ class Projector {
       return;
     }
     see(parent);
-    out_.poses[at(link)] = carrier * flat(seen(mount(joint.parent.link).pose * joint.parent.frame, axes_));
+    const Eigen::Isometry3d upright_zero = mount(joint.parent.link).pose * joint.parent.frame * here.pose.inverse();
+    out_.poses[at(link)] = carrier * flat(seen(upright_zero, axes_));
+  }
+
+  /// The pose of a link in the frame of its body, once that frame is upright: a body whose link frame is tilted gets a
+  /// frame of its own, with the same origin, and what is part of it moves along.
+  void set_upright(const Joint& joint, int link, Mount& mount_of_link) {
+    if (mount_of_link.body == world_link) return;
+    if (mount_of_link.body != link) {
+      mount_of_link.pose = out_.mounts[at(mount_of_link.body)].pose * mount_of_link.pose;
+      return;
+    }
+    const Frame zero = seen(mount(joint.parent.link).pose * joint.parent.frame, axes_);
+    const Eigen::Matrix3d turn = upright(zero.turn, axes_ * joint.axis, joint.type);
+    if (turn.isIdentity(0.0)) return;
+    mount_of_link.pose.linear() = axes_.transpose() * turn.transpose() * axes_;
+    out_.tilted_frames.push_back(robot_.links[at(link)].name);
   }
 
   /// Pose at coordinates zero of the body that carries the link.
@@ -93,10 +137,18 @@ class Projector {
   void see(int index) {
     const Joint& joint = robot_.joints[at(index)];
     PlanarJoint& planar = out_.joints[at(index)];
-    const Frame second = seen(mount(joint.child.link).pose * joint.child.frame, axes_);
+    Frame second = seen(mount(joint.child.link).pose * joint.child.frame, axes_);
     Frame first = seen(mount(joint.parent.link).pose * joint.parent.frame, axes_);
     Eigen::Vector3d axis = axes_ * joint.axis;
     planar.spot = joint.axis_spot;
+    // Both frames of a joint may be turned alike. Of one that closes at zero the axis is judged against what follows.
+    const Eigen::Matrix3d turn =
+        joint.closed_at_zero ? upright(second.turn, axis, JointType::fixed) : upright(first.turn, axis, joint.type);
+    if (!turn.isIdentity(0.0)) {
+      first.turn *= turn;
+      second.turn *= turn;
+      if (!joint.axis_in_world) axis = turn.transpose() * axis;
+    }
     if (joint.closed_at_zero) {
       const PlanarPose zero = body_pose(joint.child.link) * flat(second);
       planar.first = inverse(body_pose(joint.parent.link)) * zero;

@@ -39,12 +39,15 @@ struct PlanarRobot {
   Options::Plane plane = Options::Plane::xy;
   std::vector<PlanarJoint> joints;         ///< of each joint of the robot, also those that tie a mere frame
   std::vector<PlanarPose> frames;          ///< of each link in the frame of its body
-  std::vector<std::string> tilted_frames;  ///< mere frames that stand out of the plane
+  std::vector<std::string> tilted_frames;  ///< links whose frames stand out of the plane
+  std::vector<Mount> mounts;               ///< of each link, in the frame of a body that stands upright
   std::vector<PlanarPose> poses;           ///< of each link at coordinates zero, in the root frame
   bool planar() const;
 };
 
-/// The robot in that plane. Each joint is snapped by itself, so that rounded angles do not add up along a chain.
+/// The robot in that plane. A body whose link frame is tilted, but moves in the plane, has an upright frame instead:
+/// the same origin, x along the first axis of the link, in the order of the plane's, that lies in the plane. Each joint
+/// is snapped by itself, so that rounded angles do not add up along a chain.
 PlanarRobot project(const Robot& robot, Options::Plane plane);
 
 /// Mass of each link that is a body, together with what is part of it, in the plane.

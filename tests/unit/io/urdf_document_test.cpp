@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "io/urdf_element.h"
@@ -226,6 +227,109 @@ TEST(ReadUrdf, SaysThatRepairLeavesInertiaThatThePlaneDoesNotUse) {
   EXPECT_EQ(read(text, options).report.find(words), std::string::npos);
   options.repair_inertia = true;
   EXPECT_NE(read(text, options).report.find(words), std::string::npos) << read(text, options).report;
+}
+
+/// Two links in the plane xz and a loop from the second to ground. The frame of each link is turned by `turn` against
+/// the upright one, with all that is written in it, so that the mechanism stays the same.
+std::string turned_links(const Eigen::Matrix3d& turn) {
+  const auto text = [](const Eigen::Vector3d& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v[0], v[1], v[2]); };
+  const auto rpy = [&](const Eigen::Matrix3d& r) {
+    return text({std::atan2(r(2, 1), r(2, 2)), std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
+                 std::atan2(r(1, 0), r(0, 0))});
+  };
+  const Eigen::Matrix3d back = turn.transpose();
+  const Eigen::Matrix3d bend = rotation({0, -0.3, 0});
+  const auto body = [&](const char* name, double scale) {
+    return fmt::format(
+        "<link name='{}'><inertial><origin xyz='{}' rpy='{}'/><mass value='{}'/><inertia ixx='1' ixy='0.1' ixz='0' "
+        "iyy='1.5' iyz='0' izz='1.2'/></inertial></link>",
+        name, text(back * Eigen::Vector3d(0.1, 0.0, 0.05)), rpy(back), scale);
+  };
+  const std::string axis = "<axis xyz='" + text(back * Eigen::Vector3d(0, -1, 0)) + "'/>";
+  return robot(
+      "<link name='world'/>" + body("a", 2.0) + body("b", 3.0) +
+      "<joint name='j' type='continuous'><parent link='world'/><child link='a'/><origin xyz='0.5 0 0.25' rpy='" +
+      rpy(turn) + "'/>" + axis + "</joint><joint name='k' type='continuous'><parent link='a'/><child link='b'/>" +
+      "<origin xyz='" + text(back * Eigen::Vector3d(0.3, 0.0, 0.2)) + "' rpy='" + rpy(back * bend * turn) + "'/>" +
+      axis + "</joint><loop name='l' type='revolute'><predecessor link='b'><origin xyz='" +
+      text(back * Eigen::Vector3d(0.4, 0.0, 0.1)) + "' rpy='" + rpy(back) +
+      "'/></predecessor><successor link='world'><origin xyz='1 0 0'/></successor><axis xyz='0 -1 0'/></loop>");
+}
+
+double angle(const Node& frame) { return frame.is_map() ? number(frame.find("angle")) : 0.0; }
+Eigen::Vector2d position(const Node& frame) {
+  const Node& list = frame.is_map() ? *frame.find("position") : frame;
+  return {number(list.items[0]), number(list.items[1])};
+}
+
+TEST(ReadUrdf, AFrameThatIsTiltedInItsLinkChangesNothing) {
+  Options options;
+  options.plane = Options::Plane::xz;
+  const Read plain = read(turned_links(Eigen::Matrix3d::Identity()), options);
+  ASSERT_TRUE(plain.sections) << plain.report;
+  for (const Eigen::Vector3d& rpy :
+       {Eigen::Vector3d(1.5708, 0, 0), Eigen::Vector3d(-1.5708, 0, 0), Eigen::Vector3d(3.14159, 0, 0),
+        Eigen::Vector3d(0, 0, 1.5708), Eigen::Vector3d(1.5708, 0, 1.5708), Eigen::Vector3d(0.4, 0.7, -1.1)}) {
+    const Read out = read(turned_links(rotation(rpy)), options);
+    ASSERT_TRUE(out.sections) << out.report;
+    EXPECT_NE(out.report.find("tilt of the frame 'a', 'b'"), std::string::npos) << out.report;
+    // The turns from plain body frames to those of this robot are not told; what does not depend on them must agree.
+    for (const char* name : {"a", "b"}) {
+      const Node& was = at(plain.sections->bodies, {name});
+      const Node& is = at(out.sections->bodies, {name});
+      EXPECT_EQ(number(is.find("mass")), number(was.find("mass")));
+      EXPECT_NEAR(number(is.find("inertia")), number(was.find("inertia")), 1e-12);
+      const bool first = std::string(name) == "a";
+      const Eigen::Vector2d com_was = position(*was.find("com")), com_is = position(*is.find("com"));
+      const Eigen::Vector2d tip_was = position(at(&was, {"frames", first ? "k" : "l"})),
+                            tip_is = position(at(&is, {"frames", first ? "k" : "l"}));
+      EXPECT_NEAR(com_is.norm(), com_was.norm(), 1e-12);
+      EXPECT_NEAR(tip_is.norm(), tip_was.norm(), 1e-12);
+      EXPECT_NEAR(com_is.dot(tip_is), com_was.dot(tip_was), 1e-12);
+      EXPECT_NEAR(com_is[0] * tip_is[1] - com_is[1] * tip_is[0], com_was[0] * tip_was[1] - com_was[1] * tip_was[0],
+                  1e-12);
+    }
+    // Where the tip of b stands at coordinates zero does not depend on them, either.
+    const auto tip = [](const Read& robot) {
+      const Node* bodies = robot.sections->bodies;
+      const Node& j = at(bodies, {"ground", "frames", "j"});
+      const Node& k = at(bodies, {"a", "frames", "k"});
+      const double first = angle(j), second = first + angle(k) - angle(at(bodies, {"b", "frames", "k"}));
+      return Eigen::Vector2d(position(j) + Eigen::Rotation2Dd(first) * position(k) +
+                             Eigen::Rotation2Dd(second) * position(at(bodies, {"b", "frames", "l"})));
+    };
+    EXPECT_LT((tip(out) - tip(plain)).norm(), 3e-5) << rpy.transpose();
+  }
+}
+
+TEST(ReadUrdf, RoundedRightAnglesDoNotAddUpAlongAChain) {
+  std::string text = "<link name='world'/>" + link("l0") +
+                     "<joint name='j0' type='continuous'><parent link='world'/><child link='l0'/>"
+                     "<origin rpy='1.5708 0 0'/><axis xyz='0 0 1'/></joint>";
+  for (int i = 1; i < 9; ++i) {
+    const std::string n = std::to_string(i);
+    text += link("l" + n) + "<joint name='j" + n + "' type='continuous'><parent link='l" + std::to_string(i - 1) +
+            "'/><child link='l" + n + "'/><origin xyz='1 0 0' rpy='1.5708 0 0'/><axis xyz='0 " +
+            (i % 2 == 1 ? "1 0" : "0 1") + "'/></joint>";
+  }
+  Options options;
+  options.plane = Options::Plane::xz;
+  const Read out = read(robot(text), options);
+  EXPECT_TRUE(out.sections) << out.report;
+}
+
+TEST(ReadUrdf, AnAxisThatLeavesThePlaneIsStillRefused) {
+  Options options;
+  options.plane = Options::Plane::xz;
+  for (const char* origin : {"1.571 0 0", "1.4 0 0"}) {
+    const Read out =
+        read(robot("<link name='world'/>" + link("a") +
+                   "<joint name='j' type='continuous'><parent link='world'/><child link='a'/><origin rpy='" + origin +
+                   "'/><axis xyz='0 0 1'/></joint>"),
+             options);
+    EXPECT_FALSE(out.sections);
+    EXPECT_NE(out.report.find("urdf-not-planar"), std::string::npos) << out.report;
+  }
 }
 
 }  // namespace
