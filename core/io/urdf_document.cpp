@@ -22,7 +22,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 /// Writes a planar robot as nodes of a document.
 class Writer {
  public:
-  Writer(const Robot& robot, const PlanarRobot& planar, const Options& options, Document& document,
+  Writer(const Robot& robot, const PlanarRobot& planar, Names& names, const Options& options, Document& document,
          const std::string* file, Messages& messages)
       : robot_(robot),
         planar_(planar),
@@ -30,11 +30,9 @@ class Writer {
         document_(document),
         file_(file),
         messages_(messages),
-        links_("link", messages),
-        joints_("joint", messages) {}
+        names_(names) {}
 
   Sections write() {
-    name_all();
     write_bodies();
     joint_section_ = &map(robot_.spot);
     force_section_ = &map(robot_.spot);
@@ -80,23 +78,10 @@ class Writer {
     owner.entries.push_back({&key_node, &value});
   }
 
-  // --- names -----------------------------------------------------------------------------------------------------
-
-  void name_all() {
-    for (std::size_t i = 0; i < robot_.links.size(); ++i) {
-      const Link& link = robot_.links[i];
-      link_names_.push_back(links_.give(link.name, link.spot));
-      if (link_names_.back() == "ground" && robot_.mounts[i].body == static_cast<int>(i)) {
-        messages_.error(link.spot, "reserved-name", "only the root link or a mere frame may be called 'ground'");
-      }
-    }
-    for (const Joint& joint : robot_.joints) joint_names_.push_back(joints_.give(joint.name, joint.spot));
-  }
-
   int body(int link) const { return link == world_link ? world_link : robot_.mounts[at(link)].body; }
   std::string body_name(int link) const {
     const int carrier = body(link);
-    return carrier == world_link ? "ground" : link_names_[at(carrier)];
+    return carrier == world_link ? "ground" : names_.links[at(carrier)];
   }
 
   // --- bodies and frames -----------------------------------------------------------------------------------------
@@ -119,7 +104,7 @@ class Writer {
         put(entry, "com", point(bodies[i].com_x, bodies[i].com_y, link.mass_spot), link.mass_spot);
       }
       write_pose(static_cast<int>(i), entry);
-      put(*bodies_, link_names_[i], entry, link.spot);
+      put(*bodies_, names_.links[i], entry, link.spot);
     }
     for (std::size_t i = 0; i < robot_.links.size(); ++i) write_link_frame(static_cast<int>(i));
   }
@@ -140,8 +125,8 @@ class Writer {
   /// A link that is part of a body is a frame of it.
   void write_link_frame(int link) {
     const Link& source = robot_.links[at(link)];
-    if (body(link) == link || (body(link) == world_link && link_names_[at(link)] == "ground")) return;
-    add_frame(body(link), link_names_[at(link)], planar_.frames[at(link)], source.spot);
+    if (body(link) == link || (body(link) == world_link && names_.links[at(link)] == "ground")) return;
+    add_frame(body(link), names_.links[at(link)], planar_.frames[at(link)], source.spot);
   }
 
   void add_frame(int body, const std::string& name, const PlanarPose& pose, const Spot& spot) {
@@ -172,7 +157,7 @@ class Writer {
     Node& entry = map(spot);
     put(entry, "type", scalar("fixed", spot), spot);
     put(entry, "between", list({&scalar("ground", spot), &scalar(body_name(robot_.root), spot)}, spot), spot);
-    put(*joint_section_, joints_.give("base", spot), entry, spot);
+    put(*joint_section_, names_.add_joint("base", spot), entry, spot);
   }
 
   /// A joint that only says where a mere frame stands is no joint here.
@@ -194,7 +179,7 @@ class Writer {
                       "spatial models are not in this release");
       return;
     }
-    const std::string& name = joint_names_[index];
+    const std::string& name = names_.joints[index];
     const PlanarJoint& planar = planar_.joints[index];
     add_frame(body(joint.parent.link), name, planar.first, joint.spot);
     add_frame(body(joint.child.link), name, planar.second, joint.spot);
@@ -248,12 +233,12 @@ class Writer {
     Node& entry = map(mimic.spot);
     put(entry, "type", scalar("gear", mimic.spot), mimic.spot);
     put(entry, "of",
-        list({&scalar(joint_names_[at(mimic.index)], mimic.spot), &scalar(joint_names_[index], joint.spot)},
+        list({&scalar(names_.joints[at(mimic.index)], mimic.spot), &scalar(names_.joints[index], joint.spot)},
              mimic.spot),
         mimic.spot);
     put(entry, "ratio", number(own * leader * mimic.multiplier, mimic.multiplier_spot), mimic.multiplier_spot);
     put(entry, "offset", number(own * mimic.offset + 0.0, mimic.offset_spot), mimic.offset_spot);
-    put(*joint_section_, joints_.give(joint_names_[index] + "-mimic", mimic.spot), entry, mimic.spot);
+    put(*joint_section_, names_.add_joint(names_.joints[index] + "-mimic", mimic.spot), entry, mimic.spot);
   }
 
   const Robot& robot_;
@@ -262,8 +247,7 @@ class Writer {
   Document& document_;
   const std::string* file_;
   Messages& messages_;
-  NameGiver links_, joints_;
-  std::vector<std::string> link_names_, joint_names_;
+  Names& names_;
   Node* bodies_ = nullptr;
   Node* ground_ = nullptr;
   Node* joint_section_ = nullptr;
@@ -316,18 +300,21 @@ std::optional<Sections> add_sections(const std::string& text, const std::string*
   Messages messages(*file_name, diagnostics);
   Robot robot = read_robot(*root, messages);
   if (root->name != "robot") return std::nullopt;
+  const bool readable = !messages.failed();
   build_tree(robot, options, messages);
+  Names names(robot, messages);
   if (!messages.failed()) ask_referee(*root, messages);
-  if (robot.mounts.empty()) return std::nullopt;
+  // What could not be read has been replaced by a guess, which says nothing about the plane.
+  if (robot.mounts.empty() || (!readable && !options.plane)) return std::nullopt;
   const PlanarRobot planar = choose_plane(robot, options);
   robot.mounts = planar.mounts;
   const Eigen::Vector3d normal = plane_axes(planar.plane).row(2);
-  check_inertia(robot, options, planar.planar(), normal, messages);
-  if (!planar.planar()) report_not_planar(robot, planar, messages);
+  check_inertia(robot, options, planar.planar() || !readable, normal, messages);
+  if (readable && !planar.planar()) report_not_planar(robot, planar, messages);
   if (messages.failed()) return std::nullopt;
   report_default_axes(robot, messages);
   report_snapping(robot, planar, messages);
-  const Sections sections = Writer(robot, planar, options, document, file_name, messages).write();
+  const Sections sections = Writer(robot, planar, names, options, document, file_name, messages).write();
   messages.report_ignored(robot.spot);
   if (messages.failed()) return std::nullopt;
   return sections;

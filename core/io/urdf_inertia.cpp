@@ -61,7 +61,7 @@ void check_inertia(Robot& robot, const Options& options, bool planar, const Eige
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     Link& link = robot.links[i];
     const Mount& mount = robot.mounts[i];
-    if (!link.has_mass() || mount.body == world_link) continue;
+    if (!link.has_mass() || !link.inertia_known || mount.body == world_link) continue;
     const std::string fault = fault_of_inertia(link.inertia);
     const Eigen::Vector3d own_normal = mount.pose.linear().transpose() * normal;
     const double about_normal = planar ? moment(link, own_normal) : 0.0;

@@ -72,6 +72,7 @@ class RobotReader {
     Element inertial(xml, "the inertial of " + owner, messages_, true);
     link.has_inertial = true;
     link.inertial = read_origin(inertial, messages_);
+    link.mass = 1.0;  // where it cannot be read: the link is not without mass
     if (const XmlElement* child = inertial.required_child("mass")) {
       Element mass(*child, "the mass of " + owner, messages_, true);
       const auto value = mass.required_number("value");
@@ -80,6 +81,7 @@ class RobotReader {
       if (link.mass < 0.0) {
         messages_.error(link.mass_spot, "bad-urdf",
                         fmt::format("the mass of {} must be positive, not {} kg", owner, link.mass));
+        link.mass = 1.0;
       }
       mass.finish();
     }
@@ -92,7 +94,9 @@ class RobotReader {
     constexpr const char* names[3][3] = {{"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
     for (int i = 0; i < 3; ++i) {
       for (int j = i; j < 3; ++j) {
-        link.inertia(i, j) = link.inertia(j, i) = inertia.required_number(names[i][j]).value_or(0.0);
+        const auto value = inertia.required_number(names[i][j]);
+        link.inertia(i, j) = link.inertia(j, i) = value.value_or(0.0);
+        link.inertia_known = link.inertia_known && value;
       }
       const XmlAttribute* moment = xml.attribute(names[i][i]);
       link.moments[static_cast<std::size_t>(i)] = moment == nullptr ? name_spot(xml) : spot_of(*moment);

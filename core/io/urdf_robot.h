@@ -33,6 +33,7 @@ struct Link {
   Spot mass_spot;
   Eigen::Isometry3d inertial = Eigen::Isometry3d::Identity();  ///< frame of the inertia at the centre of mass
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();           ///< in that frame [kg m^2]
+  bool inertia_known = true;                                   ///< false after a message about one of its numbers
   std::array<Spot, 3> moments{};                               ///< of ixx, iyy, izz
   Spot inertia_spot;
 

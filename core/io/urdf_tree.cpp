@@ -20,7 +20,8 @@ class TreeBuilder {
     if (robot_.ambiguous) return;
     order_links();
     report_cycles();
-    if (messages_.failed()) return;
+    // Mistakes that are no matter of what hangs where do not hide those that are found further on.
+    if (!is_tree_) return;
     for (const int link : robot_.order) mount(link);
   }
 
@@ -38,6 +39,7 @@ class TreeBuilder {
       } else if (options_.two_parents) {
         candidate.closes_loop = true;
       } else {
+        is_tree_ = false;
         messages_.error(candidate.child.spot, "bad-urdf",
                         fmt::format("link '{}' has two parents: it is the child of '{}' (line {}) already",
                                     link(candidate.child.link).name, joint(parent).name, joint(parent).spot.line),
@@ -58,6 +60,7 @@ class TreeBuilder {
       if (robot_.root == no_link) {
         robot_.root = root;
       } else {
+        is_tree_ = false;
         messages_.error(link(root).spot, "bad-urdf",
                         fmt::format("link '{}' is a second root: no joint connects it with '{}'", link(root).name,
                                     link(robot_.root).name));
@@ -89,6 +92,7 @@ class TreeBuilder {
   }
 
   void report_cycle(int start) {
+    is_tree_ = false;
     std::vector<int> joints;
     for (int here = start; joints.empty() || here != start; here = joint(joints.back()).parent.link) {
       joints.push_back(robot_.parent_joint[at(here)]);
@@ -143,6 +147,7 @@ class TreeBuilder {
   const Options& options_;
   Messages& messages_;
   std::vector<bool> reached_;
+  bool is_tree_ = true;
 };
 
 }  // namespace

@@ -332,5 +332,37 @@ TEST(ReadUrdf, AnAxisThatLeavesThePlaneIsStillRefused) {
   }
 }
 
+TEST(ReadUrdf, MistakesOfOneKindDoNotHideThoseOfAnother) {
+  const std::string long_name(70, 'b');
+  const Read out = read(robot(
+      "<lnik/><link name='world'/><link name='a'><inertial><mass value='1,5'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' "
+      "iyz='0' izz='-1'/></inertial></link><link name='b'/><link name='c'><inertial><mass value='-1'/><inertia ixx='1' "
+      "ixy='0' ixz='0' iyy='1' iyz='0' izz='x'/></inertial></link>"
+      "<joint name='origin' type='continuous'><parent link='world'/><child link='a'/><axis xyz='0 0 1'/></joint>"
+      "<joint name='" +
+      long_name +
+      "' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>"
+      "<joint name='k' type='continuous'><parent link='a'/><child link='c'/><axis xyz='0 0 1'/></joint>"));
+  EXPECT_FALSE(out.sections);
+  for (const std::string& message :
+       {std::string("unknown element 'lnik'"), std::string("'1,5' is not a number"),
+        std::string("the mass of link 'c' must be positive"), std::string("'x' is not a number"),
+        std::string("the moment about the normal of the plane is negative"), std::string("link 'b' has no mass"),
+        "'" + long_name + "' is too long", std::string("the joint 'origin' needs a frame")}) {
+    EXPECT_NE(out.report.find(message), std::string::npos) << message << "\n" << out.report;
+  }
+  std::size_t errors = 0;
+  for (std::size_t i = out.report.find("error: "); i != std::string::npos; i = out.report.find("error: ", i + 1)) {
+    ++errors;
+  }
+  EXPECT_EQ(errors, 8u) << out.report;  // and none that only follows from another
+}
+
+TEST(ReadUrdf, SaysOnceThatANameExistsTwice) {
+  const Read out = read(robot("<link name='a'/><link name='a'/>"));
+  EXPECT_NE(out.report.find("exists already"), std::string::npos);
+  EXPECT_EQ(out.report.find("duplicate-name"), std::string::npos) << out.report;
+}
+
 }  // namespace
 }  // namespace freeplay::urdf
