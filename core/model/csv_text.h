@@ -30,11 +30,17 @@ class CsvText {
 
   const std::string& text() const { return text_; }
   const std::vector<std::string>& names() const { return names_; }
+  /// The name of a column where it stands; of column 0 also in a text without a header: the begin of the text.
+  Field header(std::size_t column) const;
+  /// The first byte that is not UTF-8 text (a zero byte is none either).
+  std::optional<Location> foreign_byte() const;
   /// Was anything left out?
   bool too_large() const { return too_large_; }
   std::size_t rows() const { return rows_.size(); }
+  /// Number of fields of a row, which the header does not limit.
+  std::size_t fields(std::size_t row) const;
   Field field(std::size_t row, std::size_t column) const;
-  /// Of the first row of numbers, or of the end of the text.
+  /// Of the first row of numbers; without one, of the header.
   Location body_location() const;
 
  private:
@@ -43,10 +49,12 @@ class CsvText {
     std::string_view text;
   };
 
+  Field field_of(const Row& row, std::size_t column) const;
+
   std::string file_, text_;
   std::vector<std::string> names_;
+  Row header_{1, {}};
   std::vector<Row> rows_;
-  int lines_ = 1;
   bool too_large_ = false;
 };
 

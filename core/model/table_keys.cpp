@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t most_bytes = 2 * largest_input, most_points = CsvText::most_rows;  // of all tables of a model
+constexpr int most_mistakes = 100;                                                       // that are told of one table
 
 /// Times and values in SI.
 struct Points {
@@ -172,22 +175,70 @@ class TableReader {
                 fmt::format("a table has at most {} columns and {} rows", CsvText::most_columns, CsvText::most_rows));
       return false;
     }
+    if (!has_header(*text)) return false;
     const auto time = column(*text, file, time_column, 0), values = column(*text, file, value_column, 1);
-    if (!time || !values) return false;
-    for (std::size_t row = 0; row < text->rows(); ++row) {
-      const auto t = field(*text, row, *time), x = field(*text, row, *values);
-      if (!t || !x) return false;
-      table.times.push_back(*t * *time_unit_);
-      table.values.push_back(*x * *unit_);
-      if (row == 0 || table.times[row] > table.times[row - 1]) continue;
-      bad(*text, row, *time,
-          fmt::format("times must increase: {} s follows {} s", table.times[row], table.times[row - 1]));
-      return false;
-    }
+    if (!time || !values || !read_rows(*text, *time, *values, table)) return false;
     const std::string fault = fault_of(table, periodic);
     if (fault.empty()) return true;
     draft_.diagnostics.error(text->body_location(), 1, "bad-table", fault);
     return false;
+  }
+
+  /// Is the first row one of names, each of which stands for one column?
+  bool has_header(const CsvText& text) const {
+    if (const auto foreign = text.foreign_byte()) {
+      draft_.diagnostics.error(*foreign, 1, "bad-table", "this byte is not UTF-8", "", "save the file as UTF-8");
+      return false;
+    }
+    const std::vector<std::string>& names = text.names();
+    if (names.size() < 2) {
+      bad(text.header(0), "a table needs two columns and a header row", "fields are separated by commas");
+      return false;
+    }
+    if (std::ranges::all_of(names, [](const std::string& name) { return csv_number(name).has_value(); })) {
+      bad(text.header(0), fmt::format("the first row must name the columns: '{}' is a number", names[0]));
+      return false;
+    }
+    std::map<std::string_view, std::size_t> known;
+    bool good = true;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto [first, fresh] = known.emplace(names[i], i);
+      if (fresh || names[i].empty()) continue;
+      bad(text.header(i), fmt::format("column {} has the name '{}' already", first->second + 1, printable(names[i])));
+      good = false;
+    }
+    return good;
+  }
+
+  /// Goes on after a mistake, so that all are told, up to a number that nobody mends by hand.
+  bool read_rows(const CsvText& text, std::size_t time, std::size_t values, Points& table) const {
+    const std::size_t columns = text.names().size();
+    std::optional<double> last;
+    int mistakes = 0;
+    for (std::size_t row = 0; row < text.rows(); ++row) {
+      if (mistakes >= most_mistakes) {
+        bad(text.field(row, 0), fmt::format("after {} mistakes the table is not read from here on", mistakes));
+        break;
+      }
+      if (const std::size_t fields = text.fields(row); fields > columns) {
+        bad(text.field(row, columns), fmt::format("this row has {} fields, the header {}", fields, columns),
+            "a decimal mark is a point: 1.5");
+        ++mistakes;
+        continue;
+      }
+      const auto t = field(text, row, time), x = field(text, row, values);
+      mistakes += (t ? 0 : 1) + (x ? 0 : 1);
+      if (!t) continue;
+      const double now = *t * *time_unit_;
+      if (last && !(now > *last)) {
+        bad(text.field(row, time), fmt::format("times must increase: {} s follows {} s", now, *last));
+        ++mistakes;
+      }
+      last = now;
+      table.times.push_back(now);
+      table.values.push_back(x.value_or(0.0) * *unit_);
+    }
+    return mistakes == 0;
   }
 
   const CsvText* open(const CheckedValue& file) const {
@@ -228,22 +279,24 @@ class TableReader {
                   nearest(*name, names));
       return std::nullopt;
     }
-    if (standard < names.size()) return standard;
-    draft_.diagnostics.error(text.body_location(), 1, "bad-table", "a table needs two columns and a header row");
+    const bool named = !csv_number(names[standard]);
+    if (named) return standard;
+    bad(text.header(standard), fmt::format("a column needs a name: '{}' is a number", names[standard]));
     return std::nullopt;
   }
 
   std::optional<double> field(const CsvText& text, std::size_t row, std::size_t column) const {
-    const auto number = csv_number(text.field(row, column).text);
-    if (number) return number;
-    const std::string_view word = text.field(row, column).text;
-    bad(text, row, column, word.empty() ? "a number is missing" : fmt::format("'{}' is not a number", printable(word)));
-    return std::nullopt;
+    const CsvText::Field field = text.field(row, column);
+    const auto number = csv_number(field.text);
+    if (!number) {
+      bad(field,
+          field.text.empty() ? "a number is missing" : fmt::format("'{}' is not a number", printable(field.text)));
+    }
+    return number;
   }
 
-  void bad(const CsvText& text, std::size_t row, std::size_t column, const std::string& message) const {
-    const CsvText::Field field = text.field(row, column);
-    draft_.diagnostics.error(field.location, std::max(1, character_count(field.text)), "bad-table", message);
+  void bad(const CsvText::Field& field, const std::string& message, const std::string& hint = {}) const {
+    draft_.diagnostics.error(field.location, std::max(1, character_count(field.text)), "bad-table", message, "", hint);
   }
 
   // ---------------------------------------------------------------------------------------------------------------

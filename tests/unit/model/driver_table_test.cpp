@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "../io/scratch_folder.h"
@@ -117,11 +119,65 @@ TEST(DriverTable, ReportsMistakesInTheFile) {
   EXPECT_EQ(report("t,x\n0,1\n1\n"), "3:2 bad-table ");
   EXPECT_EQ(report("t,x\n0,1\n 0,2\n"), "3:2 bad-table ");
   EXPECT_EQ(report("t,x\n0,1\n"), "2:1 bad-table ");
-  EXPECT_EQ(report("t\n0\n1\n"), "2:1 bad-table ");
+  EXPECT_EQ(report("t\n0\n1\n"), "1:1 bad-table ");
   EXPECT_EQ(report(""), "1:1 bad-table ");
   EXPECT_EQ(report("t,x\n0,1\n1,2\n", ", value: y").substr(0, 2), "6:");
   EXPECT_EQ(driven(folder.file("none.csv").string()).places, "6:41 file-not-found ");
   EXPECT_EQ(driven("/dev/zero").places, "6:41 file-not-found ");
+}
+
+/// Places of the messages on a file with this text.
+std::string places_in(const std::string& text, const std::string& more = "") {
+  const ScratchFolder folder;
+  folder.write("motor.csv", text);
+  return driven("{file: " + folder.file("motor.csv").string() + more + "}").places;
+}
+
+TEST(DriverTable, RefusesRowsWithMoreFieldsThanTheHeader) {
+  EXPECT_EQ(places_in("t,x\n0,0\n1,1,5\n2,3\n"), "3:5 bad-table ");
+  EXPECT_EQ(places_in("t,x\n0,0\n1,1,\n"), "3:5 bad-table ");
+  EXPECT_EQ(places_in("t,x,note\n0,0\n1,1,5\n"), "");  // fewer are none that is read
+}
+
+TEST(DriverTable, NeedsAHeaderOfNames) {
+  EXPECT_EQ(places_in("# bench\n0,7\n1,1\n2,3\n"), "2:1 bad-table ");
+  EXPECT_EQ(places_in("t, 7\n1,1\n2,3\n"), "1:4 bad-table ");
+  EXPECT_EQ(places_in("t,7\n1,1\n2,3\n", ", value: 7"), "");  // a name that was asked for
+}
+
+TEST(DriverTable, RefusesTwoColumnsOfOneName) {
+  EXPECT_EQ(places_in("time,angle,angle\n0,7,1\n1,1,3\n", ", value: angle"), "1:12 bad-table ");
+  EXPECT_EQ(places_in("time,angle,,\n0,7,1,2\n1,1,3,2\n"), "");  // columns without names are for nobody
+}
+
+TEST(DriverTable, ReportsAllMistakesOfAFileUpToALimit) {
+  EXPECT_EQ(places_in("t,x\n0,a\n1,nan\n2,1e999\n1,3\n"), "2:3 bad-table 3:3 bad-table 4:3 bad-table 5:1 bad-table ");
+  // One time out of order is one mistake.
+  EXPECT_EQ(places_in("t,x\n0,1\n5,1\n2,1\n3,1\n"), "4:1 bad-table ");
+  std::string many = "t,x\n";
+  for (int i = 0; i < 1000; ++i) many += std::to_string(i) + ",\n";
+  const std::string places = places_in(many);
+  EXPECT_EQ(std::ranges::count(places, ' '), 2 * 101);
+  EXPECT_NE(places.find(" 102:1 bad-table "), std::string::npos);
+}
+
+TEST(DriverTable, BlamesALineThatIsThere) {
+  EXPECT_EQ(places_in("# bench\nt;v\n0;1\n1;2\n"), "2:1 bad-table ");
+  EXPECT_EQ(places_in("# bench\nt,v\n"), "2:1 bad-table ");
+  EXPECT_EQ(places_in("# nothing\n"), "1:1 bad-table ");
+}
+
+TEST(DriverTable, SaysThatAFileIsNotUtf8) {
+  const ScratchFolder folder;
+  const auto report = [&](const std::string& text) {
+    folder.write("motor.csv", text);
+    return driven("{file: " + folder.file("motor.csv").string() + "}");
+  };
+  const Built latin = report("t,x\n0,1 \xB0\n1,2\n");
+  EXPECT_EQ(latin.places, "2:5 bad-table ");
+  EXPECT_NE(latin.report.find("not UTF-8"), std::string::npos) << latin.report;
+  EXPECT_EQ(report("\xFF\xFEt").places, "1:1 bad-table ");
+  EXPECT_EQ(report(std::string("t\0,\0x\0\n\0", 8)).places, "1:2 bad-table ");
 }
 
 }  // namespace
