@@ -122,6 +122,12 @@ Json force_json(const Model& model, const ForceElement& element) {
   return {{"type", "force"}, {"at", marker}, {"value", force.text}, {"axes", force.frame_axes ? "frame" : "global"}};
 }
 
+Json own_gravity_json(const Model& model, const OwnGravity& own) {
+  Json bodies = Json::array();
+  for (const BodyId body : own.bodies) bodies.push_back(model.bodies[at(body)].name);
+  return {{"type", "gravity"}, {"on", bodies}, {"value", vector_json(own.value)}};
+}
+
 Json initial_json(const Model& model) {
   Json joints = Json::object(), speeds = Json::object();
   for (const JointElement& joint : model.joints) {
@@ -174,6 +180,7 @@ Json model_json(const Model& model) {
         force.joint >= 0 ? model.joints[at(force.joint)].name : model.forces[at(force.applied)].name;
     json["forces"][name] = force_json(model, force);
   }
+  for (const OwnGravity& own : model.own_gravities) json["forces"][own.name] = own_gravity_json(model, own);
   json["initial"] = initial_json(model);
   json["simulation"] = simulation_json(model.settings);
   return json;

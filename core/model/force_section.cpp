@@ -1,5 +1,8 @@
 #include "model/force_section.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "model/joint_section.h"
 #include "model/name_rule.h"
 
@@ -76,14 +79,16 @@ class ForceEntry {
     const auto acceleration = value ? value->vector(dimension::acceleration) : std::nullopt;
     const auto items = on ? on->list() : std::nullopt;
     if (!items) return;
+    OwnGravity own{part_.full(entry_.key()), {}, acceleration.value_or(Vector3{})};
     for (const CheckedValue& item : *items) {
       for (const BodyId body : bodies(item)) {
         if (body == ground) warn_of_ground(item, "gravity");
-        if (acceleration && body != ground && claim(body, item)) {
-          draft_.model.bodies[static_cast<std::size_t>(body)].gravity = *acceleration;
-        }
+        if (body == ground || !claim(body, item)) continue;
+        draft_.model.bodies[static_cast<std::size_t>(body)].gravity = own.value;
+        if (std::ranges::find(own.bodies, body) == own.bodies.end()) own.bodies.push_back(body);
       }
     }
+    draft_.model.own_gravities.push_back(std::move(own));
   }
 
   /// Order has no meaning, so of two entries for one body neither could win.

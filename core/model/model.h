@@ -108,6 +108,13 @@ struct AppliedForce {
   std::vector<std::string> text;  ///< of each expression, as written
 };
 
+/// An entry of `forces` that gives bodies a gravity of their own (Body::gravity has it).
+struct OwnGravity {
+  std::string name;
+  std::vector<BodyId> bodies;  ///< as written, each once
+  Vector3 value{};             ///< [m/s^2]
+};
+
 /// An entry of `forces` that reports results: an applied force, or a joint without rows.
 struct ForceElement {
   int applied = -1;  ///< index into Model::forces
@@ -163,6 +170,7 @@ struct Model {
   std::vector<InverseKinematics> kinematics;
   std::vector<AppliedForce> forces;
   std::vector<ForceElement> force_elements;  ///< in declaration order
+  std::vector<OwnGravity> own_gravities;
   std::vector<InputFile> inputs;
   Settings settings;
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set, name and text
