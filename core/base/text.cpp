@@ -15,10 +15,11 @@ std::uint32_t code_point(std::string_view character) {
   return code;
 }
 
-/// Characters that steer a terminal or the order of the text around them.
+/// Characters that steer a terminal or the order of the text around them, and the codes that are no characters.
 bool steers_display(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0x200E || code == 0x200F ||
-         (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF;
+         (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF ||
+         (code & 0xFFFE) == 0xFFFE;
 }
 
 struct Block {

@@ -18,8 +18,9 @@ int character_count(std::string_view text);
 /// none for one that is put on the character before it, else one. Unicode 15, EastAsianWidth.txt, by blocks.
 int display_width(std::string_view text);
 
-/// The text with each control character (C0, DEL, C1, line and paragraph separators), direction override and invalid
-/// byte replaced by one '?', and each tab by one blank. The number of characters stays the same.
+/// The text with each control character (C0, DEL, C1, line and paragraph separators), direction override, code
+/// that is no character and invalid byte replaced by one '?', and each tab by one blank. The number of characters stays
+/// the same.
 std::string printable(std::string_view text);
 
 }  // namespace freeplay

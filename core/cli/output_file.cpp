@@ -7,7 +7,7 @@ namespace freeplay {
 
 void write_output(const std::string& path, const std::string& text) {
   if (path.empty()) {
-    print(text);
+    print_data(text);
   } else {
     write_whole_file(path, text);
   }

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "cli/facts.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
@@ -262,7 +263,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
                     {"start", start_json(model, assembled.start)},
                     {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
   } else if (!common.quiet) {
-    print(model.file + ": ok\n" + facts_text(model, assembled.start.facts));
+    print(printable(model.file) + ": ok\n" + facts_text(model, assembled.start.facts));
   }
   return 0;
 }

@@ -1,5 +1,6 @@
 #include "cli/terminal.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace freeplay {
 namespace {
@@ -34,16 +36,32 @@ void append_painted(std::string& out, std::string_view line) {
   out += line;
 }
 
+/// Printable but for its line feeds.
+std::string printable_lines(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    out += printable(text.substr(0, end));
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
 }  // namespace
 
-void print(std::string_view text) {
+void print(std::string_view text) { print_data(printable_lines(text)); }
+
+void print_data(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   throw Error(Error::Category::file, "cannot-write", std::string("cannot write to stdout: ") + std::strerror(errno));
 }
 
-void print_json(const Json& json) { print(json_text(json)); }
+void print_json(const Json& json) { print_data(json_text(json)); }
 
-void print_messages(std::string_view text, bool no_color) {
+void print_messages(std::string_view messages, bool no_color) {
+  const std::string shown = printable_lines(messages);
+  std::string_view text = shown;
   std::string out;
   if (colour_wanted(no_color)) {
     while (!text.empty()) {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "cli/facts.h"
 #include "cli/failure.h"
 #include "cli/load_model.h"
@@ -52,7 +53,7 @@ Json verdict_json(const Verdict& verdict, int max_errors) {
 
 void print_verdict(const Verdict& verdict, const CommonOptions& common) {
   if (!common.quiet && !common.json) {
-    print(verdict.file + (verdict.ok() ? ": ok\n" : ": not ok\n"));
+    print(printable(verdict.file) + (verdict.ok() ? ": ok\n" : ": not ok\n"));
     if (verdict.ok()) print(facts_text(*verdict.loaded.model, *verdict.facts));
   }
   print_messages(verdict.loaded.diagnostics.format(common.max_errors), common.no_color);

@@ -57,9 +57,10 @@ std::vector<Point> hull(std::vector<Point> points) {
   return out;
 }
 
+/// As text in XML, which knows no control characters.
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
   }
   return out;

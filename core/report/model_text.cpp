@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "io/number_text.h"
 
 namespace freeplay {
@@ -28,7 +29,7 @@ std::string words(const Json& value) {
   if (value.is_number()) return number_text(value.get<double>());
   if (value.is_array()) return list_text(value, "(", ")");
   if (value.is_object()) return "{" + map_text(value) + "}";
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return printable(value.get<std::string>());
   return value.dump();
 }
 
@@ -103,16 +104,14 @@ std::string start_text(const Json& initial) {
   return out.empty() ? out : "initial\n" + out;
 }
 
-std::string quoted(const std::string& text) {
+/// For Graphviz; `second` stands on a line of its own.
+std::string quoted(const std::string& text, const std::string& second = {}) {
   std::string out = "\"";
-  for (const char c : text) {
-    if (c == '\n') {
-      out += "\\n";
-      continue;
-    }
+  for (const char c : printable(text)) {
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }
+  if (!second.empty()) out += "\\n" + second;
   return out + "\"";
 }
 
@@ -121,8 +120,10 @@ std::string body_of(const Json& marker) {
   return name.substr(0, name.find('/'));
 }
 
-std::string edge(const std::string& from, const std::string& to, const std::string& label, const char* style) {
-  return fmt::format("  {} -- {} [label={}{}];\n", quoted(from), quoted(to), quoted(label), style);
+std::string edge(const std::string& from, const std::string& to, const std::string& name, const Json& entry,
+                 const char* style) {
+  return fmt::format("  {} -- {} [label={}{}];\n", quoted(from), quoted(to),
+                     quoted(name, entry["type"].get<std::string>()), style);
 }
 
 /// The body that a joint moves: the second one.
@@ -152,17 +153,15 @@ std::string model_graph(const Json& model) {
                                 quoted(model["name"].get<std::string>()));
   for (const auto& [name, unused] : model["bodies"].items()) out += fmt::format("  {};\n", quoted(name));
   for (const auto& [name, joint] : model["joints"].items()) {
-    const std::string label = name + "\n" + joint["type"].get<std::string>();
     if (joint.contains("between")) {
-      out += edge(body_of(joint["between"][0]), body_of(joint["between"][1]), label, "");
+      out += edge(body_of(joint["between"][0]), body_of(joint["between"][1]), name, joint, "");
     } else {
-      out += edge(moved_body(model, joint["of"][0]), moved_body(model, joint["of"][1]), label, ", style=dashed");
+      out += edge(moved_body(model, joint["of"][0]), moved_body(model, joint["of"][1]), name, joint, ", style=dashed");
     }
   }
   for (const auto& [name, force] : model["forces"].items()) {
     if (!force.contains("between")) continue;
-    out += edge(body_of(force["between"][0]), body_of(force["between"][1]),
-                name + "\n" + force["type"].get<std::string>(), ", style=dotted");
+    out += edge(body_of(force["between"][0]), body_of(force["between"][1]), name, force, ", style=dotted");
   }
   return out + "}\n";
 }

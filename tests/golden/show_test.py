@@ -71,6 +71,31 @@ frames: {ground/far: [5, 0]}
         _, err = self.freeplay("show", "apart.yaml", "--format", "svg", code=3)
         self.assertIn("[assembly-failed]", err)
 
+    def test_gravity_of_some_bodies_is_a_force_like_others(self):
+        self.write("m.yaml", "freeplay: 1\ngravity: [0, -9.81]\nbodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}\n"
+                   "forces: {moon: {type: gravity, on: ['b*', b], value: [0, -1.62]}}\n"
+                   "templates: {t: {bodies: {c: {mass: 1, inertia: 1}},\n"
+                   "                forces: {up: {type: gravity, on: [c], value: [0, 1]}}}}\n"
+                   "instances: {i: {template: t}}\n")
+        forces = json.loads(self.freeplay("show", "m.yaml", "--json")[0])["forces"]
+        self.assertEqual({"moon": {"type": "gravity", "on": ["b"], "value": [0, -1.62]},
+                          "i.up": {"type": "gravity", "on": ["i.c"], "value": [0, 1]}}, forces)
+        out, _ = self.freeplay("show", "m.yaml")
+        self.assertIn("  moon  gravity  on (b)  value (0, -1.62)\n", out)
+        self.freeplay("show", "m.yaml", "--format", "dot")
+
+    def test_control_characters_of_a_name_reach_no_terminal(self):
+        self.write("m.yaml", 'freeplay: 1\nname: "a\\e[31mred\\u009b1m\\nb"\nbodies: {a: {mass: 1, inertia: 1}}\n'
+                   "simulation: {end: 1 ms, step: 1 ms}\n")
+        os.rename(self.path("m.yaml"), self.path("m\x1b[31m.yaml"))
+        name = "m\x1b[31m.yaml"
+        for command in (["show", name], ["show", name, "--format", "dot"], ["show", name, "--format", "svg"],
+                        ["validate", name], ["run", name, "--dry-run"], ["run", name, "--out", "r"]):
+            out, err = self.freeplay(*command)
+            self.assertNotRegex(out + err, r"[\x00-\x09\x0b-\x1f\x7f-\x9f]", command)
+        xml.fromstring(self.freeplay("show", name, "--format", "svg")[0])
+        self.assertEqual("a\x1b[31mred\x9b1m\nb", json.loads(self.freeplay("show", name, "--json")[0])["name"])
+
     def test_wrong_usage(self):
         self.assertIn("did you mean 'svg'?", self.freeplay("show", mechanism("pendulum"), "--format", "svgg", code=2)[1])
         self.freeplay("show", code=2)
