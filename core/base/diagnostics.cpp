@@ -47,6 +47,7 @@ void Diagnostics::add_source(const std::string& file, std::string text) {
 }
 
 void Diagnostics::add(Diagnostic diagnostic) {
+  if (excused_.contains(diagnostic.id)) return;
   if (strict_) diagnostic.severity = Severity::error;
   const bool error = diagnostic.severity == Severity::error;
   if (error) ++errors_;

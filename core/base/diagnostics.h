@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -44,6 +46,9 @@ class Diagnostics {
   /// message. Warnings beyond the limit are only counted.
   void add(Diagnostic diagnostic);
 
+  /// From now on messages of these ids are not kept: what they are about may follow from an error reported before.
+  void excuse(std::set<std::string> ids) { excused_ = std::move(ids); }
+
   /// Shorthands for the common case.
   void error(Location location, int length, std::string id, std::string message, std::string suggestion = {},
              std::string hint = {});
@@ -77,6 +82,7 @@ class Diagnostics {
   bool full_ = false;
   std::vector<Diagnostic> diagnostics_;
   std::unordered_set<std::string> known_;  // what makes each message the same as another
+  std::set<std::string> excused_;
   std::map<std::string, Source> sources_;
 };
 

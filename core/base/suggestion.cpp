@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "base/text.h"
+
 namespace freeplay {
 namespace {
 
@@ -46,7 +48,8 @@ std::size_t rank(std::string_view word, std::string_view candidate) {
   const std::size_t limit = word.size() >= 8 ? 3 : 2;
   const std::size_t distance = edit_distance(word, candidate, limit);
   // A distance as large as the word means that every letter was replaced.
-  if (distance <= limit && distance < std::max(word.size(), candidate.size())) return distance;
+  const int letters = std::max(character_count(word), character_count(candidate));
+  if (distance <= limit && distance < static_cast<std::size_t>(letters)) return distance;
   if (candidate.find(word) != std::string_view::npos) return contains_it;
   if (candidate.size() >= 3 && word.find(candidate) != std::string_view::npos) return is_contained;
   return unrelated;

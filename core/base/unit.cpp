@@ -198,6 +198,7 @@ class UnitReader {
 
   [[noreturn]] void refuse(std::string_view name, std::size_t begin) const {
     if (name == "Hz") fail(begin, position_, "'Hz' is not a unit", {}, "write 'rev/s' or 'rad/s'");
+    if (name == "\u00b0") fail(begin, position_, fmt::format("'{}' is not a unit", name), "deg");
     fail(begin, position_, fmt::format("'{}' is not a unit", name), suggestion(name, unit_names()).value_or(""));
   }
 

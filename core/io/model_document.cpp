@@ -35,6 +35,16 @@ void set_root_of_robot(Document& document, const urdf::Sections& sections) {
   document.set_root(root);
 }
 
+/// The rest of a model whose robot cannot be read, so that its own mistakes are found in the same pass.
+void leave_robot_out(Document& document) {
+  Node& root = document.add(Node::Kind::map, document.root().line, document.root().column);
+  for (const Node::Entry& entry : document.root().entries) {
+    if (entry.key->text != "urdf") root.entries.push_back(entry);
+  }
+  document.set_root(root);
+  document.set_incomplete();
+}
+
 std::optional<Document> parse_robot(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
   if (text.size() > largest_input) {
     diagnostics.error({file_name, 1, 1}, 1, "too-large", "the file is larger than 16 MiB");
@@ -58,7 +68,7 @@ std::optional<Document> parse_model(std::string text, const std::string& file_na
   if (is_urdf(file_name)) return parse_robot(std::move(text), file_name, diagnostics);
   std::optional<Document> document = parse_yaml(std::move(text), file_name, diagnostics);
   if (document && document->root().is_map() && document->root().find("urdf") != nullptr) {
-    if (!add_robot(*document, diagnostics)) return std::nullopt;
+    if (!add_robot(*document, diagnostics)) leave_robot_out(*document);
   }
   return document;
 }

@@ -12,7 +12,7 @@ namespace freeplay {
 /// Reads a model file. A `.urdf` file becomes a complete model; in a YAML file the section `urdf` is replaced by the
 /// bodies, joints and forces of the URDF file that it names, to which the file's own are added (section 13 of the model
 /// format). Everything else is as parse_yaml() gives it. Reports also `file-not-found`; directories and devices are not
-/// opened. Nothing is returned after an error in the URDF file.
+/// opened. After an error in a URDF file nothing is returned, or the rest of the YAML model, incomplete().
 std::optional<Document> read_model(const std::string& file_name, Diagnostics& diagnostics);
 
 /// The same for a text that is at hand; files that it names are looked for beside `file_name`.

@@ -27,7 +27,8 @@ bool begins_name(char c) { return is_name_character(c) && !(c >= '0' && c <= '9'
 
 bool is_allowed(unsigned long code) {
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-  return code == '\t' || code == '\n' || code == '\r' || (code >= 0x20 && code <= 0x10FFFF && !surrogate);
+  return code == '\t' || code == '\n' || code == '\r' ||
+         (code >= 0x20 && code <= 0x10FFFF && !surrogate && code != 0xFFFE && code != 0xFFFF);
 }
 
 void append_utf8(std::string& out, unsigned long code) {
@@ -85,6 +86,9 @@ class XmlParser {
       const std::size_t bytes = character_bytes(text_, i);
       if (bytes == 0) fail(i, "this is not UTF-8 text", "save the file as UTF-8");
       if (bytes == 1 && !is_allowed(static_cast<unsigned char>(text_[i]))) fail(i, "XML allows no control characters");
+      if (const auto c = text_.substr(i, bytes); c == "\uFFFE" || c == "\uFFFF") {
+        fail(i, "U+FFFE and U+FFFF are no characters");
+      }
       i += bytes;
     }
   }
@@ -95,6 +99,9 @@ class XmlParser {
     if (text_[at_] != '<') return read_text();
     const std::string_view rest = text_.substr(at_);
     if (rest.starts_with("<!--")) return read_comment();
+    if (rest.size() > 5 && rest.starts_with("<?xml") && blanks.find(rest[5]) != std::string_view::npos) {
+      check_declaration();
+    }
     if (rest.starts_with("<?")) return skip_past("?>", 2, "the processing instruction");
     if (rest.starts_with("<![CDATA[")) return read_cdata();
     if (rest.starts_with("<!")) {
@@ -102,6 +109,24 @@ class XmlParser {
     }
     if (rest.starts_with("</")) return read_end_tag();
     read_start_tag();
+  }
+
+  /// The XML declaration is the very beginning, and the text is what its encoding says: it has been read as UTF-8.
+  void check_declaration() {
+    const bool first = at_ == 0 || (at_ == 3 && text_.starts_with("\xEF\xBB\xBF"));
+    if (!first) fail(at_, "the declaration '<?xml ...?>' can only begin the file", "remove what stands before it");
+    const std::string_view declaration = text_.substr(at_, text_.find("?>", at_) - at_);
+    const std::size_t key = declaration.find("encoding"), quote = declaration.find_first_of("\"'", key);
+    if (key == std::string_view::npos || quote == std::string_view::npos) return;
+    const std::string_view rest = declaration.substr(quote + 1);
+    std::string encoding(rest.substr(0, rest.find(declaration[quote])));
+    for (char& c : encoding) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const auto begins = [&](const char* word) { return encoding.starts_with(word); };
+    const bool wide = begins("utf-16") || begins("utf-32") || begins("ucs") || begins("iso-10646");
+    const bool ascii = std::ranges::all_of(text_, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+    if (encoding == "utf-8" || (ascii && !wide)) return;
+    fail(at_ + quote + 1, fmt::format("the file says that it is '{}', but it is UTF-8", encoding),
+         "write encoding=\"UTF-8\"");
   }
 
   /// `head`: bytes at the beginning that are no part of the end.

@@ -403,10 +403,28 @@ constexpr Explanation explanations[] = {
     {"the referenced anchor is not defined", "the alias names an anchor that is not defined before it", ""},
 };
 
+/// What the parser reports at its next line or next word although the mistake stands before. The position moves there.
+std::optional<Explanation> explain_in_line(const std::string& message, std::string_view text, std::size_t& position) {
+  if (message == YAML::ErrorMsg::INVALID_HEX) {
+    const std::size_t escape = position == 0 ? std::string_view::npos : text.find_last_of('\\', position - 1);
+    if (escape == std::string_view::npos) return std::nullopt;
+    position = escape;
+    return Explanation{"", "this escape is not complete",
+                       "'\\x' needs 2 hexadecimal digits, '\\u' 4 and '\\U' 8; write '\\\\' for a backslash"};
+  }
+  if (message != YAML::ErrorMsg::END_OF_MAP && message != YAML::ErrorMsg::END_OF_SEQ) return std::nullopt;
+  const std::size_t line_begin = position == 0 ? 0 : text.find_last_of('\n', position - 1) + 1;
+  const std::size_t first = text.find_first_not_of(" \t", line_begin);
+  if (position >= text.size() || first >= position) return std::nullopt;
+  if (text[position] == '*')
+    return Explanation{"", "an alias cannot stand behind something else", "it is a whole value"};
+  return Explanation{"", "the value before this has ended already", "quote the value as a whole"};
+}
+
 void report(const YAML::Exception& error, const Document& document, const TextPlace& innermost,
             Diagnostics& diagnostics) {
   const std::string& text = document.text();
-  const auto position = error.mark.is_null() ? text.size() : static_cast<std::size_t>(error.mark.pos);
+  auto position = error.mark.is_null() ? text.size() : static_cast<std::size_t>(error.mark.pos);
   const std::size_t line_begin = position == 0 ? 0 : text.find_last_of('\n', position - 1) + 1;
   const std::size_t tab = text.find_first_not_of(' ', line_begin);
   if (tab < text.size() && text[tab] == '\t') {
@@ -415,11 +433,13 @@ void report(const YAML::Exception& error, const Document& document, const TextPl
                       "indent with blanks");
     return;
   }
+  const std::optional<Explanation> in_line = explain_in_line(error.msg, text, position);
   TextPlace at = TextPlaces(text).at(position);
   // The parser notices only at the next line that a bracket is open.
   if (error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW || error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW) at = innermost;
-  const auto known = std::find_if(std::begin(explanations), std::end(explanations),
-                                  [&](const Explanation& e) { return e.library_message == error.msg; });
+  const Explanation* known = std::find_if(std::begin(explanations), std::end(explanations),
+                                          [&](const Explanation& e) { return e.library_message == error.msg; });
+  if (in_line) known = &*in_line;
   const bool explained = known != std::end(explanations);
   diagnostics.error({document.file_name(), at.line, at.column}, 1, "yaml-syntax",
                     explained ? std::string(known->message) : "not valid YAML: " + error.msg, {},
@@ -431,6 +451,7 @@ void report(const YAML::Exception& error, const Document& document, const TextPl
 std::optional<Document> parse_yaml(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
   if (text.size() > largest_input) return refuse(diagnostics, file_name, "too-large", "the file is larger than 16 MiB");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  end_lines_by_line_feeds(text);
   diagnostics.add_source(file_name, text);
   if (const auto fault = find_bad_character(text)) {
     const TextPlace at = TextPlaces(text).at(fault->position);
@@ -445,7 +466,7 @@ std::optional<Document> parse_yaml(std::string text, const std::string& file_nam
   Document document(file_name, std::move(text));
   TreeBuilder builder(document, diagnostics);
   try {
-    std::istringstream stream(document.text());
+    std::istringstream stream(without_tabs_in_empty_lines(document.text()));
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }

@@ -22,6 +22,18 @@ int indentation(std::string_view text, std::size_t line_begin) {
   return static_cast<int>(std::min(end, text.size()) - line_begin);
 }
 
+constexpr int none_open = -1;
+
+/// May the lines that follow be the text of a block scalar? True also of some plain values that end alike.
+bool opens_block_scalar(std::string_view line) {
+  for (std::size_t at = line.find_first_of("|>"); at != none; at = line.find_first_of("|>", at + 1)) {
+    const std::size_t end = line.find_first_not_of("+-0123456789", at + 1);
+    const std::size_t behind = line.find_first_not_of(" \t\r", end);
+    if (end == none || behind == none || (behind > end && line[behind] == '#')) return true;
+  }
+  return false;
+}
+
 /// A line that continues a value must be indented by blanks. Between brackets comments need not be; and a bracket that
 /// closes may stand below the key, as many people write it, although YAML is stricter there.
 std::optional<YamlFault> find_indentation_fault(std::string_view text, std::size_t line_begin, int indent,
@@ -30,9 +42,10 @@ std::optional<YamlFault> find_indentation_fault(std::string_view text, std::size
   const std::size_t first = line_begin + static_cast<std::size_t>(blanks);
   const std::size_t content = text.find_first_not_of(" \t\r", line_begin);
   if (content == none || text[content] == '\n' || blanks > indent) return std::nullopt;
+  if (between_brackets && text[content] == '#') return std::nullopt;
   if (text[first] == '\t') return YamlFault{first, "a tab cannot indent a line", "indent with blanks"};
   if (!between_brackets) return YamlFault{first, "this line of a quoted text must be indented"};
-  if (is_one_of(text[first], "]}#")) return std::nullopt;
+  if (is_one_of(text[first], "]}")) return std::nullopt;
   return YamlFault{first, "this line between brackets must be indented more than the lines around the brackets"};
 }
 
@@ -127,9 +140,33 @@ std::optional<YamlFault> find_bad_character(std::string_view text) {
     if ((c < 0x20 && !is_blank(text[i])) || c == 0x7F || c1) {
       return YamlFault{i, "a control character cannot stand in the file"};
     }
+    const std::string_view character = text.substr(i, length);
+    if (character == "\uFFFE" || character == "\uFFFF") {
+      return YamlFault{i, "U+FFFE and U+FFFF are no characters and cannot stand in the file"};
+    }
     i += length;
   }
   return std::nullopt;
+}
+
+void end_lines_by_line_feeds(std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n')) text[i] = '\n';
+  }
+}
+
+std::string without_tabs_in_empty_lines(std::string text) {
+  int block = none_open;  // blanks before the line that opens the block scalar around
+  for (std::size_t at = 0; at < text.size(); at = line_end(text, at) + 1) {
+    const std::size_t content = text.find_first_not_of(" \t\r", at);
+    const bool empty = content == none || text[content] == '\n';
+    const int blanks = indentation(text, at);
+    if (block != none_open && (empty || blanks > block)) continue;
+    block = opens_block_scalar(std::string_view(text).substr(at, line_end(text, at) - at)) ? blanks : none_open;
+    if (!empty && text[content] != '#') continue;
+    for (std::size_t i = at; i < text.size() && is_one_of(text[i], " \t"); ++i) text[i] = ' ';
+  }
+  return text;
 }
 
 std::optional<YamlFault> find_directive_fault(std::string_view text, bool map) {

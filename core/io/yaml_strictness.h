@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace freeplay {
@@ -17,6 +18,14 @@ struct YamlFault {
 /// A line that begins with '%' before the text without the '---' that must follow, or, where the text is a `map`,
 /// later.
 std::optional<YamlFault> find_directive_fault(std::string_view text, bool map);
+
+/// Makes each carriage return that stands alone a line feed, as YAML reads it; the parser library does not. No byte
+/// moves.
+void end_lines_by_line_feeds(std::string& text);
+
+/// For the parser alone, which takes a tab in an empty line, or before a comment that has a line of its own, for
+/// indentation: there blanks stand for tabs. Block scalars, where tabs are text, stay as they are. No byte moves.
+std::string without_tabs_in_empty_lines(std::string text);
 
 // In the functions below `begin` is the byte where the value begins, and `indent` the number of blanks before the
 // innermost block list or map around it, -1 if there is none. They stop at the end of the value; what is not closed is

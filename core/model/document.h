@@ -70,6 +70,10 @@ class Document {
   /// For the reader that builds the document: a node of this file, to be filled.
   Node& add(Node::Kind kind, int line, int column);
   void set_root(const Node& root) { root_ = &root; }
+  /// What another file should have given is missing, and that has been reported: a name or key that is not here proves
+  /// no mistake.
+  void set_incomplete() { incomplete_ = true; }
+  bool incomplete() const { return incomplete_; }
   /// Another file that nodes come from; its text is kept, byte for byte.
   const std::string* add_file(std::string name, std::string text);
   struct Attachment {
@@ -84,6 +88,7 @@ class Document {
   std::string text_;
   std::vector<Attachment> attachments_;
   const Node* root_;
+  bool incomplete_ = false;
 };
 
 }  // namespace freeplay

@@ -43,8 +43,7 @@ void Draft::check_name(const CheckedValue& entry, const std::vector<std::string>
   const std::string name = entry.key();
   const bool foreign = entry.key_node() != nullptr && entry.key_node()->foreign;
   if (foreign ? !is_foreign_name(name) : !is_name(name)) {
-    entry.fail_at_key("bad-name", "'" + name + "' is not a valid name", {},
-                      "a name has letters, digits, '_' and '-' and begins with a letter or '_'");
+    entry.fail_at_key("bad-name", "'" + name + "' is not a valid name", {}, name_hint(name));
   } else if (std::find(reserved.begin(), reserved.end(), name) != reserved.end()) {
     entry.fail_at_key("reserved-name", "the name '" + name + "' is reserved");
   }

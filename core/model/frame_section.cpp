@@ -56,7 +56,7 @@ bool check_frame_name(const CheckedValue& entry, const std::string& name) {
   }
   const bool foreign = entry.key_node()->foreign;
   if (foreign ? !is_foreign_name(name) : !is_name(name))
-    entry.fail_at_key("bad-name", "'" + name + "' is not a valid name of a frame");
+    entry.fail_at_key("bad-name", "'" + name + "' is not a valid name of a frame", {}, name_hint(name));
   return true;
 }
 

@@ -1,7 +1,6 @@
 #include "model/map_reader.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/error.h"
 #include "model/name_rule.h"
@@ -12,6 +11,19 @@ namespace {
 /// An expression with a comma that a flow map cut in two: `{value: atan2(1, 2)}`.
 bool leaves_parenthesis_open(const std::string& text) {
   return std::count(text.begin(), text.end(), '(') > std::count(text.begin(), text.end(), ')');
+}
+
+/// The whole expression that the commas of a flow map cut in pieces, from the value of entry `cut` on; "" if that value
+/// is complete.
+std::string joined_expression(const Node& map, std::size_t cut) {
+  if (!map.entries[cut].value->is_scalar()) return "";
+  std::string text = map.entries[cut].value->text;
+  if (!leaves_parenthesis_open(text)) return "";
+  for (std::size_t i = cut + 1; i < map.entries.size() && leaves_parenthesis_open(text); ++i) {
+    if (!map.entries[i].value->is_null()) break;
+    text += ", " + map.entries[i].key->text;
+  }
+  return text;
 }
 
 }  // namespace
@@ -90,22 +102,22 @@ bool MapReader::conflict(const std::string& first, const std::string& second) co
   return true;
 }
 
-std::string MapReader::hint_for(const Node& key, const Node* before) const {
+std::string MapReader::hint_for(const std::string& key) const {
   for (const Refused& refused : refused_) {
-    if (refused.key == key.text) return refused.hint;
+    if (refused.key == key) return refused.hint;
   }
-  const bool cut = before != nullptr && before->is_scalar() && leaves_parenthesis_open(before->text);
-  return cut ? "an expression with a comma must be quoted here: \"" + before->text + ", " + key.text + "\"" : "";
+  return "";
 }
 
 void MapReader::finish() {
   for (const MapLayer& layer : layers_) {
-    const Node* before = nullptr;  // value of the entry before
-    for (const Node::Entry& entry : layer.map->entries) {
-      const Node* const previous = std::exchange(before, entry.value);
+    for (std::size_t i = 0; i < layer.map->entries.size(); ++i) {
+      const Node::Entry& entry = layer.map->entries[i];
       const std::string& key = entry.key->text;
       if (is_note(key) || knows(key) || (key == "use" && !layer.user.empty())) continue;
-      const std::string hint = hint_for(*entry.key, previous);
+      const std::string cut = i > 0 ? joined_expression(*layer.map, i - 1) : "";
+      const std::string hint =
+          cut.empty() ? hint_for(key) : "an expression with a comma must be quoted here: \"" + cut + "\"";
       const std::string where = layer.path.empty() ? "" : " in '" + layer.path + "'";
       value_of({&layer, &entry})
           .fail_at_key("unknown-key", "unknown key '" + key + "'" + where, hint.empty() ? nearest(key, known_) : "",

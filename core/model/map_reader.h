@@ -58,7 +58,7 @@ class MapReader {
   std::optional<Hit> look_up(std::string_view key) const;
   CheckedValue value_of(const Hit& hit) const;
   bool knows(std::string_view key) const;
-  std::string hint_for(const Node& key, const Node* before) const;
+  std::string hint_for(const std::string& key) const;
 
   struct Refused {
     std::string key, hint;

@@ -244,6 +244,7 @@ std::vector<NamedPlugin> named_plugins(const Document& document) {
 
 std::unique_ptr<Model> build_model(const Document& document, const Registry& registry, const BuildOptions& options,
                                    Diagnostics& diagnostics) {
+  if (document.incomplete()) diagnostics.excuse({"unknown-name", "missing-key", "empty-model"});
   return ModelBuilder(document, registry, options, diagnostics).build();
 }
 

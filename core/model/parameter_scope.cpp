@@ -129,23 +129,28 @@ void ParameterScope::compute(Entry& computed) {
 }
 
 void ParameterScope::report_cycle(const std::vector<std::size_t>& path, std::size_t closing) {
-  const auto begin = std::find(path.begin(), path.end(), closing);
+  std::vector<std::size_t> cycle(std::find(path.begin(), path.end(), closing), path.end());
+  // What the command line says is to blame, not the file, where it takes part.
+  const auto given =
+      std::find_if(cycle.begin(), cycle.end(), [&](std::size_t i) { return is_overridden(entries_[i]); });
+  if (given != cycle.end()) std::rotate(cycle.begin(), given, cycle.end());
   std::string chain;
-  for (auto i = begin; i != path.end(); ++i) {
-    chain += entries_[*i].name + " -> ";
-    entries_[*i].state = State::broken;
-    used_->insert(entries_[*i].key);
+  for (const std::size_t i : cycle) {
+    chain += entries_[i].name + " -> ";
+    entries_[i].state = State::broken;
+    used_->insert(entries_[i].key);
   }
-  const Entry& named = entries_[closing];
-  CheckedValue(*named.reading, *named.value, named.key, named.path)
-      .fail_at_key("cyclic-parameter", "parameter '" + named.name + "' depends on itself: " + chain + named.name);
+  const Entry& named = entries_[cycle.front()];
+  const CheckedValue at(*named.reading, *named.value, named.key, named.path);
+  const std::string message = "parameter '" + named.name + "' depends on itself: " + chain + named.name;
+  is_overridden(named) ? at.fail("cyclic-parameter", message) : at.fail_at_key("cyclic-parameter", message);
 }
 
 bool check_parameter_name(const CheckedValue& parameter) {
   const std::string name = parameter.key();
   if (!is_parameter_name(name)) {
     parameter.fail_at_key("bad-name", "'" + name + "' is not a valid name of a parameter", {},
-                          "it has letters, digits and '_' and begins with a letter or '_'");
+                          name_hint(name, "it has letters, digits and '_' and begins with a letter or '_'"));
     return false;
   }
   for (const char* reserved : {"t", "pi", "i", "n"}) {

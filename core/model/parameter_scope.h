@@ -61,6 +61,7 @@ class ParameterScope : public Scope {
   std::vector<std::size_t> needs(const Entry& entry) const;
   void evaluate_from(std::size_t first);
   void compute(Entry& entry);
+  static bool is_overridden(const Entry& entry) { return entry.override == entry.value; }
   void report_cycle(const std::vector<std::size_t>& path, std::size_t closing);
 
   UsedKeys* used_;

@@ -25,7 +25,8 @@ void PresetTable::read(const CheckedValue& section) {
   for (const Node::Entry& entry : section.node().entries) {
     if (is_note(entry.key->text)) continue;
     const CheckedValue preset(section.reading(), *entry.value, entry.key, "presets." + entry.key->text);
-    if (!is_name(entry.key->text)) preset.fail_at_key("bad-name", "'" + entry.key->text + "' is not a valid name");
+    const std::string& name = entry.key->text;
+    if (!is_name(name)) preset.fail_at_key("bad-name", "'" + name + "' is not a valid name", {}, name_hint(name));
     index_.emplace(entry.key->text, presets_.size());
     presets_.push_back({entry.key->text, entry.key, entry.value});
   }

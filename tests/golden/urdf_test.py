@@ -345,6 +345,24 @@ joints:
         start = json.loads(self.freeplay("validate", "arm.urdf", "--json")[0])["start"]
         self.assertAlmostEqual(start["rack"]["x"], 0.3 - 0.05 * start["upper"]["angle"], places=9)
 
+    def test_mistakes_of_a_sidecar_are_named_beside_those_of_its_robot(self):
+        sidecar = """freeplay: 1
+urdf: {file: robot.urdf}
+gravity: [0]
+simulaton: {end: 1}
+bodies: {upper: {frames: {tip: [1, 0]}}, extra: {mass: -1, inertia: 1}}
+joints: {pin: {type: revolute, between: [upper/tip, extra]}}
+"""
+        own = [(3, "wrong-length"), (4, "unknown-key"), (5, "out-of-range")]
+        for robot, place in ((None, ("model.yaml", 2)), ("<robot name='r'><link name='a'/></robbot>", ("robot.urdf", 1))):
+            self.write("model.yaml", sidecar)
+            if robot is not None:
+                self.write("robot.urdf", robot)
+            messages = json.loads(self.freeplay("validate", "model.yaml", "--json", code=3)[0])["messages"]
+            places = [((os.path.basename(m["file"]), m["line"]), m["id"]) for m in messages]
+            self.assertEqual([place], [at for at, _ in places if at not in [("model.yaml", n) for n, _ in own]], places)
+            self.assertEqual(own, [(at[1], i) for at, i in places if (at[1], i) in own], places)
+
 
 if __name__ == "__main__":
     unittest.main()

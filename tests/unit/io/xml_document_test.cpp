@@ -56,6 +56,18 @@ TEST(ParseXml, TakesCommentsCdataAndCharactersOutsideOfAscii) {
   EXPECT_EQ(good("<a n='\xC3\xA4' m=''/>").attribute("m")->place.column, 10);
 }
 
+TEST(ParseXml, TakesADeclarationOnlyAtTheBeginningAndOnlyTheEncodingThatTheFileHas) {
+  good("\xEF\xBB\xBF<?xml version='1.0' encoding='utf-8'?><a/>");
+  good("<?xml version='1.0' encoding=\"ISO-8859-1\"?><a/>");
+  good("<a><?xml-stylesheet href='x'?></a>");
+  EXPECT_EQ(fault("\n<?xml version='1.0'?><a/>"), "2:1 bad-xml");
+  EXPECT_EQ(fault("<a/><?xml version='1.0'?>"), "1:5 bad-xml");
+  EXPECT_EQ(fault("<?xml version='1.0' encoding='UTF-16'?><a/>"), "1:31 bad-xml");
+  EXPECT_EQ(fault("<?xml version='1.0' encoding='latin1'?><a n='\xC3\xA4'/>"), "1:31 bad-xml");
+  EXPECT_EQ(fault("<a n='\uFFFE'/>"), "1:7 bad-xml");
+  EXPECT_EQ(fault("<a n='&#xFFFF;'/>"), "1:7 bad-xml");
+}
+
 TEST(ParseXml, RefusesWhatIsNotWellFormed) {
   EXPECT_EQ(fault(""), "1:1 bad-xml");
   EXPECT_EQ(fault("  \n "), "1:1 bad-xml");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -263,6 +264,52 @@ TEST(Yaml, RefusesFloodsOfBracketsBeforeTheyAreParsed) {
   const Diagnostic wide = report("[1" + std::string(1'500'000, ',') + "]");
   EXPECT_EQ(wide.id, "too-large");
   EXPECT_EQ(wide.location.column, 1);
+}
+
+/// The first message and its hint.
+std::string message(const std::string& text) {
+  Diagnostics diagnostics;
+  parse_yaml(text, "m.yaml", diagnostics);
+  const std::vector<Diagnostic> all = diagnostics.sorted();
+  return all.empty() ? "" : all.front().message + " | " + all.front().hint;
+}
+
+TEST(ReadYaml, TakesTabsInEmptyLinesAndBeforeCommentsOfTheirOwn) {
+  const Document document = read("a: 1\n\t\nb:\n  c: 2\n  \t\n\t# note\n  d: [1,\n\t# note\n    2]\n");
+  EXPECT_EQ(document.root().find("a")->text, "1");
+  EXPECT_EQ(document.root().find("b")->find("d")->items.size(), 2u);
+  EXPECT_EQ(errors("a:\n\tb: 1\n"), "2:1 yaml-syntax");
+  EXPECT_EQ(errors("a: [1,\n\t2]\n"), "2:1 yaml-syntax");
+}
+
+TEST(ReadYaml, KeepsTabsInBlockScalars) {
+  EXPECT_EQ(read("a: |  # note\n  x\n  \ty\n  \t\n  \t# z\nb: 1\n").root().find("a")->text, "x\n\ty\n\t\n\t# z\n");
+}
+
+TEST(ReadYaml, TakesACarriageReturnAsTheEndOfALine) {
+  const Document document = read("a: 1\rb:\r  c: \"x\r    y\"\r");
+  EXPECT_EQ(document.root().find("b")->find("c")->text, "x y");
+  EXPECT_EQ(place(*document.root().find("b")->find("c")), "3:6+2");
+  EXPECT_EQ(errors("a: 1\r\nb: 2\rb: 3\n"), "3:1 duplicate-key");
+}
+
+TEST(ReadYaml, RefusesWhatIsNoCharacter) {
+  EXPECT_EQ(errors("a: \"\uFFFE\"\n"), "1:5 yaml-syntax");
+  EXPECT_EQ(errors("a: \uFFFF\n"), "1:4 yaml-syntax");
+  EXPECT_EQ(errors("a: \"\uFFFD\"\n"), "");
+}
+
+TEST(ReadYaml, PointsAtAnEscapeThatIsNotComplete) {
+  EXPECT_EQ(errors("a: 1\nb: \"a\\u12\"\nc: 2\n"), "2:6 yaml-syntax");
+  EXPECT_EQ(errors("b: \"\\x4\"\n"), "1:5 yaml-syntax");
+  EXPECT_NE(message("b: \"\\U12\"\n").find("8"), std::string::npos);
+}
+
+TEST(ReadYaml, SaysThatAValueHasEndedWhereMoreFollowsOnItsLine) {
+  EXPECT_EQ(errors("a: 'b' c\n"), "1:8 yaml-syntax");
+  EXPECT_EQ(message("a: 'b' c\n"), "the value before this has ended already | quote the value as a whole");
+  EXPECT_EQ(message("a: &x 1\nb: &y *x\n"), "an alias cannot stand behind something else | it is a whole value");
+  EXPECT_EQ(message("a:\n    b: 1\n  c: 1\n").substr(0, 21), "this line is indented");
 }
 
 }  // namespace

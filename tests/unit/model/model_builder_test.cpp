@@ -367,5 +367,24 @@ TEST(ModelBuilder, ExpandsInverseKinematicsToOneDriverPerJoint) {
   EXPECT_EQ(model.model->kinematics[0].frame_location.column, 36);
 }
 
+TEST(Messages, QuoteTheWholeExpressionThatCommasCut) {
+  const std::string text = "freeplay: 1\nbodies: {a: {mass: max(1, min(2, 3), 4), inertia: 1}}\n";
+  const std::string report = build(text).report;
+  EXPECT_NE(report.find("quoted here: \"max(1, min(2, 3), 4)\""), std::string::npos) << report;
+}
+
+TEST(Messages, SayHowLongANameMayBe) {
+  const std::string name(65, 'a');
+  for (const std::string section : {"bodies", "parameters", "presets"}) {
+    const std::string report = build(with_rod("").substr(0, 12) + section + ": {" + name + ": {mass: 1}}\n").report;
+    EXPECT_NE(report.find("= a name has at most 64 characters, this one 65"), std::string::npos) << report;
+  }
+}
+
+TEST(Messages, KnowTheSignForDegrees) {
+  const std::string report = build(with_rod("parameters: {a: 10\u00b0}\n")).report;
+  EXPECT_NE(report.find("did you mean 'deg'?"), std::string::npos) << report;
+}
+
 }  // namespace
 }  // namespace freeplay

@@ -27,6 +27,15 @@ TEST(Parameters, ReportACycleOnce) {
   EXPECT_NE(built.report.find("a -> b -> a"), std::string::npos);
 }
 
+TEST(Overrides, ThatCloseACycleAreBlamedForIt) {
+  BuildOptions options;
+  options.set = {{"l", "$k"}};
+  const Built built = build(mass_of("1", "{k: $l, l: 2}"), options);
+  EXPECT_EQ(built.places, "1:1 cyclic-parameter ");
+  EXPECT_NE(built.report.find("--set l:1:1: error: parameter 'l' depends on itself: l -> k -> l"), std::string::npos)
+      << built.report;
+}
+
 TEST(Parameters, MayFormALongChain) {
   constexpr int count = 20000;
   std::string text = "freeplay: 1\nparameters:\n  p0: 1\n";
