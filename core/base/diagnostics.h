@@ -56,6 +56,7 @@ class Diagnostics {
                std::string hint = {});
 
   bool has_errors() const { return errors_ > 0; }
+  int errors() const { return errors_; }
 
   /// All messages by order of files, line, column; last how many warnings were only counted.
   std::vector<Diagnostic> sorted() const;

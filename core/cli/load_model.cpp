@@ -79,12 +79,28 @@ void check_limit(const StopCondition& condition, const ChannelInfo& channel, Dia
                                 dimension_name(condition.quantity.dimension)));
 }
 
-/// Channels are known only when the model is complete, so their names are checked last.
-void check_channels(const Model& model, const Document& document, Diagnostics& diagnostics) {
+/// The channel or pattern that was meant: another kind of column where its first word is none.
+std::string nearest_channel(const std::string& name, const std::vector<std::string>& names) {
+  const std::size_t dot = std::min(name.find('.'), name.size());
+  const std::string kind = name.substr(0, dot);
+  std::vector<std::string> kinds;
+  for (const std::string& known : names) {
+    std::string word = known.substr(0, known.find('.'));
+    if (word == kind) return is_pattern(name) ? "" : nearest(name, names);
+    if (kinds.empty() || kinds.back() != word) kinds.push_back(std::move(word));
+  }
+  const std::string meant = nearest(kind, kinds);
+  return meant.empty() ? "" : meant + name.substr(dot);
+}
+
+/// Channels are known only when the whole mechanism is, so their names are checked last.
+void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
+                    Diagnostics& diagnostics) {
   const Channels channels(model);
   const std::vector<std::string> names = channel_names(channels);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
-    diagnostics.error(location, character_count(name), "unknown-name", message, nearest(name, names));
+    if (std::ranges::count(unsure, name.substr(0, name.find('.'))) > 0) return;
+    diagnostics.error(location, character_count(name), "unknown-name", message, nearest_channel(name, names));
   };
   std::unordered_map<std::string_view, const ChannelInfo*> by_name;
   for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
@@ -121,9 +137,11 @@ LoadedModel load(const Read& read, const BuildOptions& build, const CommonOption
     loaded.document = read(loaded.diagnostics);
     if (loaded.document) {
       const Registry registry = load_registry(common, &*loaded.document);
-      loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics);
+      loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics,
+                                 [&](const Model& model, const std::vector<std::string>& unsure) {
+                                   check_channels(model, *loaded.document, unsure, loaded.diagnostics);
+                                 });
     }
-    if (loaded.model) check_channels(*loaded.model, *loaded.document, loaded.diagnostics);
   } catch (const Error& error) {
     keep(error, loaded, common.strict);
   }

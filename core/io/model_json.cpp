@@ -131,8 +131,8 @@ Json own_gravity_json(const Model& model, const OwnGravity& own) {
 Json initial_json(const Model& model) {
   Json joints = Json::object(), speeds = Json::object();
   for (const JointElement& joint : model.joints) {
-    if (joint.start_coordinate) joints[joint.name] = *joint.start_coordinate;
-    if (joint.start_speed) speeds[joint.name] = *joint.start_speed;
+    if (joint.start_coordinate) joints[joint.name] = joint.start_coordinate->value;
+    if (joint.start_speed) speeds[joint.name] = joint.start_speed->value;
   }
   return {{"joints", joints}, {"speeds", speeds}};
 }

@@ -83,7 +83,9 @@ class Projector {
     out_.poses.resize(robot_.links.size());
     for (const int link : robot_.order) place(link);
     for (std::size_t i = 0; i < robot_.joints.size(); ++i) {
-      if (robot_.joints[i].closes_loop) see(static_cast<int>(i));
+      const Joint& joint = robot_.joints[i];
+      const bool known = joint.parent.link != no_link && joint.child.link != no_link;  // the other is an error already
+      if (joint.closes_loop && known) see(static_cast<int>(i));
     }
     return std::move(out_);
   }

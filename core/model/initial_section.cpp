@@ -5,25 +5,25 @@
 namespace freeplay {
 namespace {
 
-enum class StartValue { coordinate, speed };
+enum class StartKind { coordinate, speed };
 
 /// Does a driver already say what `initial` would?
-bool is_prescribed(const Draft& draft, int joint, StartValue what) {
+bool is_prescribed(const Draft& draft, int joint, StartKind what) {
   for (const Driver& driver : draft.model.drivers) {
     if (driver.joint != joint || !prescribes(driver.kind)) continue;
     // The integral of a speed starts at a value that somebody must choose.
-    if (what == StartValue::speed || driver.kind != DriverKind::velocity) return true;
+    if (what == StartKind::speed || driver.kind != DriverKind::velocity) return true;
   }
   return false;
 }
 
-Dimension dimension_of(Coordinate coordinate, StartValue what) {
+Dimension dimension_of(Coordinate coordinate, StartKind what) {
   const bool angle = coordinate == Coordinate::angle;
-  if (what == StartValue::coordinate) return angle ? dimension::angle : dimension::length;
+  if (what == StartKind::coordinate) return angle ? dimension::angle : dimension::length;
   return angle ? dimension::angular_velocity : dimension::velocity;
 }
 
-void read_start_value(Draft& draft, const CheckedValue& value, StartValue what) {
+void read_start_value(Draft& draft, const CheckedValue& value, StartKind what) {
   const std::string name = value.key();
   const std::optional<int> joint = draft.find_joint(name, draft.parts.front());
   if (!joint) {
@@ -42,7 +42,9 @@ void read_start_value(Draft& draft, const CheckedValue& value, StartValue what) 
     return value.fail_at_key("conflicting-keys",
                              "a driver moves joint '" + name + "'; it has no start value of its own");
   }
-  (what == StartValue::coordinate ? element.start_coordinate : element.start_speed) = number;
+  if (!number) return;
+  (what == StartKind::coordinate ? element.start_coordinate : element.start_speed) =
+      StartValue{*number, value.key_location()};
 }
 
 /// A number for angles and lengths alike.
@@ -73,10 +75,10 @@ void read_assembly(Draft& draft, const CheckedValue& value) {
 void read_initial(Draft& draft, const CheckedValue& section) {
   MapReader map(section, "initial");
   if (const auto joints = map.find("joints")) {
-    for (const CheckedValue& value : entries_of(*joints)) read_start_value(draft, value, StartValue::coordinate);
+    for (const CheckedValue& value : entries_of(*joints)) read_start_value(draft, value, StartKind::coordinate);
   }
   if (const auto speeds = map.find("speeds")) {
-    for (const CheckedValue& value : entries_of(*speeds)) read_start_value(draft, value, StartValue::speed);
+    for (const CheckedValue& value : entries_of(*speeds)) read_start_value(draft, value, StartKind::speed);
   }
   if (const auto assembly = map.find("assembly")) read_assembly(draft, *assembly);
   map.finish();

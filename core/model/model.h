@@ -42,6 +42,12 @@ struct Marker {
   double angle = 0.0;  ///< planar [rad]
 };
 
+/// A value of `initial` that assembly holds exactly.
+struct StartValue {
+  double value = 0.0;
+  Location location;  ///< of its key
+};
+
 /// A joint or a force between two markers; a gear has rows but no markers of its own.
 struct JointElement {
   std::string name;
@@ -56,9 +62,9 @@ struct JointElement {
   JointRef ideal;
   JointLayout ideal_layout;
   bool has_play = false;
-  bool is_force = false;                                ///< an entry of `forces`
-  int gear = -1;                                        ///< index into Model::gears
-  std::optional<double> start_coordinate, start_speed;  ///< held exactly while assembling (`initial`)
+  bool is_force = false;  ///< an entry of `forces`
+  int gear = -1;          ///< index into Model::gears
+  std::optional<StartValue> start_coordinate, start_speed;
 };
 
 /// coordinate(second) = ratio coordinate(first) + offset.

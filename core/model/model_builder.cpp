@@ -28,9 +28,10 @@ constexpr long schema_version = 1;
 class ModelBuilder {
  public:
   ModelBuilder(const Document& document, const Registry& registry, const BuildOptions& options,
-               Diagnostics& diagnostics)
+               Diagnostics& diagnostics, const ColumnCheck& check_columns)
       : document_(document),
         diagnostics_(diagnostics),
+        check_columns_(check_columns),
         draft_(registry, options, diagnostics),
         overrides_(options, diagnostics),
         parameters_(used_),
@@ -54,7 +55,9 @@ class ModelBuilder {
     if (!read_header(top)) return nullptr;
     open_sections(top);
     read_sections();
+    const int errors = diagnostics_.errors();
     top.finish();
+    if (mechanism_good_) judge_columns(diagnostics_.errors() > errors);
     if (!diagnostics_.has_errors()) require_ideal_matches(draft_);
     if (!diagnostics_.has_errors()) warn_ignored_elbows(draft_);
     warn_unused();
@@ -171,12 +174,27 @@ class ModelBuilder {
     for (const Part& part : draft_.parts) add_gears(draft_, part);
     for (const Part& part : draft_.parts) add_drivers(draft_, part);
     for (const Part& part : draft_.parts) add_forces(draft_, part);
+    const bool good = !diagnostics_.has_errors();
     if (initial_) read_initial(draft_, *initial_);
-    read_simulation(draft_, simulation_);
+    mechanism_good_ = read_simulation(draft_, simulation_) && good && !draft_.model.bodies.empty();
     if (analysis_) check_analysis(draft_, *analysis_);
     if (sweep_) check_sweep(draft_, *sweep_, parameters_);
     if (!draft_.model.bodies.empty() || diagnostics_.has_errors()) return;
     CheckedValue(reading_, document_.root(), nullptr, "").fail("empty-model", "the model has no body that moves");
+  }
+
+  // Columns are what remains to be judged when sections have other mistakes.
+  void judge_columns(bool misspelt_section) {
+    if (!check_columns_) return;
+    std::vector<std::string> unsure;
+    if (misspelt_section) {
+      if (document_.root().find("instances") == nullptr && templates_) return;
+      for (const auto& [kind, section] : std::initializer_list<std::pair<const char*, const char*>>{
+               {"body", "bodies"}, {"joint", "joints"}, {"driver", "drivers"}, {"force", "forces"}}) {
+        if (document_.root().find(section) == nullptr) unsure.emplace_back(kind);
+      }
+    }
+    check_columns_(draft_.model, unsure);
   }
 
   bool within_limit() {
@@ -220,6 +238,8 @@ class ModelBuilder {
 
   const Document& document_;
   Diagnostics& diagnostics_;
+  const ColumnCheck& check_columns_;
+  bool mechanism_good_ = false;  // bodies, frames, joints, drivers, forces and the frames of the output
   Draft draft_;
   ParameterOverrides overrides_;
   UsedKeys used_;
@@ -243,9 +263,9 @@ std::vector<NamedPlugin> named_plugins(const Document& document) {
 }
 
 std::unique_ptr<Model> build_model(const Document& document, const Registry& registry, const BuildOptions& options,
-                                   Diagnostics& diagnostics) {
+                                   Diagnostics& diagnostics, const ColumnCheck& check_columns) {
   if (document.incomplete()) diagnostics.excuse({"unknown-name", "missing-key", "empty-model"});
-  return ModelBuilder(document, registry, options, diagnostics).build();
+  return ModelBuilder(document, registry, options, diagnostics, check_columns).build();
 }
 
 }  // namespace freeplay

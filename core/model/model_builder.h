@@ -1,6 +1,7 @@
 // build_model: from the text of a model file to the checked mechanism.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,11 +23,16 @@ struct NamedPlugin {
 /// The plugins that a model asks for. They are to be in the registry before build_model().
 std::vector<NamedPlugin> named_plugins(const Document& document);
 
+/// Asked to judge what the file says of result columns, which follow from the whole mechanism. `unsure` are the kinds
+/// of columns ("joint") whose section may stand in the file under a misspelt name.
+using ColumnCheck = std::function<void(const Model& model, const std::vector<std::string>& unsure)>;
+
 /// Checks the whole document and reports every mistake to `diagnostics`; null when there is an error. Throws
 /// Error{usage} for an option that fits no model (`--set` of an unknown parameter or of a text that does not parse,
 /// `--ideal` without a match, an unknown `--integrator`), Error{plugin} for a component that fails, and Error{input}
-/// when `diagnostics` is full. The model keeps what it uses of the registry alive.
+/// when `diagnostics` is full. `check_columns` is called at most once, as soon as all that has columns is without
+/// mistakes, though other sections may have some. The model keeps what it uses of the registry alive.
 std::unique_ptr<Model> build_model(const Document& document, const Registry& registry, const BuildOptions& options,
-                                   Diagnostics& diagnostics);
+                                   Diagnostics& diagnostics, const ColumnCheck& check_columns = {});
 
 }  // namespace freeplay

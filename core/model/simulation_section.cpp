@@ -51,6 +51,8 @@ class SimulationSection {
     complete_steps();
   }
 
+  bool frames_good() const { return frames_good_; }
+
  private:
   void read_span(MapReader& map) {
     const auto start = map.find("start");
@@ -172,9 +174,12 @@ class SimulationSection {
 
   void read_frames(const CheckedValue& value) {
     const auto items = value.list();
+    frames_good_ = items.has_value();
     if (!items) return;
     for (const CheckedValue& item : *items) {
-      if (const auto marker = draft_.marker(item, draft_.parts.front())) settings_.frames.push_back(*marker);
+      const auto marker = draft_.marker(item, draft_.parts.front());
+      if (marker) settings_.frames.push_back(*marker);
+      frames_good_ = frames_good_ && marker.has_value();
     }
   }
 
@@ -213,7 +218,7 @@ class SimulationSection {
     }
     if (after) stop.after = after->quantity(dimension::time).value_or(0.0);
     map.finish();
-    settings_.stop.push_back(std::move(stop));
+    if (!stop.channel.empty()) settings_.stop.push_back(std::move(stop));
   }
 
   // --- integrator ------------------------------------------------------------------------------------------------
@@ -280,6 +285,7 @@ class SimulationSection {
 
   Draft& draft_;
   Settings& settings_;
+  bool frames_good_ = true;
   std::optional<CheckedValue> integrator_, step_, accuracy_, smallest_, largest_;
 };
 
@@ -291,10 +297,11 @@ double read_start_time(const CheckedValue& section) {
   return start ? start->quantity(dimension::time).value_or(0.0) : 0.0;
 }
 
-void read_simulation(Draft& draft, const std::optional<CheckedValue>& section) {
+bool read_simulation(Draft& draft, const std::optional<CheckedValue>& section) {
   SimulationSection reader(draft);
   if (section) reader.read(*section);
   reader.complete(section.has_value());
+  return reader.frames_good();
 }
 
 }  // namespace freeplay

@@ -84,7 +84,7 @@ class Assembler {
     leads_.clear();
     held_row_.assign(at(closed_.layout().nc()), 1);
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-      if (model_.joints[j].start_coordinate) held_[j] = *model_.joints[j].start_coordinate;
+      if (model_.joints[j].start_coordinate) held_[j] = model_.joints[j].start_coordinate->value;
     }
     std::vector<char> driven(model_.joints.size(), 0);
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
@@ -92,7 +92,7 @@ class Assembler {
       if (driver.kind != DriverKind::velocity) continue;
       driven[at(driver.joint)] = 1;
       if (const auto& start = model_.joints[at(driver.joint)].start_coordinate) {
-        system_.motions().set_start(d, *start);
+        system_.motions().set_start(d, start->value);
       } else {
         held_row_[at(closed_.layout().driver_row(d))] = 0;
       }
@@ -250,8 +250,8 @@ class Assembler {
       for (int k = 0; k < 2; ++k) {
         for (int c = 0; c < 3 && bodies[k] != ground; ++c) entries.emplace_back(i, 3 * bodies[k] + c, row[3 * k + c]);
       }
-      out.residual[i] =
-          speeds ? e_.coordinate_rate[at(j)] - *joint.start_speed : e_.coordinate[at(j)] - *joint.start_coordinate;
+      out.residual[i] = speeds ? e_.coordinate_rate[at(j)] - joint.start_speed->value
+                               : e_.coordinate[at(j)] - joint.start_coordinate->value;
     }
     for (const SparseEntry& entry : system_entries) {
       if (const int i = place[at(entry.row())]; i >= 0) entries.emplace_back(i, entry.col(), entry.value());
@@ -423,27 +423,51 @@ class Assembler {
     }
     const Rows last = rows(true);
     const double tolerance = 1e-8 * std::max(1.0, Eigen::Map<const VectorXd>(state_.v().data(), nv).norm());
-    Eigen::Index worst = 0;
-    if (last.residual.size() > 0 && last.residual.cwiseAbs().maxCoeff(&worst) > tolerance) {
-      const auto i = static_cast<std::size_t>(worst);
-      throw Error(Error::Category::input, "assembly-failed",
-                  fmt::format("drivers and start speeds contradict each other: {} misses its speed by {:.6g}",
-                              name_of(last.row[i], last.lead[i]), std::abs(last.residual[worst])));
-    }
+    if (largest(last.residual) > tolerance) report_contradiction(last, tolerance);
   }
 
-  std::string name_of(int row, int lead) const {
-    if (lead >= 0) return fmt::format("joint '{}'", model_.joints[at(lead)].name);
+  // Least squares share a contradiction among all rows that take part; what was asked for is told before joints.
+  [[noreturn]] void report_contradiction(const Rows& rows, double tolerance) const {
+    Origin worst;
+    double gap = 0.0;
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      const double missed = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
+      if (missed <= tolerance) continue;
+      Origin origin = origin_of(rows.row[i], rows.lead[i]);
+      if (origin.asked < worst.asked || (origin.asked == worst.asked && missed <= gap)) continue;
+      gap = missed;
+      worst = std::move(origin);
+    }
+    throw Error(
+        Error::Category::input, "assembly-failed",
+        fmt::format("drivers and start speeds contradict each other: {} misses its speed by {:.6g}", worst.words, gap),
+        worst.location);
+  }
+
+  // What a row stands for, and how directly the file asks for it: a start speed 2, a driver 1, a joint 0.
+  struct Origin {
+    int asked = -1;
+    std::string words{};
+    Location location{};
+  };
+
+  Origin origin_of(int row, int lead) const {
+    if (lead >= 0) {
+      const JointElement& joint = model_.joints[at(lead)];
+      return {2, fmt::format("joint '{}'", joint.name), joint.start_speed->location};
+    }
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
-      if (closed_.layout().driver_row(d) == row) return fmt::format("driver '{}'", model_.drivers[at(d)].name);
+      const Driver& driver = model_.drivers[at(d)];
+      if (closed_.layout().driver_row(d) == row) {
+        return {1, fmt::format("driver '{}'", driver.name), driver.location};
+      }
     }
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice slice = closed_.layout().rows(j);
-      if (row >= slice.offset && row < slice.offset + slice.size) {
-        return fmt::format("joint '{}'", model_.joints[at(j)].name);
-      }
+      if (row < slice.offset || row >= slice.offset + slice.size) continue;
+      return {0, fmt::format("joint '{}'", model_.joints[at(j)].name), model_.joints[at(j)].location};
     }
-    return "a constraint";
+    return {0, "a constraint"};
   }
 
   // Journals that rest in their bearings need the reactions of the ideal mechanism.

@@ -153,7 +153,22 @@ MISTAKES = [
     (None, 'freeplay: 1\nbodies: {a: {mass: 1, inertia: 1, com: [0, 1, 2]}}\n', 'wrong-length', 2, 40),
     (None, 'freeplay: 1\nname: [a]\nbodies: {a: {mass: 1, inertia: 1}}\n', 'wrong-type', 2, 7),
     (None, 'bodies: {a: {mass: 1, inertia: 1}}\n', 'missing-key', 1, 1),
+    (None, 'bodies: {a: {mass: 1, inertia: 1}}\njoints:\n  A: {type: revolute, between: [ground, a]}\n'
+           '  B: {type: revolute, between: [ground, a]}\ninitial: {speeds: {A: 1, B: 3}}\nfreeplay: 1\n',
+     'assembly-failed', 5, 20),
 ]
+
+# Mistakes of one file, all found at once: result columns are judged although other keys are wrong.
+TOGETHER = SOUND.replace("initial: {", "gravty: [0, 1]\ninitial: {assembl: 1, ").replace("end: 2,", """end: 2, stpe: 1,
+  stop: [{channel: joint.A.angel, above: 1}, {above: 1}, {channel: driver.m.value, below: 1 kg}],
+  output: {channels: [body.rodd.x, 'bdy.*', drivr.m.value], intervall: 1},""") + """
+sweep: {parameter: {a: [1]}, reducers: {r: {channel: energy.kinetc, of: 1}}}
+"""
+FOUND = [["unknown-key", 13, "gravity"], ["unknown-key", 14, "assembly"], ["unknown-key", 15, "step"],
+         ["unknown-name", 16, "joint.A.angle"], ["missing-key", 16, None], ["dimension-mismatch", 16, None],
+         ["unknown-name", 17, "body.rod.x"], ["unknown-name", 17, "body.*"], ["unknown-name", 17, "driver.m.value"],
+         ["unknown-key", 17, "interval"], ["missing-key", 19, None], ["unknown-key", 19, "parameters"],
+         ["missing-key", 19, None], ["unknown-name", 19, "energy.kinetic"], ["unknown-key", 19, None]]
 
 
 class Mistakes(ProgramTest):
@@ -170,6 +185,18 @@ class Mistakes(ProgramTest):
                 messages = json.loads(out)["messages"]
                 found = [[m["id"], m["line"], m["column"], m["suggestion"]][:len(expected)] for m in messages]
                 self.assertIn(expected, found)
+
+    def test_result_columns_are_judged_beside_other_mistakes(self):
+        self.write("m.yaml", TOGETHER)
+        out, _ = self.freeplay("validate", "m.yaml", "--json", code=3)
+        found = [[m["id"], m["line"], m["suggestion"]] for m in json.loads(out)["messages"]]
+        self.assertEqual(sorted(FOUND, key=str), sorted(found, key=str))
+
+    def test_a_column_is_not_judged_when_what_it_belongs_to_may_be_misspelt(self):
+        text = SOUND.replace("drivers:", "driver:").replace("end: 2,", "end: 2, output: {channels: [driver.m.value]},")
+        self.write("m.yaml", text)
+        out, _ = self.freeplay("validate", "m.yaml", "--json", code=3)
+        self.assertEqual(["unknown-key"], [m["id"] for m in json.loads(out)["messages"]])
 
 
 if __name__ == "__main__":

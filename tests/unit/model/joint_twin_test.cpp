@@ -74,7 +74,7 @@ TEST(JointTwins, CannotBeDrivenUnlessClosed) {
 TEST(JointTwins, TakeStartValuesOfTheIdealJoint) {
   const Built built = build(loose + "initial: {joints: {a: 10 deg}}\n");
   ASSERT_TRUE(built.model) << built.report;
-  EXPECT_NEAR(built.model->joints[0].start_coordinate.value(), 0.1745, 1e-3);
+  EXPECT_NEAR(built.model->joints[0].start_coordinate.value().value, 0.1745, 1e-3);
 }
 
 TEST(JointTwins, AFailingLawIsAPluginError) {

@@ -314,7 +314,7 @@ TEST(ModelBuilder, ReadsDriversForcesAndSimulation) {
   ASSERT_TRUE(built.model) << built.report;
   const Model& model = *built.model;
   EXPECT_EQ(model.drivers[0].kind, DriverKind::velocity);
-  EXPECT_DOUBLE_EQ(model.joints[0].start_coordinate.value(), 3.141592653589793);
+  EXPECT_DOUBLE_EQ(model.joints[0].start_coordinate.value().value, 3.141592653589793);
   ASSERT_EQ(model.forces.size(), 2u);
   EXPECT_TRUE(model.forces[0].frame_axes);
   EXPECT_EQ(model.markers[static_cast<std::size_t>(model.forces[1].marker)].name, "rod/com");
