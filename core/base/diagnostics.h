@@ -47,7 +47,8 @@ class Diagnostics {
   void add(Diagnostic diagnostic);
 
   /// From now on messages of these ids are not kept: what they are about may follow from an error reported before.
-  void excuse(std::set<std::string> ids) { excused_ = std::move(ids); }
+  /// Returns the ids excused before.
+  std::set<std::string> excuse(std::set<std::string> ids) { return std::exchange(excused_, std::move(ids)); }
 
   /// Shorthands for the common case.
   void error(Location location, int length, std::string id, std::string message, std::string suggestion = {},

@@ -99,7 +99,12 @@ void check_channels(const Model& model, const Document& document, const std::vec
   const Channels channels(model);
   const std::vector<std::string> names = channel_names(channels);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
-    if (std::ranges::count(unsure, name.substr(0, name.find('.'))) > 0) return;
+    const std::string_view fixed = std::string_view(name).substr(0, name.find('*'));
+    if (std::ranges::any_of(unsure, [&](const std::string& beginning) {
+          return fixed.starts_with(beginning) || (is_pattern(name) && beginning.starts_with(fixed));
+        })) {
+      return;
+    }
     diagnostics.error(location, character_count(name), "unknown-name", message, nearest_channel(name, names));
   };
   std::unordered_map<std::string_view, const ChannelInfo*> by_name;

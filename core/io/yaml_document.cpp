@@ -53,7 +53,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ == 1) return;
-    error(place(mark), 1, "yaml-feature", "a file holds one document only");
+    // Without its sign the "document" is what remains after a first line that stands farther right.
+    const std::size_t begin = std::min(static_cast<std::size_t>(mark.pos), text_.size());
+    const std::string_view before = text_.substr(0, text_.find_last_not_of(" \t\r\n", begin - 1) + 1);
+    if (text_.substr(begin).starts_with("---") || before.ends_with("\n...")) {
+      error(place(mark), 1, "yaml-feature", "a file holds one document only");
+    } else {
+      error(place(mark), 1, "yaml-syntax", "this line is indented unlike the lines it belongs to");
+    }
     throw Abandon();
   }
   void OnDocumentEnd() override {}

@@ -34,6 +34,8 @@ struct Draft {
   const Reading* top = nullptr;               ///< what the top level is read in
   std::deque<Part> parts;                     ///< the top level first
   std::vector<std::string> broken_instances;  ///< names that begin so may have been meant to exist
+  /// Names of result columns that begin so cannot be judged: the entry that has them is in error.
+  std::vector<std::string> unsure_columns;
 
   NameTable bodies, joints, drivers, forces;
   std::vector<bool> joint_usable;   ///< false: its own mistakes were reported, its coordinate is unknown

@@ -83,6 +83,7 @@ class DriverEntry {
     const std::optional<int> word = kind_value ? kind_value->word(kind_words) : std::nullopt;
     add_name();
     if (joint && usable(*joint) && !may_be_driven(*joint, *joint_value, *joint_value)) return;
+    if (word && value && (!joint || !usable(*joint))) return read_alone(*value, static_cast<DriverKind>(*word));
     if (!joint || !usable(*joint) || !word) return;
     const DriverKind kind = static_cast<DriverKind>(*word);
     const Coordinate coordinate = element(*joint).ideal_layout.coordinate;
@@ -109,6 +110,17 @@ class DriverEntry {
       driver.text = value->node().text;
     }
     draft_.model.drivers.push_back(std::move(driver));
+  }
+
+  /// For the mistakes in it, when the joint is not known.
+  void read_alone(const CheckedValue& value, DriverKind kind) const {
+    if (kind == DriverKind::velocity) return;  // its dimension is that of the joint
+    const Dimension dimension = dimension_of(kind, Coordinate::none);
+    if (value.key() == "table") {
+      read_table(draft_, value, dimension);
+    } else {
+      value.time_function(dimension);
+    }
   }
 
   /// `value` or `table`; the key tells which.
@@ -223,7 +235,13 @@ void add_drivers(Draft& draft, const Part& part) {
   if (!section) return;
   for (const CheckedValue& entry : entries_of(*section)) {
     Draft::check_name(entry);
+    const int errors = draft.diagnostics.errors();
+    const std::size_t drivers = draft.model.drivers.size();
     DriverEntry(draft, part, entry).read();
+    if (draft.diagnostics.errors() == errors && draft.model.drivers.size() > drivers) continue;
+    // Drivers of inverse kinematics are named by their joints.
+    const bool one = entry.node().is_map() && entry.node().find("joint") != nullptr;
+    draft.unsure_columns.push_back(one ? "driver." + part.full(entry.key()) + "." : "driver.");
   }
 }
 

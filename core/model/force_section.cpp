@@ -149,7 +149,11 @@ void add_forces(Draft& draft, const Part& part) {
   for (const CheckedValue& entry : entries_of(*section)) {
     Draft::check_name(entry);
     draft.forces.add(part.full(entry.key()));
+    const int errors = draft.diagnostics.errors();
+    const std::size_t elements = draft.model.force_elements.size();
     ForceEntry(draft, part, entry).read();
+    if (draft.diagnostics.errors() == errors && draft.model.force_elements.size() > elements) continue;
+    draft.unsure_columns.push_back("force." + part.full(entry.key()) + ".");
   }
 }
 

@@ -31,13 +31,20 @@ class GearEntry {
     map_.finish();
     Gear gear;
     gear.joint = joint_;
-    if (!of || !read_pair(*of, gear) || !ratio) return;
-    const Dimension first = dimension_of(gear.first), second = dimension_of(gear.second);
-    const auto number = ratio->quantity(second / first);
-    if (number && *number == 0.0) ratio->fail("out-of-range", "'" + ratio->path() + "' must not be 0");
-    gear.ratio = number.value_or(1.0);
+    const bool paired = of && read_pair(*of, gear);
     const bool given = offset && !(offset->node().is_scalar() && offset->node().text == "auto");
-    if (given) gear.offset = offset->quantity(second);
+    // Of what dimension they must be is known by the pair alone; they are read without it for their other mistakes.
+    const auto read = [&](const CheckedValue& value, const Dimension& by) -> std::optional<double> {
+      if (paired) return value.quantity(by);
+      const std::optional<Quantity> any = value.any_quantity();
+      return any ? std::optional(any->value) : std::nullopt;
+    };
+    const Dimension first = dimension_of(gear.first), second = dimension_of(gear.second);
+    const auto number = ratio ? read(*ratio, second / first) : std::nullopt;
+    if (number && *number == 0.0) ratio->fail("out-of-range", "'" + ratio->path() + "' must not be 0");
+    if (given) gear.offset = read(*offset, second);
+    if (!paired || !ratio) return;
+    gear.ratio = number.value_or(1.0);
     draft_.model.joints[static_cast<std::size_t>(joint_)].gear = static_cast<int>(draft_.model.gears.size());
     draft_.model.gears.push_back(gear);
   }

@@ -28,6 +28,9 @@ class JointEntry {
       draft_.joint_usable[index_] = true;
       return;
     }
+    if (element().is_force && type && type->node().is_scalar() && type->node().text == gear_word) {
+      return refuse_as_force(*type);
+    }
     const Component* named = type ? find_type(draft_.registry, ComponentKind::joint, *type, other_words()) : nullptr;
     // The other keys are judged by the type that was meant.
     known_ = named != nullptr;
@@ -52,6 +55,10 @@ class JointEntry {
 
   void require_force(const CheckedValue& type) {
     if (component_ == ideal_ && (!draft_.joint_usable[index_] || element().layout.constraint_rows == 0)) return;
+    refuse_as_force(type);
+  }
+
+  static void refuse_as_force(const CheckedValue& type) {
     type.fail("unknown-type", "the type '" + type.node().text + "' is a joint, not a force", {},
               "write it under 'joints'");
   }
@@ -210,7 +217,10 @@ void add_joints(Draft& draft, const Part& part) {
     element.name = name;
     element.location = entry.key_location();
     draft.joint_usable.push_back(false);
+    const int errors = draft.diagnostics.errors();
     JointEntry(draft, part, entry, draft.model.joints.size() - 1).read();
+    const bool good = draft.joint_usable.back() && draft.diagnostics.errors() == errors;
+    if (!good) draft.unsure_columns.push_back("joint." + name + ".");
   }
 }
 

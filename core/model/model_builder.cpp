@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "model/analysis_section.h"
@@ -57,7 +58,8 @@ class ModelBuilder {
     read_sections();
     const int errors = diagnostics_.errors();
     top.finish();
-    if (mechanism_good_) judge_columns(diagnostics_.errors() > errors);
+    judge_columns(diagnostics_.errors() > errors);
+    if (templates_) judge_unused_templates();
     if (!diagnostics_.has_errors()) require_ideal_matches(draft_);
     if (!diagnostics_.has_errors()) warn_ignored_elbows(draft_);
     warn_unused();
@@ -168,33 +170,61 @@ class ModelBuilder {
 
   void read_sections() {
     if (!within_limit()) return;
-    for (const Part& part : draft_.parts) add_bodies(draft_, part);
-    for (const Part& part : draft_.parts) add_frames(draft_, part);
-    for (const Part& part : draft_.parts) add_joints(draft_, part);
-    for (const Part& part : draft_.parts) add_gears(draft_, part);
-    for (const Part& part : draft_.parts) add_drivers(draft_, part);
-    for (const Part& part : draft_.parts) add_forces(draft_, part);
-    const bool good = !diagnostics_.has_errors();
+    add_elements(draft_);
     if (initial_) read_initial(draft_, *initial_);
-    mechanism_good_ = read_simulation(draft_, simulation_) && good && !draft_.model.bodies.empty();
+    if (!read_simulation(draft_, simulation_)) draft_.unsure_columns.emplace_back("frame.");
+    sections_read_ = true;
     if (analysis_) check_analysis(draft_, *analysis_);
     if (sweep_) check_sweep(draft_, *sweep_, parameters_);
     if (!draft_.model.bodies.empty() || diagnostics_.has_errors()) return;
     CheckedValue(reading_, document_.root(), nullptr, "").fail("empty-model", "the model has no body that moves");
   }
 
-  // Columns are what remains to be judged when sections have other mistakes.
+  // Names of columns do not depend on values: what other mistakes leave in doubt alone is not judged.
   void judge_columns(bool misspelt_section) {
-    if (!check_columns_) return;
-    std::vector<std::string> unsure;
-    if (misspelt_section) {
-      if (document_.root().find("instances") == nullptr && templates_) return;
-      for (const auto& [kind, section] : std::initializer_list<std::pair<const char*, const char*>>{
-               {"body", "bodies"}, {"joint", "joints"}, {"driver", "drivers"}, {"force", "forces"}}) {
-        if (document_.root().find(section) == nullptr) unsure.emplace_back(kind);
-      }
+    if (!check_columns_ || !sections_read_ || draft_.model.bodies.empty()) return;
+    std::vector<std::string>& unsure = draft_.unsure_columns;
+    const Node& root = document_.root();
+    const Node* instances = root.find("instances");
+    const bool all =
+        instances == nullptr ? misspelt_section && templates_ : !instances->is_map() && !instances->is_null();
+    for (const auto& [kind, name] : {std::pair("body.", "bodies"), std::pair("joint.", "joints"),
+                                     std::pair("driver.", "drivers"), std::pair("force.", "forces")}) {
+      const bool missing = misspelt_section && root.find(name) == nullptr;
+      const bool wrong = std::ranges::any_of(draft_.parts, [&](const Part& part) {
+        const auto section = part.section(name);
+        return section && !section->node().is_map();
+      });
+      if (all || missing || wrong) unsure.emplace_back(kind);
+      for (const std::string& instance : draft_.broken_instances) unsure.push_back(kind + instance);
     }
     check_columns_(draft_.model, unsure);
+  }
+
+  // In a model of its own: nothing of it becomes part of this one. What it may refer to around it is not known.
+  void judge_unused_templates() {
+    for (const CheckedValue& entry : entries_of(*templates_)) {
+      if (used_.contains(entry.key_node()) || !entry.node().is_map()) continue;
+      const std::set<std::string> excused = diagnostics_.excuse({"unknown-name"});
+      Draft alone(draft_.registry, draft_.options, diagnostics_);
+      alone.top = &reading_;
+      alone.ideal_matched.assign(draft_.options.ideal.size(), false);
+      alone.model.file = draft_.model.file;
+      alone.parts.emplace_back();
+      UsedKeys used;
+      expand_alone(alone, entry, used, storage_);
+      add_elements(alone);
+      diagnostics_.excuse(excused);
+    }
+  }
+
+  static void add_elements(Draft& draft) {
+    for (const Part& part : draft.parts) add_bodies(draft, part);
+    for (const Part& part : draft.parts) add_frames(draft, part);
+    for (const Part& part : draft.parts) add_joints(draft, part);
+    for (const Part& part : draft.parts) add_gears(draft, part);
+    for (const Part& part : draft.parts) add_drivers(draft, part);
+    for (const Part& part : draft.parts) add_forces(draft, part);
   }
 
   bool within_limit() {
@@ -239,7 +269,7 @@ class ModelBuilder {
   const Document& document_;
   Diagnostics& diagnostics_;
   const ColumnCheck& check_columns_;
-  bool mechanism_good_ = false;  // bodies, frames, joints, drivers, forces and the frames of the output
+  bool sections_read_ = false;
   Draft draft_;
   ParameterOverrides overrides_;
   UsedKeys used_;

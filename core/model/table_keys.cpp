@@ -62,10 +62,17 @@ class TableReader {
     }
     if (!file && !points && map.good()) map.report_missing("file");
     map.finish();
-    if (!time_unit_ || !unit_ || !interpolation || !ends || !outside || file.has_value() == points.has_value()) {
+    if (file.has_value() == points.has_value()) return nullptr;
+    const bool good_keys = time_unit_ && unit_ && interpolation && ends && outside;
+    const bool periodic = good_keys && *interpolation == 0 && *ends == 2;
+    if (!good_keys) {
+      // For the mistakes in them.
+      Points table;
+      if (!time_unit_) time_unit_ = 1.0;
+      if (!unit_) unit_ = 1.0;
+      if (points) read_points(*points, periodic, table);
       return nullptr;
     }
-    const bool periodic = *interpolation == 0 && *ends == 2;
     const std::string key = file ? key_of(*file, time_column, value_column, {*interpolation, *ends, *outside}) : "";
     if (const auto known = draft_.time_tables.find(key); known != draft_.time_tables.end()) {
       return tried(*known->second) ? known->second : nullptr;

@@ -36,6 +36,17 @@ long value_count(const Node& node) {
   return count;
 }
 
+/// The sections of a template that is being read as the part `name`.
+void add_part(Draft& draft, MapReader& map, const std::string& name) {
+  Part& part = draft.parts.emplace_back();
+  part.prefix = name + ".";
+  for (const char* word : part_sections) {
+    const auto section = map.find(word);
+    if (section && !section->node().is_null()) part.sections.emplace(word, *section);
+  }
+  map.finish();
+}
+
 class InstanceExpansion {
  public:
   InstanceExpansion(Draft& draft, const std::optional<CheckedValue>& templates, UsedKeys& used,
@@ -126,13 +137,7 @@ class InstanceExpansion {
     MapReader map(body, "template");
     add_parameters(entry, map.find("parameters"), with, given, inside, scope);
     if (outer.readout != nullptr) outer.readout->add_instance(full, content.node());
-    Part& part = draft_.parts.emplace_back();
-    part.prefix = full + ".";
-    for (const char* name : part_sections) {
-      const auto section = map.find(name);
-      if (section && !section->node().is_null()) part.sections.emplace(name, *section);
-    }
-    map.finish();
+    add_part(draft_, map, full);
   }
 
   void add_parameters(const CheckedValue& entry, const std::optional<CheckedValue>& declared,
@@ -177,6 +182,30 @@ class InstanceExpansion {
 };
 
 }  // namespace
+
+void expand_alone(Draft& draft, const CheckedValue& content, UsedKeys& used, InstanceStorage& storage) {
+  ParameterScope& scope = storage.scopes.emplace_back(used, content.reading().scope);
+  scope.add_constant("i", 1.0);
+  scope.add_constant("n", 1.0);
+  Reading& inside = storage.readings.emplace_back(content.reading());
+  inside.scope = &scope;
+  inside.readout = nullptr;
+  const CheckedValue body(inside, content.node(), content.key_node(), content.path());
+  MapReader map(body, "template");
+  const auto parameters = map.find("parameters");
+  if (parameters && !parameters->node().is_null()) {
+    for (const CheckedValue& parameter : entries_of(*parameters)) {
+      const bool needed = parameter.node().is_scalar() && parameter.node().text == "required";
+      if (!check_parameter_name(parameter) || needed) {
+        scope.add_broken(parameter.key());
+      } else {
+        scope.add(parameter.key(), *parameter.key_node(), parameter.node(), parameter.path(), inside);
+      }
+    }
+  }
+  scope.evaluate();
+  add_part(draft, map, content.key());
+}
 
 void expand_instances(Draft& draft, const std::optional<CheckedValue>& templates, const CheckedValue& instances,
                       UsedKeys& used, InstanceStorage& storage) {

@@ -19,6 +19,10 @@ struct InstanceStorage {
 void expand_instances(Draft& draft, const std::optional<CheckedValue>& templates, const CheckedValue& instances,
                       UsedKeys& used, InstanceStorage& storage);
 
+/// Adds a part for what an instance of `content` without values would be: its required parameters are taken for broken,
+/// so that what depends on them stays silent.
+void expand_alone(Draft& draft, const CheckedValue& content, UsedKeys& used, InstanceStorage& storage);
+
 /// Reports bad names of templates.
 void check_templates(const CheckedValue& templates);
 

@@ -156,6 +156,10 @@ MISTAKES = [
     (None, 'bodies: {a: {mass: 1, inertia: 1}}\njoints:\n  A: {type: revolute, between: [ground, a]}\n'
            '  B: {type: revolute, between: [ground, a]}\ninitial: {speeds: {A: 1, B: 3}}\nfreeplay: 1\n',
      'assembly-failed', 5, 20),
+    (None, ' freeplay: 1\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-syntax', 2, 1),
+    (None, 'freeplay: 1\n---\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 2, 1),
+    (None, 'freeplay: 1\n...\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 3, 1),
+    (FORCE, '  w: {type: gear, of: [A, B], ratio: 2}', 'unknown-type', 12, 13),
 ]
 
 # Mistakes of one file, all found at once: result columns are judged although other keys are wrong.
@@ -164,6 +168,16 @@ TOGETHER = SOUND.replace("initial: {", "gravty: [0, 1]\ninitial: {assembl: 1, ")
   output: {channels: [body.rodd.x, 'bdy.*', drivr.m.value], intervall: 1},""") + """
 sweep: {parameter: {a: [1]}, reducers: {r: {channel: energy.kinetc, of: 1}}}
 """
+# What one part of an entry has wrong does not hide the rest.
+BESIDE = [
+    (PIN, '  B: {type: gear, of: [A, C], ratio: 0, offset: none}', [('unknown-name', 27), ('out-of-range', 38), ('bad-expression', 49), ('wrong-type', 20)]),
+    (MOTOR, '  m: {joint: Z, kind: angle, value: 1 m}', [('unknown-name', 14), ('dimension-mismatch', 37)]),
+    (MOTOR, '  m: {joint: A, kind: angle, table: {unit: m, points: [[0, 1 m], [t, 1]]}}',
+     [('dimension-mismatch', 44), ('dimension-mismatch', 60), ('time-not-allowed', 67)]),
+    ('forces:', 'templates: {leg: {parameters: {l: required}, bodis: 1, bodies: {b: {mass: $l, inertai: 1}}}}\nforces:',
+     [('unknown-key', 46), ("missing-key", 65), ('unknown-key', 79)]),
+    ('mass: $a', 'mass: -1', [('out-of-range', 15)]),
+]
 FOUND = [["unknown-key", 13, "gravity"], ["unknown-key", 14, "assembly"], ["unknown-key", 15, "step"],
          ["unknown-name", 16, "joint.A.angle"], ["missing-key", 16, None], ["dimension-mismatch", 16, None],
          ["unknown-name", 17, "body.rod.x"], ["unknown-name", 17, "body.*"], ["unknown-name", 17, "driver.m.value"],
@@ -191,6 +205,17 @@ class Mistakes(ProgramTest):
         out, _ = self.freeplay("validate", "m.yaml", "--json", code=3)
         found = [[m["id"], m["line"], m["suggestion"]] for m in json.loads(out)["messages"]]
         self.assertEqual(sorted(FOUND, key=str), sorted(found, key=str))
+
+    def test_mistakes_of_one_entry_do_not_hide_each_other(self):
+        columns = ("stop: [{channel: body.bob.xx, above: 1 m}], output: {channels: [bdy.*]}, end: 2",
+                   [("unknown-name", 31), ("unknown-name", 78)])
+        for old, new, expected in BESIDE:
+            with self.subTest(new):
+                self.assertIn(old, SOUND)
+                self.write("m.yaml", SOUND.replace(old, new, 1).replace("end: 2", columns[0]))
+                out, _ = self.freeplay("validate", "m.yaml", "--json", code=3)
+                found = [(m["id"], m["column"]) for m in json.loads(out)["messages"] if m["severity"] == "error"]
+                self.assertEqual(sorted(expected + columns[1]), sorted(found))
 
     def test_a_column_is_not_judged_when_what_it_belongs_to_may_be_misspelt(self):
         text = SOUND.replace("drivers:", "driver:").replace("end: 2,", "end: 2, output: {channels: [driver.m.value]},")
