@@ -17,11 +17,10 @@ constexpr double smallest_length = 1e-12;  // [m]; below it the direction of the
 ///   force on b: -f u,  f = k (L - L_0) + c L' + p        stored: k (L - L_0)^2/2 + p (L - L_0)
 ///   df/dd = k u + c (d' - L' u)/L        df/dd' = c u        du/dd = (1 - u u^T)/L
 ///
-/// Rotational, with phi the angle of marker b relative to marker a, counted over turns, and free angle phi_0:
+/// Rotational, with phi the angle of marker b relative to marker a (the coordinate, counted over turns), and free angle
+/// phi_0:
 ///
 ///   torque on b: -(k (phi - phi_0) + c phi' + p)        stored: k (phi - phi_0)^2/2 + p (phi - phi_0)
-///
-/// The history of the rotational kind is the last accepted phi, from which turns are counted.
 class SpringDamper final : public Joint {
  public:
   explicit SpringDamper(const Parameters& parameters)
@@ -38,20 +37,22 @@ class SpringDamper final : public Joint {
   }
 
   void declare(JointLayout& layout) const override {
-    static const Channel length[] = {{"length", "m"}}, angle[] = {{"angle", "rad"}};
+    static const Channel length[] = {{"length", "m"}};
     layout.forces = 1;
     layout.analytic_derivatives = 1;
-    layout.history = kind_ == rotational ? 1 : 0;
-    layout.channels = kind_ == linear ? Span<const Channel>(length) : Span<const Channel>(angle);
+    if (kind_ == linear) {
+      layout.channels = Span<const Channel>(length);
+    } else {
+      layout.coordinate = Coordinate::angle;
+    }
   }
-  void initialize(const JointInput& in, Span<double>, Span<double> history) const override {
-    if (kind_ == rotational) history[0] = relative_angle(*in.a, *in.b);
-  }
-  void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
-    if (kind_ == rotational) history[0] = angle(in);
+  void coordinate(const JointInput& in, CoordinateRow& row) const override {
+    if (kind_ == linear) return;
+    row.value = relative_angle(*in.a, *in.b);
+    write_turn(row.jacobian);
   }
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
-    channels[0] = kind_ == linear ? (position(*in.b) - position(*in.a)).norm() : angle(in);
+    if (kind_ == linear) channels[0] = (position(*in.b) - position(*in.a)).norm();
   }
   void apply(const JointInput& in, JointForces& out) const override {
     if (kind_ == linear) {
@@ -62,11 +63,6 @@ class SpringDamper final : public Joint {
   }
 
  private:
-  static double angle(const JointInput& in) {
-    const double value = relative_angle(*in.a, *in.b);
-    return value + 2.0 * M_PI * std::round((in.history[0] - value) / (2.0 * M_PI));
-  }
-
   double restoring(double stretch) const { return stiffness_ * stretch + preload_; }
   double effort(double stretch, double rate) const { return restoring(stretch) + damping_ * rate; }
   double stored(double stretch) const { return (0.5 * stiffness_ * stretch + preload_) * stretch; }
@@ -98,7 +94,7 @@ class SpringDamper final : public Joint {
   }
 
   void twist(const JointInput& in, JointForces& out) const {
-    const double stretch = angle(in) - free_;
+    const double stretch = in.coordinate - free_;
     const double rate = angular_velocity(*in.b) - angular_velocity(*in.a), torque = effort(stretch, rate);
     out.potential = stored(stretch);
     out.potential_rate = restoring(stretch) * rate;
@@ -164,7 +160,8 @@ Component spring_damper() {
        .formula =
            "linear: pull = stiffness (L - free_length) + damping dL/dt + preload, L the distance of the origins, "
            "no force below 1e-12 m; rotational: torque on the second body = -(stiffness (angle - free_angle) + "
-           "damping dangle/dt + preload), angle counted over turns from (-pi, pi] at the start.",
+           "damping dangle/dt + preload), angle counted over turns; at the start as by a joint "
+           "between the same bodies, else from (-pi, pi].",
        .parameters = parameters});
 }
 

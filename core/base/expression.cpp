@@ -54,7 +54,7 @@ int Expression::operand_count(Operation operation) noexcept {
 }
 
 /// Replaces operands[0] by the result.
-bool Expression::apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) noexcept {
+bool Expression::apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept {
   Jet& a = operands[0];
   const Jet* const b = operands + 1;  // only read by operations of two and more operands
   const char* outside = nullptr;
@@ -134,7 +134,7 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
       a = freeplay::smooth(a, b[0], b[1]);
       break;
   }
-  if (!outside && a.is_finite()) return true;
+  if (!outside && a.is_finite(derivatives_)) return true;
   if (outside) {
     failure = {"bad-expression", outside, instruction.offset, instruction.length};
   } else if (std::isfinite(a.value)) {

@@ -58,8 +58,11 @@ class Expression {
 
   /// Value and exact first and second time derivative at time `t` [s], in SI units per s and s^2. At a kink of abs, min
   /// and max the derivatives from the right. Returns false, and says why, outside of a domain; `out` is then unchanged.
-  /// Does not allocate.
+  /// Derivatives beyond what `need` asks for may be infinite or NaN. Does not allocate.
   bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+
+  /// How many derivatives are used: 0, 1 or, from the start, 2. The others may not exist.
+  void need(int derivatives) { derivatives_ = derivatives; }
 
   bool depends_on_time() const { return depends_on_time_; }
   DimensionKind kind() const { return kind_; }
@@ -106,12 +109,13 @@ class Expression {
 
   template <int depth>
   bool run(double t, Jet& out, EvaluationFailure& failure) const noexcept;
-  static bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) noexcept;
+  bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   static int operand_count(Operation operation) noexcept;
 
   std::vector<Instruction> program_;
   int stack_depth_ = 0;
   int characters_ = 0;
+  int derivatives_ = 2;
   bool depends_on_time_ = false;
   DimensionKind kind_ = DimensionKind::plain;
   Dimension dimension_;

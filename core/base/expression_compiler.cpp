@@ -371,7 +371,7 @@ class ExpressionCompiler {
       operands[static_cast<std::size_t>(i)] = Jet::constant(expression_.program_.back().constant);
     }
     EvaluationFailure failure;
-    if (!Expression::apply(instruction, operands.data(), failure)) {
+    if (!expression_.apply(instruction, operands.data(), failure)) {
       throw ExpressionError(failure.id, failure.reason, failure.offset, failure.length);
     }
     append({Operation::push_constant, operands[0].value, instruction.offset, instruction.length});

@@ -15,7 +15,10 @@ struct Jet {
   static Jet time(double t) { return {t, 1.0, 0.0}; }
 
   bool is_constant() const { return rate == 0.0 && acceleration == 0.0; }
-  bool is_finite() const { return std::isfinite(value) && std::isfinite(rate) && std::isfinite(acceleration); }
+  /// The value and the first `order` derivatives.
+  bool is_finite(int order = 2) const {
+    return std::isfinite(value) && (order < 1 || std::isfinite(rate)) && (order < 2 || std::isfinite(acceleration));
+  }
 };
 
 /// g(x(t)) from g, g', g'' at x. A constant x stays constant, even where a derivative of g is infinite (sqrt at 0).

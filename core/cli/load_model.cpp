@@ -18,6 +18,7 @@
 #include "model/model_builder.h"
 #include "model/name_rule.h"
 #include "run/channel.h"
+#include "run/simulation.h"
 
 namespace freeplay {
 namespace {
@@ -172,6 +173,7 @@ std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
   try {
     System system(*loaded.model);
     Start start = assemble(system);
+    require_attainable_accuracy(system);
     // Not make_unique: clang 14 knows no aggregates in parentheses.
     return std::unique_ptr<AssembledModel>(new AssembledModel{std::move(system), std::move(start)});
   } catch (const Error& error) {

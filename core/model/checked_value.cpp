@@ -170,7 +170,7 @@ bool CheckedValue::tried(const Expression& expression) const {
   return false;
 }
 
-std::optional<Expression> CheckedValue::time_function(const Dimension& dimension) const {
+std::optional<Expression> CheckedValue::time_function(const Dimension& dimension, int derivatives) const {
   if (!node_->is_scalar()) {
     wrong_type("a quantity");
     return std::nullopt;
@@ -183,6 +183,7 @@ std::optional<Expression> CheckedValue::time_function(const Dimension& dimension
     fail_inside(*node_, error, 0);
     return std::nullopt;
   }
+  expression->need(derivatives);
   if (!tried(*expression)) return std::nullopt;
   if (reading_->readout != nullptr) {
     reading_->readout->note_function(reading_->instance, *node_, *expression, *reading_->scope);

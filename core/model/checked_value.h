@@ -40,8 +40,8 @@ class CheckedValue {
   std::optional<double> quantity(const Dimension& dimension, const Range& range = {}) const;
   /// A constant of whatever dimension.
   std::optional<Quantity> any_quantity() const;
-  /// A function of time, tried at the start time.
-  std::optional<Expression> time_function(const Dimension& dimension) const;
+  /// A function of time, tried at the start time, of which the first `derivatives` are used.
+  std::optional<Expression> time_function(const Dimension& dimension, int derivatives = 2) const;
   std::optional<long> integer(long minimum, long maximum) const;
   std::optional<bool> boolean() const;
   /// Any scalar, as it is.

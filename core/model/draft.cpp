@@ -7,7 +7,7 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t most_comparisons = 300'000'000;
+constexpr std::size_t most_comparisons = 1'000'000'000;  // characters
 
 bool is_dotted(const std::string& name) { return name.find('.') != std::string::npos; }
 
@@ -24,7 +24,9 @@ std::optional<int> look_up(const NameTable& table, const std::string& name, cons
 std::vector<int> matching(const Draft& draft, const NameTable& table, const CheckedValue& value,
                           const std::string& pattern, const Part& part) {
   std::vector<int> found;
-  draft.compared += 2 * table.names().size();
+  // Behind a star a name may be tried once for each of its characters.
+  const std::size_t repeated = 1 + std::min<std::size_t>(pattern.size() - pattern.rfind('*'), 16);
+  draft.compared += 2 * (table.names().size() + repeated * table.characters());
   if (draft.compared > most_comparisons) {
     throw Error(Error::Category::input, "too-large", "the patterns of the file fit too many names", value.location());
   }
@@ -36,6 +38,7 @@ std::vector<int> matching(const Draft& draft, const NameTable& table, const Chec
   };
   if (!part.prefix.empty() && !is_dotted(pattern)) collect(part.full(pattern));
   if (found.empty()) collect(pattern);
+  draft.compared += 16 * found.size();  // each costs its reader something, too
   return found;
 }
 

@@ -49,7 +49,7 @@ struct Draft {
   /// Inverse-kinematics entries that say `elbow`, and where.
   std::vector<std::pair<int, CheckedValue>> elbows;
 
-  mutable std::size_t compared = 0;  ///< names with patterns
+  mutable std::size_t compared = 0;  ///< characters of names with patterns, about
 
   std::unordered_map<int, std::string> prescribed;  ///< joints whose coordinate a driver prescribes, and its name
 

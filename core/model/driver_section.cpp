@@ -47,6 +47,9 @@ Dimension dimension_of(DriverKind kind, Coordinate coordinate) {
   return coordinate == Coordinate::angle ? dimension::angular_velocity : dimension::velocity;
 }
 
+/// How many derivatives of its function a driver uses.
+int derivatives_of(DriverKind kind) { return !prescribes(kind) ? 0 : kind == DriverKind::velocity ? 1 : 2; }
+
 /// Reads one entry of `drivers`.
 class DriverEntry {
  public:
@@ -104,7 +107,7 @@ class DriverEntry {
       driver.table = read_table(draft_, *value, dimension);
       if (!driver.table) return;
     } else {
-      std::optional<Expression> expression = value->time_function(dimension);
+      std::optional<Expression> expression = value->time_function(dimension, derivatives_of(kind));
       if (!expression) return;
       driver.value = std::move(*expression);
       driver.text = value->node().text;
@@ -119,7 +122,7 @@ class DriverEntry {
     if (value.key() == "table") {
       read_table(draft_, value, dimension);
     } else {
-      value.time_function(dimension);
+      value.time_function(dimension, derivatives_of(kind));
     }
   }
 

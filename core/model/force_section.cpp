@@ -83,22 +83,22 @@ class ForceEntry {
     for (const CheckedValue& item : *items) {
       for (const BodyId body : bodies(item)) {
         if (body == ground) warn_of_ground(item, "gravity");
-        if (body == ground || !claim(body, item)) continue;
+        if (body == ground || !claim(body, own.name, item)) continue;
         draft_.model.bodies[static_cast<std::size_t>(body)].gravity = own.value;
-        if (std::ranges::find(own.bodies, body) == own.bodies.end()) own.bodies.push_back(body);
+        own.bodies.push_back(body);
       }
     }
     draft_.model.own_gravities.push_back(std::move(own));
   }
 
-  /// Order has no meaning, so of two entries for one body neither could win.
-  bool claim(BodyId body, const CheckedValue& item) {
-    const std::string name = part_.full(entry_.key());
-    const auto [owner, fresh] = draft_.own_gravity.emplace(body, name);
-    if (fresh || owner->second == name) return true;
-    item.fail("duplicate-name",
-              "body '" + draft_.body_name(body) + "' has its gravity from '" + owner->second + "' already");
-    return false;
+  /// True the first time. Order has no meaning, so of two entries for one body neither could win.
+  bool claim(BodyId body, const std::string& name, const CheckedValue& item) {
+    const auto [owner, fresh] = draft_.own_gravity.try_emplace(body, name);
+    if (!fresh && owner->second != name) {
+      item.fail("duplicate-name",
+                "body '" + draft_.body_name(body) + "' has its gravity from '" + owner->second + "' already");
+    }
+    return fresh;
   }
 
   std::vector<BodyId> bodies(const CheckedValue& item) const {
@@ -119,7 +119,7 @@ class ForceEntry {
   }
 
   static bool append(const CheckedValue& value, const Dimension& dimension, AppliedForce& force) {
-    std::optional<Expression> expression = value.time_function(dimension);
+    std::optional<Expression> expression = value.time_function(dimension, 0);
     if (expression) {
       force.value.push_back(std::move(*expression));
       force.text.push_back(value.node().text);

@@ -5,17 +5,18 @@
 namespace freeplay {
 namespace {
 
-bool check_point(const CheckedValue& value, const std::optional<Dimension>& dimension, const Range& range = {}) {
+/// `dimension`, when it is open, becomes that of the first point that has one.
+bool check_point(const CheckedValue& value, std::optional<Dimension>& dimension, const Range& range = {}) {
   if (dimension) return value.quantity(*dimension, range).has_value();
   const std::optional<Quantity> quantity = value.any_quantity();
+  if (quantity && quantity->kind == DimensionKind::dimensioned) dimension = quantity->dimension;
   if (!quantity || range.contains(quantity->value)) return quantity.has_value();
   value.fail("out-of-range", "'" + value.path() + "' must be " + range.text("1"));
   return false;
 }
 
 /// `[from, to, count]`; end points of a logarithmic grid are positive.
-std::optional<long> check_space(const CheckedValue& value, const std::optional<Dimension>& dimension,
-                                const Range& range) {
+std::optional<long> check_space(const CheckedValue& value, std::optional<Dimension> dimension, const Range& range) {
   const auto items = value.list(3);
   if (!items) return std::nullopt;
   const bool from = check_point((*items)[0], dimension, range);
@@ -29,7 +30,7 @@ std::optional<long> check_space(const CheckedValue& value, const std::optional<D
   return from && to ? points : std::nullopt;
 }
 
-std::optional<long> check_list(const CheckedValue& value, const std::optional<Dimension>& dimension) {
+std::optional<long> check_list(const CheckedValue& value, std::optional<Dimension> dimension) {
   const auto items = value.list();
   if (!items) return std::nullopt;
   if (items->empty()) {
@@ -43,7 +44,7 @@ std::optional<long> check_list(const CheckedValue& value, const std::optional<Di
 
 }  // namespace
 
-std::optional<long> check_grid(const CheckedValue& value, const std::optional<Dimension>& dimension) {
+std::optional<long> check_grid(const CheckedValue& value, std::optional<Dimension> dimension) {
   if (value.node().is_scalar()) return check_point(value, dimension) ? std::optional<long>(1) : std::nullopt;
   if (value.node().is_list()) return check_list(value, dimension);
   if (!value.node().is_map()) {

@@ -10,8 +10,8 @@ namespace freeplay {
 
 inline constexpr long largest_grid = 100'000'000;  ///< points
 
-/// Checks a grid of whatever dimension, or of `dimension` if that is given. Returns the number of points, nothing after
-/// an error.
-std::optional<long> check_grid(const CheckedValue& value, const std::optional<Dimension>& dimension);
+/// Checks a grid of `dimension`, or of whatever one dimension all its points have. Returns the number of points,
+/// nothing after an error.
+std::optional<long> check_grid(const CheckedValue& value, std::optional<Dimension> dimension);
 
 }  // namespace freeplay

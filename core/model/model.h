@@ -152,6 +152,7 @@ struct Settings {
   double smallest_step = 1e-7, largest_step = 1e-3;  ///< adaptive runs [s]
   double per_contact = 20.0;                         ///< steps that an impact should take
   double accuracy = 0.0;                             ///< chooses all of these [m per s]; 0: not given
+  Location accuracy_location{};                      ///< of what the file says of it; empty when the file does not
   ParameterBlock integrator_parameters;
   IntegratorRef integrator;
   double interval = 0.0;                   ///< of output rows [s]

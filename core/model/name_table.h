@@ -14,7 +14,10 @@ class NameTable {
   /// False when the name is taken.
   bool add(const std::string& name) {
     const bool fresh = index_.emplace(name, static_cast<int>(names_.size())).second;
-    if (fresh) names_.push_back(name);
+    if (fresh) {
+      names_.push_back(name);
+      characters_ += name.size();
+    }
     return fresh;
   }
   std::optional<int> find(const std::string& name) const {
@@ -22,10 +25,12 @@ class NameTable {
     return found == index_.end() ? std::nullopt : std::optional<int>(found->second);
   }
   const std::vector<std::string>& names() const { return names_; }
+  std::size_t characters() const { return characters_; }
 
  private:
   std::unordered_map<std::string, int> index_;
   std::vector<std::string> names_;
+  std::size_t characters_ = 0;  ///< of all names
 };
 
 }  // namespace freeplay

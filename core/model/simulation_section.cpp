@@ -43,6 +43,7 @@ class SimulationSection {
     }
     if (options.step) settings_.accuracy = 0.0;
     if (options.accuracy) settings_.accuracy = *options.accuracy;
+    if (options.accuracy || options.step) settings_.accuracy_location = {};
     if (!section_given) {
       settings_.end = options.end.value_or(settings_.end);
       settings_.interval = (settings_.end - settings_.start) / 1000.0;
@@ -99,6 +100,7 @@ class SimulationSection {
     accuracy_ = map.find("accuracy");
     if (!accuracy_ || map.conflict("step", "accuracy")) return;
     settings_.accuracy = accuracy_->quantity(dimension::length, positive).value_or(0.0);
+    settings_.accuracy_location = accuracy_->location();
   }
 
   /// What the file leaves open. An accuracy leaves everything open: the first step and the bounds are wide enough that

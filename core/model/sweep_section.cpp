@@ -6,6 +6,11 @@
 namespace freeplay {
 namespace {
 
+std::optional<Dimension> dimension_of(const Quantity* declared) {
+  if (declared == nullptr || declared->kind != DimensionKind::dimensioned) return std::nullopt;
+  return declared->dimension;
+}
+
 void check_axes(const CheckedValue& value, const ParameterScope& parameters, bool side_by_side) {
   long points = 1;
   std::optional<long> first;
@@ -14,7 +19,7 @@ void check_axes(const CheckedValue& value, const ParameterScope& parameters, boo
       axis.fail_at_key("unknown-name", "unknown parameter '" + axis.key() + "'",
                        nearest(axis.key(), parameters.names()));
     }
-    const std::optional<long> count = check_grid(axis, std::nullopt);
+    const std::optional<long> count = check_grid(axis, dimension_of(parameters.find(axis.key())));
     if (!count) continue;
     if (side_by_side && first && *first != *count) {
       axis.fail("wrong-length", "parameters side by side need grids of equal length");

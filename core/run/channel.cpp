@@ -50,7 +50,7 @@ JointColumns Channels::add_joint(const JointElement& joint, const std::string& p
     if (joint.layout.coordinate == Coordinate::none) return;
     const bool angle = joint.layout.coordinate == Coordinate::angle;
     columns.coordinate = add(prefix + (angle ? ".angle" : ".position"), angle ? "rad" : "m");
-    columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
+    if (!joint.is_force) columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
   };
   if (!joint.is_force) add_coordinate();
   columns.force_x = add(prefix + ".fx", "N");

@@ -43,7 +43,7 @@ bool Observer::observe_joint(int index, const Point& point, const Evaluation& e,
   const JointColumns& columns = channels_.joints[at(index)];
   if (columns.coordinate >= 0) {
     row[at(columns.coordinate)] = e.coordinate[at(index)];
-    row[at(columns.speed)] = e.coordinate_rate[at(index)];
+    if (columns.speed >= 0) row[at(columns.speed)] = e.coordinate_rate[at(index)];
   }
   double wrench[3];
   system_.reaction(index, e, lambda, wrench);

@@ -95,14 +95,8 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
       flow_half_way(at(energy.flows())),
       joint_warnings(model.joints.size()) {
   if (adaptive) {
-    const double tolerance = local_tolerance(owner), smallest = 8.0 * rounding * owner.size();
-    if (!(tolerance >= smallest)) {
-      throw Error(
-          Error::Category::input, "out-of-range",
-          fmt::format("a step may err by {:.3g} m, but positions of a model of {:.3g} m are rounded to {:.3g} m",
-                      tolerance, owner.size(), smallest),
-          {}, "ask for less accuracy");
-    }
+    const double tolerance = local_tolerance(owner);
+    require_attainable_accuracy(owner);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(tolerance, tolerance, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
     owner.end_steps_at_events(settings.per_contact);
@@ -537,5 +531,15 @@ Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->statistics; }
 std::span<const double> Simulation::last_row() const { return impl_->row; }
 std::span<const std::string> Simulation::warnings() const { return impl_->warnings; }
+
+void require_attainable_accuracy(const System& system) {
+  const Settings& settings = system.model().settings;
+  const double tolerance = local_tolerance(system), smallest = 8.0 * rounding * system.size();
+  if (tolerance >= smallest || !(settings.adaptive || settings.accuracy > 0.0)) return;
+  throw Error(Error::Category::input, "out-of-range",
+              fmt::format("a step may err by {:.3g} m, but positions of a model of {:.3g} m are rounded to {:.3g} m",
+                          tolerance, system.size(), smallest),
+              settings.accuracy_location, "ask for less accuracy");
+}
 
 }  // namespace freeplay

@@ -51,4 +51,8 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Throws Error{input} "out-of-range", in the file where it says so, when the error allowed in a step is below the
+/// rounding of positions.
+void require_attainable_accuracy(const System& system);
+
 }  // namespace freeplay

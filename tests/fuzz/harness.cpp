@@ -22,10 +22,11 @@ namespace {
 std::vector<std::string_view> lines_of(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<std::string_view> lines;
+  // A lone carriage return ends a line, too.
   for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
     lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
+    begin = end + (text.substr(end, 2) == "\r\n" ? 2 : 1);
   }
   return lines;
 }

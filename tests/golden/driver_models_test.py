@@ -135,6 +135,19 @@ class Tables(ModelTest):
         self.assert_column(self.run_model(text), "joint.s.angle", lambda t: t)
 
 
+    def test_an_effort_needs_no_derivative(self):
+        # At t = 0 the rate of each is infinite or not a number; TURN has an inertia of 1 kg m^2 or the like: M = t^1.5.
+        for value in ("t^1.5", "sqrt(t)*t", "sqrt(t^3)"):
+            with self.subTest(value):
+                text = TURN + "drivers: {d: {joint: s, kind: torque, value: %s}}\nsimulation: {end: 1, step: 1 ms}\n" % value
+                columns = self.run_model(text)
+                self.assert_column(columns, "driver.d.torque", lambda t: t ** 1.5, 1e-12)
+        text = TURN + "drivers: {d: {joint: s, kind: velocity, value: t^1.5}}\nsimulation: {end: 1, step: 1 ms}\n"
+        self.assert_column(self.run_model(text), "joint.s.angle", lambda t: t ** 2.5 / 2.5, 1e-9)
+        text = text.replace("velocity", "angle")
+        self.freeplay("validate", self.model(text), code=3)
+
+
 class Forces(ModelTest):
     def test_a_force_in_the_axes_of_its_body(self):
         text = """

@@ -98,6 +98,11 @@ class HostileInput(ProgramTest):
             "unknown channels that stop": (HEAD + "bodies:\n" + lines("  b{0}: {{mass: 1, inertia: 1}}\n", 20000) +
                                            "simulation: {stop: [%s]}\n" % lines("{{channel: x{0}, above: 1}}, ", 20000),
                                            "[unknown-name]"),
+            "patterns of bodies": (HEAD + "bodies:\n" + lines("  b" + "a" * 50 + "{0}: {{mass: 1, inertia: 1}}\n", 60000) +
+                                   "forces:\n" + lines('  f{0}: {{type: gravity, on: ["' + "*a" * 20 + 'b{0}"], value: [0, 0]}}\n',
+                                                       9000), "error:"),
+            "the same pattern": (HEAD + "bodies:\n" + lines("  b{0}: {{mass: 1, inertia: 1}}\n", 60000) +
+                                 "forces: {g: {type: gravity, on: [%s], value: [0, 0]}}\n" % ('"*", ' * 3000), "[too-large]"),
             "patterns of channels": (HEAD + "bodies:\n" + lines("  b{0}: {{mass: 1, inertia: 1}}\n", 20000) +
                                      "simulation: {output: {channels: [%s]}}\n" % lines('"*x{0}*", ', 20000),
                                      "[too-large]"),

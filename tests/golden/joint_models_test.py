@@ -483,6 +483,23 @@ simulation: {end: 2, output: {interval: 50 ms}, %s}
         self.assert_column(columns, "joint.A.angle", angle, 1e-8)
         self.assert_column(columns, "force.k.angle", angle, 1e-8)
 
+    def test_a_torsion_spring_counts_turns_as_the_joint_beside_it(self):
+        # Released at 200 degrees, not at -160; the second spring looks at the same angle from the other side.
+        text = """
+bodies: {w: {mass: 1, inertia: 0.2}}
+joints: {A: {type: revolute, between: [ground, w]}}
+frames: {w/mark: {angle: 30 deg}}
+forces:
+  k: {type: spring-damper, kind: rotational, between: [ground, w], stiffness: 3}
+  l: {type: spring-damper, kind: rotational, between: [w/mark, ground], stiffness: 2, free_angle: -30 deg}
+initial: {joints: {A: 200 deg}}
+simulation: {end: 2, output: {interval: 50 ms}, %s}
+""" % EXACT
+        start, w = math.radians(200), 5.0
+        columns = self.run_model(text)
+        self.assert_column(columns, "force.k.angle", lambda t: start * math.cos(w * t), 1e-7)
+        self.assert_column(columns, "force.l.angle", lambda t: -start * math.cos(w * t) - math.radians(30), 1e-7)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -156,6 +156,10 @@ MISTAKES = [
     (None, 'bodies: {a: {mass: 1, inertia: 1}}\njoints:\n  A: {type: revolute, between: [ground, a]}\n'
            '  B: {type: revolute, between: [ground, a]}\ninitial: {speeds: {A: 1, B: 3}}\nfreeplay: 1\n',
      'assembly-failed', 5, 20),
+    ('step: 1 ms', 'accuracy: 1e-20 m', 'out-of-range', 14, 32),
+    ('simulation:', 'sweep: {parameters: {a: {linspace: [1 m, 2 kg, 3]}}}\nsimulation:', 'dimension-mismatch', 14, 42),
+    ('freeplay: 1\nparameters: {a: 1}', 'freeplay: 1\nsweep: {parameters: {a: [1 kg]}}\nparameters: {a: 1 m}', 'dimension-mismatch', 2, 26),
+    ('value: 3*t', 'value: sqrt(t)*1', 'bad-expression', 10, 37),
     (None, ' freeplay: 1\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-syntax', 2, 1),
     (None, 'freeplay: 1\n---\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 2, 1),
     (None, 'freeplay: 1\n...\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 3, 1),

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 
 #include "joint_probe.h"
 
@@ -19,9 +20,17 @@ struct Applied {
   double potential = 0.0;
 };
 
-Applied apply(const JointInstance& joint, const MarkerKinematics& a, const MarkerKinematics& b,
-              std::vector<double> history, std::vector<double>* derivatives = nullptr) {
-  JointInput in = input(0.0, a, b, {}, {history.data(), history.size()});
+/// What the host does: the coordinate in the turn nearest to `last`.
+double counted(const JointInstance& joint, const JointInput& in, double last) {
+  CoordinateRow row{};
+  joint.call(&abi::JointTable::coordinate, &in, &row);
+  return row.value + 2.0 * M_PI * std::round((last - row.value) / (2.0 * M_PI));
+}
+
+Applied apply(const JointInstance& joint, const MarkerKinematics& a, const MarkerKinematics& b, double last = 0.0,
+              std::vector<double>* derivatives = nullptr) {
+  JointInput in = input(0.0, a, b, {}, {});
+  in.coordinate = counted(joint, in, last);
   JointForces out{};
   if (derivatives != nullptr) {
     derivatives->assign(12 * 24, 0.0);
@@ -41,7 +50,7 @@ TEST(SpringDamper, PullsTheEndsTogether) {
   const JointInstance joint(
       row(), spring(0, {{"stiffness", 100.0}, {"damping", 2.0}, {"free_length", 0.25}, {"preload", 3.0}}));
   // Along (0.6, 0.8), 0.5 m apart, parting at 0.6 * 1 + 0.8 * 2 = 2.2 m/s: 25 + 4.4 + 3 = 32.4 N.
-  const Applied f = apply(joint, planar_marker(0, 0, 0.3), planar_marker(0.3, 0.4, 1.0, 1.0, 2.0, 5.0), {});
+  const Applied f = apply(joint, planar_marker(0, 0, 0.3), planar_marker(0.3, 0.4, 1.0, 1.0, 2.0, 5.0));
   EXPECT_NEAR(f.wrench[6], -32.4 * 0.6, 1e-13);
   EXPECT_NEAR(f.wrench[7], -32.4 * 0.8, 1e-13);
   EXPECT_NEAR(f.wrench[0], 32.4 * 0.6, 1e-13);
@@ -51,57 +60,43 @@ TEST(SpringDamper, PullsTheEndsTogether) {
 TEST(SpringDamper, HasNoForceWithoutADirection) {
   const JointInstance joint(row(), spring(0, {{"stiffness", 100.0}, {"free_length", 0.25}}));
   const MarkerKinematics a = planar_marker(1, 2, 0);
-  EXPECT_EQ(apply(joint, a, a, {}).wrench, (std::array<double, 12>{}));
-  EXPECT_NEAR(apply(joint, a, a, {}).potential, 0.5 * 100.0 * 0.0625, 1e-13);
+  EXPECT_EQ(apply(joint, a, a).wrench, (std::array<double, 12>{}));
+  EXPECT_NEAR(apply(joint, a, a).potential, 0.5 * 100.0 * 0.0625, 1e-13);
 }
 
 TEST(SpringDamper, TurnsTheFramesTogetherAndCountsTurns) {
   const JointInstance joint(row(),
                             spring(1, {{"stiffness", 5.0}, {"damping", 0.5}, {"free_angle", 0.2}, {"preload", 0.1}}));
   // The last accepted angle is near 2 pi: 0.7 means 2 pi + 0.7.
-  const Applied f = apply(joint, planar_marker(0, 0, 0.3, 0, 0, 1.0), planar_marker(1, 1, 1.0, 0, 0, 3.0), {6.0});
+  const Applied f = apply(joint, planar_marker(0, 0, 0.3, 0, 0, 1.0), planar_marker(1, 1, 1.0, 0, 0, 3.0), 6.0);
   const double torque = 5.0 * (2.0 * M_PI + 0.7 - 0.2) + 0.5 * 2.0 + 0.1;
   EXPECT_NEAR(f.wrench[11], -torque, 1e-12);
   EXPECT_NEAR(f.wrench[5], torque, 1e-12);
   EXPECT_EQ(f.wrench[6], 0.0);
 }
 
-TEST(SpringDamper, RemembersTheAngle) {
-  const JointInstance joint(row(), spring(1, {{"stiffness", 5.0}}));
-  double history = 0.0, channel = 0.0;
-  const MarkerKinematics a = planar_marker(0, 0, 0.0), b = planar_marker(0, 0, 3.0), c = planar_marker(0, 0, -3.0);
-  JointInput in = input(0.0, a, b, {}, {&history, 1});
-  joint.call(&abi::JointTable::initialize, &in, Span<double>(), Span<double>(&history, 1));
-  EXPECT_NEAR(history, 3.0, 1e-15);
-  in.b = &c;
-  joint.call(&abi::JointTable::observe, &in, Span<const double>(), Span<double>(&channel, 1));
-  EXPECT_NEAR(channel, 2.0 * M_PI - 3.0, 1e-14);
-  joint.call(&abi::JointTable::commit, &in, Span<const double>(), Span<double>(&history, 1));
-  EXPECT_NEAR(history, 2.0 * M_PI - 3.0, 1e-14);
-}
-
 TEST(SpringDamper, ForceIsTheSlopeOfWhatItStores) {
   const JointInstance joint(row(), spring(0, {{"stiffness", 100.0}, {"free_length", 0.25}, {"preload", 3.0}}));
   const double step = 1e-6;
   const auto stored = [&](double x) {
-    return apply(joint, planar_marker(0, 0, 0), planar_marker(x, 0.4, 0), {}).potential;
+    return apply(joint, planar_marker(0, 0, 0), planar_marker(x, 0.4, 0)).potential;
   };
   const double slope = (stored(0.3 + step) - stored(0.3 - step)) / (2.0 * step);
-  EXPECT_NEAR(apply(joint, planar_marker(0, 0, 0), planar_marker(0.3, 0.4, 0), {}).wrench[6], -slope, 1e-7);
+  EXPECT_NEAR(apply(joint, planar_marker(0, 0, 0), planar_marker(0.3, 0.4, 0)).wrench[6], -slope, 1e-7);
 }
 
-void expect_derivatives(const JointInstance& joint, const std::vector<double>& history) {
+void expect_derivatives(const JointInstance& joint, double last) {
   const double x[12] = {0.3, -0.2, 0.7, 0.5, 1.1, 2.3, 0.9, 0.4, 1.6, -0.8, 0.3, -1.7};  // a, b: pose, twist
   const auto at = [&](std::size_t moved, double step) {
     double y[12];
     for (std::size_t i = 0; i < 12; ++i) y[i] = x[i] + (i == moved ? step : 0.0);
     return apply(joint, planar_marker(y[0], y[1], y[2], y[3], y[4], y[5]),
-                 planar_marker(y[6], y[7], y[8], y[9], y[10], y[11]), history)
+                 planar_marker(y[6], y[7], y[8], y[9], y[10], y[11]), last)
         .wrench;
   };
   std::vector<double> table;
   apply(joint, planar_marker(x[0], x[1], x[2], x[3], x[4], x[5]), planar_marker(x[6], x[7], x[8], x[9], x[10], x[11]),
-        history, &table);
+        last, &table);
   const std::size_t columns[12] = {0, 1, 5, 12, 13, 17, 6, 7, 11, 18, 19, 23};
   for (std::size_t i = 0; i < 12; ++i) {
     const auto after = at(i, 1e-6), before = at(i, -1e-6);
@@ -115,8 +110,8 @@ TEST(SpringDamper, DerivativesAreThoseOfTheForce) {
   expect_derivatives(
       JointInstance(row(),
                     spring(0, {{"stiffness", 100.0}, {"damping", 7.0}, {"free_length", 0.25}, {"preload", 3.0}})),
-      {});
-  expect_derivatives(JointInstance(row(), spring(1, {{"stiffness", 5.0}, {"damping", 0.5}})), {0.9});
+      0.0);
+  expect_derivatives(JointInstance(row(), spring(1, {{"stiffness", 5.0}, {"damping", 0.5}})), 0.9);
 }
 
 TEST(SpringDamper, RefusesTheFreePositionOfTheOtherKind) {
