@@ -16,7 +16,6 @@ using Eigen::VectorXd;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rank_limit = 1e-10;  // of pivots, and of parts of the null space
-constexpr double balanced = 1e-8;     // of the load
 
 /// Rows of the system, then of the inputs.
 MatrixXd all_rows(const IdealMechanism& mechanism, const Evaluation& e) {
@@ -72,13 +71,12 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
   qr.setThreshold(rank_limit);
   qr.compute(rows);
   const Index rank = qr.rank();
+  if (rank < nv) return Found::unbalanced;
   const MatrixXd q = qr.householderQ();
   const VectorXd permuted = qr.colsPermutation().transpose() * load;
   const VectorXd y =
       qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().transpose().solve(permuted.head(rank));
   VectorXd lambda = q.leftCols(rank) * y;
-  const double size = std::max(load.norm(), (rows.cwiseAbs().transpose() * lambda.cwiseAbs()).norm());
-  if ((rows.transpose() * lambda - load).norm() > balanced * size) return Found::unbalanced;
 
   const Index first_driver = system.layout().first_driver_row(), drivers = rows.rows() - first_driver;
   const MatrixXd null = q.rightCols(rows.rows() - rank);

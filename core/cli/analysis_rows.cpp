@@ -71,7 +71,12 @@ struct Looker {
 
 using Row = std::vector<AnalysisCell>;
 
-void append(Row& row, std::initializer_list<double> values) { row.insert(row.end(), values.begin(), values.end()); }
+/// Zero has no sign.
+template <class Values>
+void append_all(Row& row, const Values& values) {
+  for (const double value : values) row.emplace_back(value + 0.0);
+}
+void append(Row& row, std::initializer_list<double> values) { append_all(row, values); }
 
 /// Coordinate rows of the inputs at a posture: value, speed, acceleration.
 void append_inputs(const IdealMechanism& mechanism, const Station& station, PostureSolver& solver, Turns& turns,
@@ -215,7 +220,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
       for (const WorstCase* bound : {&error->exact, &error->least_squares}) {
         append(row, {bound->dx, bound->dy, bound->dangle, bound->position});
       }
-      if (columns.sensitivity) row.insert(row.end(), error->sensitivity.begin(), error->sensitivity.end());
+      if (columns.sensitivity) append_all(row, error->sensitivity);
     }
   });
   const auto count = std::ranges::count(singular, 1);
@@ -270,7 +275,7 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
     if (!station.demand.given[2]) pose[2] = turns.next(0, pose[2], follows_path(station));
     Row row;
     append(row, {station.time, pose[0], pose[1], pose[2]});
-    row.insert(row.end(), efforts.input.begin(), efforts.input.end());
+    append_all(row, efforts.input);
     for (const std::size_t j : shown) append(row, {efforts.force[j][0], efforts.force[j][1]});
     table.rows.push_back(std::move(row));
   }
