@@ -112,9 +112,20 @@ bool PostureSolver::place_platform(const Demand& demand, Posture& posture) const
   return true;
 }
 
-bool PostureSolver::place_leg(const Part& part, const Demand& demand, Posture& posture, Unreachable& why) const {
+Posture PostureSolver::blank() const {
+  return {std::vector<double>(at(system_.layout().nq())), std::vector<double>(at(system_.layout().nh()))};
+}
+
+bool PostureSolver::place(const Part& part, int elbow, const Demand& demand, Posture& posture) const {
+  Leg leg = *part.leg;
+  leg.elbow = elbow;
+  Unreachable why;
+  return place_leg(part, leg, demand, posture, why);
+}
+
+bool PostureSolver::place_leg(const Part& part, const Leg& leg, const Demand& demand, Posture& posture,
+                              Unreachable& why) const {
   const Model& model = mechanism_.model();
-  const Leg& leg = *part.leg;
   const double turn = demand.pose[2].value - model.markers[at(mechanism_.platform().marker)].angle;
   const LegAngles angles = leg_angles(leg, demand.pose[0].value, demand.pose[1].value, std::cos(turn), std::sin(turn));
   if (!angles.reachable) {
@@ -252,12 +263,7 @@ bool PostureSolver::reach(const std::function<Demand(double)>& way, const Postur
                           Unreachable& why) {
   const Demand last = way(1.0);
   why = {};
-  if (from.q.empty()) {
-    posture.q.assign(at(system_.layout().nq()), 0.0);
-    posture.h.assign(at(system_.layout().nh()), 0.0);
-  } else {
-    posture = from;
-  }
+  posture = from.q.empty() ? blank() : from;
   if (count(last.given) < 3 || !last.inputs.empty()) return follow(whole_task(), way, posture, why);
   for (const Part& part : mechanism_.parts()) {
     if (part.leg) continue;
@@ -267,7 +273,7 @@ bool PostureSolver::reach(const std::function<Demand(double)>& way, const Postur
   }
   place_platform(last, posture);
   for (const Part& part : mechanism_.parts()) {
-    if (part.leg && !place_leg(part, last, posture, why)) return false;
+    if (part.leg && !place_leg(part, *part.leg, last, posture, why)) return false;
   }
   return true;
 }
@@ -299,18 +305,13 @@ bool PostureSolver::settle(const Demand& demand, Posture& posture) {
   return correct(whole_task(), demand, posture, 1e3, 50) == Step::converged;
 }
 
-bool PostureSolver::settle(const Part& part, double t, Posture& posture) {
-  Demand demand;
-  demand.t = t;
+bool PostureSolver::settle(const Part& part, const Demand& demand, Posture& posture) {
+  place_platform(demand, posture);
   return correct(Task{part.bodies, part.rows, false}, demand, posture, 1e3, 50) == Step::converged;
 }
 
 int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unreachable& why) {
-  Posture posture = from;
-  if (from.q.empty()) {
-    posture.q.assign(at(system_.layout().nq()), 0.0);
-    posture.h.assign(at(system_.layout().nh()), 0.0);
-  }
+  Posture posture = from.q.empty() ? blank() : from;
   int legs = 0;
   bool told = false;
   for (const Part& part : mechanism_.parts()) {
@@ -318,7 +319,7 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
     reason.input = part.inputs.empty() ? -1 : part.inputs.front();
     bool reached = false;
     if (part.leg) {
-      reached = place_leg(part, demand, posture, reason);
+      reached = place_leg(part, *part.leg, demand, posture, reason);
     } else if (!from.q.empty()) {
       const FramePose here = frame(from);
       Posture moved = from;

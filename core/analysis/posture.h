@@ -46,8 +46,14 @@ class PostureSolver {
   /// Newton's method from `posture` as it is, of bodies that may be far away, with corrections of least norm. False
   /// when it does not converge.
   bool settle(const Demand& demand, Posture& posture);
-  /// The same for one part, the other bodies staying where they are.
-  bool settle(const Part& part, double t, Posture& posture);
+  /// The same for one part, with the platform at the demanded pose.
+  bool settle(const Part& part, const Demand& demand, Posture& posture);
+  /// Puts the bodies of a part that has a closed form in the mode `elbow`; false when the pose is out of reach.
+  bool place(const Part& part, int elbow, const Demand& demand, Posture& posture) const;
+  /// Puts the platform at a pose that gives x, y and angle; else returns false.
+  bool place_platform(const Demand& demand, Posture& posture) const;
+  /// All bodies at the origin.
+  Posture blank() const;
 
   /// Number of driven legs that reach the pose; `why` tells of the first that does not. Only for x, y and angle given.
   int legs_in_reach(const Demand& demand, const Posture& from, Unreachable& why);
@@ -75,8 +81,7 @@ class PostureSolver {
   enum class Step { converged, too_far, contradiction };
 
   Task whole_task() const;
-  bool place_platform(const Demand& demand, Posture& posture) const;
-  bool place_leg(const Part& part, const Demand& demand, Posture& posture, Unreachable& why) const;
+  bool place_leg(const Part& part, const Leg& leg, const Demand& demand, Posture& posture, Unreachable& why) const;
   bool follow(const Task& task, const std::function<Demand(double)>& way, Posture& posture, Unreachable& why);
   Step correct(const Task& task, const Demand& demand, Posture& posture, double longest, int iterations);
   void assemble(const Task& task, const Demand& demand, const Posture& posture);

@@ -8,6 +8,7 @@
 
 #include "analysis/clearance_error.h"
 #include "analysis/inverse_dynamics.h"
+#include "analysis/play_samples.h"
 #include "analysis/singularity.h"
 #include "base/error.h"
 
@@ -118,7 +119,8 @@ std::string station_words(const Station& station) {
   return text.empty() ? "these inputs" : text;
 }
 
-AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations) {
+AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                      const std::vector<int>& branch_of) {
   AnalysisTable table;
   table.columns = {"time", "x", "y", "angle"};
   for (int i = 0; i < input_count(mechanism); ++i) {
@@ -127,14 +129,17 @@ AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station
     table.columns.push_back(prefix + ".speed");
     table.columns.push_back(prefix + ".acceleration");
   }
+  if (!branch_of.empty()) table.columns.push_back("branch");
   PostureSolver solver(mechanism);
   Turns turns, frame_turns;
-  for (const Station& station : stations) {
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    const Station& station = stations[k];
     FramePose pose = shown_pose(station, solver);
     if (!station.demand.given[2]) pose[2] = frame_turns.next(0, pose[2], follows_path(station));
     Row row;
     append(row, {station.time, pose[0], pose[1], pose[2]});
     append_inputs(mechanism, station, solver, turns, row);
+    if (!branch_of.empty()) row.emplace_back(static_cast<double>(branch_of[k]));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -188,6 +193,21 @@ AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vecto
   return table;
 }
 
+std::vector<double> determinants(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                                 const Components& given, int threads) {
+  if (static_cast<int>(mechanism.platform().inputs.size()) != count(given)) return {};
+  std::vector<double> out(stations.size(), nan);
+  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    Looker looker(mechanism, given);
+    for (std::size_t i = first; i < last; ++i) {
+      if (!stations[i].reachable) continue;
+      const VelocityMap& map = looker.look(stations[i]);
+      if (map.a.rows() == map.a.cols()) out[i] = map.a.determinant();
+    }
+  });
+  return out;
+}
+
 AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                          const ErrorColumns& columns, int threads, std::vector<std::string>& warnings) {
   AnalysisTable table;
@@ -199,6 +219,11 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
     }
     for (int i = 0; i < input_count(mechanism); ++i) {
       table.columns.push_back("driver." + input_name(mechanism, i) + ".sensitivity");
+    }
+  }
+  if (columns.samples > 0) {
+    for (const char* name : {"rms_position", "rms_dangle", "max_position", "max_dangle"}) {
+      table.columns.push_back(std::string("sample_") + name);
     }
   }
   table.rows.resize(stations.size());
@@ -221,6 +246,11 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
         append(row, {bound->dx, bound->dy, bound->dangle, bound->position});
       }
       if (columns.sensitivity) append_all(row, error->sensitivity);
+      if (columns.samples > 0) {
+        // Every row draws its own numbers, whichever thread it falls to.
+        const auto s = sample_play(mechanism, looker.map, columns.samples, columns.seed + 0x9E3779B97F4A7C15u * i);
+        append(row, {s->rms_position, s->rms_dangle, s->max_position, s->max_dangle});
+      }
     }
   });
   const auto count = std::ranges::count(singular, 1);

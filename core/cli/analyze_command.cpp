@@ -1,6 +1,7 @@
 #include "cli/analyze_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <thread>
@@ -8,13 +9,18 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/branches.h"
+#include "analysis/clearance_error.h"
 #include "analysis/mobility.h"
+#include "analysis/singularity.h"
+#include "analysis/workspace.h"
 #include "cli/analysis_rows.h"
 #include "cli/analyze_options.h"
 #include "cli/failure.h"
 #include "cli/load_model.h"
 #include "cli/output_file.h"
 #include "cli/terminal.h"
+#include "report/map_drawing.h"
 
 namespace freeplay {
 namespace {
@@ -40,11 +46,53 @@ class AnalyzeJob {
     find_stations();
     check_reach();
     check_inputs();
+    if (options_.branches) find_branches();
     AnalysisTable table = rows();
     add_summary(table);
     return table;
   }
   const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// The map of a table over a grid of x and y.
+  std::string drawing(const AnalysisTable& table) {
+    const bool flat = on_grid_ && axes_[0].count > 1 && axes_[1].count > 1 && axes_[2].count == 1;
+    if (!flat || must_reach()) {
+      throw Error(Error::Category::usage, "bad-value",
+                  "--svg draws a map: workspace, singularity or error on a grid of x and y with one angle");
+    }
+    const std::string column = wants("error") ? "position" : "condition";
+    const auto place = static_cast<std::size_t>(std::ranges::find(table.columns, column) - table.columns.begin());
+    PositionMap map;
+    map.title = fmt::format("{}: {}", model().name,
+                            wants("error") ? "largest position error by clearance" : "condition number");
+    if (given_[2] && axes_[2].value(0) != 0.0) map.title += fmt::format(", angle {:.6g} rad", axes_[2].value(0));
+    map.quantity = wants("error") ? "position error [um]" : "condition number";
+    const double unit = wants("error") ? 1e6 : 1.0;
+    for (long i = 0; i < axes_[0].count; ++i) map.x.push_back(axes_[0].value(i));
+    for (long j = 0; j < axes_[1].count; ++j) map.y.push_back(axes_[1].value(j));
+    for (std::size_t k = 0; k < stations_.size(); ++k) {
+      const double value = std::get<double>(table.rows[k][place]);
+      map.values.push_back(unit * value);
+      const bool good =
+          stations_[k].reachable && std::isfinite(value) && (wants("error") || value * singular_limit < 1.0);
+      map.points.push_back(!stations_[k].reachable ? MapPoint::unreachable
+                           : good                  ? MapPoint::good
+                                                   : MapPoint::singular);
+    }
+    if (!std::ranges::is_sorted(map.x) || !std::ranges::is_sorted(map.y)) {
+      throw Error(Error::Category::usage, "bad-value", "--svg needs a grid whose x and y grow");
+    }
+    map.determinant = determinants(mechanism_, stations_, given_, thread_count());
+    const auto& path = mechanism_.platform().path;
+    for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
+      const Settings& settings = model().settings;
+      Jet x, y;
+      EvaluationFailure failure;
+      const double t = settings.start + (settings.end - settings.start) * k / 200.0;
+      if (path[0]->evaluate(t, x, failure) && path[1]->evaluate(t, y, failure)) map.path.push_back({x.value, y.value});
+    }
+    return map_svg(map);
+  }
 
  private:
   static Platform platform(Model& model, const AnalyzeOptions& options) {
@@ -182,7 +230,8 @@ class AnalyzeJob {
                   "the grid of an analysis has at most 10^6 points",
                   from_options ? Location{} : Location{model().file, 0, 0});
     }
-    stations_ = on_grid(mechanism_, values, given_, thread_count());
+    axes_ = values;
+    stations_ = on_grid(mechanism_, axes_, given_, thread_count());
     on_grid_ = true;
   }
 
@@ -212,14 +261,33 @@ class AnalyzeJob {
     }
   }
 
+  /// Each station becomes one for every posture that it has.
+  void find_branches() {
+    if (!wants("ik") || (options_.pose.empty() && options_.input.empty())) {
+      throw Error(Error::Category::usage, "bad-value", "--branches is for ik with --pose or --input");
+    }
+    std::vector<Station> all;
+    for (const Station& station : stations_) {
+      int number = 0;
+      for (Posture& posture : all_postures(mechanism_, station.demand)) {
+        all.push_back(station);
+        all.back().posture = std::move(posture);
+        branch_of_.push_back(++number);
+      }
+    }
+    stations_ = std::move(all);
+  }
+
   AnalysisTable rows() {
     const int threads = thread_count();
-    if (wants("ik")) return ik_rows(mechanism_, stations_);
-    if (wants("workspace")) return workspace_rows(mechanism_, stations_, given_, threads);
+    if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_);
+    if (wants("workspace")) return workspace(threads);
     if (wants("singularity")) return singularity_rows(mechanism_, stations_, given_, threads);
     if (wants("error")) {
       ErrorColumns columns;
       columns.sensitivity = options_.sensitivity;
+      if (!options_.samples.empty()) columns.samples = whole_number("--samples", options_.samples, 1);
+      if (!options_.seed.empty()) columns.seed = static_cast<std::uint64_t>(whole_number("--seed", options_.seed, 0));
       if (mechanism_.plays().empty() && mechanism_.input_error() == 0.0) {
         warnings_.push_back("no joint has clearance and no input errs: all errors are 0");
       }
@@ -227,6 +295,42 @@ class AnalyzeJob {
     }
     const double preload = options_.preload.empty() ? 0.0 : preload_of(options_.preload);
     return inverse_dynamics_rows(mechanism_, stations_, preload);
+  }
+
+  AnalysisTable workspace(int threads) {
+    AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads);
+    if (!on_grid_ || !given_[0] || !given_[1] || axes_[2].count != 1) return table;
+    const WorkspaceShape shape = workspace_shape(mechanism_, stations_, axes_);
+    table.summary["area"] = shape.area;
+    table.summary["regions"] = shape.regions;
+    table.summary["holes"] = shape.holes;
+    table.summary["boundary"] = shape.boundary;
+    return table;
+  }
+
+  /// What stands behind the worst position error, where one pose was asked for.
+  Json causes() {
+    PostureSolver solver(mechanism_);
+    VelocityMapper mapper(mechanism_, {true, true, true});
+    VelocityMap map;
+    const Station& station = stations_.front();
+    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map);
+    const auto error = clearance_error(mechanism_, map);
+    if (!error) return nullptr;
+    const Eigen::Vector3d& worst = error->exact.worst;
+    Json shares = Json::object();
+    std::size_t k = 0;
+    for (const Play& play : mechanism_.plays()) {
+      shares[model().joints[static_cast<std::size_t>(play.joint)].name] =
+          json_number(play.radius * error->sensitivity[k++]);
+    }
+    for (const int j : mechanism_.platform().inputs) {
+      const double share = mechanism_.input_error() * error->sensitivity[k++];
+      if (share > 0.0) shares[model().joints[static_cast<std::size_t>(j)].name] = json_number(share);
+    }
+    return {{"displacement", {json_number(worst[0]), json_number(worst[1]), json_number(worst[2])}},
+            {"direction", json_number(std::atan2(worst[1], worst[0]))},
+            {"share", std::move(shares)}};
   }
 
   static double preload_of(const std::string& text) {
@@ -237,7 +341,7 @@ class AnalyzeJob {
     }
   }
 
-  void add_summary(AnalysisTable& table) const {
+  void add_summary(AnalysisTable& table) {
     Json names = Json::array();
     for (const int j : mechanism_.platform().inputs) names.push_back(model().joints[static_cast<std::size_t>(j)].name);
     Json own = {{"frame", model().markers[static_cast<std::size_t>(mechanism_.platform().marker)].name},
@@ -251,6 +355,7 @@ class AnalyzeJob {
     }
     own["points"] = stations_.size();
     own["reachable"] = std::ranges::count(stations_, true, &Station::reachable);
+    if (wants("error") && stations_.size() == 1 && stations_.front().reachable) own["worst"] = causes();
     own.update(table.summary);
     table.summary = std::move(own);
   }
@@ -262,9 +367,25 @@ class AnalyzeJob {
   int freedoms_ = 3;
   Components given_{true, true, true};
   std::vector<Station> stations_;
+  std::vector<int> branch_of_;
+  std::array<GridValues, 3> axes_;
   bool on_grid_ = false;
   std::vector<std::string> warnings_;
 };
+
+/// Options that the kind has no use for.
+void refuse_idle_options(const AnalyzeOptions& options) {
+  const auto only = [&](bool given, const char* option, const char* kind) {
+    if (!given || options.kind == kind) return;
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("{} is for {}, not for {}", option, kind, options.kind));
+  };
+  only(options.sensitivity, "--sensitivity", "error");
+  only(!options.samples.empty(), "--samples", "error");
+  only(!options.seed.empty(), "--seed", "error");
+  only(!options.preload.empty(), "--preload", "inverse-dynamics");
+  only(options.branches, "--branches", "ik");
+}
 
 int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   if (options.kind.empty() || options.model.empty()) {
@@ -274,12 +395,15 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   require_word("kind of analysis", options.kind, {"ik", "workspace", "singularity", "error", "inverse-dynamics"});
   LoadedModel loaded = load_model(options.model, build_options(options.build), common);
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  refuse_idle_options(options);
   AnalysisTable table;
   std::vector<std::string> warnings;
+  std::string drawing;
   try {
     AnalyzeJob job(loaded, options);
     table = job.execute();
     warnings = job.warnings();
+    if (!options.svg.empty()) drawing = job.drawing(table);
   } catch (const Error& error) {
     if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw;
     Diagnostic diagnostic = as_diagnostic(error);
@@ -291,6 +415,7 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   for (const std::string& warning : warnings) {
     print_messages(fmt::format("{}: warning: {}\n", options.model, warning), common.no_color);
   }
+  if (!options.svg.empty()) write_output(options.svg, drawing);
   if (!options.out.empty() || !common.json) write_output(options.out, table.csv());
   if (common.json) print_json(table.json(options.kind));
   return 0;
@@ -312,9 +437,15 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
       ->type_name("INPUTS");
   app->add_option("--elbow", options->elbow, "Working modes of the legs: 1 or -1, or a list")->type_name("S[,S...]");
   app->add_flag("--sensitivity", options->sensitivity, "error: sensitivity to the clearance of each joint");
+  app->add_option("--samples", options->samples, "error: columns of N samples of random play")->type_name("N");
+  app->add_option("--seed", options->seed, "Of the samples (0)")->type_name("S");
+  app->add_flag("--branches", options->branches, "ik: all working modes of a --pose, all assemblies of an --input");
   app->add_option("--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers")
       ->type_name("VALUE");
   app->add_option("--out", options->out, "Write the CSV into a file instead of stdout")
+      ->type_name("FILE")
+      ->check(not_empty());
+  app->add_option("--svg", options->svg, "Draw the map of a grid of x and y into a file")
       ->type_name("FILE")
       ->check(not_empty());
   add_model_options(*app, options->build);
