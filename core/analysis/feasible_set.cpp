@@ -253,7 +253,9 @@ double farthest(const std::function<double(const Vector2d&, Vector2d&)>& support
   const auto piece = [](double left, double right, double a, double b) {
     const double width = right - left, c = std::cos(width), s = std::sin(width);
     const bool inside = b > a * c && a > b * c;
-    const double bound = inside ? std::sqrt(std::max(0.0, a * a + b * b - 2.0 * a * b * c)) / s : std::max(a, b);
+    // Distance of the two support lines' intersection, free of cancellation in narrow pieces.
+    const double half = std::sin(0.5 * width);
+    const double bound = inside ? std::sqrt((a - b) * (a - b) + 4.0 * a * b * half * half) / s : std::max(a, b);
     return Piece{bound, left, right, a, b};
   };
   std::priority_queue<Piece> pieces;
