@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/analyze_command.h"
 #include "cli/check_plugin_command.h"
 #include "cli/compare_command.h"
 #include "cli/convert_command.h"
@@ -53,6 +54,7 @@ int execute(int argc, char** argv, CommonOptions& common) {
       // clang-format off
       add_run_command,
       add_validate_command,
+      add_analyze_command,
       add_compare_command,
       add_show_command,
       add_convert_command,

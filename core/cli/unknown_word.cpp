@@ -15,10 +15,9 @@ namespace {
 
 // One a line, so that the release that brings one takes its line away.
 const std::vector<std::string> later_commands{
-    "analyze",  //
-    "sweep",    //
-    "report",   //
-    "export",   //
+    "sweep",   //
+    "report",  //
+    "export",  //
 };
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,

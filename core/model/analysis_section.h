@@ -1,10 +1,11 @@
-// The section `analysis`, which is checked before any command uses it.
+// The section `analysis`, which is checked whether a command uses it or not.
 #pragma once
 
 #include "model/draft.h"
 
 namespace freeplay {
 
-void check_analysis(Draft& draft, const CheckedValue& section);
+/// Fills Model::analysis; joints and drivers are known.
+void read_analysis(Draft& draft, const CheckedValue& section);
 
 }  // namespace freeplay

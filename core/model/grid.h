@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "model/checked_value.h"
+#include "model/grid_values.h"
 
 namespace freeplay {
 
 inline constexpr long largest_grid = 100'000'000;  ///< points
 
-/// Checks a grid of `dimension`, or of whatever one dimension all its points have. Returns the number of points,
-/// nothing after an error.
-std::optional<long> check_grid(const CheckedValue& value, std::optional<Dimension> dimension);
+/// A grid of whatever dimension, or of `dimension` if that is given. Nothing after an error.
+std::optional<GridValues> read_grid(const CheckedValue& value, std::optional<Dimension> dimension);
 
 }  // namespace freeplay

@@ -139,4 +139,21 @@ LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) 
   return pose;
 }
 
+LegAngles leg_angles(const Leg& leg, double x, double y, double cosine, double sine) {
+  const double px = x + cosine * leg.cx - sine * leg.cy - leg.ax, py = y + sine * leg.cx + cosine * leg.cy - leg.ay;
+  const double squared = px * px + py * py;
+  const double w1 = 2.0 * leg.crank * px, w2 = 2.0 * leg.crank * py;
+  const double w3 = squared + leg.crank * leg.crank - leg.coupler * leg.coupler;
+  const double room = w1 * w1 + w2 * w2 - w3 * w3;
+  LegAngles angles;
+  angles.distance = std::sqrt(squared);
+  angles.reachable = room >= 0.0;
+  if (!angles.reachable) return angles;
+  const double direction = std::atan2(w2, w1) + leg.elbow * std::atan2(std::sqrt(room), w3);
+  angles.crank = direction - leg.crank_direction;
+  angles.coupler =
+      std::atan2(py - leg.crank * std::sin(direction), px - leg.crank * std::cos(direction)) - leg.coupler_direction;
+  return angles;
+}
+
 }  // namespace freeplay

@@ -59,4 +59,15 @@ struct LegPose : CrankPose {
 CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
 LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
 
+/// Angles of the bodies of crank and coupler [rad], principal values, without derivatives. A leg that is just stretched
+/// or folded is in reach.
+struct LegAngles {
+  double crank = 0.0, coupler = 0.0;
+  bool reachable = true;
+  double distance = 0.0;  ///< of A and C [m]
+};
+
+/// `x`, `y` [m]: position of the path's frame; cosine and sine of the angle of the platform's body.
+LegAngles leg_angles(const Leg& leg, double x, double y, double cosine, double sine);
+
 }  // namespace freeplay

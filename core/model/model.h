@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/expression.h"
 #include "component/instances.h"
+#include "model/grid_values.h"
 #include "model/time_table.h"
 
 namespace freeplay {
@@ -164,6 +165,21 @@ struct Settings {
   int assembly_iterations = 50;
 };
 
+/// The section `analysis`; what it does not say is empty.
+struct AnalysisSection {
+  std::optional<Location> frame_location, joints_location, elbow_location, path_location;
+  int marker = 0;                                 ///< the platform, if frame_location is given
+  std::vector<int> joints;                        ///< the inputs, if joints_location is given
+  std::vector<int> elbow;                         ///< one for all inputs, or one each, if elbow_location is given
+  std::array<std::optional<Expression>, 3> path;  ///< x, y [m], angle [rad], if path_location is given
+  std::optional<GridValues> time;                 ///< [s]
+  std::array<std::optional<GridValues>, 3> grid;  ///< x, y [m], angle [rad]
+  std::vector<std::pair<int, double>> clearance;  ///< joint and radius [m], in place of the joint's own
+  double input = 0.0;                             ///< error of each input [rad or m]
+  Location input_location;
+  bool input_is_length = false;  ///< written with a unit of length: for slides only
+};
+
 struct Model {
   std::string file, text, name;  ///< path as given, text byte for byte, name for reports
   Space space = Space::planar;
@@ -180,6 +196,7 @@ struct Model {
   std::vector<OwnGravity> own_gravities;
   std::vector<InputFile> inputs;
   Settings settings;
+  AnalysisSection analysis;
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set, name and text
   std::vector<std::string> ideal;                              ///< joints whose clearance --ideal closes, full names
   Instances instances;                                         ///< keeps joints and laws alive

@@ -174,7 +174,7 @@ class ModelBuilder {
     if (initial_) read_initial(draft_, *initial_);
     if (!read_simulation(draft_, simulation_)) draft_.unsure_columns.emplace_back("frame.");
     sections_read_ = true;
-    if (analysis_) check_analysis(draft_, *analysis_);
+    if (analysis_) read_analysis(draft_, *analysis_);
     if (sweep_) check_sweep(draft_, *sweep_, parameters_);
     if (!draft_.model.bodies.empty() || diagnostics_.has_errors()) return;
     CheckedValue(reading_, document_.root(), nullptr, "").fail("empty-model", "the model has no body that moves");

@@ -19,8 +19,9 @@ void check_axes(const CheckedValue& value, const ParameterScope& parameters, boo
       axis.fail_at_key("unknown-name", "unknown parameter '" + axis.key() + "'",
                        nearest(axis.key(), parameters.names()));
     }
-    const std::optional<long> count = check_grid(axis, dimension_of(parameters.find(axis.key())));
-    if (!count) continue;
+    const std::optional<GridValues> grid = read_grid(axis, dimension_of(parameters.find(axis.key())));
+    if (!grid) continue;
+    const std::optional<long> count = grid->count;
     if (side_by_side && first && *first != *count) {
       axis.fail("wrong-length", "parameters side by side need grids of equal length");
     }

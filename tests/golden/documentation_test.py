@@ -109,6 +109,25 @@ class Documentation(ProgramTest):
         with open(os.path.join(ROOT, "docs", "images", "press.svg"), encoding="utf-8") as file:
             self.assertEqual(self.read("press.svg"), file.read())
 
+    def test_analysis(self):
+        shown = 0
+        for piece in Tutorial("analysis.md").pieces():
+            if piece["kind"] == "sh":
+                printed = ""
+                for line in piece["text"].splitlines():
+                    printed += self.freeplay(*shlex.split(line)[1:])[0]
+            elif piece["kind"] == "":
+                shown += 1
+                for wanted, line in zip(piece["text"].splitlines(), printed.splitlines(), strict=True):
+                    for x, y in zip(wanted.split(","), line.split(","), strict=True):
+                        if NUMBER.fullmatch(x):
+                            self.assertAlmostEqual(float(x), float(y), delta=1e-9 + 1e-6 * abs(float(x)))
+                        else:
+                            self.assertEqual(x, y)
+        self.assertGreater(shown, 4)
+        with open(os.path.join(ROOT, "docs", "images", "4-rrr-error.svg"), encoding="utf-8") as file:
+            self.assertEqual(self.read("map.svg"), file.read())
+
     def test_check_plugin_page(self):
         page = os.path.join("docs", "check-plugin.md")
         self.run_page(page)

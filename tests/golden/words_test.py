@@ -7,7 +7,7 @@ import unittest
 
 from program import PROGRAM, ProgramTest, mechanism
 
-LATER_COMMANDS = ["analyze", "sweep", "report", "export"]
+LATER_COMMANDS = ["sweep", "report", "export"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 

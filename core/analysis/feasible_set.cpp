@@ -1,0 +1,302 @@
+#include "analysis/feasible_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <queue>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace freeplay {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double certainty = 1e-10;       // of the farthest point, relative
+constexpr double regular = 1e-12;         // determinant of three rows of length 1
+constexpr double on_boundary = 1e-11;     // of D, relative
+constexpr double smallest_round = 1e-11;  // of corners, when h is minimised
+
+/// Half widths D of all rows when every generator acts on one row alone: the right sides then fill a box.
+std::optional<VectorXd> box_of(Index rows, const std::vector<Generator>& generators) {
+  VectorXd widths = VectorXd::Zero(rows);
+  for (const Generator& generator : generators) {
+    const double largest = generator.columns.cwiseAbs().maxCoeff();
+    Index own = -1;
+    for (Index r = 0; r < rows; ++r) {
+      if (generator.columns.row(r).cwiseAbs().maxCoeff() <= 1e-14 * largest) continue;
+      if (own >= 0) return std::nullopt;
+      own = r;
+    }
+    if (own >= 0) widths[own] += generator.size * generator.columns.row(own).norm();
+  }
+  return widths;
+}
+
+std::vector<Generator> generators_of(const VectorXd& widths) {
+  std::vector<Generator> out;
+  for (Index r = 0; r < widths.size(); ++r) {
+    Generator generator{MatrixXd::Zero(widths.size(), 1), widths[r]};
+    generator.columns(r, 0) = 1.0;
+    out.push_back(std::move(generator));
+  }
+  return out;
+}
+
+/// h(n) = sum size |columns^T image^T n| and the dX where it is attained.
+class LinearImage {
+ public:
+  LinearImage(const MatrixXd& image, const std::vector<Generator>& generators) {
+    for (const Generator& generator : generators) {
+      Eigen::Matrix<double, 3, 2> columns = Eigen::Matrix<double, 3, 2>::Zero();
+      columns.leftCols(generator.columns.cols()) = generator.size * (image * generator.columns);
+      columns_.push_back(columns);
+    }
+  }
+  double support(const Vector3d& n, Vector3d& at) const {
+    double value = 0.0;
+    at.setZero();
+    for (const auto& columns : columns_) {
+      const Vector2d w = columns.transpose() * n;
+      const double size = std::hypot(w[0], w[1]);
+      value += size;
+      if (size > 0.0) at += columns * (w / size);
+    }
+    return value;
+  }
+
+ private:
+  std::vector<Eigen::Matrix<double, 3, 2>> columns_;
+};
+
+template <class Support>
+WorstCase worst_of(const Support& support) {
+  WorstCase out;
+  Vector3d at;
+  out.dx = support(Vector3d::UnitX(), at);
+  out.dy = support(Vector3d::UnitY(), at);
+  out.dangle = support(Vector3d::UnitZ(), at);
+  Vector2d direction;
+  out.position = farthest(
+      [&](const Vector2d& n, Vector2d& p) {
+        const double value = support({n[0], n[1], 0.0}, at);
+        p = at.head<2>();
+        return value;
+      },
+      direction);
+  support({direction[0], direction[1], 0.0}, out.worst);
+  return out;
+}
+
+/// Vertices of |A_i dX| <= D_i: three rows at their ends, the others within.
+WorstCase worst_vertex(const MatrixXd& a, const VectorXd& widths) {
+  WorstCase out;
+  const Index rows = a.rows();
+  out.multipliers = VectorXd::Zero(rows);
+  const double slack = on_boundary * widths.maxCoeff();
+  Index active[3] = {};
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = i + 1; j < rows; ++j) {
+      for (Index k = j + 1; k < rows; ++k) {
+        Eigen::Matrix3d three;
+        three << a.row(i), a.row(j), a.row(k);
+        const Eigen::PartialPivLU<Eigen::Matrix3d> lu(three);
+        const double scale = three.row(0).norm() * three.row(1).norm() * three.row(2).norm();
+        if (!(std::abs(lu.determinant()) > regular * scale)) continue;
+        const Eigen::Matrix3d inverse = lu.inverse();
+        for (int signs = 0; signs < 4; ++signs) {
+          const Vector3d d(widths[i], (signs & 1) ? -widths[j] : widths[j], (signs & 2) ? -widths[k] : widths[k]);
+          const Vector3d x = inverse * d;
+          bool inside = true;
+          for (Index r = 0; r < rows && inside; ++r) {
+            inside = r == i || r == j || r == k || std::abs(a.row(r).dot(x)) <= widths[r] + slack;
+          }
+          if (!inside) continue;
+          out.dx = std::max(out.dx, std::abs(x[0]));
+          out.dy = std::max(out.dy, std::abs(x[1]));
+          out.dangle = std::max(out.dangle, std::abs(x[2]));
+          if (const double position = std::hypot(x[0], x[1]); position > out.position) {
+            out.position = position;
+            out.worst = x;
+            active[0] = i, active[1] = j, active[2] = k;
+          }
+        }
+      }
+    }
+  }
+  if (!(out.position > 0.0)) return out;
+  Eigen::Matrix3d three;
+  three << a.row(active[0]), a.row(active[1]), a.row(active[2]);
+  const Vector3d n(out.worst[0] / out.position, out.worst[1] / out.position, 0.0);
+  const Vector3d mu = three.transpose().partialPivLu().solve(n);
+  for (int i = 0; i < 3; ++i) out.multipliers[active[i]] = mu[i];
+  return out;
+}
+
+/// min over t of sum size |columns^T (mu_0 + N t)|, N spanning the null space of A^T.
+class Dual {
+ public:
+  Dual(const MatrixXd& a, const std::vector<Generator>& generators) : generators_(generators) {
+    const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    image_ = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal() * svd.matrixU().leftCols(3).transpose();
+    null_ = svd.matrixU().rightCols(a.rows() - 3);
+    for (const Generator& generator : generators) reduced_.push_back(null_.transpose() * generator.columns);
+  }
+
+  double support(const Vector3d& n, Vector3d& at) const {
+    const VectorXd start = image_.transpose() * n;
+    VectorXd t = VectorXd::Zero(null_.cols());
+    double scale = 0.0;
+    for (const Generator& generator : generators_) {
+      scale = std::max(scale, (generator.columns.transpose() * start).norm());
+    }
+    // The kinks are rounded, less and less.
+    for (double round = 0.1; round >= smallest_round; round *= 0.1) {
+      for (int i = 0; i < 30 && improve(start, round * scale, t); ++i) {
+      }
+    }
+    multipliers_ = start + null_ * t;
+    double value = 0.0;
+    VectorXd right = VectorXd::Zero(start.size());
+    for (const Generator& generator : generators_) {
+      const VectorXd w = generator.columns.transpose() * multipliers_;
+      value += generator.size * w.norm();
+      const double rounded = std::hypot(w.norm(), smallest_round * scale);
+      if (rounded > 0.0) right += generator.size * (generator.columns * w) / rounded;
+    }
+    at = image_ * right;
+    return value;
+  }
+  const VectorXd& multipliers() const { return multipliers_; }
+
+ private:
+  double rounded(const VectorXd& start, double round, const VectorXd& t) const {
+    double value = 0.0;
+    const VectorXd mu = start + null_ * t;
+    for (const Generator& generator : generators_) {
+      value += generator.size * std::hypot((generator.columns.transpose() * mu).norm(), round);
+    }
+    return value;
+  }
+
+  // One damped Newton step; false when it no longer pays.
+  bool improve(const VectorXd& start, double round, VectorXd& t) const {
+    const VectorXd mu = start + null_ * t;
+    VectorXd gradient = VectorXd::Zero(t.size());
+    MatrixXd hessian = MatrixXd::Zero(t.size(), t.size());
+    double now = 0.0;
+    for (std::size_t k = 0; k < generators_.size(); ++k) {
+      const VectorXd w = generators_[k].columns.transpose() * mu;
+      const double s = std::hypot(w.norm(), round);
+      if (!(s > 0.0)) continue;
+      now += generators_[k].size * s;
+      const VectorXd direction = reduced_[k] * w;
+      gradient += generators_[k].size / s * direction;
+      hessian += generators_[k].size / s *
+                 (reduced_[k] * reduced_[k].transpose() - direction * direction.transpose() / (s * s));
+    }
+    hessian.diagonal().array() += 1e-14 * hessian.trace() + 1e-300;
+    const VectorXd step = -hessian.ldlt().solve(gradient);
+    const double slope = gradient.dot(step);
+    if (!(slope < -1e-15 * now)) return false;
+    for (double length = 1.0; length > 1e-9; length *= 0.5) {
+      const VectorXd trial = t + length * step;
+      if (rounded(start, round, trial) > now + 1e-4 * length * slope) continue;
+      t = trial;
+      return true;
+    }
+    return false;
+  }
+
+  const std::vector<Generator>& generators_;
+  MatrixXd image_, null_;
+  std::vector<MatrixXd> reduced_;
+  mutable VectorXd multipliers_;
+};
+
+}  // namespace
+
+double farthest(const std::function<double(const Vector2d&, Vector2d&)>& support, Vector2d& direction) {
+  constexpr int first_directions = 8;
+  constexpr long most = 400'000;
+  struct Piece {
+    double bound, left, right, at_left, at_right;
+    bool operator<(const Piece& other) const { return bound < other.bound; }
+  };
+  double best = 0.0;
+  direction = Vector2d::UnitX();
+  const auto look = [&](double angle) {
+    const Vector2d n(std::cos(angle), std::sin(angle));
+    Vector2d p, m = n;
+    const double value = support(n, p);
+    if (value > best) best = value, direction = n;
+    // Going where the farthest point lies never makes h smaller.
+    for (int i = 0; i < 60 && p.norm() > 0.0; ++i) {
+      const Vector2d next = p.normalized();
+      const double reached = support(next, p);
+      if (!(reached > best)) break;
+      best = reached;
+      direction = next;
+      if ((next - m).squaredNorm() < 1e-30) break;
+      m = next;
+    }
+    return value;
+  };
+  // Between two directions h is at most the sinusoid through its values there.
+  const auto piece = [](double left, double right, double a, double b) {
+    const double width = right - left, c = std::cos(width), s = std::sin(width);
+    const bool inside = b > a * c && a > b * c;
+    // Distance of the two support lines' intersection, free of cancellation in narrow pieces.
+    const double half = std::sin(0.5 * width);
+    const double bound = inside ? std::sqrt((a - b) * (a - b) + 4.0 * a * b * half * half) / s : std::max(a, b);
+    return Piece{bound, left, right, a, b};
+  };
+  std::priority_queue<Piece> pieces;
+  double values[first_directions + 1];
+  for (int i = 0; i < first_directions; ++i) values[i] = look(M_PI * i / first_directions);
+  values[first_directions] = values[0];
+  for (int i = 0; i < first_directions; ++i) {
+    pieces.push(piece(M_PI * i / first_directions, M_PI * (i + 1) / first_directions, values[i], values[i + 1]));
+  }
+  for (long i = 0; i < most && !pieces.empty() && pieces.top().bound > best * (1.0 + certainty); ++i) {
+    const Piece top = pieces.top();
+    pieces.pop();
+    const double middle = 0.5 * (top.left + top.right), value = look(middle);
+    pieces.push(piece(top.left, middle, top.at_left, value));
+    pieces.push(piece(middle, top.right, value, top.at_right));
+  }
+  return best;
+}
+
+WorstCase least_squares_worst_case(const MatrixXd& pseudo_inverse, const std::vector<Generator>& generators) {
+  const std::optional<VectorXd> box = box_of(pseudo_inverse.cols(), generators);
+  const LinearImage image(pseudo_inverse, box ? generators_of(*box) : generators);
+  WorstCase out = worst_of([&](const Vector3d& n, Vector3d& at) { return image.support(n, at); });
+  if (out.position > 0.0) {
+    out.multipliers = pseudo_inverse.transpose() * Vector3d(out.worst[0], out.worst[1], 0.0).normalized();
+  } else {
+    out.multipliers = VectorXd::Zero(pseudo_inverse.cols());
+  }
+  return out;
+}
+
+WorstCase exact_worst_case(const MatrixXd& a, const std::vector<Generator>& generators) {
+  if (a.rows() == 3) return least_squares_worst_case(a.inverse(), generators);
+  if (const std::optional<VectorXd> box = box_of(a.rows(), generators)) return worst_vertex(a, *box);
+  const Dual dual(a, generators);
+  WorstCase out = worst_of([&](const Vector3d& n, Vector3d& at) { return dual.support(n, at); });
+  Vector3d at;
+  const Vector2d direction = out.position > 0.0 ? out.worst.head<2>().normalized().eval() : Vector2d::UnitX();
+  dual.support({direction[0], direction[1], 0.0}, at);
+  out.multipliers = dual.multipliers();
+  return out;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,109 @@
+#include "analysis/inverse_dynamics.h"
+
+#include <algorithm>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double rank_limit = 1e-10;  // of pivots, and of parts of the null space
+
+/// Rows of the system, then of the inputs.
+MatrixXd all_rows(const IdealMechanism& mechanism, const Evaluation& e) {
+  const Model& model = mechanism.model();
+  const System& system = mechanism.system();
+  const int nc = system.layout().nc();
+  const auto& inputs = mechanism.platform().inputs;
+  MatrixXd rows = MatrixXd::Zero(nc + static_cast<Index>(inputs.size()), system.layout().nv());
+  std::vector<SparseEntry> entries;
+  system.jacobian_entries(e, entries);
+  for (const SparseEntry& entry : entries) rows(entry.row(), entry.col()) += entry.value();
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    double row[6], bias = 0.0;
+    system.coordinate_row(inputs[i], e, row, bias);
+    const JointElement& joint = model.joints[at(inputs[i])];
+    const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < 3 && bodies[k] != ground; ++c) {
+        rows(nc + static_cast<Index>(i), 3 * bodies[k] + c) += row[3 * k + c];
+      }
+    }
+  }
+  return rows;
+}
+
+/// Moves `lambda` along the columns of `null` to least norm of its rows from `first` on, `count` of them; returns the
+/// directions that are left.
+MatrixXd shift(VectorXd& lambda, const MatrixXd& null, Index first, Index count) {
+  if (null.cols() == 0 || count == 0) return null;
+  const Eigen::JacobiSVD<MatrixXd> svd(null.middleRows(first, count), Eigen::ComputeFullV | Eigen::ComputeFullU);
+  Index rank = 0;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > rank_limit) ++rank;
+  const VectorXd wanted = -(svd.matrixU().leftCols(rank).transpose() * lambda.segment(first, count));
+  lambda += null * (svd.matrixV().leftCols(rank) * wanted.cwiseQuotient(svd.singularValues().head(rank)));
+  return null * svd.matrixV().rightCols(null.cols() - rank);
+}
+
+}  // namespace
+
+InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, const std::vector<double>& v,
+                                              const std::vector<double>& a, double preload, Efforts& out) {
+  const IdealMechanism& mechanism = solver_.mechanism();
+  const System& system = mechanism.system();
+  const Evaluation& e = solver_.evaluate_moving(t, posture, v, term_position | term_force);
+  const int nc = system.layout().nc(), nv = system.layout().nv();
+  const Index inputs = static_cast<Index>(mechanism.platform().inputs.size());
+  const MatrixXd rows = all_rows(mechanism, e);
+  VectorXd load(nv);
+  for (int i = 0; i < nv; ++i) load[i] = e.force[at(i)] - system.mass()[at(i)] * a[at(i)];
+
+  // rows P = Q R, so rows^T lambda = load becomes R^T (Q^T lambda) = P^T load.
+  Eigen::ColPivHouseholderQR<MatrixXd> qr;
+  qr.setThreshold(rank_limit);
+  qr.compute(rows);
+  const Index rank = qr.rank();
+  if (rank < nv) return Found::unbalanced;
+  const MatrixXd q = qr.householderQ();
+  const VectorXd permuted = qr.colsPermutation().transpose() * load;
+  const VectorXd y =
+      qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().transpose().solve(permuted.head(rank));
+  VectorXd lambda = q.leftCols(rank) * y;
+
+  const Index first_driver = system.layout().first_driver_row(), drivers = rows.rows() - first_driver;
+  const MatrixXd null = q.rightCols(rows.rows() - rank);
+  MatrixXd left = shift(lambda, null, first_driver, drivers);
+  if (preload != 0.0) {
+    if (null.cols() == left.cols()) return Found::no_preload;
+    if (null.cols() - left.cols() > 1) return Found::many_preloads;
+    const Eigen::JacobiSVD<MatrixXd> svd(null.middleRows(first_driver, drivers),
+                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
+    VectorXd tension = null * svd.matrixV().col(0) / svd.singularValues()[0];
+    Index largest = 0;
+    tension.tail(inputs).cwiseAbs().maxCoeff(&largest);
+    // The effort is -lambda.
+    if (tension.tail(inputs)[largest] > 0.0) tension = -tension;
+    lambda += preload * tension;
+  }
+  shift(lambda, left, 0, first_driver);
+
+  out.input.clear();
+  for (Index i = 0; i < inputs; ++i) out.input.push_back(-lambda[nc + i]);
+  out.force.clear();
+  for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
+    double wrench[3];
+    system.reaction(j, e, {lambda.data(), at(nc)}, wrench);
+    out.force.push_back({wrench[0], wrench[1]});
+  }
+  return Found::yes;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,48 @@
+// Platform: what an analysis looks at in a model: the frame that moves, the joints that move it, its path.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+
+namespace freeplay {
+
+/// A pose of the platform's frame: x, y [m], angle [rad], world axes.
+using FramePose = std::array<double, 3>;
+/// Which of x, y and angle are meant.
+using Components = std::array<bool, 3>;
+
+inline int count(const Components& components) { return components[0] + components[1] + components[2]; }
+
+/// The platform as the section `analysis` names it. What the section leaves out comes from the only
+/// inverse-kinematics driver; inputs, if there is none, are all joints that a driver prescribes.
+struct Platform {
+  int marker = 0;           ///< index into Model::markers, on a body
+  std::vector<int> inputs;  ///< joints
+  std::vector<int> elbow;   ///< 1 or -1, by input
+  bool elbow_given = false;
+  std::array<std::optional<Expression>, 3> path;  ///< all empty: none is known
+  Location location;                              ///< of what names the frame
+
+  bool has_path() const { return path[0] || path[1] || path[2]; }
+  Components path_components() const { return {path[0].has_value(), path[1].has_value(), path[2].has_value()}; }
+};
+
+/// What the command line puts in place of the section.
+struct PlatformOverrides {
+  std::optional<int> marker;
+  std::vector<int> elbow;  ///< empty, one for all inputs, or one each
+};
+
+/// Throws Error{input}: "missing-key" (no frame is known), "wrong-type" (a joint that cannot be driven, a frame on
+/// ground), "driver-on-clearance", "wrong-length" (modes); Error{usage} "bad-value" for modes of the command line.
+Platform platform_of(const Model& model, const PlatformOverrides& overrides = {});
+
+/// Index into Model::markers of BODY or BODY/FRAME; the marker is made when it is new. Throws Error{usage}
+/// "unknown-name" with the nearest name.
+int frame_marker(Model& model, const std::string& reference);
+
+}  // namespace freeplay

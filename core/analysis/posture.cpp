@@ -1,0 +1,392 @@
+#include "analysis/posture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Lengths relative to the size of the model, angles in rad.
+constexpr double last_correction = 1e-9;  // what is left is its square
+constexpr double residual_limit = 1e-9;
+constexpr double longest_step = 0.3;     // of one piece of a way
+constexpr double longest_bend = 0.05;    // from the tangent at its start to its end
+constexpr double shortest_piece = 1e-6;  // of a way
+constexpr int most_pieces = 2000;
+
+double nearest_turn(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
+
+/// Centre of mass of a body whose point `pin` (body frame) is at (x, y).
+void put(const Body& body, double px, double py, double x, double y, double angle, double* q) {
+  const double dx = body.com[0] - px, dy = body.com[1] - py, c = std::cos(angle), s = std::sin(angle);
+  q[0] = x + c * dx - s * dy;
+  q[1] = y + s * dx + c * dy;
+  q[2] = angle;
+}
+
+}  // namespace
+
+std::string Unreachable::text(const IdealMechanism& mechanism) const {
+  const Model& model = mechanism.model();
+  if (contradiction) return "no posture has these inputs together";
+  if (input < 0) return "the mechanism does not reach it from its start";
+  const std::string& name = model.joints[at(mechanism.platform().inputs[at(input)])].name;
+  if (most <= 0.0) return fmt::format("the leg of '{}' does not reach it from its start", name);
+  return fmt::format(
+      "the leg of '{}' does not reach it: its pins are {:.6g} m apart, the leg reaches from {:.6g} m to "
+      "{:.6g} m",
+      name, distance, least, most);
+}
+
+PostureSolver::PostureSolver(const IdealMechanism& mechanism)
+    : mechanism_(mechanism),
+      system_(mechanism.system()),
+      state_(system_.layout(), 0),
+      e_(system_),
+      column_(mechanism.model().bodies.size()),
+      local_row_(at(system_.layout().nc())) {}
+
+PostureSolver::Task PostureSolver::whole_task() const {
+  Task task;
+  for (int b = 0; b < static_cast<int>(mechanism_.model().bodies.size()); ++b) task.bodies.push_back(b);
+  for (int r = 0; r < system_.layout().nc(); ++r) task.rows.push_back(r);
+  task.whole = true;
+  return task;
+}
+
+bool PostureSolver::load(double t, const Posture& posture, unsigned terms) {
+  state_.t() = t;
+  std::ranges::copy(posture.q, state_.q().begin());
+  if (!posture.h.empty()) std::ranges::copy(posture.h, state_.h().begin());
+  return system_.evaluate(point(state_), terms | term_coordinate, e_);
+}
+
+const Evaluation& PostureSolver::evaluate(double t, const Posture& posture, unsigned terms) {
+  std::ranges::fill(state_.v(), 0.0);
+  return look(t, posture, terms);
+}
+
+const Evaluation& PostureSolver::evaluate_moving(double t, const Posture& posture, const std::vector<double>& v,
+                                                 unsigned terms) {
+  std::ranges::copy(v, state_.v().begin());
+  return look(t, posture, terms);
+}
+
+const Evaluation& PostureSolver::look(double t, const Posture& posture, unsigned terms) {
+  if (!load(t, posture, terms)) {
+    const char* text = e_.fault.kind == Fault::Kind::motion ? e_.fault.motion.text : e_.fault.message.text;
+    throw Error(Error::Category::numerical, "analysis-failed", text);
+  }
+  return e_;
+}
+
+FramePose PostureSolver::frame(const Posture& posture) const {
+  const Model& model = mechanism_.model();
+  const Marker& marker = model.markers[at(mechanism_.platform().marker)];
+  const Body& body = model.bodies[at(marker.body)];
+  const double* q = &posture.q[3 * at(marker.body)];
+  const double dx = marker.position[0] - body.com[0], dy = marker.position[1] - body.com[1];
+  const double c = std::cos(q[2]), s = std::sin(q[2]);
+  return {q[0] + c * dx - s * dy, q[1] + s * dx + c * dy, q[2] + marker.angle};
+}
+
+std::vector<double> PostureSolver::inputs(const Posture& posture) {
+  if (!load(state_.t(), posture, 0)) throw Error(Error::Category::numerical, "analysis-failed", e_.fault.message.text);
+  std::vector<double> out;
+  for (const int j : mechanism_.platform().inputs) out.push_back(e_.coordinate[at(j)]);
+  return out;
+}
+
+bool PostureSolver::place_platform(const Demand& demand, Posture& posture) const {
+  if (count(demand.given) < 3) return false;
+  const Model& model = mechanism_.model();
+  const Marker& marker = model.markers[at(mechanism_.platform().marker)];
+  put(model.bodies[at(marker.body)], marker.position[0], marker.position[1], demand.pose[0].value, demand.pose[1].value,
+      demand.pose[2].value - marker.angle, &posture.q[3 * at(marker.body)]);
+  return true;
+}
+
+Posture PostureSolver::blank() const {
+  return {std::vector<double>(at(system_.layout().nq())), std::vector<double>(at(system_.layout().nh()))};
+}
+
+bool PostureSolver::place(const Part& part, int elbow, const Demand& demand, Posture& posture) const {
+  Leg leg = *part.leg;
+  leg.elbow = elbow;
+  Unreachable why;
+  return place_leg(part, leg, demand, posture, why);
+}
+
+bool PostureSolver::place_leg(const Part& part, const Leg& leg, const Demand& demand, Posture& posture,
+                              Unreachable& why) const {
+  const Model& model = mechanism_.model();
+  const double turn = demand.pose[2].value - model.markers[at(mechanism_.platform().marker)].angle;
+  const LegAngles angles = leg_angles(leg, demand.pose[0].value, demand.pose[1].value, std::cos(turn), std::sin(turn));
+  if (!angles.reachable) {
+    why = {part.inputs[0], angles.distance, std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler, false};
+    return false;
+  }
+  put(model.bodies[at(leg.crank_body)], leg.crank_pin_x, leg.crank_pin_y, leg.ax, leg.ay, angles.crank,
+      &posture.q[3 * at(leg.crank_body)]);
+  const double direction = angles.crank + leg.crank_direction;
+  put(model.bodies[at(leg.coupler_body)], leg.coupler_pin_x, leg.coupler_pin_y,
+      leg.ax + leg.crank * std::cos(direction), leg.ay + leg.crank * std::sin(direction), angles.coupler,
+      &posture.q[3 * at(leg.coupler_body)]);
+  return true;
+}
+
+// Rows and -residual of the task at a posture.
+void PostureSolver::assemble(const Task& task, const Demand& demand, const Posture& posture) {
+  const Model& model = mechanism_.model();
+  const Platform& platform = mechanism_.platform();
+  const auto held = std::ranges::count_if(demand.inputs, [](const Jet& input) { return !std::isnan(input.value); });
+  const int extra = task.whole ? count(demand.given) + static_cast<int>(held) : 0;
+  const int rows = static_cast<int>(task.rows.size());
+  matrix_.setZero(rows + extra, 3 * static_cast<Eigen::Index>(task.bodies.size()));
+  right_.setZero(rows + extra);
+  std::ranges::fill(column_, -1);
+  std::ranges::fill(local_row_, -1);
+  for (std::size_t i = 0; i < task.bodies.size(); ++i) column_[at(task.bodies[i])] = static_cast<int>(3 * i);
+  for (int i = 0; i < rows; ++i) {
+    local_row_[at(task.rows[at(i)])] = i;
+    right_[i] = -e_.phi[at(task.rows[at(i)])];
+  }
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    const int column = column_[at(block.body)];
+    if (column < 0) continue;
+    for (int r = 0; r < block.rows; ++r) {
+      const int row = local_row_[at(block.row + r)];
+      if (row < 0) continue;
+      for (int c = 0; c < 3; ++c) matrix_(row, column + c) += e_.jacobian[at(block.offset + 3 * r + c)];
+    }
+  }
+  if (!task.whole) return;
+  int row = rows;
+  const FramePose here = frame(posture);
+  const planar::Arm& arm = e_.arms[at(platform.marker)];
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!demand.given[i]) continue;
+    double g[6] = {}, entries[3];
+    g[planar::components[i]] = 1.0;
+    planar::body_row(g, arm, entries);
+    for (int c = 0; c < 3; ++c) matrix_(row, 3 * mechanism_.platform_body() + c) = entries[c];
+    const double gap = demand.pose[i].value - here[i];
+    right_[row++] = i == 2 ? nearest_turn(gap) : gap;
+  }
+  for (std::size_t i = 0; i < demand.inputs.size(); ++i) {
+    if (std::isnan(demand.inputs[i].value)) continue;
+    const int j = platform.inputs[i];
+    double entries[6], bias = 0.0;
+    system_.coordinate_row(j, e_, entries, bias);
+    const JointElement& joint = model.joints[at(j)];
+    const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < 3 && bodies[k] != ground; ++c) matrix_(row, 3 * bodies[k] + c) += entries[3 * k + c];
+    }
+    const double gap = demand.inputs[i].value - e_.coordinate[at(j)];
+    right_[row++] = mechanism_.is_angle(static_cast<int>(i)) ? nearest_turn(gap) : gap;
+  }
+}
+
+// Newton's method. The first step follows the tangent; the others together measure how far the way bends from it.
+PostureSolver::Step PostureSolver::correct(const Task& task, const Demand& demand, Posture& posture, double longest,
+                                           int iterations) {
+  const double size = system_.size();
+  double bend = 0.0;
+  for (int i = 0; i < iterations; ++i) {
+    std::ranges::fill(state_.v(), 0.0);
+    if (!load(demand.t, posture, term_position)) return Step::too_far;
+    assemble(task, demand, posture);
+    if (right_.size() == 0) return Step::converged;
+    solver_.compute(matrix_);
+    const Eigen::VectorXd step = solver_.solve(right_);
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < step.size(); ++k) {
+      const double change = std::abs(step[k]) / (k % 3 == 2 ? 1.0 : size);
+      if (!(change <= largest)) largest = change;
+    }
+    if (i == 0 ? !(largest <= longest) : !((bend += largest) <= longest * longest_bend / longest_step)) {
+      return Step::too_far;
+    }
+    for (std::size_t b = 0; b < task.bodies.size(); ++b) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        posture.q[3 * at(task.bodies[b]) + c] += step[static_cast<Eigen::Index>(3 * b + c)];
+      }
+    }
+    if (largest > last_correction) continue;
+    if (!load(demand.t, posture, term_position)) return Step::too_far;
+    assemble(task, demand, posture);
+    return right_.lpNorm<Eigen::Infinity>() <= residual_limit * std::max(size, 1.0) ? Step::converged
+                                                                                    : Step::contradiction;
+  }
+  return Step::too_far;
+}
+
+void PostureSolver::count_turns(Posture& posture) const {
+  for (int j = 0; j < static_cast<int>(mechanism_.model().joints.size()); ++j) {
+    if (const int turn = system_.layout().turn(j); turn >= 0) posture.h[at(turn)] = e_.coordinate[at(j)];
+  }
+}
+
+bool PostureSolver::follow(const Task& task, const std::function<Demand(double)>& way, Posture& posture,
+                           Unreachable& why) {
+  double done = 0.0, piece = 1.0;
+  for (int pieces = 0; done < 1.0; ++pieces) {
+    if (pieces == most_pieces) return false;
+    const double next = done + piece >= 1.0 - 1e-12 ? 1.0 : done + piece;
+    Posture trial = posture;
+    const Demand demand = way(next);
+    if (!task.whole) place_platform(demand, trial);
+    const Step step = correct(task, demand, trial, longest_step, 12);
+    if (step == Step::converged) {
+      posture = std::move(trial);
+      if (!posture.h.empty()) count_turns(posture);
+      done = next;
+      piece *= 2.0;
+      continue;
+    }
+    piece *= 0.5;
+    if (piece >= shortest_piece) continue;
+    why.contradiction = step == Step::contradiction && !demand.inputs.empty();
+    return false;
+  }
+  return true;
+}
+
+bool PostureSolver::reach(const std::function<Demand(double)>& way, const Posture& from, Posture& posture,
+                          Unreachable& why) {
+  const Demand last = way(1.0);
+  why = {};
+  posture = from.q.empty() ? blank() : from;
+  if (count(last.given) < 3 || !last.inputs.empty()) return follow(whole_task(), way, posture, why);
+  for (const Part& part : mechanism_.parts()) {
+    if (part.leg) continue;
+    why = {};
+    why.input = part.inputs.empty() ? -1 : part.inputs.front();
+    if (!follow(Task{part.bodies, part.rows, false}, way, posture, why)) return false;
+  }
+  place_platform(last, posture);
+  for (const Part& part : mechanism_.parts()) {
+    if (part.leg && !place_leg(part, *part.leg, last, posture, why)) return false;
+  }
+  return true;
+}
+
+bool PostureSolver::reach(const Demand& demand, const Posture& from, Posture& posture, Unreachable& why) {
+  if (from.q.empty()) return reach([&](double) { return demand; }, from, posture, why);
+  const FramePose here = frame(from);
+  std::vector<double> inputs_here;
+  if (!demand.inputs.empty()) inputs_here = inputs(from);
+  const auto between = [](const Jet& end, double start, bool turns, double s) {
+    const double gap = end.value - start;
+    Jet out = end;
+    if (s < 1.0) out.value = start + s * (turns ? nearest_turn(gap) : gap);
+    return out;
+  };
+  return reach(
+      [&](double s) {
+        Demand part = demand;
+        for (std::size_t i = 0; i < 3; ++i) part.pose[i] = between(demand.pose[i], here[i], i == 2, s);
+        for (std::size_t i = 0; i < part.inputs.size(); ++i) {
+          part.inputs[i] = between(demand.inputs[i], inputs_here[i], mechanism_.is_angle(static_cast<int>(i)), s);
+        }
+        return part;
+      },
+      from, posture, why);
+}
+
+bool PostureSolver::settle(const Demand& demand, Posture& posture) {
+  return correct(whole_task(), demand, posture, 1e3, 50) == Step::converged;
+}
+
+bool PostureSolver::settle(const Part& part, const Demand& demand, Posture& posture) {
+  place_platform(demand, posture);
+  return correct(Task{part.bodies, part.rows, false}, demand, posture, 1e3, 50) == Step::converged;
+}
+
+int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unreachable& why) {
+  Posture posture = from.q.empty() ? blank() : from;
+  int legs = 0;
+  bool told = false;
+  for (const Part& part : mechanism_.parts()) {
+    Unreachable reason;
+    reason.input = part.inputs.empty() ? -1 : part.inputs.front();
+    bool reached = false;
+    if (part.leg) {
+      reached = place_leg(part, *part.leg, demand, posture, reason);
+    } else if (!from.q.empty()) {
+      const FramePose here = frame(from);
+      Posture moved = from;
+      reached = follow(
+          Task{part.bodies, part.rows, false},
+          [&](double s) {
+            Demand share = demand;
+            for (std::size_t i = 0; i < 3; ++i) {
+              const double gap = demand.pose[i].value - here[i];
+              share.pose[i].value = here[i] + s * (i == 2 ? nearest_turn(gap) : gap);
+            }
+            return share;
+          },
+          moved, reason);
+    }
+    legs += reached ? static_cast<int>(part.inputs.size()) : 0;
+    if (!reached && !told) {
+      why = reason;
+      told = true;
+    }
+  }
+  return legs;
+}
+
+bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vector<double>& v,
+                          std::vector<double>& a) {
+  const Task task = whole_task();
+  const Platform& platform = mechanism_.platform();
+  v.assign(posture.q.size(), 0.0);
+  a.assign(posture.q.size(), 0.0);
+  for (const bool speeds : {true, false}) {
+    std::ranges::copy(v, state_.v().begin());
+    if (!load(demand.t, posture, term_position | term_velocity | term_acceleration)) return false;
+    assemble(task, demand, posture);
+    if (speeds) {
+      solver_.compute(matrix_);
+      solver_.setThreshold(1e-10);
+      if (solver_.rank() < matrix_.cols()) return false;
+    }
+    for (int r = 0; r < system_.layout().nc(); ++r) right_[r] = speeds ? e_.nu[at(r)] : e_.gamma[at(r)];
+    int row = system_.layout().nc();
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!demand.given[i]) continue;
+      double g[6] = {};
+      g[planar::components[i]] = 1.0;
+      right_[row++] = speeds ? demand.pose[i].rate
+                             : demand.pose[i].acceleration - planar::velocity_product(g, e_.arms[at(platform.marker)]);
+    }
+    for (std::size_t i = 0; i < demand.inputs.size(); ++i) {
+      if (std::isnan(demand.inputs[i].value)) continue;
+      double entries[6], bias = 0.0;
+      system_.coordinate_row(platform.inputs[i], e_, entries, bias);
+      right_[row++] = speeds ? demand.inputs[i].rate : demand.inputs[i].acceleration - bias;
+    }
+    const Eigen::VectorXd solution = solver_.solve(right_);
+    std::copy_n(solution.data(), solution.size(), (speeds ? v : a).begin());
+  }
+  return true;
+}
+
+void close_joints(const IdealMechanism& mechanism, double t, Posture& posture) {
+  PostureSolver solver(mechanism);
+  Demand demand;
+  demand.t = t;
+  if (solver.settle(demand, posture)) return;
+  throw Error(Error::Category::input, "assembly-failed",
+              "the mechanism cannot be put together with its clearances closed", mechanism.platform().location);
+}
+
+}  // namespace freeplay

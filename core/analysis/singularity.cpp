@@ -1,0 +1,29 @@
+#include "analysis/singularity.h"
+
+#include <limits>
+
+namespace freeplay {
+
+const char* word(SingularityKind kind) {
+  constexpr const char* words[] = {"none", "direct", "inverse", "both"};
+  return words[static_cast<int>(kind)];
+}
+
+Singularity singularity_of(const VelocityMap& map, const Components& kept, double length) {
+  Eigen::MatrixXd a = map.a;
+  if (kept[2]) a.col(a.cols() - 1) /= length;
+  Singularity out;
+  out.inverse_min = map.inverse_min;
+  if (a.rows() >= a.cols() && a.cols() > 0) {
+    const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+    out.sigma_min = sigma[sigma.size() - 1];
+    out.sigma_max = sigma[0];
+    out.manipulability = sigma.prod();
+  }
+  out.condition = out.sigma_min > 0.0 ? out.sigma_max / out.sigma_min : std::numeric_limits<double>::infinity();
+  const bool direct = out.sigma_min < singular_limit, inverse = out.inverse_min < singular_limit;
+  out.kind = static_cast<SingularityKind>((direct ? 1 : 0) + (inverse ? 2 : 0));
+  return out;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,189 @@
+#include "analysis/station.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <exception>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Demand path_demand(IdealMechanism& mechanism, double t) {
+  const Platform& platform = mechanism.platform();
+  Demand demand;
+  demand.t = t;
+  if (!platform.has_path()) {
+    demand.inputs = mechanism.driven_inputs(t);
+    return demand;
+  }
+  demand.given = platform.path_components();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EvaluationFailure failure;
+    if (!platform.path[i] || platform.path[i]->evaluate(t, demand.pose[i], failure)) continue;
+    throw Error(Error::Category::numerical, failure.id,
+                fmt::format("the path has no value at t = {} s: {}", t, failure.reason), platform.location);
+  }
+  return demand;
+}
+
+/// Reaches points of a grid from their neighbours.
+class GridFlood {
+ public:
+  GridFlood(IdealMechanism& mechanism, const std::array<long, 3>& counts, std::vector<Station>& stations)
+      : solver_(mechanism), start_(mechanism.start()), counts_(counts), stations_(stations) {}
+
+  void run() {
+    // From the start to the point next to it that can be reached; further points only if all nearer ones fail.
+    std::vector<std::size_t> order(stations_.size());
+    const FramePose here = solver_.frame(start_);
+    std::vector<double> distance(stations_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      order[i] = i;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double gap = stations_[i].demand.given[k] ? stations_[i].demand.pose[k].value - here[k] : 0.0;
+        distance[i] += gap * gap;
+      }
+    }
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return distance[i]; });
+    constexpr std::size_t most_attempts = 200;
+    for (std::size_t i = 0; i < std::min(order.size(), most_attempts) && open_.empty(); ++i) reach(order[i], start_);
+    while (!open_.empty()) {
+      const std::size_t from = open_.front();
+      open_.pop_front();
+      for_each_neighbour(from, [&](std::size_t to) {
+        if (!stations_[to].reachable) reach(to, stations_[from].posture);
+      });
+    }
+  }
+
+ private:
+  void reach(std::size_t index, const Posture& from) {
+    Station& station = stations_[index];
+    station.reachable = solver_.reach(station.demand, from, station.posture, station.why);
+    if (station.reachable) open_.push_back(index);
+  }
+  template <class Visit>
+  void for_each_neighbour(std::size_t index, const Visit& visit) {
+    const long i = static_cast<long>(index);
+    const long strides[3] = {counts_[1] * counts_[2], counts_[2], 1};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const long place = i / strides[k] % counts_[k];
+      if (place > 0) visit(static_cast<std::size_t>(i - strides[k]));
+      if (place + 1 < counts_[k]) visit(static_cast<std::size_t>(i + strides[k]));
+    }
+  }
+
+  PostureSolver solver_;
+  Posture start_;
+  std::array<long, 3> counts_;
+  std::vector<Station>& stations_;
+  std::deque<std::size_t> open_;
+};
+
+}  // namespace
+
+Components components_to_give(int freedoms, const Components& given, const std::string& what, const Location& place) {
+  Components out = given;
+  if (freedoms >= 3) out[2] = true;
+  const int wanted = std::min(freedoms, 3);
+  if (count(out) == wanted) return out;
+  const bool in_file = !place.file.empty();
+  const std::string needs =
+      wanted == 3 ? "x and y, and may give the angle" : fmt::format("{} of x, y and angle", wanted);
+  throw Error(in_file ? Error::Category::input : Error::Category::usage,
+              in_file ? (count(out) < wanted ? "ik-underdetermined" : "ik-unreachable") : "bad-value",
+              fmt::format("{} gives {} of x, y and angle, but the mechanism leaves its frame {} freedom{}", what,
+                          count(given), freedoms, freedoms == 1 ? "" : "s"),
+              place, fmt::format("it must give {}", needs));
+}
+
+std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Demand>& demands) {
+  PostureSolver solver(mechanism);
+  std::vector<Station> stations;
+  for (const Demand& demand : demands) {
+    Station& station = stations.emplace_back();
+    station.demand = demand;
+    const bool direct = mechanism.closed_form() && demand.inputs.empty() && count(demand.given) == 3;
+    station.reachable = solver.reach(demand, direct ? Posture{} : mechanism.start(), station.posture, station.why);
+  }
+  return stations;
+}
+
+std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times) {
+  PostureSolver solver(mechanism);
+  const bool direct =
+      mechanism.closed_form() && mechanism.platform().has_path() && count(mechanism.platform().path_components()) == 3;
+  std::vector<Station> stations;
+  double last = mechanism.model().settings.start;
+  Posture from = direct ? Posture{} : mechanism.start();
+  for (long k = 0; k < times.count; ++k) {
+    Station& station = stations.emplace_back();
+    station.time = times.value(k);
+    station.demand = path_demand(mechanism, station.time);
+    const auto way = [&](double s) {
+      return direct || s == 1.0 ? station.demand : path_demand(mechanism, last + s * (station.time - last));
+    };
+    station.reachable = solver.reach(way, from, station.posture, station.why);
+    if (direct || !station.reachable) continue;
+    from = station.posture;
+    last = station.time;
+  }
+  return stations;
+}
+
+std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridValues, 3>& axes, const Components& given,
+                             int threads) {
+  const std::array<long, 3> counts{axes[0].count, axes[1].count, axes[2].count};
+  std::vector<Station> stations(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]));
+  std::size_t next = 0;
+  for (long i = 0; i < counts[0]; ++i) {
+    for (long j = 0; j < counts[1]; ++j) {
+      for (long k = 0; k < counts[2]; ++k) {
+        Demand& demand = stations[next++].demand;
+        demand.t = mechanism.model().settings.start;
+        demand.given = given;
+        const double values[3] = {axes[0].value(i), axes[1].value(j), axes[2].value(k)};
+        for (std::size_t c = 0; c < 3; ++c) demand.pose[c] = Jet::constant(given[c] ? values[c] : 0.0);
+      }
+    }
+  }
+  if (!mechanism.closed_form() || count(given) < 3) {
+    GridFlood(mechanism, counts, stations).run();
+    return stations;
+  }
+  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    PostureSolver solver(mechanism);
+    for (std::size_t i = first; i < last; ++i) {
+      stations[i].reachable = solver.reach(stations[i].demand, {}, stations[i].posture, stations[i].why);
+    }
+  });
+  return stations;
+}
+
+void in_parallel(std::size_t count, int threads, const std::function<void(int, std::size_t, std::size_t)>& work) {
+  const std::size_t pieces = std::clamp<std::size_t>(at(std::max(threads, 1)), 1, std::max<std::size_t>(count, 1));
+  std::vector<std::exception_ptr> failures(pieces);
+  const auto run = [&](std::size_t piece) {
+    try {
+      work(static_cast<int>(piece), count * piece / pieces, count * (piece + 1) / pieces);
+    } catch (...) {
+      failures[piece] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> others;
+  for (std::size_t piece = 1; piece < pieces; ++piece) others.emplace_back(run, piece);
+  run(0);
+  for (std::thread& other : others) other.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+}  // namespace freeplay

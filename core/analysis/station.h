@@ -1,0 +1,42 @@
+// Station: one pose, instant or set of inputs that an analysis looks at, and the posture there.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "analysis/posture.h"
+#include "model/grid_values.h"
+
+namespace freeplay {
+
+struct Station {
+  double time = std::numeric_limits<double>::quiet_NaN();  ///< on a path [s]; NaN elsewhere
+  Demand demand;
+  bool reachable = false;
+  Unreachable why;
+  Posture posture;  ///< where it is reachable
+};
+
+/// The components of a pose that are to be given: those of `given`, and the angle where the mechanism has three
+/// freedoms (it is 0 then). Throws Error{usage} "bad-value", or Error{input} "ik-underdetermined" at `place` if it
+/// names a file: the mechanism leaves its frame more or fewer freedoms.
+Components components_to_give(int freedoms, const Components& given, const std::string& what, const Location& place);
+
+/// Each reached from the start by a straight way.
+std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Demand>& demands);
+
+/// Along the path of Platform::path, or, where there is none, along what drivers prescribe for the inputs; from the
+/// start time on. Throws Error{numerical} "bad-expression" where the path has no value.
+std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times);
+
+/// x slowest, then y, then angle. Where all has a closed form every point stands by itself; else points are reached
+/// from their neighbours, beginning next to the start. The result does not depend on `threads`.
+std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridValues, 3>& axes, const Components& given,
+                             int threads);
+
+/// Calls work(worker, first, last) for pieces of 0 .. count, `threads` at a time, `worker` being the number of the
+/// piece. Rethrows the first exception by piece.
+void in_parallel(std::size_t count, int threads, const std::function<void(int, std::size_t, std::size_t)>& work);
+
+}  // namespace freeplay

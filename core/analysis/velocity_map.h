@@ -1,0 +1,76 @@
+// VelocityMap: A dX = B dtheta + C delta, what ties the platform to its inputs and to the play of its joints.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "analysis/ideal_mechanism.h"
+
+namespace freeplay {
+
+/// To first order, for small changes from a posture:
+///   A dX = B dtheta + C delta
+/// dX: the kept ones of dx, dy [m] and dangle [rad] of the platform's frame. dtheta: by input [rad or m]. delta: by
+/// play, 2 numbers, journal centre minus bearing centre [m], world axes. All other coordinates are eliminated part by
+/// part by left null vectors of their columns of the constraint Jacobian, so a row belongs to one part. Rows are scaled
+/// to unit length of their part in (dx, dy): for a leg, A holds the direction u of its passive link, from the input
+/// towards the platform, and its moment about the frame (Gosselin and Angeles 1990). Where a part has as many rows as
+/// inputs, more than one, each row belongs to one input; where it has another number, its rows are orthonormal in
+/// (dx, dy, L dangle). Of a single kept component, A and B (over the crank's length) have length 1 together. Rows that
+/// only play can violate (redundant joints) have A = B = 0.
+struct VelocityMap {
+  Eigen::MatrixXd a;         ///< rows x kept components
+  Eigen::MatrixXd b;         ///< rows x inputs
+  Eigen::MatrixXd c;         ///< rows x 2 plays
+  std::vector<int> part;     ///< by row: place in IdealMechanism::parts(), -1 where parts hang together
+  double inverse_min = 0.0;  ///< smallest singular value of B of any part over crank lengths
+};
+
+/// Fills maps again and again. Not thread-safe: one for each thread.
+class VelocityMapper {
+ public:
+  /// `kept`: components of the pose that dX holds. What is not kept is eliminated as well.
+  VelocityMapper(const IdealMechanism& mechanism, const Components& kept);
+
+  /// `e`: the mechanism's system evaluated at a posture (term_position | term_coordinate).
+  void map(const Evaluation& e, VelocityMap& out);
+
+ private:
+  struct Fill {
+    int block;       // of System::jacobian_blocks(), -1: an input
+    int from, rows;  // rows of the block
+    int row;         // first row in the group
+    int body;
+  };
+  struct Group {
+    std::vector<int> parts, inputs, plays;
+    std::vector<Fill> fills;
+    std::vector<int> play_rows;  // by play: first row of its joint in the group
+    int rows = 0, columns = 0;
+    Eigen::MatrixXd passive, right;
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    Eigen::VectorXd work;
+  };
+
+  void make_group(std::vector<int> parts);
+  void eliminate(Group& group, const Evaluation& e);
+  Eigen::Index take(Group& group, const Evaluation& e, Eigen::Index first, VelocityMap& out);
+  void scale_single(const Group& group, const Evaluation& e, Eigen::Ref<Eigen::MatrixXd> row) const;
+  void scale_several(const Group& group, Eigen::Ref<Eigen::MatrixXd> rows) const;
+  double towards_platform(const Group& group, const Evaluation& e, double x, double y) const;
+  double smallest_input(const Group& group, const Eigen::Ref<const Eigen::MatrixXd>& rows) const;
+  void put(Group& group, int row, int body, const double* entries, const Evaluation& e);
+
+  const IdealMechanism& mechanism_;
+  const System& system_;
+  std::array<int, 3> place_{};  // of each component among the kept ones, or -1 - its place among the eliminated
+  int kept_ = 0, eliminated_ = 0;
+  std::vector<Group> groups_;
+  std::vector<int> column_;  // by body: first column in its group
+};
+
+}  // namespace freeplay

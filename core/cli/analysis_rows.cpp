@@ -1,0 +1,315 @@
+#include "cli/analysis_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "analysis/clearance_error.h"
+#include "analysis/inverse_dynamics.h"
+#include "analysis/play_samples.h"
+#include "analysis/singularity.h"
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+const std::string& input_name(const IdealMechanism& mechanism, int input) {
+  return mechanism.model().joints[at(mechanism.platform().inputs[at(input)])].name;
+}
+
+int input_count(const IdealMechanism& mechanism) { return static_cast<int>(mechanism.platform().inputs.size()); }
+
+/// x, y, angle: as given, or where the frame is then.
+FramePose shown_pose(const Station& station, const PostureSolver& solver) {
+  FramePose pose{nan, nan, nan};
+  if (station.reachable) {
+    pose = solver.frame(station.posture);
+    pose[2] = std::remainder(pose[2], 2.0 * M_PI);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (station.demand.given[i]) pose[i] = station.demand.pose[i].value;
+  }
+  return pose;
+}
+
+/// Counts angles on from the row before, where rows follow a path.
+class Turns {
+ public:
+  double next(std::size_t column, double angle, bool follows) {
+    if (last_.size() <= column) last_.resize(column + 1, nan);
+    if (follows && !std::isnan(last_[column])) angle += 2.0 * M_PI * std::round((last_[column] - angle) / (2.0 * M_PI));
+    return last_[column] = angle;
+  }
+
+ private:
+  std::vector<double> last_;
+};
+
+/// The first coordinate of an angle lies in (-pi, pi].
+double principal(double angle) {
+  const double rest = std::remainder(angle, 2.0 * M_PI);
+  return rest <= -M_PI ? rest + 2.0 * M_PI : rest;
+}
+
+bool follows_path(const Station& station) { return !std::isnan(station.time); }
+
+/// What a thread needs to look at postures.
+struct Looker {
+  Looker(const IdealMechanism& mechanism, const Components& kept) : solver(mechanism), mapper(mechanism, kept) {}
+  const VelocityMap& look(const Station& station) {
+    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map);
+    return map;
+  }
+  PostureSolver solver;
+  VelocityMapper mapper;
+  VelocityMap map;
+};
+
+using Row = std::vector<AnalysisCell>;
+
+/// Zero has no sign.
+template <class Values>
+void append_all(Row& row, const Values& values) {
+  for (const double value : values) row.emplace_back(value + 0.0);
+}
+void append(Row& row, std::initializer_list<double> values) { append_all(row, values); }
+
+/// Coordinate rows of the inputs at a posture: value, speed, acceleration.
+void append_inputs(const IdealMechanism& mechanism, const Station& station, PostureSolver& solver, Turns& turns,
+                   Row& row) {
+  std::vector<double> v(station.posture.q.size(), 0.0), a = v;
+  const bool moves = follows_path(station);
+  const bool known = !moves || solver.rates(station.demand, station.posture, v, a);
+  const Evaluation& e = solver.evaluate_moving(station.demand.t, station.posture, v, term_velocity);
+  const Model& model = mechanism.model();
+  for (int i = 0; i < input_count(mechanism); ++i) {
+    const int j = mechanism.platform().inputs[at(i)];
+    const JointElement& joint = model.joints[at(j)];
+    double entries[6], acceleration = 0.0;
+    mechanism.system().coordinate_row(j, e, entries, acceleration);
+    double speed = 0.0;
+    const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
+    for (std::size_t k = 0; k < 2; ++k) {
+      for (std::size_t c = 0; c < 3 && bodies[k] != ground; ++c) {
+        speed += entries[3 * k + c] * v[3 * at(bodies[k]) + c];
+        acceleration += entries[3 * k + c] * a[3 * at(bodies[k]) + c];
+      }
+    }
+    double value = e.coordinate[at(j)];
+    if (mechanism.is_angle(i)) value = turns.next(at(i), principal(value), moves);
+    append(row, {value, known ? speed : nan, known ? acceleration : nan});
+  }
+}
+
+}  // namespace
+
+std::string station_words(const Station& station) {
+  if (follows_path(station)) return fmt::format("t = {:.9g} s", station.time);
+  constexpr const char* words[] = {"x", "y", "angle"};
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!station.demand.given[i]) continue;
+    text += fmt::format("{}{} = {:.9g}", text.empty() ? "" : ", ", words[i], station.demand.pose[i].value);
+  }
+  return text.empty() ? "these inputs" : text;
+}
+
+AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                      const std::vector<int>& branch_of) {
+  AnalysisTable table;
+  table.columns = {"time", "x", "y", "angle"};
+  for (int i = 0; i < input_count(mechanism); ++i) {
+    const std::string prefix = "joint." + input_name(mechanism, i);
+    table.columns.push_back(prefix + (mechanism.is_angle(i) ? ".angle" : ".position"));
+    table.columns.push_back(prefix + ".speed");
+    table.columns.push_back(prefix + ".acceleration");
+  }
+  if (!branch_of.empty()) table.columns.push_back("branch");
+  PostureSolver solver(mechanism);
+  Turns turns, frame_turns;
+  for (std::size_t k = 0; k < stations.size(); ++k) {
+    const Station& station = stations[k];
+    FramePose pose = shown_pose(station, solver);
+    if (!station.demand.given[2]) pose[2] = frame_turns.next(0, pose[2], follows_path(station));
+    Row row;
+    append(row, {station.time, pose[0], pose[1], pose[2]});
+    append_inputs(mechanism, station, solver, turns, row);
+    if (!branch_of.empty()) row.emplace_back(static_cast<double>(branch_of[k]));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Station>& stations, const Components& given,
+                             int threads) {
+  AnalysisTable table;
+  table.columns = {"x", "y", "angle", "reachable", "legs", "condition"};
+  table.rows.resize(stations.size());
+  const Posture start = mechanism.closed_form() ? Posture{} : mechanism.start();
+  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    Looker looker(mechanism, given);
+    for (std::size_t i = first; i < last; ++i) {
+      const Station& station = stations[i];
+      const FramePose pose = shown_pose(station, looker.solver);
+      double legs = input_count(mechanism), condition = nan;
+      if (station.reachable) {
+        condition = singularity_of(looker.look(station), given, mechanism.length()).condition;
+      } else {
+        Unreachable why;
+        legs = count(given) == 3 ? looker.solver.legs_in_reach(station.demand, start, why) : 0;
+      }
+      append(table.rows[i], {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0, legs, condition});
+    }
+  });
+  return table;
+}
+
+AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                               const Components& given, int threads) {
+  AnalysisTable table;
+  table.columns = {"x", "y", "angle", "reachable", "sigma_min", "sigma_max", "condition", "inverse_min", "kind"};
+  table.rows.resize(stations.size());
+  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    Looker looker(mechanism, given);
+    for (std::size_t i = first; i < last; ++i) {
+      const Station& station = stations[i];
+      const FramePose pose = shown_pose(station, looker.solver);
+      Row& row = table.rows[i];
+      append(row, {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0});
+      if (!station.reachable) {
+        append(row, {nan, nan, nan, nan, nan});
+        continue;
+      }
+      const Singularity s = singularity_of(looker.look(station), given, mechanism.length());
+      append(row, {s.sigma_min, s.sigma_max, s.condition, s.inverse_min});
+      row.emplace_back(word(s.kind));
+    }
+  });
+  return table;
+}
+
+std::vector<double> determinants(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                                 const Components& given, int threads) {
+  if (static_cast<int>(mechanism.platform().inputs.size()) != count(given)) return {};
+  std::vector<double> out(stations.size(), nan);
+  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    Looker looker(mechanism, given);
+    for (std::size_t i = first; i < last; ++i) {
+      if (!stations[i].reachable) continue;
+      const VelocityMap& map = looker.look(stations[i]);
+      if (map.a.rows() == map.a.cols()) out[i] = map.a.determinant();
+    }
+  });
+  return out;
+}
+
+AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                         const ErrorColumns& columns, int threads, std::vector<std::string>& warnings) {
+  AnalysisTable table;
+  table.columns = {"x",      "y",        "angle", "reachable", "dx",        "dy",
+                   "dangle", "position", "ls_dx", "ls_dy",     "ls_dangle", "ls_position"};
+  if (columns.sensitivity) {
+    for (const Play& play : mechanism.plays()) {
+      table.columns.push_back("joint." + mechanism.model().joints[at(play.joint)].name + ".sensitivity");
+    }
+    for (int i = 0; i < input_count(mechanism); ++i) {
+      table.columns.push_back("driver." + input_name(mechanism, i) + ".sensitivity");
+    }
+  }
+  if (columns.samples > 0) {
+    for (const char* name : {"rms_position", "rms_dangle", "max_position", "max_dangle"}) {
+      table.columns.push_back(std::string("sample_") + name);
+    }
+  }
+  table.rows.resize(stations.size());
+  std::vector<char> singular(stations.size(), 0);
+  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    Looker looker(mechanism, {true, true, true});
+    for (std::size_t i = first; i < last; ++i) {
+      const Station& station = stations[i];
+      const FramePose pose = shown_pose(station, looker.solver);
+      Row& row = table.rows[i];
+      append(row, {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0});
+      std::optional<ClearanceError> error;
+      if (station.reachable) error = clearance_error(mechanism, looker.look(station));
+      singular[i] = station.reachable && !error;
+      if (!error) {
+        row.resize(table.columns.size(), nan);
+        continue;
+      }
+      for (const WorstCase* bound : {&error->exact, &error->least_squares}) {
+        append(row, {bound->dx, bound->dy, bound->dangle, bound->position});
+      }
+      if (columns.sensitivity) append_all(row, error->sensitivity);
+      if (columns.samples > 0) {
+        // Every row draws its own numbers, whichever thread it falls to.
+        const auto s = sample_play(mechanism, looker.map, columns.samples, columns.seed + 0x9E3779B97F4A7C15u * i);
+        append(row, {s->rms_position, s->rms_dangle, s->max_position, s->max_dangle});
+      }
+    }
+  });
+  const auto count = std::ranges::count(singular, 1);
+  if (count > 0) {
+    const auto first = static_cast<std::size_t>(std::ranges::find(singular, 1) - singular.begin());
+    warnings.push_back(
+        fmt::format("{}: singular: the platform moves while its inputs are held, its error has no bound{}",
+                    station_words(stations[first]), count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
+  }
+  return table;
+}
+
+AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
+                                    double preload) {
+  AnalysisTable table;
+  table.columns = {"time", "x", "y", "angle"};
+  for (int i = 0; i < input_count(mechanism); ++i) {
+    table.columns.push_back("driver." + input_name(mechanism, i) + (mechanism.is_angle(i) ? ".torque" : ".force"));
+  }
+  std::vector<std::size_t> shown;
+  for (std::size_t j = 0; j < mechanism.model().joints.size(); ++j) {
+    const JointElement& joint = mechanism.model().joints[j];
+    if (joint.is_force) continue;
+    shown.push_back(j);
+    table.columns.push_back("joint." + joint.name + ".fx");
+    table.columns.push_back("joint." + joint.name + ".fy");
+  }
+  PostureSolver solver(mechanism);
+  InverseDynamics dynamics(solver);
+  Turns turns;
+  for (const Station& station : stations) {
+    std::vector<double> v(station.posture.q.size(), 0.0), a = v;
+    if (follows_path(station) && !solver.rates(station.demand, station.posture, v, a)) {
+      throw Error(Error::Category::numerical, "singular",
+                  fmt::format("{}: a singular pose, speeds and accelerations have no value", station_words(station)));
+    }
+    Efforts efforts;
+    switch (dynamics.solve(station.demand.t, station.posture, v, a, preload, efforts)) {
+      case InverseDynamics::Found::yes:
+        break;
+      case InverseDynamics::Found::unbalanced:
+        throw Error(Error::Category::numerical, "singular",
+                    fmt::format("{}: a singular pose, the inputs cannot hold the platform", station_words(station)));
+      case InverseDynamics::Found::no_preload:
+        throw Error(Error::Category::usage, "bad-value",
+                    "--preload: no driver is redundant, so there is no inner tension to choose");
+      case InverseDynamics::Found::many_preloads:
+        throw Error(Error::Category::usage, "bad-value",
+                    "--preload: several drivers are redundant, one value does not tell the inner tension");
+    }
+    FramePose pose = shown_pose(station, solver);
+    if (!station.demand.given[2]) pose[2] = turns.next(0, pose[2], follows_path(station));
+    Row row;
+    append(row, {station.time, pose[0], pose[1], pose[2]});
+    append_all(row, efforts.input);
+    for (const std::size_t j : shown) append(row, {efforts.force[j][0], efforts.force[j][1]});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,25 @@
+// AnalysisTable: the rows of an analysis, as CSV and JSON.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/json_text.h"
+
+namespace freeplay {
+
+/// A number (NaN or infinite: empty), or a word.
+using AnalysisCell = std::variant<double, std::string>;
+
+struct AnalysisTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<AnalysisCell>> rows;
+  Json summary = Json::object();
+
+  std::string csv() const;
+  /// {"kind", "columns", "rows", "summary"}; rows are lists in column order, null for empty.
+  Json json(const std::string& kind) const;
+};
+
+}  // namespace freeplay

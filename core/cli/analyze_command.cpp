@@ -1,0 +1,456 @@
+#include "cli/analyze_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "analysis/branches.h"
+#include "analysis/clearance_error.h"
+#include "analysis/mobility.h"
+#include "analysis/singularity.h"
+#include "analysis/workspace.h"
+#include "cli/analysis_rows.h"
+#include "cli/analyze_options.h"
+#include "cli/failure.h"
+#include "cli/load_model.h"
+#include "cli/output_file.h"
+#include "cli/terminal.h"
+#include "report/map_drawing.h"
+
+namespace freeplay {
+namespace {
+
+constexpr long most_points = 1'000'000;
+
+int thread_count() {
+  if (const char* text = std::getenv("FREEPLAY_THREADS")) {
+    const int count = std::atoi(text);
+    if (count > 0) return std::min(count, 256);
+  }
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// One analysis of a model that was read.
+class AnalyzeJob {
+ public:
+  AnalyzeJob(LoadedModel& loaded, const AnalyzeOptions& options)
+      : loaded_(loaded), options_(options), mechanism_(*loaded.model, platform(*loaded.model, options)) {}
+
+  AnalysisTable execute() {
+    find_freedoms();
+    find_stations();
+    check_reach();
+    check_inputs();
+    if (options_.branches) find_branches();
+    AnalysisTable table = rows();
+    add_summary(table);
+    return table;
+  }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// The map of a table over a grid of x and y.
+  std::string drawing(const AnalysisTable& table) {
+    const bool flat = on_grid_ && axes_[0].count > 1 && axes_[1].count > 1 && axes_[2].count == 1;
+    if (!flat || must_reach()) {
+      throw Error(Error::Category::usage, "bad-value",
+                  "--svg draws a map: workspace, singularity or error on a grid of x and y with one angle");
+    }
+    const std::string column = wants("error") ? "position" : "condition";
+    const auto place = static_cast<std::size_t>(std::ranges::find(table.columns, column) - table.columns.begin());
+    PositionMap map;
+    map.title = fmt::format("{}: {}", model().name,
+                            wants("error") ? "largest position error by clearance" : "condition number");
+    if (given_[2] && axes_[2].value(0) != 0.0) map.title += fmt::format(", angle {:.6g} rad", axes_[2].value(0));
+    map.quantity = wants("error") ? "position error [um]" : "condition number";
+    const double unit = wants("error") ? 1e6 : 1.0;
+    for (long i = 0; i < axes_[0].count; ++i) map.x.push_back(axes_[0].value(i));
+    for (long j = 0; j < axes_[1].count; ++j) map.y.push_back(axes_[1].value(j));
+    for (std::size_t k = 0; k < stations_.size(); ++k) {
+      const double value = std::get<double>(table.rows[k][place]);
+      map.values.push_back(unit * value);
+      const bool good =
+          stations_[k].reachable && std::isfinite(value) && (wants("error") || value * singular_limit < 1.0);
+      map.points.push_back(!stations_[k].reachable ? MapPoint::unreachable
+                           : good                  ? MapPoint::good
+                                                   : MapPoint::singular);
+    }
+    if (!std::ranges::is_sorted(map.x) || !std::ranges::is_sorted(map.y)) {
+      throw Error(Error::Category::usage, "bad-value", "--svg needs a grid whose x and y grow");
+    }
+    map.determinant = determinants(mechanism_, stations_, given_, thread_count());
+    const auto& path = mechanism_.platform().path;
+    for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
+      const Settings& settings = model().settings;
+      Jet x, y;
+      EvaluationFailure failure;
+      const double t = settings.start + (settings.end - settings.start) * k / 200.0;
+      if (path[0]->evaluate(t, x, failure) && path[1]->evaluate(t, y, failure)) map.path.push_back({x.value, y.value});
+    }
+    return map_svg(map);
+  }
+
+ private:
+  static Platform platform(Model& model, const AnalyzeOptions& options) {
+    PlatformOverrides overrides;
+    if (!options.frame.empty()) overrides.marker = frame_marker(model, options.frame);
+    if (!options.elbow.empty()) overrides.elbow = elbow_of(options.elbow);
+    return platform_of(model, overrides);
+  }
+
+  bool wants(const char* kind) const { return options_.kind == kind; }
+  /// Unreachable poses are errors.
+  bool must_reach() const { return wants("ik") || wants("inverse-dynamics"); }
+  const Model& model() const { return *loaded_.model; }
+  const AnalysisSection& section() const { return loaded_.model->analysis; }
+
+  // Legs in closed form leave the platform all three.
+  void find_freedoms() {
+    if (mechanism_.closed_form()) return;
+    PostureSolver solver(mechanism_);
+    mobility_ = general_mobility(solver, model().settings.start, mechanism_.start());
+    freedoms_ = mobility_->general.freedoms;
+    check_inputs();
+  }
+
+  void check_inputs() {
+    if (!mobility_) {
+      const auto reached = std::ranges::find(stations_, true, &Station::reachable);
+      if (reached == stations_.end()) return;
+      PostureSolver solver(mechanism_);
+      mobility_ = general_mobility(solver, model().settings.start, reached->posture);
+    }
+    if (mobility_->general.held == 0) return;
+    throw Error(Error::Category::input, "ik-underdetermined",
+                fmt::format("fewer drivers than freedoms: with all {} inputs held the mechanism still has {} freedom{}",
+                            mechanism_.platform().inputs.size(), mobility_->general.held,
+                            mobility_->general.held == 1 ? "" : "s"),
+                section().joints_location.value_or(mechanism_.platform().location));
+  }
+
+  void find_stations() {
+    const int ways = (options_.pose.empty() ? 0 : 1) + (options_.grid.empty() ? 0 : 1) +
+                     (options_.time.empty() ? 0 : 1) + (options_.input.empty() ? 0 : 1);
+    if (ways > 1) {
+      throw Error(Error::Category::usage, "bad-value", "--pose, --grid, --time and --input exclude each other");
+    }
+    if (!options_.pose.empty()) return stations_at_poses();
+    if (!options_.input.empty()) return stations_at_inputs();
+    if (!options_.time.empty()) return stations_on_path(times_of(options_.time));
+    if (!options_.grid.empty() || !must_reach()) return stations_on_grid();
+    const Settings& settings = model().settings;
+    stations_on_path(section().time.value_or(GridValues{{}, settings.start, settings.end, 101, false}));
+  }
+
+  void stations_at_poses() {
+    std::vector<Demand> demands;
+    for (const std::string& text : options_.pose) {
+      const PoseWords words = pose_of(text);
+      Demand demand;
+      demand.t = model().settings.start;
+      demand.given = components_to_give(freedoms_, words.given, fmt::format("--pose {}", text), {});
+      for (std::size_t i = 0; i < 3; ++i) demand.pose[i] = Jet::constant(words.given[i] ? words.value[i] : 0.0);
+      demands.push_back(demand);
+    }
+    given_ = demands.front().given;
+    for (const Demand& demand : demands) {
+      if (demand.given == given_) continue;
+      throw Error(Error::Category::usage, "bad-value", "every --pose must give the same of x, y and angle");
+    }
+    stations_ = at_demands(mechanism_, demands);
+  }
+
+  void stations_at_inputs() {
+    std::vector<Demand> demands;
+    for (const std::string& text : options_.input) {
+      Demand demand;
+      demand.t = model().settings.start;
+      demand.inputs = inputs_of(text, model(), mechanism_.platform().inputs);
+      const auto held = std::ranges::count_if(demand.inputs, [](const Jet& jet) { return !std::isnan(jet.value); });
+      if (held < freedoms_) {
+        throw Error(
+            Error::Category::usage, "bad-value",
+            fmt::format("--input {} gives {} inputs, but the mechanism has {} freedoms", text, held, freedoms_));
+      }
+      demands.push_back(demand);
+    }
+    given_ = default_components();
+    stations_ = at_demands(mechanism_, demands);
+  }
+
+  void stations_on_path(const GridValues& times) {
+    if (times.count > most_points) throw Error(Error::Category::usage, "too-large", "at most 10^6 instants");
+    const Platform& platform = mechanism_.platform();
+    if (platform.has_path()) {
+      given_ = platform.path_components();
+      const Components needed =
+          components_to_give(freedoms_, given_, "the path", section().path_location.value_or(platform.location));
+      if (needed != given_) {
+        throw Error(Error::Category::input, "ik-underdetermined",
+                    "the path gives no angle, but the mechanism leaves its frame 3 freedoms",
+                    section().path_location.value_or(platform.location));
+      }
+    } else {
+      given_ = default_components();
+    }
+    stations_ = along_path(mechanism_, times);
+  }
+
+  void stations_on_grid() {
+    std::array<std::optional<GridValues>, 3> axes = section().grid;
+    std::array<bool, 3> set{};
+    for (const std::string& text : options_.grid) {
+      const auto [axis, values] = grid_axis_of(text);
+      const std::size_t a = static_cast<std::size_t>(axis);
+      if (set[a])
+        throw Error(Error::Category::usage, "bad-value", fmt::format("--grid {}: this axis is given twice", text));
+      set[a] = true;
+      axes[a] = values;
+    }
+    if (!axes[0] && !axes[1] && !axes[2]) {
+      throw Error(Error::Category::input, "missing-key", "no poses are known: 'analysis' needs 'grid'",
+                  {model().file, 0, 0}, "or --grid x=FROM:TO:COUNT, --pose, --time or --input");
+    }
+    const Components written{axes[0].has_value(), axes[1].has_value(), axes[2].has_value()};
+    const bool from_options = !options_.grid.empty();
+    given_ =
+        components_to_give(freedoms_, written, "the grid", from_options ? Location{} : Location{model().file, 0, 0});
+    double points = 1.0;
+    std::array<GridValues, 3> values;
+    for (std::size_t i = 0; i < 3; ++i) {
+      values[i] = axes[i].value_or(GridValues::one(0.0));
+      points *= static_cast<double>(values[i].count);
+    }
+    if (points > static_cast<double>(most_points)) {
+      throw Error(from_options ? Error::Category::usage : Error::Category::input, "too-large",
+                  "the grid of an analysis has at most 10^6 points",
+                  from_options ? Location{} : Location{model().file, 0, 0});
+    }
+    axes_ = values;
+    stations_ = on_grid(mechanism_, axes_, given_, thread_count());
+    on_grid_ = true;
+  }
+
+  /// Where nobody says which components of the pose are meant: the first that the mechanism can be given.
+  Components default_components() const {
+    const Components path = mechanism_.platform().path_components();
+    if (count(path) == std::min(freedoms_, 3)) return path;
+    Components grid{};
+    for (std::size_t i = 0; i < 3; ++i) grid[i] = section().grid[i].has_value();
+    if (count(grid) == std::min(freedoms_, 3)) return grid;
+    return {true, freedoms_ > 1, freedoms_ > 2};
+  }
+
+  void check_reach() {
+    const auto reached = std::ranges::count(stations_, true, &Station::reachable);
+    if (must_reach() || !options_.input.empty()) {
+      for (const Station& station : stations_) {
+        if (station.reachable) continue;
+        throw Error(Error::Category::numerical, "ik-unreachable",
+                    fmt::format("{}: {}", station_words(station), station.why.text(mechanism_)));
+      }
+    }
+    if (on_grid_ && reached == 0) warnings_.push_back("no point of the grid can be reached");
+    if (on_grid_) return;
+    for (const Station& station : stations_) {
+      if (!station.reachable) warnings_.push_back(station_words(station) + ": " + station.why.text(mechanism_));
+    }
+  }
+
+  /// Each station becomes one for every posture that it has.
+  void find_branches() {
+    if (!wants("ik") || (options_.pose.empty() && options_.input.empty())) {
+      throw Error(Error::Category::usage, "bad-value", "--branches is for ik with --pose or --input");
+    }
+    std::vector<Station> all;
+    for (const Station& station : stations_) {
+      int number = 0;
+      for (Posture& posture : all_postures(mechanism_, station.demand)) {
+        all.push_back(station);
+        all.back().posture = std::move(posture);
+        branch_of_.push_back(++number);
+      }
+    }
+    stations_ = std::move(all);
+  }
+
+  AnalysisTable rows() {
+    const int threads = thread_count();
+    if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_);
+    if (wants("workspace")) return workspace(threads);
+    if (wants("singularity")) return singularity_rows(mechanism_, stations_, given_, threads);
+    if (wants("error")) {
+      ErrorColumns columns;
+      columns.sensitivity = options_.sensitivity;
+      if (!options_.samples.empty()) columns.samples = whole_number("--samples", options_.samples, 1);
+      if (!options_.seed.empty()) columns.seed = static_cast<std::uint64_t>(whole_number("--seed", options_.seed, 0));
+      if (mechanism_.plays().empty() && mechanism_.input_error() == 0.0) {
+        warnings_.push_back("no joint has clearance and no input errs: all errors are 0");
+      }
+      return error_rows(mechanism_, stations_, columns, threads, warnings_);
+    }
+    const double preload = options_.preload.empty() ? 0.0 : preload_of(options_.preload);
+    return inverse_dynamics_rows(mechanism_, stations_, preload);
+  }
+
+  AnalysisTable workspace(int threads) {
+    AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads);
+    if (!on_grid_ || !given_[0] || !given_[1] || axes_[2].count != 1) return table;
+    const WorkspaceShape shape = workspace_shape(mechanism_, stations_, axes_);
+    table.summary["area"] = shape.area;
+    table.summary["regions"] = shape.regions;
+    table.summary["holes"] = shape.holes;
+    table.summary["boundary"] = shape.boundary;
+    return table;
+  }
+
+  /// What stands behind the worst position error, where one pose was asked for.
+  Json causes() {
+    PostureSolver solver(mechanism_);
+    VelocityMapper mapper(mechanism_, {true, true, true});
+    VelocityMap map;
+    const Station& station = stations_.front();
+    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map);
+    const auto error = clearance_error(mechanism_, map);
+    if (!error) return nullptr;
+    const Eigen::Vector3d& worst = error->exact.worst;
+    Json shares = Json::object();
+    std::size_t k = 0;
+    for (const Play& play : mechanism_.plays()) {
+      shares[model().joints[static_cast<std::size_t>(play.joint)].name] =
+          json_number(play.radius * error->sensitivity[k++]);
+    }
+    for (const int j : mechanism_.platform().inputs) {
+      const double share = mechanism_.input_error() * error->sensitivity[k++];
+      if (share > 0.0) shares[model().joints[static_cast<std::size_t>(j)].name] = json_number(share);
+    }
+    return {{"displacement", {json_number(worst[0]), json_number(worst[1]), json_number(worst[2])}},
+            {"direction", json_number(std::atan2(worst[1], worst[0]))},
+            {"share", std::move(shares)}};
+  }
+
+  static double preload_of(const std::string& text) {
+    try {
+      return signed_quantity("--preload", text, dimension::torque);
+    } catch (const Error&) {
+      return signed_quantity("--preload", text, dimension::force);
+    }
+  }
+
+  void add_summary(AnalysisTable& table) {
+    Json names = Json::array();
+    for (const int j : mechanism_.platform().inputs) names.push_back(model().joints[static_cast<std::size_t>(j)].name);
+    Json own = {{"frame", model().markers[static_cast<std::size_t>(mechanism_.platform().marker)].name},
+                {"inputs", std::move(names)},
+                {"length", mechanism_.length()}};
+    if (mobility_) {
+      own["freedoms"] = mobility_->general.freedoms;
+      own["redundant_inputs"] = mobility_->general.redundant_inputs;
+      own["redundant_constraints"] = mobility_->general.redundant_rows;
+      own["special_configuration"] = mobility_->special();
+    }
+    own["points"] = stations_.size();
+    own["reachable"] = std::ranges::count(stations_, true, &Station::reachable);
+    if (wants("error") && stations_.size() == 1 && stations_.front().reachable) own["worst"] = causes();
+    own.update(table.summary);
+    table.summary = std::move(own);
+  }
+
+  LoadedModel& loaded_;
+  const AnalyzeOptions& options_;
+  IdealMechanism mechanism_;
+  std::optional<GeneralMobility> mobility_;
+  int freedoms_ = 3;
+  Components given_{true, true, true};
+  std::vector<Station> stations_;
+  std::vector<int> branch_of_;
+  std::array<GridValues, 3> axes_;
+  bool on_grid_ = false;
+  std::vector<std::string> warnings_;
+};
+
+/// Options that the kind has no use for.
+void refuse_idle_options(const AnalyzeOptions& options) {
+  const auto only = [&](bool given, const char* option, const char* kind) {
+    if (!given || options.kind == kind) return;
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("{} is for {}, not for {}", option, kind, options.kind));
+  };
+  only(options.sensitivity, "--sensitivity", "error");
+  only(!options.samples.empty(), "--samples", "error");
+  only(!options.seed.empty(), "--seed", "error");
+  only(!options.preload.empty(), "--preload", "inverse-dynamics");
+  only(options.branches, "--branches", "ik");
+}
+
+int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
+  if (options.kind.empty() || options.model.empty()) {
+    throw Error(Error::Category::usage, "missing-argument", "analyze needs a kind and a model file", {},
+                "freeplay analyze ik|workspace|singularity|error|inverse-dynamics MODEL");
+  }
+  require_word("kind of analysis", options.kind, {"ik", "workspace", "singularity", "error", "inverse-dynamics"});
+  LoadedModel loaded = load_model(options.model, build_options(options.build), common);
+  if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  refuse_idle_options(options);
+  AnalysisTable table;
+  std::vector<std::string> warnings;
+  std::string drawing;
+  try {
+    AnalyzeJob job(loaded, options);
+    table = job.execute();
+    warnings = job.warnings();
+    if (!options.svg.empty()) drawing = job.drawing(table);
+  } catch (const Error& error) {
+    if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw;
+    Diagnostic diagnostic = as_diagnostic(error);
+    if (error.location().file.empty() && loaded.document) diagnostic.location = {loaded.document->file_name(), 0, 0};
+    loaded.diagnostics.add(std::move(diagnostic));
+    return report_failure(loaded.diagnostics, error.exit_code(), common);
+  }
+  print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  for (const std::string& warning : warnings) {
+    print_messages(fmt::format("{}: warning: {}\n", options.model, warning), common.no_color);
+  }
+  if (!options.svg.empty()) write_output(options.svg, drawing);
+  if (!options.out.empty() || !common.json) write_output(options.out, table.csv());
+  if (common.json) print_json(table.json(options.kind));
+  return 0;
+}
+
+}  // namespace
+
+Command add_analyze_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = program.add_subcommand("analyze", "Kinematics, errors by clearance and drive forces of a platform");
+  const auto options = std::make_shared<AnalyzeOptions>();
+  app->add_option("KIND", options->kind, "ik, workspace, singularity, error or inverse-dynamics")->type_name("");
+  app->add_option("MODEL", options->model, "Model file")->type_name("");
+  app->add_option("--frame", options->frame, "The platform: BODY or BODY/FRAME")->type_name("FRAME");
+  add_repeatable(*app, "--pose", options->pose, "Pose: x,y,angle or x=5cm,y=0; repeatable")->type_name("POSE");
+  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y, angle); repeatable")
+      ->type_name("GRID");
+  app->add_option("--time", options->time, "Instants on the path: FROM:TO:COUNT")->type_name("TIMES");
+  add_repeatable(*app, "--input", options->input, "Coordinates of driven joints: JOINT=VALUE,...; repeatable")
+      ->type_name("INPUTS");
+  app->add_option("--elbow", options->elbow, "Working modes of the legs: 1 or -1, or a list")->type_name("S[,S...]");
+  app->add_flag("--sensitivity", options->sensitivity, "error: sensitivity to the clearance of each joint");
+  app->add_option("--samples", options->samples, "error: columns of N samples of random play")->type_name("N");
+  app->add_option("--seed", options->seed, "Of the samples (0)")->type_name("S");
+  app->add_flag("--branches", options->branches, "ik: all working modes of a --pose, all assemblies of an --input");
+  app->add_option("--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers")
+      ->type_name("VALUE");
+  app->add_option("--out", options->out, "Write the CSV into a file instead of stdout")
+      ->type_name("FILE")
+      ->check(not_empty());
+  app->add_option("--svg", options->svg, "Draw the map of a grid of x and y into a file")
+      ->type_name("FILE")
+      ->check(not_empty());
+  add_model_options(*app, options->build);
+  add_common_options(*app, common);
+  return {app, [options, &common] { return analyze(*options, common); }};
+}
+
+}  // namespace freeplay

@@ -1,0 +1,143 @@
+#include "cli/analyze_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/suggestion.h"
+
+namespace freeplay {
+namespace {
+
+constexpr const char* component_words[] = {"x", "y", "angle"};
+constexpr long largest_count = 1'000'000;
+
+[[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
+                            const std::string& hint = {}) {
+  throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
+              hint);
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Pieces between separators outside of parentheses.
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> out{""};
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == separator && depth == 0) {
+      out.emplace_back();
+    } else {
+      out.back() += c;
+    }
+  }
+  for (std::string& piece : out) piece = trimmed(piece);
+  return out;
+}
+
+const Dimension& dimension_of(int component) { return component < 2 ? dimension::length : dimension::angle; }
+
+int component_of(const std::string& option, const std::string& text, const std::string& word) {
+  const auto* found = std::ranges::find(component_words, word);
+  if (found != std::end(component_words)) return static_cast<int>(found - component_words);
+  const auto nearest = suggestion(word, {"x", "y", "angle"});
+  bad_value(option, text, fmt::format("'{}' is none of x, y and angle", word),
+            nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+}
+
+GridValues space_of(const std::string& option, const std::string& text, const std::string& range,
+                    const Dimension& dimension) {
+  const std::vector<std::string> parts = split(range, ':');
+  if (parts.size() != 3) bad_value(option, text, "FROM:TO:COUNT is needed");
+  GridValues grid;
+  grid.from = signed_quantity(option, parts[0], dimension);
+  grid.to = signed_quantity(option, parts[1], dimension);
+  const double count = signed_quantity(option, parts[2], dimension::none);
+  if (count != std::floor(count) || count < 1.0 || count > static_cast<double>(largest_count)) {
+    bad_value(option, text, "the count must be a whole number from 1 to 10^6");
+  }
+  grid.count = static_cast<long>(count);
+  return grid;
+}
+
+}  // namespace
+
+PoseWords pose_of(const std::string& text) {
+  PoseWords pose;
+  const std::vector<std::string> parts = split(text, ',');
+  const bool named = text.find('=') != std::string::npos;
+  if (parts.size() > 3) bad_value("--pose", text, "at most x, y and angle can be given");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::size_t sign = parts[i].find('=');
+    if (named && sign == std::string::npos) {
+      bad_value("--pose", text, "either all values have a name or none has, as in x=0.05,y=0");
+    }
+    const int component = named ? component_of("--pose", text, trimmed(parts[i].substr(0, sign))) : static_cast<int>(i);
+    const std::size_t c = static_cast<std::size_t>(component);
+    if (pose.given[c]) bad_value("--pose", text, fmt::format("'{}' is given twice", component_words[c]));
+    pose.given[c] = true;
+    pose.value[c] =
+        signed_quantity("--pose", named ? trimmed(parts[i].substr(sign + 1)) : parts[i], dimension_of(component));
+  }
+  return pose;
+}
+
+std::pair<int, GridValues> grid_axis_of(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  if (sign == std::string::npos) bad_value("--grid", text, "x=FROM:TO:COUNT is needed (also y, angle)");
+  const int component = component_of("--grid", text, trimmed(text.substr(0, sign)));
+  return {component, space_of("--grid", text, text.substr(sign + 1), dimension_of(component))};
+}
+
+GridValues times_of(const std::string& text) { return space_of("--time", text, text, dimension::time); }
+
+std::vector<int> elbow_of(const std::string& text) {
+  std::vector<int> modes;
+  for (const std::string& word : split(text, ',')) {
+    if (word != "1" && word != "+1" && word != "-1") bad_value("--elbow", text, "1 or -1 is needed for each leg");
+    modes.push_back(word == "-1" ? -1 : 1);
+  }
+  return modes;
+}
+
+std::vector<Jet> inputs_of(const std::string& text, const Model& model, const std::vector<int>& inputs) {
+  std::vector<Jet> values(inputs.size(), Jet::constant(std::numeric_limits<double>::quiet_NaN()));
+  std::vector<std::string> names;
+  for (const int j : inputs) names.push_back(model.joints[static_cast<std::size_t>(j)].name);
+  for (const std::string& part : split(text, ',')) {
+    const std::size_t sign = part.find('=');
+    if (sign == std::string::npos) bad_value("--input", text, "JOINT=VALUE is needed for each driven joint");
+    const std::string name = trimmed(part.substr(0, sign));
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) {
+      const auto nearest = suggestion(name, names);
+      throw Error(
+          Error::Category::usage, "unknown-name", fmt::format("there is no driven joint '{}'", name), {},
+          nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(names, ", ")));
+    }
+    const std::size_t i = static_cast<std::size_t>(found - names.begin());
+    if (!std::isnan(values[i].value)) bad_value("--input", text, fmt::format("'{}' is given twice", name));
+    const bool angle = model.joints[static_cast<std::size_t>(inputs[i])].ideal_layout.coordinate == Coordinate::angle;
+    values[i] = Jet::constant(
+        signed_quantity("--input", trimmed(part.substr(sign + 1)), angle ? dimension::angle : dimension::length));
+  }
+  return values;
+}
+
+long whole_number(const std::string& option, const std::string& text, long least) {
+  const double value = signed_quantity(option, text, dimension::none);
+  if (value != std::floor(value) || value < static_cast<double>(least) || value > 1e9) {
+    bad_value(option, text, fmt::format("a whole number from {} to 10^9 is needed", least));
+  }
+  return static_cast<long>(value);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,41 @@
+// AnalyzeOptions: what `freeplay analyze` is asked, from words to numbers.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/station.h"
+#include "cli/options.h"
+
+namespace freeplay {
+
+struct AnalyzeOptions {
+  std::string kind, model, frame, time, elbow, out, svg, samples, seed, preload;
+  std::vector<std::string> grid, pose, input;
+  bool sensitivity = false, branches = false;
+  ModelOptions build;
+};
+
+/// Components of a pose that are given, and their values.
+struct PoseWords {
+  Components given{};
+  FramePose value{};
+};
+
+/// "0.05,0,0" or "x=5 cm,angle=10 deg". Throws Error{usage} "bad-value".
+PoseWords pose_of(const std::string& text);
+/// "x=FROM:TO:COUNT": the axis and its values. Throws Error{usage} "bad-value".
+std::pair<int, GridValues> grid_axis_of(const std::string& text);
+/// "FROM:TO:COUNT" [s]. Throws Error{usage} "bad-value".
+GridValues times_of(const std::string& text);
+/// "1,-1,1". Throws Error{usage} "bad-value".
+std::vector<int> elbow_of(const std::string& text);
+/// "JOINT=VALUE,...": values by input, NaN for those that are not named. Throws Error{usage} "bad-value",
+/// "unknown-name".
+std::vector<Jet> inputs_of(const std::string& text, const Model& model, const std::vector<int>& inputs);
+/// A whole number from `least` to 10^9. Throws Error{usage} "bad-value".
+long whole_number(const std::string& option, const std::string& text, long least);
+
+}  // namespace freeplay

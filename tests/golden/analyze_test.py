@@ -1,0 +1,336 @@
+"""freeplay analyze: columns, sources of poses, bad input, maps."""
+import csv
+import io
+import json
+import math
+import re
+import unittest
+import xml.etree.ElementTree as xml
+
+from program import ProgramTest, mechanism
+
+FOUR_BAR = """freeplay: 1
+bodies:
+  ground: {frames: {A: [0, 0], D: [0.4, 0]}}
+  crank: {mass: 0.3, inertia: 1e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}}
+  coupler: {mass: 0.9, inertia: 6.75e-3, com: [0.15, 0], frames: {tip: [0.3, 0], P: [0.15, 0.08]}, pose: {angle: 30 deg}}
+  rocker: {mass: 0.8, inertia: 4.5e-3, com: [0.125, 0], frames: {tip: [0.25, 0]}, pose: {angle: 80 deg}}
+joints:
+  A: {type: revolute, between: [ground/A, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+drivers: {motor: {joint: A, kind: velocity, value: 60 rpm}}
+initial: {joints: {A: 60 deg}}
+simulation: {end: 1 s, step: 1 ms}
+"""
+ERROR = "x,y,angle,reachable,dx,dy,dangle,position,ls_dx,ls_dy,ls_dangle,ls_position"
+KINDS = ("ik", "workspace", "singularity", "error", "inverse-dynamics")
+
+
+class Analyze(ProgramTest):
+    def rows(self, *words, **options):
+        out, _ = self.freeplay("analyze", *words, **options)
+        return list(csv.DictReader(io.StringIO(out)))
+
+    @staticmethod
+    def text(name):
+        with open(mechanism(name), encoding="utf-8") as file:
+            return file.read()
+
+    def message(self, *words, code):
+        out, err = self.freeplay("analyze", *words, code=code)
+        self.assertEqual("", out)
+        return err
+
+    # --- columns -------------------------------------------------------------------------------------------------
+
+    def test_columns_of_each_kind(self):
+        legs = ["leg%d.A" % i for i in (1, 2, 3)]
+        joints = ["joint.leg%d.%s.%s" % (i, j, f) for i in (1, 2, 3) for j in "ABC" for f in ("fx", "fy")]
+        wanted = {
+            "ik": "time,x,y,angle," + ",".join("joint.%s.%s" % (j, q) for j in legs
+                                               for q in ("angle", "speed", "acceleration")),
+            "workspace": "x,y,angle,reachable,legs,condition",
+            "singularity": "x,y,angle,reachable,sigma_min,sigma_max,condition,inverse_min,kind",
+            "error": ERROR,
+            "inverse-dynamics": "time,x,y,angle," + ",".join(["driver.%s.torque" % j for j in legs] + joints)}
+        for kind, columns in wanted.items():
+            out, err = self.freeplay("analyze", kind, mechanism("3-rrr"), "--pose", "0.05,0,0")
+            self.assertEqual("", err)
+            self.assertEqual(columns, out.splitlines()[0])
+            self.assertEqual(2, len(out.splitlines()))
+
+    def test_json_holds_the_same_rows(self):
+        for kind in KINDS:
+            words = (kind, mechanism("4-rrr"), "--pose", "0.05,0,0")
+            document = json.loads(self.freeplay("analyze", *words, "--json")[0])
+            self.assertEqual(["kind", "columns", "rows", "summary"], list(document))
+            self.assertEqual(kind, document["kind"])
+            for row, cells in zip(self.rows(*words), document["rows"]):
+                self.assertEqual(list(row), document["columns"])
+                for text, cell in zip(row.values(), cells):
+                    self.assertEqual(text, "" if cell is None else cell if isinstance(cell, str) else text)
+                    if isinstance(cell, (int, float)):
+                        self.assertEqual(float(text), cell)
+            summary = document["summary"]
+            self.assertEqual((3, 1, 0.11), (summary["freedoms"], summary["redundant_inputs"], summary["length"]))
+
+    def test_both_bounds_agree_without_redundancy_only(self):
+        row, = self.rows("error", mechanism("3-rrr"), "--pose", "0.05,0,0")
+        # Vertices of the parallelepiped A^-1 {+-D}, D = 0.2 mm.
+        self.assertAlmostEqual(300.2786, 1e6 * float(row["position"]), 4)
+        for name in ("dx", "dy", "dangle", "position"):
+            self.assertEqual(row[name], row["ls_" + name])
+        row, = self.rows("error", mechanism("4-rrr"), "--pose", "0.05,0,0")
+        self.assertAlmostEqual(264.9860, 1e6 * float(row["position"]), 4)
+        self.assertAlmostEqual(285.5591, 1e6 * float(row["ls_position"]), 4)
+
+    def test_causes_of_the_worst_error(self):
+        out, _ = self.freeplay("analyze", "error", mechanism("4-rrr"), "--pose", "0.05,0,0", "--json")
+        document = json.loads(out)
+        worst = document["summary"]["worst"]
+        self.assertAlmostEqual(document["rows"][0][7], sum(worst["share"].values()), 15)
+        self.assertAlmostEqual(0.000105179478119538, worst["share"]["leg3.B"] + worst["share"]["leg3.C"], 12)
+        self.assertAlmostEqual(document["rows"][0][7], math.hypot(*worst["displacement"][:2]), 15)
+        row, = self.rows("error", mechanism("4-rrr"), "--pose", "0.05,0,0", "--sensitivity")
+        self.assertAlmostEqual(worst["share"]["leg3.B"], 1e-4 * float(row["joint.leg3.B.sensitivity"]), 15)
+        self.assertIn("driver.leg4.A.sensitivity", row)
+
+    def test_samples_are_feasible_and_repeat(self):
+        words = ("error", mechanism("4-rrr"), "--pose", "0.05,0,0", "--samples", "20000")
+        row, = self.rows(*words, "--seed", "5")
+        self.assertLess(float(row["sample_max_position"]), float(row["position"]))
+        self.assertLess(float(row["sample_max_dangle"]), float(row["dangle"]))
+        self.assertGreater(float(row["sample_rms_position"]), 5e-5)
+        self.assertEqual([row], self.rows(*words, "--seed", "5"))
+        self.assertNotEqual([row], self.rows(*words, "--seed", "6"))
+
+    # --- sources of poses ----------------------------------------------------------------------------------------
+
+    def test_ways_to_write_a_pose(self):
+        wanted = self.rows("ik", mechanism("3-rrr"), "--pose", "-0.05,0,0.1")
+        for pose in ("x=-0.05,y=0,angle=0.1", "angle=0.1 rad, x=-5 cm, y=0", "-50 mm,0,0.1"):
+            self.assertEqual(wanted, self.rows("ik", mechanism("3-rrr"), "--pose", pose))
+        self.assertEqual(2, len(self.rows("ik", mechanism("3-rrr"), "--pose", "0.05,0", "--pose", "0,0.05")))
+        row, = self.rows("ik", mechanism("3-rrr"), "--pose", "0.05,0")  # the angle is 0 then
+        self.assertEqual("0", row["angle"])
+
+    def test_grid_rows_run_over_the_angle_first(self):
+        rows = self.rows("workspace", mechanism("3-rrr"), "--grid", "x=0:0.1:2", "--grid", "y=-0.1:0:2", "--grid",
+                         "angle=0:10 deg:3")
+        self.assertEqual(12, len(rows))
+        self.assertEqual([("0", "-0.1"), ("0", "-0.1"), ("0", "-0.1"), ("0", "0")],
+                         [(r["x"], r["y"]) for r in rows[:4]])
+        self.assertAlmostEqual(math.pi / 36, float(rows[1]["angle"]))
+
+    def test_workspace_of_closed_form(self):
+        # Cell centres of +-0.4 m in 80 x 80 cells: 1446 are reached by all legs.
+        document = json.loads(self.freeplay("analyze", "workspace", mechanism("3-rrr"), "--grid", "x=-0.395:0.395:80",
+                                            "--grid", "y=-0.395:0.395:80", "--json")[0])
+        self.assertEqual(1446, document["summary"]["reachable"])
+        self.assertAlmostEqual(0.1446, document["summary"]["area"], 12)
+        self.assertEqual((1, 0), (document["summary"]["regions"], document["summary"]["holes"]))
+        for x, y in document["summary"]["boundary"]:  # one of the legs is stretched there
+            ends = [math.hypot(x - 0.29 * math.cos(a), y - 0.29 * math.sin(a))
+                    for a in (7 * math.pi / 6, 11 * math.pi / 6, math.pi / 2)]
+            self.assertAlmostEqual(0.48, max(ends), 9)
+        legs = [row[4] for row in document["rows"]]
+        self.assertTrue(all(0 <= n <= 3 for n in legs) and 0 < min(legs) + 1)
+
+    def test_path_gives_speeds(self):
+        rows = self.rows("ik", mechanism("3-rrr"), "--time", "0:0.5:51")
+        self.assertEqual(51, len(rows))
+        self.assertAlmostEqual(0.902532239177086, float(rows[0]["joint.leg1.A.speed"]), 11)
+        self.assertAlmostEqual(24.7447548749753, float(rows[0]["joint.leg1.A.acceleration"]), 9)
+        angles = [float(r["joint.leg2.A.angle"]) for r in rows]
+        self.assertTrue(all(abs(b - a) < 0.5 for a, b in zip(angles, angles[1:])))
+        for kind in ("workspace", "singularity", "error"):
+            self.assertEqual(3, len(self.rows(kind, mechanism("3-rrr"), "--time", "0:0.1:3")))
+
+    def test_without_a_source_the_run_is_looked_at(self):
+        rows = self.rows("ik", mechanism("five-bar"))
+        self.assertEqual((101, "0", "0.5"), (len(rows), rows[0]["time"], rows[-1]["time"]))
+
+    def test_inputs_give_the_pose(self):
+        words = ",".join("leg%d.A=%s" % (i + 1, a) for i, a in enumerate((1.26927570479569, -2.64319355749188,
+                                                                          -0.703493261608324)))
+        row, = self.rows("ik", mechanism("3-rrr"), "--input", words)
+        for name, value in (("x", 0.02), ("y", -0.03), ("angle", 0.1)):
+            self.assertAlmostEqual(value, float(row[name]), 10)
+        both = self.rows("ik", mechanism("3-rrr"), "--input", words, "--branches")
+        self.assertEqual(["1", "2"], [r["branch"] for r in both])
+        self.assertIn("-1.37333917577", " ".join(r["angle"] for r in both))
+        for kind in ("workspace", "singularity", "error", "inverse-dynamics"):
+            self.rows(kind, mechanism("3-rrr"), "--input", words)
+
+    def test_elbows_choose_the_mode(self):
+        modes = self.rows("ik", mechanism("3-rrr"), "--pose", "0.02,-0.03,0.1", "--branches")
+        self.assertEqual(8, len(modes))
+        row, = self.rows("ik", mechanism("3-rrr"), "--pose", "0.02,-0.03,0.1", "--elbow", "1,-1,1")
+        self.assertEqual([m["branch"] for m in modes if m["joint.leg2.A.angle"] == row["joint.leg2.A.angle"] and
+                          m["joint.leg1.A.angle"] == row["joint.leg1.A.angle"] and
+                          m["joint.leg3.A.angle"] == row["joint.leg3.A.angle"]], ["3"])
+
+    def test_other_mechanisms_by_the_same_words(self):
+        row, = self.rows("error", mechanism("3-rpr"), "--pose", "0.02,-0.03,0.1")
+        self.assertAlmostEqual(329.185054176936, 1e6 * float(row["position"]), 6)
+        row, = self.rows("inverse-dynamics", mechanism("3-rpr"), "--time", "0.1:0.1:1")
+        self.assertAlmostEqual(-6.16170145591126, float(row["driver.leg1.P.force"]), 7)
+        row, = self.rows("error", mechanism("five-bar"), "--input", "A1=1.9,A2=1.1")
+        self.assertAlmostEqual(253.479893352514, 1e6 * float(row["position"]), 6)
+        for kind in KINDS:
+            self.rows(kind, mechanism("five-bar"), "--pose", "0.02,0.25")
+            self.rows(kind, mechanism("3-rpr"), "--pose", "0.02,0.05,0.1")
+
+    def test_a_mechanism_of_one_freedom(self):
+        model = self.write("m.yaml", FOUR_BAR + "analysis: {error: {clearance: {B: 0.1 mm, C: 0.1 mm, D: 0.1 mm}}}\n")
+        row, = self.rows("error", model, "--frame", "coupler/P", "--input", "A=1.0471975511966")
+        self.assertAlmostEqual(192.070226025067, 1e6 * float(row["position"]), 6)
+        row, = self.rows("ik", model, "--frame", "coupler/P", "--time", "0.25:0.25:1")
+        self.assertAlmostEqual(150.0, math.degrees(float(row["joint.A.angle"])), 9)
+        self.assertAlmostEqual(2 * math.pi, float(row["joint.A.speed"]), 10)
+        self.assertEqual(1, len(self.rows("singularity", model, "--frame", "coupler/P", "--pose", "x=0.14")))
+
+    def test_frame_option_wins(self):
+        row, = self.rows("ik", mechanism("3-rrr"), "--pose", "0.05,0,0", "--frame", "platform/leg1.C")
+        other, = self.rows("ik", mechanism("3-rrr"), "--pose", "0.05,0,0")
+        self.assertNotEqual(row["joint.leg1.A.angle"], other["joint.leg1.A.angle"])
+
+    def test_backlash_of_drivers_counts(self):
+        model = self.write("m.yaml", self.text("3-rrr").replace(
+            "analysis:\n", "analysis:\n  error: {input: 2e-4}\n"))
+        row, = self.rows("error", model, "--pose", "0.05,0,0")
+        self.assertAlmostEqual(369.741842095852, 1e6 * float(row["position"]), 6)
+
+    def test_parameters_and_ideal_joints(self):
+        row, = self.rows("error", mechanism("3-rrr"), "--pose", "0,0,0", "--set", "c=50 um")
+        self.assertAlmostEqual(266.666666667 / 2, 1e6 * float(row["position"]), 6)
+        out, err = self.freeplay("analyze", "error", mechanism("3-rrr"), "--pose", "0,0,0", "--ideal", "all")
+        self.assertTrue(out.splitlines()[1].endswith(",0,0,0,0,0,0,0,0"))
+        self.assertIn("all errors are 0", err)
+
+    def test_preload_adds_inner_tension(self):
+        rows = [self.rows("inverse-dynamics", mechanism("4-rrr"), "--time", "0:0:1", "--preload", p)[0]
+                for p in ("0", "0.2 N*m")]
+        change = [float(rows[1]["driver.leg%d.A.torque" % i]) - float(rows[0]["driver.leg%d.A.torque" % i])
+                  for i in (1, 2, 3, 4)]
+        self.assertAlmostEqual(0.2, math.sqrt(sum(x * x for x in change)), 10)
+        self.assertGreater(max(change), -min(change))
+        for i, torque in enumerate((1.319689, 0.415943, -1.731290, 0.000244)):
+            self.assertAlmostEqual(torque, float(rows[0]["driver.leg%d.A.torque" % (i + 1)]), 6)
+
+    # --- files ---------------------------------------------------------------------------------------------------
+
+    def test_out_writes_the_table(self):
+        wanted, _ = self.freeplay("analyze", "error", mechanism("3-rrr"), "--pose", "0,0,0")
+        self.assertEqual(("", ""), self.freeplay("analyze", "error", mechanism("3-rrr"), "--pose", "0,0,0", "--out", "e.csv"))
+        self.assertEqual(wanted, self.read("e.csv"))
+
+    def test_maps_are_the_same_for_any_number_of_threads(self):
+        for kind in ("error", "workspace", "singularity"):
+            texts = set()
+            for threads in ("1", "2", "5"):
+                self.freeplay("analyze", kind, mechanism("4-rrr"), "--grid", "x=-0.3:0.3:25", "--grid", "y=-0.3:0.3:25",
+                              "--svg", "m.svg", "--out", "m.csv", environment={"FREEPLAY_THREADS": threads})
+                texts.add(self.read("m.svg") + self.read("m.csv"))
+            self.assertEqual(1, len(texts))
+
+    def test_map_shows_what_its_legend_says(self):
+        self.freeplay("analyze", "singularity", mechanism("3-rrr"), "--grid", "x=-0.2:0.2:41", "--grid", "y=-0.2:0.2:41",
+                      "--grid", "angle=-0.6:-0.6:1", "--svg", "m.svg", "--out", "m.csv")
+        text = self.read("m.svg")
+        labels = [e.text for e in xml.fromstring(text).iter("{http://www.w3.org/2000/svg}text")]
+        for label in ("condition number", "out of reach", "singular (points: x)", "path, from the dot on", "x [m]"):
+            self.assertIn(label, labels)
+        self.assertIn("url(#out)", text)
+        self.assertRegex(text, r'stroke-dasharray="8,4"/>\n<path')  # singular curves, and the legend's piece
+        self.assertFalse(re.search("nan|inf", text))
+
+    # --- bad input -----------------------------------------------------------------------------------------------
+
+    def test_no_platform(self):
+        model = self.write("m.yaml", FOUR_BAR)
+        for kind in KINDS:
+            self.assertIn("[missing-key]", self.message(kind, model, code=3))
+        self.assertIn("'analysis' needs 'grid'", self.message("error", model, "--frame", "coupler/P", code=3))
+
+    def test_fewer_drivers_than_freedoms(self):
+        model = self.write("m.yaml", self.text("3-rrr").replace(
+            "analysis:\n", "analysis:\n  joints: [leg1.A, leg2.A]\n"))
+        err = self.message("error", model, "--pose", "0.05,0,0", code=3)
+        self.assertIn("fewer drivers than freedoms: with all 2 inputs held the mechanism still has 1 freedom", err)
+        self.assertIn("joints: [leg1.A, leg2.A]", err)
+
+    def test_unreachable_poses(self):
+        for kind in ("ik", "inverse-dynamics"):
+            err = self.message(kind, mechanism("3-rrr"), "--pose", "0.3,0,0", code=4)
+            self.assertIn("the leg of 'leg1.A' does not reach it: its pins are 0.569902 m apart", err)
+        out, err = self.freeplay("analyze", "error", mechanism("3-rrr"), "--pose", "0.3,0,0")
+        self.assertTrue(out.splitlines()[1].startswith("0.3,0,0,0,,"))
+        self.assertIn("leg1.A", err)
+        error = json.loads(self.freeplay("analyze", "ik", mechanism("3-rrr"), "--pose", "0.3,0,0", "--json", code=4)[0])
+        self.assertEqual("ik-unreachable", error["error"]["messages"][0]["id"])
+
+    def test_singular_poses(self):
+        theta = repr(-math.acos((0.16 + 0.35 ** 2 - 0.24 ** 2) / (0.8 * 0.35)))
+        row, = self.rows("singularity", mechanism("3-rrr"), "--pose", "0,0," + theta)
+        self.assertEqual("direct", row["kind"])
+        out, err = self.freeplay("analyze", "error", mechanism("3-rrr"), "--pose", "0,0," + theta)
+        self.assertTrue(out.splitlines()[1].endswith(",1,,,,,,,,"))
+        self.assertIn("singular", err)
+        self.assertIn("[singular]", self.message("inverse-dynamics", mechanism("3-rrr"), "--pose", "0,0," + theta, code=4))
+
+    def test_a_grid_without_a_reachable_point(self):
+        for kind in ("workspace", "singularity", "error"):
+            out, err = self.freeplay("analyze", kind, mechanism("3-rrr"), "--grid", "x=1:2:3", "--grid", "y=1:2:3",
+                                     "--svg", "m.svg")
+            self.assertEqual(10, len(out.splitlines()))
+            self.assertIn("no point of the grid can be reached", err)
+
+    def test_mistypes(self):
+        model = mechanism("3-rrr")
+        for words, code, text in (
+                (("eror", model), 2, "did you mean 'error'?"),
+                (("error",), 2, "analyze needs a kind and a model file"),
+                (("error", model, "--pose", "0.05"), 2, "gives 1 of x, y and angle"),
+                (("error", model, "--pose", "x=0.05,angel=0"), 2, "did you mean 'angle'?"),
+                (("error", model, "--pose", "x=0.05,0"), 2, "either all values have a name"),
+                (("error", model, "--pose", "1,2,3,4"), 2, "at most x, y and angle"),
+                (("error", model, "--pose", "0 s,0,0"), 2, "[bad-value]"),
+                (("error", model, "--pose", "x=0,x=1"), 2, "'x' is given twice"),
+                (("error", model, "--grid", "x=0:1"), 2, "FROM:TO:COUNT is needed"),
+                (("error", model, "--grid", "z=0:1:2"), 2, "'z' is none of x, y and angle"),
+                (("error", model, "--grid", "x=0:1:0"), 2, "the count must be a whole number"),
+                (("error", model, "--grid", "x=0:1:2", "--grid", "x=0:1:2"), 2, "given twice"),
+                (("error", model, "--grid", "x=0:1:1000000"), 2, "at most 10^6 points"),
+                (("error", model, "--time", "0:1:2", "--pose", "0,0,0"), 2, "exclude each other"),
+                (("error", model, "--elbow", "2", "--pose", "0,0,0"), 2, "1 or -1"),
+                (("error", model, "--elbow", "1,1", "--pose", "0,0,0"), 2, "2 values, but 3 joints"),
+                (("error", model, "--input", "leg1.a=1"), 2, "did you mean 'leg1.A'?"),
+                (("error", model, "--input", "leg1.A=1"), 2, "gives 1 inputs, but the mechanism has 3 freedoms"),
+                (("error", model, "--frame", "platfrom", "--pose", "0,0,0"), 2, "did you mean 'platform'?"),
+                (("error", model, "--frame", "ground", "--pose", "0,0,0"), 3, "is on ground"),
+                (("ik", model, "--samples", "9"), 2, "--samples is for error, not for ik"),
+                (("error", model, "--pose", "0,0,0", "--samples", "many"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--svg", "m.svg"), 2, "--svg draws a map"),
+                (("inverse-dynamics", model, "--pose", "0,0,0", "--preload", "1"), 2, "no driver is redundant"),
+                (("error", model, "--pos", "0,0,0"), 2, "did you mean '--pose'?"),
+                (("ik", mechanism("five-bar"), "--pose", "0,0.2,0"), 2, "leaves its frame 2 freedoms"),
+                (("error", "missing.yaml"), 3, "missing.yaml")):
+            with self.subTest(words=words):
+                self.assertIn(text, self.message(*words, code=code))
+
+    def test_mistakes_of_the_section_have_a_place(self):
+        text = self.text("five-bar")
+        for piece, message in (("{frame: coupler1/D", "has no frame 'D'"), ("{joints: [A3]", "unknown joint 'A3'"),
+                               ("{joints: [A1, A1]", "named as an input twice"), ("{elbow: [1, 1, 1]", "3 values"),
+                               ("{frame: ground/A1", "is on ground"), ("{error: {input: 1 kg}", "must be of angle")):
+            model = self.write("m.yaml", text[:text.index("analysis:")] + "analysis: %s}\n" % piece)
+            err = self.message("error", model, "--pose", "0.05,0.25", code=3)
+            self.assertIn(message, err)
+            self.assertRegex(err, r"(?m)^m\.yaml:\d+:\d+: error")
+
+
+if __name__ == "__main__":
+    unittest.main()
