@@ -39,11 +39,13 @@ struct Simulation::Impl {
   bool run_adaptive(const RunHooks& hooks);
   bool adaptive_step();
   bool bounded_step(double& dt, int& limiting_joint);
+  bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
   bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
   bool write_rows_inside();
   bool write_row_at(double t);
   bool look_inside(double t);
   std::string why_so_small(double dt, int limiting_joint) const;
+  std::string why_singular();
   double row_time(long index) const;
 
   void write_row();
