@@ -69,11 +69,14 @@ bool Simulation::Impl::adaptive_step() {
   int limiting = -1;
   if (!bounded_step(dt, limiting)) return false;
   if (!(dt >= smallest)) return fail(4, why_so_small(dt, limiting));
+  const double kink = next_kink();
+  const bool to_kink = kink <= settings.end;
+  const double goal = to_kink ? before(kink) : settings.end;
   StepEvents::Passage hunted;
   std::size_t detours = 0;
   double asked = 0.0;
   for (int tries = 0;; ++tries) {
-    const double left = settings.end - accepted.t();
+    const double left = goal - accepted.t();
     const bool last = dt >= left * (1.0 - 1e-12);
     if (last) dt = left;
     if (!last && accepted.t() + dt == accepted.t()) return fail(4, why_so_small(dt, limiting));
@@ -96,7 +99,7 @@ bool Simulation::Impl::adaptive_step() {
       if (solver.regularity() < stuck_there) return fail(4, why_singular());
       return fail(4, converged ? why_so_small(dt, -1) : why_not_converged(dt));
     }
-    if (last) trial.t() = settings.end;
+    if (last) trial.t() = goal;
     if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
       return fail_with(e_trial.fault, trial.t());
     }
@@ -104,12 +107,13 @@ bool Simulation::Impl::adaptive_step() {
     if (!pursue(hunted, dt, tries, done)) return false;
     if (done) break;
   }
-  if (hunted.joint >= 0) {
+  const bool at_kink = to_kink && trial.t() == goal;
+  if (hunted.joint >= 0 || at_kink) {
     control.cut();
   } else {
     control.accept(trial.t() - accepted.t(), error);
   }
-  return accept(hunted);
+  return accept(hunted, at_kink ? kink : unbounded);
 }
 
 // Whether to try another length of the step that was just made, and back to the one `asked` for after all of them.

@@ -36,6 +36,8 @@ class NewtonStageSolver {
 
   bool solve(const Stage& stage, StateView& out, StageResult& result);
   bool project_velocity(StateView& state);
+  /// Multipliers mu of the last project_velocity(): the impulse on the bodies was -Phi_q^T mu [N s, N m s].
+  std::span<const double> impulse() const { return multipliers_; }
   bool project_position(StateView& state);
   /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
   bool accelerate(StateView& state, Span<double> z_rate);

@@ -26,7 +26,7 @@ struct Simulation::Impl {
   /// The numbers that an attempt may use as it likes; behind them stand marks.
   Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
   bool prepare_trial(double dt);
-  bool accept(const StepEvents::Passage& located);
+  bool accept(const StepEvents::Passage& located, double kink = unbounded);
   void add_energy();
   bool refresh();
   bool record_row();
@@ -34,6 +34,13 @@ struct Simulation::Impl {
   bool tell_sinks();
   bool check_stop();
   bool check_interrupt(const RunHooks& hooks);
+
+  // Kinks of prescribed motions (motion_kinks.cpp).
+  double next_kink() const;
+  static double before(double kink);
+  bool pass_kink(double kink);
+  void note_jumps(double kink);
+  void format_jumps();
 
   // Runs with error control (adaptive_run.cpp).
   bool run_adaptive(const RunHooks& hooks);
@@ -82,6 +89,12 @@ struct Simulation::Impl {
   };
   std::vector<Warning> joint_warnings;  ///< by joint
   std::vector<double> warning_values;   ///< the joints' own channels when they warned
+  struct SpeedJump {
+    int count = 0;
+    double time = 0.0, from = 0.0, to = 0.0;  ///< of the first
+  };
+  std::vector<SpeedJump> speed_jumps;  ///< by driver
+  std::vector<TimeValue> motion_before, motion_behind;
   std::vector<std::string> warnings;
   Outcome outcome;
   Fault plugin_fault;  // of the last attempt

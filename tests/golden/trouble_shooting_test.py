@@ -106,6 +106,11 @@ CASES = {
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
     "no step of ... s or longer could be made: ...; try a smaller step":
         (4, SHORT_ROD, RUN),
+    "driver '...': the prescribed position jumps; no motion follows it":
+        (4, driven("value: t", "table: {points: [[0, 0], [0.05, 1]], interpolation: linear, outside: repeat}"),
+         RUN + ["--accuracy", "1 um"]),
+    "driver '...' at t = ...: the speed that it prescribes jumps from ... to ...: ...":
+        (0, driven("value: t", "value: abs(t - 0.05)"), RUN),
     "driver '...': a negative number to a power that is not an integer [bad-expression]": (4, driven("value: t", "value: (0.0501 - t)^2.5"), RUN),
     "joint '...' of ... failed: ... [plugin-failed]":
         (5, journal("lankarani-nikravesh, restitution: 0.9", "johnson").replace("ball: {mass: 1 kg", "ball: {mass: 1e6 kg"), RUN),
