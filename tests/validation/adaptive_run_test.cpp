@@ -146,7 +146,7 @@ double largest_distance(const ModelRun& run, const Table& table) {
 
 // Quadruple precision, every contact located.
 TEST(Accuracy, ThreeRrrAtOneNanometreFollowsTheReferenceForTwentyMilliseconds) {
-  const std::string text = replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: 0.1 s}", "{interval: 1 ms}");
+  const std::string text = replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: $T/5}", "{interval: 1 ms}");
   const ModelRun run(text, accurate(1e-9, 20e-3));
   ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
   const double worst = largest_distance(run, read_table("rrr3_friction_trajectory.csv"));

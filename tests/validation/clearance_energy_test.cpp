@@ -9,7 +9,7 @@ struct Account {
 
 Account account(double step, double end) {
   const std::string text =
-      replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: 0.1 s}", "{interval: " + number(step) + "}");
+      replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: $T/5}", "{interval: " + number(step) + "}");
   std::vector<std::string> columns = {"time", "energy.residual"};
   for (int i = 1; i <= 3; ++i) columns.push_back("driver.leg" + std::to_string(i) + ".A.power");
   const ModelRun run(text, {.set = {}, .ideal = {}, .end = end, .step = step, .integrator = {}}, columns);

@@ -37,7 +37,7 @@ std::map<std::string, Event> first_contacts(const ModelRun& run) {
 
 ModelRun run_3rrr(double end, double step, const std::string& interval) {
   const std::string text =
-      replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: 0.1 s}", "{interval: " + interval + "}");
+      replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: $T/5}", "{interval: " + interval + "}");
   return ModelRun(text, {.set = {}, .ideal = {}, .end = end, .step = step, .integrator = {}});
 }
 

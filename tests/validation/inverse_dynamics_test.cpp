@@ -185,7 +185,7 @@ std::string ideal_text(int legs, const char* gravity, const char* angle, const s
   std::string text = mechanism(legs == 3 ? "3-rrr" : "4-rrr");
   text = replaced(text, "space: planar\n", std::string("space: planar\ngravity: ") + gravity + "\n");
   text = replaced(text, "angle: 0}", std::string("angle: \"") + angle + "\"}");
-  return replaced(text, "{interval: 0.1 ms, discard: 0.1 s}", "{interval: " + interval + "}");
+  return replaced(text, "{interval: 0.1 ms, discard: $T/5}", "{interval: " + interval + "}");
 }
 
 /// Every coordinate is driven, so the step is of no consequence and the forces are good to the rounding of the solve.

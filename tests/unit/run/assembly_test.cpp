@@ -82,7 +82,7 @@ TEST(AssemblyFailure, APathOutOfReachNamesTheLegAndTheTime) {
 // The path leaves the reach of a leg on the way: rows before stay, and the reason names leg and time.
 TEST(AssemblyFailure, APathThatLeavesTheReachLaterEndsTheRun) {
   std::string text = replaced(mechanism("3-rrr"), "x: $R*cos(2*pi*t/$T), y: $R*sin(2*pi*t/$T)", "x: 0, y: 10*t");
-  text = replaced(text, "{interval: 0.1 ms, discard: 0.1 s}", "{interval: 1 ms}");
+  text = replaced(text, "{interval: 0.1 ms, discard: $T/5}", "{interval: 1 ms}");
   const ModelRun run(text, {.set = {}, .ideal = {"all"}, .end = 0.1, .step = 1e-3, .integrator = {}});
   EXPECT_EQ(run.outcome().status, RunStatus::failed);
   EXPECT_EQ(run.outcome().exit_code, 4);
