@@ -443,7 +443,7 @@ double NewtonStageSolver::error_norm(std::span<const double> position, std::span
 }
 
 double NewtonStageSolver::part_of_allowed(std::span<const double> error, double allowed) {
-  const bool split = regularity_ < near_singular && !right_c_.empty();
+  const bool split = regularity_ < near_singular && index_one_.valid && !right_c_.empty();
   const double across_allowed = std::sqrt(allowed * system_.size());
   if (split) {
     for (std::size_t i = 0; i < error.size(); ++i) right_[i] = system_.mass()[i] * error[i];
