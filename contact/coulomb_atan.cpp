@@ -33,7 +33,8 @@ Component coulomb_atan() {
        .summary = "Coulomb friction with an arc tangent at low slip.",
        .formula = "F_T = -mu (2/pi) atan(v/vs) F_N.",
        .validity = "Sliding at many times vs; under load the surfaces creep, as the force of rest takes a slip speed.",
-       .references = "",
+       .references = "Mostaghel and Davis 1997, Earthquake Eng Struct Dyn 26, 541-548; Marques, Flores, Claro and "
+                     "Lankarani 2016, Nonlinear Dyn 86, 1407-1443 (survey)",
        .parameters = parameters});
 }
 

@@ -33,7 +33,8 @@ Component coulomb_linear() {
        .summary = "Coulomb friction with a linear ramp at low slip.",
        .formula = "F_T = -mu sign(v) min(1, |v|/vs) F_N.",
        .validity = "Sliding; under load the surfaces creep, as the force of rest takes a slip speed.",
-       .references = "",
+       .references = "Rooney and Deravi 1982, Mech Mach Theory 17, 207-211; Marques, Flores, Claro and Lankarani 2016, "
+                     "Nonlinear Dyn 86, 1407-1443 (survey)",
        .parameters = parameters});
 }
 

@@ -32,7 +32,8 @@ Component coulomb_tanh() {
        .summary = "Coulomb friction with a hyperbolic tangent at low slip.",
        .formula = "F_T = -mu tanh(v/vs) F_N.",
        .validity = "Sliding; under load the surfaces creep, as the force of rest takes a slip speed.",
-       .references = "",
+       .references = "Andersson, Soderberg and Bjorklund 2007, Tribol Int 40, 580-587; Mostaghel and Davis 1997, "
+                     "Earthquake Eng Struct Dyn 26, 541-548",
        .parameters = parameters});
 }
 

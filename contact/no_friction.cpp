@@ -13,7 +13,14 @@ class NoFriction final : public FrictionLaw {
 }  // namespace
 
 Component no_friction() {
-  return friction_law<NoFriction>({.name = "none", .summary = "No friction.", .formula = "F_T = 0.", .preferred = 1});
+  return friction_law<NoFriction>(
+      {.name = "none",
+       .summary = "No friction.",
+       .formula = "F_T = 0.",
+       .validity = "Surfaces whose friction is small against inertia and load, or a first look.",
+       .references = "The limit mu = 0 of Coulomb's law; Johnson 1985, Contact Mechanics, Cambridge University Press, "
+                     "ch. 4 (contact without friction)",
+       .preferred = 1});
 }
 
 }  // namespace freeplay

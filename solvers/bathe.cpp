@@ -155,6 +155,9 @@ Component bathe() {
            "v_s = v_n + s h/2 (a_n + a_s), d_s = s h/2 (v_n + v_s); v_1 = v_n + h (q0 a_n + q1 a_s + q2 a_1), d_1 = h "
            "(q0 v_n + q1 v_s + q2 v_1); q1 = (rho + 1)/(2 s (rho - 1) + 4), q0 = (s - 1) q1 + 1/2, q2 = 1/2 - s q1; "
            "optimal s = (2 - sqrt(2 + 2 rho))/(1 - rho).",
+       .validity =
+           "Stable for every step. What moves faster than ten steps a period is damped, the more the smaller rho_inf; "
+           "for motions to follow, take steps below a twentieth of their period.",
        .references = "Bathe and Baig 2005, Comput Struct 83; Bathe 2007, Comput Struct 85; Noh and Bathe 2018, Comput "
                      "Struct 202",
        .parameters = parameters,

@@ -40,6 +40,9 @@ Component generalized_alpha() {
        .formula = "v_1 = v_n + h ((1 - gamma) A_n + gamma A_1), d_1 = h v_n + h^2 ((1/2 - beta) A_n + beta A_1), (1 - "
                   "am) A_1 + am A_n = (1 - af) a_1 + af a_n; am = (2 rho - 1)/(rho + 1), af = rho/(rho + 1), gamma = "
                   "1/2 - am + af, beta = (1 - am + af)^2/4.",
+       .validity =
+           "Stable for every step in linear problems. Below rho_inf = 1 disturbances of the multipliers decay; at 1 "
+           "nothing is damped, and they alternate.",
        .references = "Chung and Hulbert 1993, J Appl Mech 60, 371-375; Arnold and Bruls 2007, Multibody Syst Dyn 18, "
                      "185-202",
        .parameters = parameters});

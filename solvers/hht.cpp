@@ -37,6 +37,9 @@ Component hht() {
        .summary = "HHT-alpha method, implicit, order 2, damps high frequencies.",
        .formula = "v_1 = v_n + h ((1 - gamma) A_n + gamma A_1), d_1 = h v_n + h^2 ((1/2 - beta) A_n + beta A_1), A_1 = "
                   "(1 + alpha) a_1 - alpha a_n; gamma = 1/2 - alpha, beta = (1 - alpha)^2/4.",
+       .validity =
+           "Stable for every step in linear problems. Below alpha = 0 disturbances of the multipliers decay; at 0 it "
+           "is the trapezoidal rule, and they alternate.",
        .references =
            "Hilber, Hughes and Taylor 1977, Earthq Eng Struct Dyn 5, 283-292; Arnold and Bruls 2007, Multibody "
            "Syst Dyn 18, 185-202",

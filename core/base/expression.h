@@ -64,6 +64,11 @@ class Expression {
   /// How many derivatives are used: 0, 1 or, from the start, 2. The others may not exist.
   void need(int derivatives) { derivatives_ = derivatives; }
 
+  /// Times in (from, to] [s] at which an abs, min or max changes sides, so that a derivative may jump; just before each
+  /// the formula is still what it was. Looked for at 4096 instants and more, with the rates there: what comes and goes
+  /// between two of them may be missed. Allocates.
+  std::vector<double> kinks(double from, double to) const;
+
   bool depends_on_time() const { return depends_on_time_; }
   DimensionKind kind() const { return kind_; }
   const Dimension& dimension() const { return dimension_; }
@@ -111,6 +116,7 @@ class Expression {
   bool run(double t, Jet& out, EvaluationFailure& failure) const noexcept;
   bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   static int operand_count(Operation operation) noexcept;
+  std::vector<Jet> sides(double t) const;
 
   std::vector<Instruction> program_;
   int stack_depth_ = 0;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -108,21 +110,31 @@ const NamedDimension* find_dimension(const Dimension& dimension) {
   return found == std::end(named_dimensions) ? nullptr : found;
 }
 
-/// "kg*m^0.5/s^2"
-std::string product(const Dimension& dimension) {
+struct Power {
+  const char* symbol;
+  double exponent;
+};
+
+/// "kg*m^2/s"
+std::string product(std::initializer_list<Power> powers) {
   std::string above, below;
-  const auto factor = [&](const char* symbol, double exponent) {
-    if (std::abs(exponent) <= 1e-9) return;
+  for (const auto& [symbol, exponent] : powers) {
+    if (std::abs(exponent) <= 1e-9) continue;
     std::string& side = exponent > 0 ? above : below;
     side += exponent > 0 ? (side.empty() ? "" : "*") : "/";
     side += symbol;
     const double size = std::abs(exponent);
     if (std::abs(size - 1.0) > 1e-9) side += fmt::format("^{:.6g}", size);
-  };
-  factor("kg", dimension.kg);
-  factor("m", dimension.m);
-  factor("s", dimension.s);
+  }
   return (above.empty() ? "1" : above) + below;
+}
+
+/// As people write it: with newtons where that is shorter, "N/m^1.5" and not "kg/m^0.5/s^2".
+std::string product(const Dimension& d) {
+  const Dimension rest = d / power(dimension::force, d.kg);
+  std::string base = product({{"kg", d.kg}, {"m", d.m}, {"s", d.s}});
+  std::string newtons = product({{"N", d.kg}, {"m", rest.m}, {"s", rest.s}});
+  return newtons.size() < base.size() ? newtons : base;
 }
 
 /// Reads a unit from a text that may be longer.

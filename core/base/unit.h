@@ -39,7 +39,7 @@ inline constexpr Dimension none{}, angle{}, mass{1, 0, 0}, length{0, 1, 0}, time
     stiffness{1, 0, -2}, damping{1, 0, -1}, area{0, 2, 0};
 }  // namespace dimension
 
-/// For messages: "length", "mass", "torque or energy", "angle or number", else a product such as "kg*m^0.5/s^2".
+/// For messages: "length", "mass", "torque or energy", "angle or number", else a product such as "N/m^1.5".
 std::string dimension_name(const Dimension& dimension);
 
 /// An SI unit of the dimension, for messages: "m", "kg*m^2", "rad/s"; "1" when dimensionless.

@@ -47,6 +47,12 @@ int RowRank::analyse(const std::vector<SparseEntry>& jacobian) {
   return rank_;
 }
 
+int RowRank::weakest() const {
+  if (rows_ == 0 || is_large()) return -1;
+  const auto last = std::min(rows_, columns_) - 1;
+  return qr_.colsPermutation().indices()[rows_ > columns_ ? last + 1 : last];
+}
+
 void RowRank::least_norm(std::span<double> lambda, int first_driver) {
   const int free = rows_ - rank_;
   if (free == 0) return;

@@ -26,6 +26,9 @@ class RowRank {
   /// Nonzero for rows that the others determine. Valid after analyse().
   std::span<const char> dependent() const { return dependent_; }
 
+  /// The row that adds least to those before it, -1 where there are too many to say. Valid after analyse().
+  int weakest() const;
+
   /// Moves multipliers along the null space of J^T: first the rows from `first_driver` on get least norm among
   /// themselves, then the rows before it. The resultant J^T lambda does not change.
   void least_norm(std::span<double> lambda, int first_driver);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace freeplay {
@@ -24,7 +25,11 @@ void solve_tridiagonal(const std::vector<double>& lower, std::vector<double> dia
 
 TimeTable::TimeTable(std::vector<double> times, std::vector<double> values, Interpolation interpolation,
                      SplineEnds ends, Outside outside)
-    : times_(std::move(times)), values_(std::move(values)), second_(times_.size(), 0.0), outside_(outside) {
+    : times_(std::move(times)),
+      values_(std::move(values)),
+      second_(times_.size(), 0.0),
+      outside_(outside),
+      straight_(interpolation == Interpolation::linear) {
   if (interpolation == Interpolation::cubic && ends == SplineEnds::periodic) {
     values_.back() = values_.front();
     solve_periodic();
@@ -94,13 +99,17 @@ void TimeTable::solve_periodic() {
   second_[n] = second_[0];
 }
 
+double TimeTable::end_rounding() const noexcept {
+  return 1e-12 * std::max(std::abs(times_.front()), std::abs(times_.back()));
+}
+
 bool TimeTable::locate(double t, Place& place, EvaluationFailure& failure) const noexcept {
   const double first = times_.front(), last = times_.back();
   const double inside = std::clamp(t, first, last);
   place = {inside, t - inside, 0.0};
   // A step that ends a rounding error behind the last time is still at it.
-  if (std::abs(place.beyond) <= 1e-12 * std::max(std::abs(first), std::abs(last))) place.beyond = 0.0;
-  if (place.beyond == 0.0 || outside_ == Outside::hold) return true;
+  if (outside_ != Outside::repeat && std::abs(place.beyond) <= end_rounding()) place.beyond = 0.0;
+  if (outside_ == Outside::hold || (place.beyond == 0.0 && (outside_ == Outside::error || t < last))) return true;
   if (outside_ == Outside::repeat) {
     place.periods = std::floor((t - first) / (last - first));
     place.t = std::clamp(t - place.periods * (last - first), first, last);
@@ -127,6 +136,23 @@ bool TimeTable::evaluate(double t, Jet& out, EvaluationFailure& failure) const n
   out.acceleration = a * m0 + b * m1;
   if (place.beyond != 0.0) out = Jet::constant(out.value);
   return true;
+}
+
+double TimeTable::next_kink(double t) const noexcept {
+  const double first = times_.front(), last = times_.back(), none = std::numeric_limits<double>::infinity();
+  if (t < first) return first;
+  const bool repeats = outside_ == Outside::repeat;
+  const double behind_last = repeats ? last : last + end_rounding();
+  if (!repeats && t >= behind_last) return none;
+  const double period = last - first, passed = repeats ? std::floor((t - first) / period) : 0.0;
+  // The time may be at the end of the period before, or rounded to it.
+  for (const double periods : {std::max(passed - 1.0, 0.0), passed, passed + 1.0}) {
+    const double shift = periods * period, end = periods == 0.0 ? behind_last : last + shift;
+    const auto inner = std::upper_bound(times_.begin(), times_.end() - 1, t - shift);
+    if (straight_ && inner != times_.end() - 1 && *inner + shift > t) return *inner + shift;
+    if (end > t) return end;
+  }
+  return none;
 }
 
 double TimeTable::integral_within(double t) const noexcept {

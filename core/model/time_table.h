@@ -28,6 +28,9 @@ class TimeTable {
 
   /// Value and exact derivatives. False, with "bad-table", where there is none.
   bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+  /// The first time after t at which the slope jumps; infinite when there is none. That of a repeated
+  /// table may be told twice, with different rounding.
+  double next_kink(double t) const noexcept;
   /// Integral from the first time to t.
   bool integral(double t, double& out, EvaluationFailure& failure) const noexcept;
 
@@ -37,6 +40,7 @@ class TimeTable {
     double t = 0.0, beyond = 0.0, periods = 0.0;
   };
   bool locate(double t, Place& place, EvaluationFailure& failure) const noexcept;
+  double end_rounding() const noexcept;
   std::size_t piece(double t) const noexcept;
   double integral_within(double t) const noexcept;
   void solve_open(SplineEnds ends);
@@ -46,6 +50,7 @@ class TimeTable {
   std::vector<double> times_, values_, second_;
   std::vector<double> areas_;  ///< integral up to each point
   Outside outside_;
+  bool straight_;
 };
 
 }  // namespace freeplay

@@ -1,6 +1,7 @@
 // Steps with error control: every located event ends a step, output rows are taken from inside the steps.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
@@ -16,6 +17,15 @@ constexpr double largest_turn = 1.0;      // of a joint in one step [rad]: angle
 constexpr double event_time = 1e-11;      // a located event is as sharp as this [s], or as its function can be
 constexpr double event_rounding = 1e-15;  // [unit of the function]
 constexpr int most_tries = 40;            // to end a step at an event
+
+// Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
+// too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth
+// there, so that a step of another length, which looks elsewhere, goes over it. By regularity():
+constexpr double near_singular = 1e-2;  // a step that failed is tried in other lengths
+constexpr double at_singular = 1e-8;    // a step that passed, too
+constexpr double stuck_there = 1e-4;    // steps that fall for ever have come to it
+constexpr double hopeless = 1e-12;      // the way that the mechanism takes on would be one of rounding
+constexpr double detour_lengths[] = {0.9, 1.1, 0.8, 1.2, 0.7, 1.4, 0.6, 1.7, 0.5, 2.0, 3.0};
 
 }  // namespace
 
@@ -59,15 +69,23 @@ bool Simulation::Impl::adaptive_step() {
   int limiting = -1;
   if (!bounded_step(dt, limiting)) return false;
   if (!(dt >= smallest)) return fail(4, why_so_small(dt, limiting));
+  const double kink = next_kink();
+  const bool to_kink = kink <= settings.end;
+  const double goal = to_kink ? before(kink) : settings.end;
   StepEvents::Passage hunted;
+  std::size_t detours = 0;
+  double asked = 0.0;
   for (int tries = 0;; ++tries) {
-    const double left = settings.end - accepted.t();
+    const double left = goal - accepted.t();
     const bool last = dt >= left * (1.0 - 1e-12);
     if (last) dt = left;
     if (!last && accepted.t() + dt == accepted.t()) return fail(4, why_so_small(dt, limiting));
     bool converged = false;
     if (!step(dt, converged)) return false;
-    if (!converged || !(error <= 1.0)) {
+    const bool passed = converged && error <= 1.0;
+    if (hunted.joint < 0 && take_detour(passed, detours, asked, dt)) continue;
+    if (passed && solver.regularity() < hopeless) return fail(4, why_singular());
+    if (!passed) {
       ++outcome.rejected;
       if (converged) {
         control.reject(dt, error);
@@ -78,9 +96,10 @@ bool Simulation::Impl::adaptive_step() {
       hunted = {};
       if (dt >= smallest) continue;
       if (plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());
+      if (solver.regularity() < stuck_there) return fail(4, why_singular());
       return fail(4, converged ? why_so_small(dt, -1) : why_not_converged(dt));
     }
-    if (last) trial.t() = settings.end;
+    if (last) trial.t() = goal;
     if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
       return fail_with(e_trial.fault, trial.t());
     }
@@ -88,12 +107,24 @@ bool Simulation::Impl::adaptive_step() {
     if (!pursue(hunted, dt, tries, done)) return false;
     if (done) break;
   }
-  if (hunted.joint >= 0) {
+  const bool at_kink = to_kink && trial.t() == goal;
+  if (hunted.joint >= 0 || at_kink) {
     control.cut();
   } else {
     control.accept(trial.t() - accepted.t(), error);
   }
-  return accept(hunted);
+  return accept(hunted, at_kink ? kink : unbounded);
+}
+
+// Whether to try another length of the step that was just made, and back to the one `asked` for after all of them.
+bool Simulation::Impl::take_detour(bool passed, std::size_t& detours, double& asked, double& dt) {
+  if (detours > std::size(detour_lengths)) return false;
+  if (!(solver.regularity() < (passed ? at_singular : near_singular))) return false;
+  if (detours == 0) asked = dt;
+  dt = detours < std::size(detour_lengths) ? detour_lengths[detours] * asked : asked;
+  ++detours;
+  ++outcome.rejected;
+  return true;
 }
 
 // Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
@@ -170,6 +201,17 @@ bool Simulation::Impl::write_row_at(double t) {
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row_between);
   return true;
+}
+
+std::string Simulation::Impl::why_singular() {
+  std::string text = fmt::format(
+      "t = {:.9g} s: the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding "
+      "hides how",
+      accepted.t());
+  if (const std::string worst = row_name(solver.weakest_row()); !worst.empty()) {
+    text += "; first to depend on the other constraints is " + worst;
+  }
+  return text + "; ask for less accuracy, or for steps of one size";
 }
 
 std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const {

@@ -47,6 +47,9 @@ class EnergyAccount {
     row_power_ = row_power(e, lambda);
   }
 
+  /// Work of an impulse at the end of the last step [J].
+  void add_driver_work(int driver, double work) { integral_[static_cast<std::size_t>(driver)] += work; }
+
   std::span<const double> driver_work() const { return driver_work_; }  ///< at the last fill() [J]
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double singular_pivot = 1e-13;     // smallest pivot over the largest
+constexpr double near_singular = 1e-2;       // regularity below which errors across the motion count less
 constexpr double slow_contraction = 0.1;     // a stale factor that contracts less is renewed
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr int refinement_limit = 30;
@@ -114,10 +115,16 @@ bool NewtonStageSolver::evaluate(const StateView& s, unsigned terms) {
 bool NewtonStageSolver::find_dependent_rows() {
   system_.jacobian_entries(e_, entries_);
   rows_.analyse(entries_);
-  rank_known_ = true;
+  return keep_independent_rows();
+}
+
+bool NewtonStageSolver::keep_independent_rows() {
+  // Fewer than before: this is a singular position.
+  if (rank_ >= 0 && rows_.rank() < rank_) regularity_ = last_regularity_ = 0.0;
+  rank_ = rows_.rank();
   const bool same = std::ranges::equal(rows_.dependent(), dependent_);
   std::ranges::copy(rows_.dependent(), dependent_.begin());
-  any_dependent_ = rows_.rank() < system_.layout().nc();
+  any_dependent_ = rank_ < system_.layout().nc();
   if (!same) {
     for (Factor& factor : factors_) factor.valid = factor.has_pattern = false;
     index_one_.valid = index_one_.has_pattern = false;
@@ -133,8 +140,13 @@ double NewtonStageSolver::factor_once(Factor& factor) {
 }
 
 bool NewtonStageSolver::refactor(Factor& factor) {
-  if (!rank_known_) find_dependent_rows();
+  if (rank_ < 0) find_dependent_rows();
   double pivot = factor_once(factor);
+  if (&factor == &index_one_) {
+    largest_pivot_ = std::max(largest_pivot_, pivot);
+    last_regularity_ = pivot / largest_pivot_;
+    regularity_ = std::min(regularity_, last_regularity_);
+  }
   // The rank may have changed along the motion: rows that say nothing new are then left out.
   if (!(pivot > singular_pivot) && find_dependent_rows()) pivot = factor_once(factor);
   factor.valid = pivot > 0.0 && std::isfinite(pivot);
@@ -220,7 +232,9 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
     const bool accurate = iteration > 0 && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
     const bool noise = change * beta_q <= 50.0 * rounding && (ratio >= 0.3 || change * beta_q <= rounding);
-    if (internal_settled && (accurate || (iteration > 0 && noise) || change == 0.0)) {
+    const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
+    if (internal_settled && (accurate || (iteration > 0 && noise) || change == 0.0 ||
+                             (stagnates && is_rounding_of_phi(factor, std::max(beta_q, beta_v))))) {
       for (std::size_t i = 0; i < at(nv); ++i) {
         out.v[i] = stage.v_known[i] + beta_v * out.a[i];
         increment_[i] = stage.increment_known[i] + beta_q * out.a[i];
@@ -255,6 +269,18 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (std::abs(e_.phi[at(r)]) > farthest) farthest = std::abs(e_.phi[at(r)]), worst_row_ = r;
   }
   return true;
+}
+
+bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double beta) {
+  if (!(largest(e_.phi) <= 8.0 * rounding * system_.size())) return false;
+  const std::size_t nv = unit_.size();
+  std::fill(right_.begin(), right_.end(), 0.0);
+  for (std::size_t r = 0; r < e_.phi.size(); ++r) {
+    if (!dependent_[r]) right_[nv + r] = -e_.phi[r] / factor.beta_q;
+  }
+  factor.matrix.solve(right_, work_);
+  for (std::size_t i = 0; i < nv; ++i) work_[i] = update_[i] - work_[i];
+  return norm(std::span(work_).first(nv)) * beta <= options_.tolerance;
 }
 
 bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
@@ -376,6 +402,11 @@ bool NewtonStageSolver::project_position(StateView& state) {
 
 bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!evaluate(state, term_position | term_velocity | term_acceleration | term_force)) return false;
+  if (any_dependent_) {
+    system_.jacobian_entries(e_, entries_);
+    // Rows that were left out in a singular position count again.
+    if (rows_.analyse(entries_) > rank_) keep_independent_rows();
+  }
   if (!refactor(index_one_)) return false;
   std::ranges::copy(e_.force, right_a_.begin());
   std::ranges::copy(e_.gamma, right_c_.begin());
@@ -389,22 +420,43 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
   std::ranges::copy(e_.internal_rate, z_rate.begin());
   if (any_dependent_) {
-    system_.jacobian_entries(e_, entries_);
-    rows_.analyse(entries_);
     rows_.least_norm(state.lambda, system_.layout().first_driver_row());
   }
   if (flows_ != nullptr) flows_->flow(e_, state.lambda, z_rate.part(e_.internal_rate.size(), at(flows_->flows())));
   return true;
 }
 
+int NewtonStageSolver::weakest_row() {
+  system_.jacobian_entries(e_, entries_);
+  rows_.analyse(entries_);
+  return rows_.weakest();
+}
+
 double NewtonStageSolver::error_norm(std::span<const double> position, std::span<const double> velocity) {
   if (!(allowed_ > 0.0)) return 0.0;
+  const double in_velocity = part_of_allowed(velocity, allowed_rate_);
+  const int worst_velocity = worst_component_;
+  const double in_position = part_of_allowed(position, allowed_);
+  if (in_position > in_velocity) return in_position;
+  worst_component_ = worst_velocity;
+  return in_velocity;
+}
+
+double NewtonStageSolver::part_of_allowed(std::span<const double> error, double allowed) {
+  const bool split = regularity_ < near_singular && index_one_.valid && !right_c_.empty();
+  const double across_allowed = std::sqrt(allowed * system_.size());
+  if (split) {
+    for (std::size_t i = 0; i < error.size(); ++i) right_[i] = system_.mass()[i] * error[i];
+    std::fill(right_.begin() + static_cast<std::ptrdiff_t>(error.size()), right_.end(), 0.0);
+    index_one_.matrix.solve(right_, update_);
+  }
   double largest = 0.0;
+  worst_component_ = 0;
   for (std::size_t i = 0; i < unit_.size(); ++i) {
-    // `allowed_` is a length: an angle may err by it over the size of the model.
-    const double scale = system_.size() / unit_[i];
-    const double error = scale * std::max(std::abs(position[i]) / allowed_, std::abs(velocity[i]) / allowed_rate_);
-    if (!(error <= largest)) largest = error, worst_component_ = static_cast<int>(i);
+    // `allowed` is a length: an angle may err by it over the size of the model.
+    const double scale = system_.size() / unit_[i], along = split ? update_[i] : error[i];
+    const double part = scale * (std::abs(along) / allowed + std::abs(error[i] - along) / across_allowed);
+    if (!(part <= largest)) largest = part, worst_component_ = static_cast<int>(i);
   }
   return largest;
 }

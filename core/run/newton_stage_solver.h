@@ -36,6 +36,8 @@ class NewtonStageSolver {
 
   bool solve(const Stage& stage, StateView& out, StageResult& result);
   bool project_velocity(StateView& state);
+  /// Multipliers mu of the last project_velocity(): the impulse on the bodies was -Phi_q^T mu [N s, N m s].
+  std::span<const double> impulse() const { return multipliers_; }
   bool project_position(StateView& state);
   /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
   bool accelerate(StateView& state, Span<double> z_rate);
@@ -48,6 +50,7 @@ class NewtonStageSolver {
   }
   /// The velocities at the start of the attempt. Their rounding is no error.
   void use_velocity(std::span<const double> v) {
+    regularity_ = 1.0;
     allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * norm(v);
   }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
@@ -68,7 +71,11 @@ class NewtonStageSolver {
   int worst_row() const { return worst_row_; }
   long iterations() const { return iterations_; }
   long factorizations() const { return factorizations_; }
-  int rank() const { return rows_.rank(); }
+  /// Smallest pivot of the index-1 matrix in the present attempt, or in the last that had one, in parts of its largest
+  /// value in the run. It falls with the square of the distance from a singular position of the constraints.
+  double regularity() const { return regularity_ < 1.0 ? regularity_ : last_regularity_; }
+  /// Row that comes closest to depending on the others where the equations were looked at last, or -1. Slow.
+  int weakest_row();
 
  private:
   struct Factor {
@@ -83,8 +90,17 @@ class NewtonStageSolver {
   /// Factors at the present evaluation (which must hold Phi_q and, for betas above zero, derivatives).
   bool refactor(Factor& factor);
   double factor_once(Factor& factor);
+  /// Both return whether others than before are left out.
   bool find_dependent_rows();
+  bool keep_independent_rows();
+  /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the
+  /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
+  /// square over the size of the model.
+  double part_of_allowed(std::span<const double> error, double allowed);
   double norm(std::span<const double> increment) const;
+  /// Whether the last update of a stage is what the rounding of Phi makes of itself: close to a singular position it
+  /// grows without bound, and nothing more can be won.
+  bool is_rounding_of_phi(const Factor& factor, double beta);
   /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
   /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
   bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
@@ -103,10 +119,12 @@ class NewtonStageSolver {
   std::vector<SparseEntry> entries_;
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   std::vector<char> dependent_;
-  bool any_dependent_ = false, rank_known_ = false;
+  bool any_dependent_ = false;
+  int rank_ = -1;  // of the rows that are kept; -1 before the first look
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
   const EnergyAccount* flows_ = nullptr;
   double allowed_ = 0.0, allowed_slow_ = 0.0, allowed_part_ = 0.0, allowed_rate_ = 0.0;
+  double largest_pivot_ = 0.0, regularity_ = 1.0, last_regularity_ = 1.0;
   int worst_row_ = -1, worst_component_ = -1;
   const char* trouble_ = "";
 };

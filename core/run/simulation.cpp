@@ -93,7 +93,10 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
       residual(at(owner.layout().nc())),
       z_rate(at(owner.layout().nz() + flows)),
       flow_half_way(at(energy.flows())),
-      joint_warnings(model.joints.size()) {
+      joint_warnings(model.joints.size()),
+      speed_jumps(model.drivers.size()),
+      motion_before(model.drivers.size()),
+      motion_behind(model.drivers.size()) {
   if (adaptive) {
     const double tolerance = local_tolerance(owner);
     require_attainable_accuracy(owner);
@@ -302,7 +305,8 @@ void Simulation::Impl::add_energy() {
 }
 
 // Of a step whose end is evaluated in e_trial: events first, then the joints' history, then it is the accepted state.
-bool Simulation::Impl::accept(const StepEvents::Passage& located) {
+// A finite `kink` lies at its end.
+bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   add_energy();
   if (adaptive && !write_rows_inside()) return false;
   Fault fault;
@@ -333,6 +337,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located) {
   std::swap(e_accepted, e_trial);
   outcome.time = accepted.t();
   if (!events.happenings().empty() && !refresh()) return false;
+  if (kink < unbounded && !pass_kink(kink)) return false;
   if (!record_row()) return false;
   ++outcome.steps;  // from now on its row may be written
   return note_warnings() && tell_sinks();
@@ -483,6 +488,10 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
       if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
         return fail_with(e_trial.fault, trial.t());
       }
+      for (double kink = system.motions().next_kink(accepted.t()); kink <= trial.t();
+           kink = system.motions().next_kink(kink)) {
+        note_jumps(kink);
+      }
       if (!accept({}) || !check_stop() || !check_interrupt(hooks)) return false;
     }
   }
@@ -521,6 +530,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.iterations = solver.iterations();
   outcome.factorizations = solver.factorizations();
   format_warnings();
+  format_jumps();
   return outcome;
 }
 

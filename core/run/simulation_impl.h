@@ -26,7 +26,7 @@ struct Simulation::Impl {
   /// The numbers that an attempt may use as it likes; behind them stand marks.
   Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
   bool prepare_trial(double dt);
-  bool accept(const StepEvents::Passage& located);
+  bool accept(const StepEvents::Passage& located, double kink = unbounded);
   void add_energy();
   bool refresh();
   bool record_row();
@@ -35,15 +35,24 @@ struct Simulation::Impl {
   bool check_stop();
   bool check_interrupt(const RunHooks& hooks);
 
+  // Kinks of prescribed motions (motion_kinks.cpp).
+  double next_kink() const;
+  static double before(double kink);
+  bool pass_kink(double kink);
+  void note_jumps(double kink);
+  void format_jumps();
+
   // Runs with error control (adaptive_run.cpp).
   bool run_adaptive(const RunHooks& hooks);
   bool adaptive_step();
   bool bounded_step(double& dt, int& limiting_joint);
+  bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
   bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
   bool write_rows_inside();
   bool write_row_at(double t);
   bool look_inside(double t);
   std::string why_so_small(double dt, int limiting_joint) const;
+  std::string why_singular();
   double row_time(long index) const;
 
   void write_row();
@@ -80,6 +89,12 @@ struct Simulation::Impl {
   };
   std::vector<Warning> joint_warnings;  ///< by joint
   std::vector<double> warning_values;   ///< the joints' own channels when they warned
+  struct SpeedJump {
+    int count = 0;
+    double time = 0.0, from = 0.0, to = 0.0;  ///< of the first
+  };
+  std::vector<SpeedJump> speed_jumps;  ///< by driver
+  std::vector<TimeValue> motion_before, motion_behind;
   std::vector<std::string> warnings;
   Outcome outcome;
   Fault plugin_fault;  // of the last attempt

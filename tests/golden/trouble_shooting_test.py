@@ -39,6 +39,8 @@ SHORT_ROD = DRIVEN.replace("bodies:", "bodies:\n  slider: {mass: 1 kg, inertia: 
   guide: {type: prismatic, between: [ground, slider]}
   link: {type: distance, between: [rod/tip, slider], length: 0.5 m}
 drivers:""").replace("value: t", "value: 10*t")
+with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
+    PARALLELOGRAMS = chain.read()
 RUN = ["run", "model.yaml", "--force"]
 
 
@@ -100,8 +102,15 @@ CASES = {
         (4, journal("step: 10 us", "step: {adaptive: true, size: 1 ms, min: 1 ms}"), RUN),
     "a step of ... s is needed, the smallest allowed is ... s; the error is largest in body '...' (...)":
         (4, pendulum("step: 1 ms", "step: {adaptive: true, size: 50 ms, min: 50 ms, tolerance: 1e-9}"), RUN),
+    "the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding hides how; ...":
+        (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
     "no step of ... s or longer could be made: ...; try a smaller step":
         (4, SHORT_ROD, RUN),
+    "driver '...': the prescribed position jumps; no motion follows it":
+        (4, driven("value: t", "table: {points: [[0, 0], [0.05, 1]], interpolation: linear, outside: repeat}"),
+         RUN + ["--accuracy", "1 um"]),
+    "driver '...' at t = ...: the speed that it prescribes jumps from ... to ...: ...":
+        (0, driven("value: t", "value: abs(t - 0.05)"), RUN),
     "driver '...': a negative number to a power that is not an integer [bad-expression]": (4, driven("value: t", "value: (0.0501 - t)^2.5"), RUN),
     "joint '...' of ... failed: ... [plugin-failed]":
         (5, journal("lankarani-nikravesh, restitution: 0.9", "johnson").replace("ball: {mass: 1 kg", "ball: {mass: 1e6 kg"), RUN),

@@ -41,5 +41,21 @@ TEST(RedundantJoint, TheMotionIsThatOfOnePin) {
   EXPECT_LT(both.statistics().position_residual(), 1e-10);
 }
 
+// Rows that say the same leave no noise in the error, however little is allowed.
+TEST(RedundantJoint, TakesTheStepsOfOnePinUnderATolerance) {
+  for (const char* tolerance : {"1e-8", "1e-11", "1e-13"}) {
+    const std::string text = replaced(twice, "step: 1 ms",
+                                      "integrator: dopri5, step: {size: 1e-3, adaptive: true, "
+                                      "tolerance: " +
+                                          std::string(tolerance) + "}");
+    const ModelRun both(text);
+    const ModelRun single(replaced(text, "  two: {type: revolute, between: [ground, rod]}\n", ""));
+    ASSERT_EQ(both.outcome().status, RunStatus::completed) << tolerance << ": " << both.outcome().reason;
+    EXPECT_NEAR(static_cast<double>(both.outcome().steps), static_cast<double>(single.outcome().steps),
+                1.0 + 0.02 * static_cast<double>(single.outcome().steps))
+        << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::test

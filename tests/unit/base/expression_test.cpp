@@ -297,5 +297,39 @@ TEST(Expression, EvaluatesTheDeepestStack) {
   EXPECT_EQ(at(powers, 1.0).value, 1.0);
 }
 
+void expect_kinks(std::string_view text, std::vector<double> wanted) {
+  const std::vector<double> found = compiled(text).kinks(0.0, 1.0);
+  ASSERT_EQ(found.size(), wanted.size()) << text;
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-15) << text;
+}
+
+TEST(ExpressionKinks, AreWhereSidesChange) {
+  expect_kinks("abs(t - 0.3)", {0.3});
+  expect_kinks("min(1, 2*t) + max(0, t - 0.7, 3*t - 2.7)", {0.5, 0.7});
+  expect_kinks("abs(sin(10*t))", {0.1 * pi, 0.2 * pi, 0.3 * pi});
+  expect_kinks("smooth(max(t, 0.25), 0, 1)", {0.25});
+}
+
+TEST(ExpressionKinks, OneThatComesAndGoesBetweenLooksIsSeenByItsRates) {
+  const double half = std::sqrt(1e-10);
+  const std::vector<double> found = compiled("max(0, 1e-10 - (t - 0.50001)^2)").kinks(0.0, 1.0);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0], 0.50001 - half, 1e-11);
+  EXPECT_NEAR(found[1], 0.50001 + half, 1e-11);
+}
+
+TEST(ExpressionKinks, AreNotWhereASideIsOnlyTouched) {
+  expect_kinks("abs((t - 0.3)^2)", {});
+  expect_kinks("sin(t) + abs(2)", {});
+  expect_kinks("max(t, t)", {});
+}
+
+// Left of it the formula is what it was, so that a step can end there.
+TEST(ExpressionKinks, AreTheFirstInstantsOfTheOtherSide) {
+  const double kink = compiled("abs(t - 0.3)").kinks(0.0, 1.0).at(0);
+  EXPECT_EQ(at("abs(t - 0.3)", std::nextafter(kink, 0.0)).rate, -1.0);
+  EXPECT_EQ(at("abs(t - 0.3)", kink).rate, 1.0);
+}
+
 }  // namespace
 }  // namespace freeplay

@@ -101,7 +101,11 @@ TEST(Unit, RefusesHertzWithAHint) {
 TEST(Dimension, HasAName) {
   EXPECT_EQ(dimension_name(dimension::length), "length");
   EXPECT_EQ(dimension_name(dimension::moment_of_inertia), "moment of inertia");
-  EXPECT_EQ(dimension_name({1, 0.5, -2}), "kg*m^0.5/s^2");
+  EXPECT_EQ(dimension_name({1, -0.5, -2}), "N/m^1.5");
+  EXPECT_EQ(dimension_name({1, 2, -1}), "N*m*s");
+  EXPECT_EQ(dimension_name({2, 2, -4}), "N^2");
+  EXPECT_EQ(dimension_name({1, -3, 0}), "kg/m^3");
+  EXPECT_EQ(dimension_name({-1, 0, 0}), "1/kg");
   EXPECT_EQ(dimension_name({0, 2, -1}), "m^2/s");
   EXPECT_EQ(dimension_name({0, 0, -3}), "1/s^3");
   EXPECT_EQ(si_unit(dimension::damping), "N*s/m");

@@ -106,5 +106,28 @@ TEST(TimeTable, RefusesTimesOutsideWhenAskedTo) {
   EXPECT_TRUE(table.evaluate(2.0, jet, failure));
 }
 
+TEST(TimeTable, KinksAreThePointsOfAStraightTableAndTheEndsOfOthers) {
+  const std::vector<double> times{0.5, 1.0, 3.0}, values{2.0, 4.0, 2.0};
+  const TimeTable straight(times, values, Interpolation::linear, SplineEnds::natural, Outside::hold);
+  EXPECT_EQ(straight.next_kink(0.0), 0.5);
+  EXPECT_EQ(straight.next_kink(0.5), 1.0);
+  EXPECT_NEAR(straight.next_kink(1.0), 3.0, 1e-11);
+  EXPECT_TRUE(std::isinf(straight.next_kink(3.001)));
+  const TimeTable spline(times, values, Interpolation::cubic, SplineEnds::natural, Outside::hold);
+  EXPECT_NEAR(spline.next_kink(0.5), 3.0, 1e-11);
+  // A run that ends with its table does not see what comes behind it.
+  EXPECT_GT(spline.next_kink(0.5), 3.0);
+}
+
+TEST(TimeTable, KinksOfARepeatedTableComeAgainAndAgain) {
+  const TimeTable table({0.0, 0.1, 0.2}, {0.0, 1.0, 0.0}, Interpolation::linear, SplineEnds::natural, Outside::repeat);
+  double t = 0.0;
+  for (int i = 1; i <= 1000; ++i) {
+    const double next = table.next_kink(t);
+    ASSERT_NEAR(next, 0.1 * i, 1e-11) << i;
+    t = next * (1.0 + 1e-15);  // behind its rounding
+  }
+}
+
 }  // namespace
 }  // namespace freeplay
