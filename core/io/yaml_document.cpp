@@ -458,7 +458,7 @@ void report(const YAML::Exception& error, const Document& document, const TextPl
 std::optional<Document> parse_yaml(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
   if (text.size() > largest_input) return refuse(diagnostics, file_name, "too-large", "the file is larger than 16 MiB");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  end_lines_by_line_feeds(text);
+  end_lines_by_line_feeds(text);  // the parser library would not
   diagnostics.add_source(file_name, text);
   if (const auto fault = find_bad_character(text)) {
     const TextPlace at = TextPlaces(text).at(fault->position);
