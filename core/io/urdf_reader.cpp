@@ -126,7 +126,8 @@ class RobotReader {
     read_limit(element, type, joint);
     read_dynamics(element, joint);
     read_mimic(element, joint);
-    for (const char* known : {"safety_controller", "calibration"}) element.pass_over(known);
+    check_calibration(element);
+    check_safety(element);
     element.finish();
     robot_.joints.push_back(std::move(joint));
   }
@@ -205,6 +206,25 @@ class RobotReader {
     if (joint.damping > 0.0 && joint.type != JointType::revolute && joint.type != JointType::prismatic) {
       messages_.ignore("damping of joint", joint.name);
     }
+  }
+
+  void check_calibration(Element& joint) {
+    const XmlElement* xml = joint.child("calibration");
+    if (xml == nullptr) return;
+    Element calibration(*xml, "the calibration of " + joint.owner(), messages_, false);
+    for (const char* key : {"rising", "falling", "reference_position"}) calibration.number(key, 0.0);
+    calibration.finish();
+    messages_.ignore("calibration");
+  }
+
+  void check_safety(Element& joint) {
+    const XmlElement* xml = joint.child("safety_controller");
+    if (xml == nullptr) return;
+    Element safety(*xml, "the safety_controller of " + joint.owner(), messages_, false);
+    safety.required_number("k_velocity");
+    for (const char* key : {"k_position", "soft_lower_limit", "soft_upper_limit"}) safety.number(key, 0.0);
+    safety.finish();
+    messages_.ignore("safety_controller");
   }
 
   double not_negative(Element& element, const std::string& key) {
@@ -331,7 +351,6 @@ class RobotReader {
     for (const XmlElement& child : root_.children) note_other(child);
     for (const char* known : {"link", "joint"}) element_.pass_over(known);
     finish_known();
-    messages_.report_ignored(robot_.spot);
   }
 
   void note_other(const XmlElement& child) {
@@ -342,6 +361,8 @@ class RobotReader {
     } else if (child.name == "transmission") {
       const XmlAttribute* name = child.attribute("name");
       messages_.ignore("transmission", name == nullptr ? "" : name->value);
+    } else if (child.name == "material") {
+      check_material(child, messages_);
     }
   }
 

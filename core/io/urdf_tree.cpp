@@ -119,6 +119,12 @@ class TreeBuilder {
       if (!names_ground && here.has_mass()) mount.body = index;
       if (names_ground && here.has_mass()) messages_.ignore("mass of ground, link", here.name);
       note_massless(here);
+      if (options_.floating_base && mount.body != index) {
+        messages_.warning(here.spot, "urdf-ignored",
+                          fmt::format("the robot does not float: its root link '{}' {}", here.name,
+                                      names_ground ? "is ground" : "has no mass and is a part of ground"),
+                          "'base: floating' needs a root link with mass that is not named 'world' or 'ground'");
+      }
       return;
     }
     const Joint& parent = joint(robot_.parent_joint[at(index)]);
