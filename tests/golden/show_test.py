@@ -46,6 +46,22 @@ class Show(ProgramTest):
         texts = re.findall(r'<text x="([-0-9.]+)" y="([-0-9.]+)"', out)
         self.assertTrue(all(0 <= float(x) <= 900 and 0 <= float(y) <= 1400 for x, y in texts))
 
+    def test_drawing_shows_gears_with_their_names(self):
+        self.write("m.yaml", """freeplay: 1
+bodies:
+  a: {mass: 1, inertia: 1}
+  b: {mass: 1, inertia: 1}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  B: {type: revolute, between: [ground/far, b]}
+  mesh: {type: gear, of: [A, B], ratio: -2}
+frames: {ground/far: [1, 0]}
+""")
+        out, _ = self.freeplay("show", "m.yaml", "--format", "svg")
+        labels = [e.text for e in xml.fromstring(out).iter("{http://www.w3.org/2000/svg}text")]
+        self.assertIn("mesh", labels)
+        self.assertEqual(2, out.count('stroke-width="3" stroke-dasharray="2 2"'))
+
     def test_drawing_in_the_readme_is_the_program_s(self):
         with open(os.path.join(ROOT, "docs", "images", "3-rrr.svg"), encoding="utf-8") as file:
             self.assertEqual(file.read(), self.freeplay("show", mechanism("3-rrr"), "--format", "svg")[0])
