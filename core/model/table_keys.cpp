@@ -38,8 +38,8 @@ std::string free_name(const std::vector<InputFile>& inputs, const std::filesyste
 
 class TableReader {
  public:
-  TableReader(Draft& draft, const CheckedValue& value, const Dimension& dimension)
-      : draft_(draft), value_(value), dimension_(dimension) {}
+  TableReader(Draft& draft, const CheckedValue& value, const Dimension& dimension, TableSource* source)
+      : draft_(draft), value_(value), dimension_(dimension), source_(source) {}
 
   std::shared_ptr<const TimeTable> read() {
     const bool short_form = value_.node().is_scalar();
@@ -56,6 +56,17 @@ class TableReader {
     const auto ends = word(map.find("ends"), {"natural", "clamped", "periodic"});
     const auto outside = word(map.find("outside"), {"hold", "repeat", "error"});
     const auto time_column = map.find("time"), value_column = map.find("value");
+    if (source_ != nullptr) {
+      const auto text = [](const std::optional<CheckedValue>& key) { return key ? key->node().text : std::string(); };
+      *source_ = {text(file),
+                  text(time_column),
+                  text(value_column),
+                  text(map.find("time_unit")),
+                  text(map.find("unit")),
+                  static_cast<Interpolation>(interpolation.value_or(0)),
+                  static_cast<SplineEnds>(ends.value_or(0)),
+                  static_cast<Outside>(outside.value_or(0))};
+    }
     map.conflict("file", "points");
     if (!file) {
       for (const char* of_a_file : {"time", "value"}) map.conflict("points", of_a_file);
@@ -323,13 +334,15 @@ class TableReader {
   Draft& draft_;
   const CheckedValue& value_;
   Dimension dimension_;
+  TableSource* source_;                     ///< may be null
   std::optional<double> time_unit_, unit_;  ///< factors to SI
 };
 
 }  // namespace
 
-std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& value, const Dimension& dimension) {
-  return TableReader(draft, value, dimension).read();
+std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& value, const Dimension& dimension,
+                                            TableSource* source) {
+  return TableReader(draft, value, dimension, source).read();
 }
 
 }  // namespace freeplay

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/expression.h"
@@ -28,6 +29,9 @@ class TimeTable {
 
   /// Value and exact derivatives. False, with "bad-table", where there is none.
   bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+  std::span<const double> times() const { return times_; }
+  std::span<const double> values() const { return values_; }
+
   /// Integral from the first time to t.
   bool integral(double t, double& out, EvaluationFailure& failure) const noexcept;
 
