@@ -296,17 +296,16 @@ std::optional<Sections> read_sections(const XmlElement& root, const std::string*
                                       Document& document, Messages& messages) {
   Robot robot = read_robot(root, messages);
   if (root.name != "robot") return std::nullopt;
-  const bool readable = !messages.failed();
   build_tree(robot, options, messages);
   Names names(robot, messages);
   if (!messages.failed()) ask_referee(root, messages);
   // What could not be read has been replaced by a guess, which says nothing about the plane.
-  if (robot.mounts.empty() || (!readable && !options.plane)) return std::nullopt;
+  if (robot.mounts.empty() || (!robot.places_known && !options.plane)) return std::nullopt;
   const PlanarRobot planar = choose_plane(robot, options);
   robot.mounts = planar.mounts;
   const Eigen::Vector3d normal = plane_axes(planar.plane).row(2);
-  check_inertia(robot, options, planar.planar() || !readable, normal, messages);
-  if (readable && !planar.planar()) report_not_planar(robot, planar, messages);
+  check_inertia(robot, options, planar.planar() || !robot.places_known, normal, messages);
+  if (robot.places_known && !planar.planar()) report_not_planar(robot, planar, messages);
   if (messages.failed()) return std::nullopt;
   report_default_axes(robot, messages);
   report_snapping(robot, planar, messages);

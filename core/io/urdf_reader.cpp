@@ -40,7 +40,9 @@ class RobotReader {
     }
     if (robot_.links.empty()) messages_.error(robot_.spot, "bad-urdf", "the robot has no link");
     resolve();
+    const int errors = messages_.errors();
     read_loops(root_, robot_, messages_);
+    robot_.places_known = robot_.places_known && messages_.errors() == errors;
     resolve_mimics();
     finish();
     return std::move(robot_);
@@ -71,7 +73,9 @@ class RobotReader {
   void read_inertial(const XmlElement& xml, const std::string& owner, Link& link) {
     Element inertial(xml, "the inertial of " + owner, messages_, true);
     link.has_inertial = true;
+    const int errors = messages_.errors();
     link.inertial = read_origin(inertial, messages_);
+    link.inertia_known = messages_.errors() == errors;
     link.mass = 1.0;  // where it cannot be read: the link is not without mass
     if (const XmlElement* child = inertial.required_child("mass")) {
       Element mass(*child, "the mass of " + owner, messages_, true);
@@ -110,6 +114,7 @@ class RobotReader {
   void read_joint(const XmlElement& xml) {
     Element element(xml, label(xml), messages_, false);
     Joint joint;
+    const int errors = messages_.errors();
     joint.element = begin_spot(xml);
     joint.spot = name_spot(xml);
     if (const XmlAttribute* name = element.require("name")) {
@@ -123,6 +128,7 @@ class RobotReader {
     joint.parent.frame = read_origin(element, messages_, &joint.parent.frame_spot);
     references_.push_back({read_end(element, "parent", joint.parent), read_end(element, "child", joint.child)});
     read_axis_of(element, joint);
+    robot_.places_known = robot_.places_known && messages_.errors() == errors;
     read_limit(element, type, joint);
     read_dynamics(element, joint);
     read_mimic(element, joint);

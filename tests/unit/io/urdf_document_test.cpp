@@ -405,5 +405,25 @@ TEST(ReadUrdf, SaysThatARootOnGroundDoesNotFloat) {
   EXPECT_EQ(read(robot(link("a")), options).report, "");
 }
 
+TEST(ReadUrdf, TellsMistakesOfOneKindBesideThoseOfAnother) {
+  const std::string inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz=";
+  const std::string rest =
+      "<link name='a'><inertial><mass value='1'/>\n" + inertia + "'-5'/></inertial></link>\n" +
+      "<link name='c'/><link name='com'/>\n<joint name='A' type='continuous'><parent link='world'/><child link='a'/>" +
+      "<axis xyz='0 0 1'/></joint>\n<joint name='B' type='continuous'><parent link='a'/><child link='b'/>" +
+      "<axis xyz='0 0 1'/></joint>\n<joint name='C' type='continuous'><parent link='b'/><child link='c'/>\n" +
+      "<axis xyz='0 0.1 1'/></joint>\n<joint name='D' type='fixed'><parent link='b'/><child link='com'/></joint>";
+  Options any;
+  any.plane.reset();
+  for (const std::string& first : {link("b") + "<link name='lonely'/>", "<link name='b'><inertial><mass value='1'/>" +
+                                                                            inertia + "'x'/></inertial></link>"}) {
+    const std::string report = read(robot("<link name='world'/>" + first + "\n" + rest), any).report;
+    for (const char* told : {"r.urdf:3:50: error: impossible inertia of link 'a'",
+                             "r.urdf:4:7: error: link 'c' has no mass", "urdf-not-planar", "r.urdf:1:"}) {
+      EXPECT_NE(report.find(told), std::string::npos) << told << "\n" << report;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::urdf
