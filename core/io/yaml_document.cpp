@@ -407,7 +407,6 @@ constexpr Explanation explanations[] = {
     {"end of map not found", "this line is indented unlike the lines it belongs to", ""},
     {"end of sequence not found", "this line is indented unlike the list it belongs to", ""},
     {"illegal map value", "a ':' cannot stand here", "quote a value that contains ': '"},
-    {"illegal flow end", "this bracket closes nothing", "quote a value that begins with it"},
     {"unknown token", "a value cannot begin with this character", "quote the value"},
     {"the referenced anchor is not defined", "the alias names an anchor that is not defined before it", ""},
 };
