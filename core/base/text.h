@@ -18,6 +18,9 @@ int character_count(std::string_view text);
 /// none for one that is put on the character before it, else one. Unicode 15, EastAsianWidth.txt, by blocks.
 int display_width(std::string_view text);
 
+/// Makes each carriage return that stands alone a line feed. No byte moves.
+void end_lines_by_line_feeds(std::string& text);
+
 /// The text with each control character (C0, DEL, C1, line and paragraph separators), direction override, code
 /// that is no character and invalid byte replaced by one '?', and each tab by one blank. The number of characters stays
 /// the same.

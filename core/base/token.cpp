@@ -1,6 +1,8 @@
 #include "base/token.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <limits>
 #include <system_error>
 
@@ -24,6 +26,19 @@ std::size_t exponent_end(std::string_view text, std::size_t position) {
   if (at < text.size() && (text[at] == '+' || text[at] == '-')) ++at;
   const std::size_t end = digits_end(text, at);
   return end > at ? end : position;  // "2 e" is no exponent; the e is then judged as a unit
+}
+
+/// By the place of the first digit that counts and the exponent.
+bool is_below_one(std::string_view number) {
+  const std::string_view digits = number.substr(0, number.find_first_of("eE"));
+  const auto first = static_cast<std::ptrdiff_t>(std::min(digits.find_first_of("123456789"), digits.size()));
+  const auto point = static_cast<std::ptrdiff_t>(std::min(digits.find('.'), digits.size()));
+  std::string_view power = number.substr(std::min(digits.size() + 1, number.size()));
+  if (power.starts_with('+')) power.remove_prefix(1);
+  std::ptrdiff_t exponent = 0;
+  const auto result = std::from_chars(power.data(), power.data() + power.size(), exponent);
+  if (result.ec == std::errc::result_out_of_range) return power.starts_with('-');
+  return exponent + point - first < (first < point ? 1 : 0);
 }
 
 }  // namespace
@@ -68,11 +83,8 @@ double number_value(std::string_view number) {
   double value = 0.0;
   const auto result = std::from_chars(number.data(), number.data() + number.size(), value);
   if (result.ec != std::errc::result_out_of_range) return value;
-  // from_chars does not say which way it failed; only a large number has an exponent or digits that make it so.
-  const std::size_t e = number.find_first_of("eE");
-  const bool small_exponent = e != std::string_view::npos && e + 1 < number.size() && number[e + 1] == '-';
-  const bool small = small_exponent || number.front() == '.' || number.starts_with("0.");
-  return small ? 0.0 : std::numeric_limits<double>::infinity();
+  // from_chars does not say which way it failed.
+  return is_below_one(number) ? 0.0 : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace freeplay

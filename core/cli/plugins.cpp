@@ -44,7 +44,15 @@ Registry load_registry(const CommonOptions& common, const Document* document) {
       }
     }
   }
-  for (const std::string& word : common.plugins) load_plugin(registry, find_plugin(word, {}));
+  for (const std::string& word : common.plugins) {
+    try {
+      load_plugin(registry, find_plugin(word, {}));
+    } catch (const Error& error) {
+      // A report on a model names its file, which does not name the plugin.
+      throw Error(error.category(), error.id(), fmt::format("--plugin {}: {}", word, error.message()), {},
+                  error.hint());
+    }
+  }
   const std::size_t named = registry.libraries().size();
   for (const std::string& reason : load_plugin_folders(registry)) {
     print_messages("freeplay: warning: " + reason + "\n", common.no_color);

@@ -36,7 +36,7 @@ int show(ShowOptions options, const CommonOptions& common) {
   if (options.format == "svg") {
     text = mechanism_svg(*loaded.model, assembled->start.state.q());
   } else {
-    const Json model = model_json(*loaded.model);
+    const Json model = model_json(*loaded.model, options.format == "text" ? Quantities::text : Quantities::numbers);
     text = options.format == "json"  ? json_text(model)
            : options.format == "dot" ? model_graph(model)
                                      : model_tree(model);

@@ -221,22 +221,43 @@ class Flattening {
     }
   }
 
-  /// A pattern that fits columns of renamed things becomes the list of what it fits.
+  /// A pattern that no pattern can follow under the new names becomes the list of what it fits.
   const Node& channel_list(const Node& written) {
     Node& list = target_.add(Node::Kind::list, 1, 1);
     const std::vector<const Node*> patterns = written.is_list() ? written.items : std::vector<const Node*>{&written};
     for (const Node* pattern : patterns) {
-      std::vector<std::string> fitting;
-      bool changed = false;
-      for (const ChannelInfo& channel : channels_.all()) {
-        if (!matches(pattern->text, channel.name)) continue;
-        fitting.push_back(rename_channel(channel.name));
-        changed = changed || fitting.back() != channel.name;
+      const std::string renamed = renamed_pattern(pattern->text);
+      if (!renamed.empty()) {
+        list.items.push_back(&scalar(renamed));
+        continue;
       }
-      if (!changed || pattern->text == "*") fitting = {pattern->text};
-      for (const std::string& text : fitting) list.items.push_back(&scalar(text));
+      for (const ChannelInfo& channel : channels_.all()) {
+        if (matches(pattern->text, channel.name)) list.items.push_back(&scalar(rename_channel(channel.name)));
+      }
     }
     return list;
+  }
+
+  /// The pattern itself, or with '_' for some of its dots, that fits the new names of just the columns that the pattern
+  /// fits; "" when there is none.
+  std::string renamed_pattern(const std::string& pattern) const {
+    constexpr std::size_t most_dots = 5;
+    std::vector<std::size_t> dots;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      if (pattern[i] == '.') dots.push_back(i);
+    }
+    const std::size_t ways = dots.size() > most_dots ? 1 : std::size_t{1} << dots.size();
+    for (std::size_t way = 0; way < ways; ++way) {
+      std::string candidate = pattern;
+      for (std::size_t i = 0; i < dots.size(); ++i) {
+        if ((way >> i) % 2 == 1) candidate[dots[i]] = '_';
+      }
+      const bool same = std::ranges::all_of(channels_.all(), [&](const ChannelInfo& channel) {
+        return matches(pattern, channel.name) == matches(candidate, rename_channel(channel.name));
+      });
+      if (same) return candidate;
+    }
+    return {};
   }
 
   const Document& source_;

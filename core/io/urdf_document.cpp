@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/number_text.h"
+#include "io/urdf_element.h"
 #include "io/urdf_inertia.h"
 #include "io/urdf_names.h"
 #include "io/urdf_plane.h"
@@ -291,6 +292,28 @@ void report_default_axes(const Robot& robot, Messages& messages) {
   }
 }
 
+std::optional<Sections> read_sections(const XmlElement& root, const std::string* file_name, const Options& options,
+                                      Document& document, Messages& messages) {
+  Robot robot = read_robot(root, messages);
+  if (root.name != "robot") return std::nullopt;
+  build_tree(robot, options, messages);
+  Names names(robot, messages);
+  if (!messages.failed()) ask_referee(root, messages);
+  // What could not be read has been replaced by a guess, which says nothing about the plane.
+  if (robot.mounts.empty() || (!robot.places_known && !options.plane)) return std::nullopt;
+  const PlanarRobot planar = choose_plane(robot, options);
+  robot.mounts = planar.mounts;
+  const Eigen::Vector3d normal = plane_axes(planar.plane).row(2);
+  check_inertia(robot, options, planar.planar() || !robot.places_known, normal, messages);
+  if (robot.places_known && !planar.planar()) report_not_planar(robot, planar, messages);
+  if (messages.failed()) return std::nullopt;
+  report_default_axes(robot, messages);
+  report_snapping(robot, planar, messages);
+  const Sections sections = Writer(robot, planar, names, options, document, file_name, messages).write();
+  if (messages.failed()) return std::nullopt;
+  return sections;
+}
+
 }  // namespace
 
 std::optional<Sections> add_sections(const std::string& text, const std::string* file_name, const Options& options,
@@ -298,25 +321,8 @@ std::optional<Sections> add_sections(const std::string& text, const std::string*
   const std::optional<XmlElement> root = parse_xml(text, *file_name, "bad-urdf", diagnostics);
   if (!root) return std::nullopt;
   Messages messages(*file_name, diagnostics);
-  Robot robot = read_robot(*root, messages);
-  if (root->name != "robot") return std::nullopt;
-  const bool readable = !messages.failed();
-  build_tree(robot, options, messages);
-  Names names(robot, messages);
-  if (!messages.failed()) ask_referee(*root, messages);
-  // What could not be read has been replaced by a guess, which says nothing about the plane.
-  if (robot.mounts.empty() || (!readable && !options.plane)) return std::nullopt;
-  const PlanarRobot planar = choose_plane(robot, options);
-  robot.mounts = planar.mounts;
-  const Eigen::Vector3d normal = plane_axes(planar.plane).row(2);
-  check_inertia(robot, options, planar.planar() || !readable, normal, messages);
-  if (readable && !planar.planar()) report_not_planar(robot, planar, messages);
-  if (messages.failed()) return std::nullopt;
-  report_default_axes(robot, messages);
-  report_snapping(robot, planar, messages);
-  const Sections sections = Writer(robot, planar, names, options, document, file_name, messages).write();
-  messages.report_ignored(robot.spot);
-  if (messages.failed()) return std::nullopt;
+  std::optional<Sections> sections = read_sections(*root, file_name, options, document, messages);
+  messages.report_ignored(name_spot(*root));
   return sections;
 }
 

@@ -89,7 +89,7 @@ Spot begin_spot(const XmlElement& element) {
 }
 
 void Messages::error(const Spot& spot, const char* id, std::string message, std::string suggestion, std::string hint) {
-  failed_ = true;
+  ++errors_;
   diagnostics_.error({file_, spot.line, spot.column}, spot.length, id, std::move(message), std::move(suggestion),
                      std::move(hint));
 }

@@ -27,7 +27,8 @@ class Messages {
 
   void error(const Spot& spot, const char* id, std::string message, std::string suggestion = {}, std::string hint = {});
   void warning(const Spot& spot, const char* id, std::string message, std::string hint = {});
-  bool failed() const { return failed_; }
+  bool failed() const { return errors_ > 0; }
+  int errors() const { return errors_; }
 
   /// The word that was probably meant, or ""; of a hostile file only the first hundred are looked for.
   std::string suggest(const std::string& word, const std::vector<std::string>& words);
@@ -39,7 +40,7 @@ class Messages {
  private:
   std::string file_;
   Diagnostics& diagnostics_;
-  bool failed_ = false;
+  int errors_ = 0;
   int suggested_ = 0;
   std::vector<std::pair<std::string, std::vector<std::string>>> ignored_;  ///< kinds and the names of each
   std::unordered_map<std::string, std::size_t> ignored_index_;

@@ -40,7 +40,9 @@ class RobotReader {
     }
     if (robot_.links.empty()) messages_.error(robot_.spot, "bad-urdf", "the robot has no link");
     resolve();
+    const int errors = messages_.errors();
     read_loops(root_, robot_, messages_);
+    robot_.places_known = robot_.places_known && messages_.errors() == errors;
     resolve_mimics();
     finish();
     return std::move(robot_);
@@ -71,7 +73,9 @@ class RobotReader {
   void read_inertial(const XmlElement& xml, const std::string& owner, Link& link) {
     Element inertial(xml, "the inertial of " + owner, messages_, true);
     link.has_inertial = true;
+    const int errors = messages_.errors();
     link.inertial = read_origin(inertial, messages_);
+    link.inertia_known = messages_.errors() == errors;
     link.mass = 1.0;  // where it cannot be read: the link is not without mass
     if (const XmlElement* child = inertial.required_child("mass")) {
       Element mass(*child, "the mass of " + owner, messages_, true);
@@ -110,6 +114,7 @@ class RobotReader {
   void read_joint(const XmlElement& xml) {
     Element element(xml, label(xml), messages_, false);
     Joint joint;
+    const int errors = messages_.errors();
     joint.element = begin_spot(xml);
     joint.spot = name_spot(xml);
     if (const XmlAttribute* name = element.require("name")) {
@@ -123,10 +128,12 @@ class RobotReader {
     joint.parent.frame = read_origin(element, messages_, &joint.parent.frame_spot);
     references_.push_back({read_end(element, "parent", joint.parent), read_end(element, "child", joint.child)});
     read_axis_of(element, joint);
+    robot_.places_known = robot_.places_known && messages_.errors() == errors;
     read_limit(element, type, joint);
     read_dynamics(element, joint);
     read_mimic(element, joint);
-    for (const char* known : {"safety_controller", "calibration"}) element.pass_over(known);
+    check_calibration(element);
+    check_safety(element);
     element.finish();
     robot_.joints.push_back(std::move(joint));
   }
@@ -205,6 +212,25 @@ class RobotReader {
     if (joint.damping > 0.0 && joint.type != JointType::revolute && joint.type != JointType::prismatic) {
       messages_.ignore("damping of joint", joint.name);
     }
+  }
+
+  void check_calibration(Element& joint) {
+    const XmlElement* xml = joint.child("calibration");
+    if (xml == nullptr) return;
+    Element calibration(*xml, "the calibration of " + joint.owner(), messages_, false);
+    for (const char* key : {"rising", "falling", "reference_position"}) calibration.number(key, 0.0);
+    calibration.finish();
+    messages_.ignore("calibration");
+  }
+
+  void check_safety(Element& joint) {
+    const XmlElement* xml = joint.child("safety_controller");
+    if (xml == nullptr) return;
+    Element safety(*xml, "the safety_controller of " + joint.owner(), messages_, false);
+    safety.required_number("k_velocity");
+    for (const char* key : {"k_position", "soft_lower_limit", "soft_upper_limit"}) safety.number(key, 0.0);
+    safety.finish();
+    messages_.ignore("safety_controller");
   }
 
   double not_negative(Element& element, const std::string& key) {
@@ -331,7 +357,6 @@ class RobotReader {
     for (const XmlElement& child : root_.children) note_other(child);
     for (const char* known : {"link", "joint"}) element_.pass_over(known);
     finish_known();
-    messages_.report_ignored(robot_.spot);
   }
 
   void note_other(const XmlElement& child) {
@@ -342,6 +367,8 @@ class RobotReader {
     } else if (child.name == "transmission") {
       const XmlAttribute* name = child.attribute("name");
       messages_.ignore("transmission", name == nullptr ? "" : name->value);
+    } else if (child.name == "material") {
+      check_material(child, messages_);
     }
   }
 

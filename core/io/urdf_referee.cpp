@@ -53,11 +53,22 @@ void append_escaped(std::string& out, const std::string& text) {
   }
 }
 
+bool is_name(const std::string& attribute) {
+  return attribute == "name" || attribute == "link" || attribute == "joint" || attribute == "filename";
+}
+
+/// Without the blanks around it; urdfdom takes them around the numbers of a list, and around a single number none.
+std::string trimmed(const std::string& text) {
+  constexpr const char* blanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
 void append(std::string& out, const XmlElement& element) {
   out += "<" + element.name;
   for (const XmlAttribute& attribute : element.attributes) {
     out += " " + attribute.name + "=\"";
-    append_escaped(out, attribute.value);
+    append_escaped(out, is_name(attribute.name) ? attribute.value : trimmed(attribute.value));
     out += "\"";
   }
   out += ">";

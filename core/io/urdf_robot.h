@@ -33,8 +33,8 @@ struct Link {
   Spot mass_spot;
   Eigen::Isometry3d inertial = Eigen::Isometry3d::Identity();  ///< frame of the inertia at the centre of mass
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();           ///< in that frame [kg m^2]
-  bool inertia_known = true;                                   ///< false after a message about one of its numbers
-  std::array<Spot, 3> moments{};                               ///< of ixx, iyy, izz
+  bool inertia_known = true;      ///< false after a message about its numbers or its origin
+  std::array<Spot, 3> moments{};  ///< of ixx, iyy, izz
   Spot inertia_spot;
 
   bool has_mass() const { return has_inertial && mass > 0.0; }
@@ -92,6 +92,7 @@ struct Robot {
   Spot spot;
   std::vector<Link> links;
   std::vector<Joint> joints;  ///< in file order, those of the tree first
+  bool places_known = true;   ///< false after a message about the place, type or axis of a joint: a guess stands there
   bool ambiguous = false;     ///< a link was named twice, or a joint names none: nobody knows what hangs where
 
   // Filled by build_tree().

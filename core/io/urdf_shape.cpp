@@ -14,8 +14,26 @@ class ShapeChecker {
     shape.find("name");
     if (const XmlElement* origin = shape.child("origin")) check_origin(*origin, shape.owner());
     if (const XmlElement* geometry = shape.required_child("geometry")) check_geometry(*geometry, shape.owner());
-    if (const XmlElement* material = shape.child("material")) check_material(*material, shape.owner());
+    if (const XmlElement* material = shape.child("material")) check_material(*material, shape.owner(), false);
     shape.finish();
+  }
+
+  /// A material of a shape may be a mere name, one of the robot says what it looks like.
+  void check_material(const XmlElement& xml, const std::string& owner, bool of_robot) {
+    Element material = part(xml, owner);
+    material.require("name");
+    const XmlElement* texture = material.child("texture");
+    if (texture != nullptr) {
+      Element element = part(*texture, material.owner());
+      element.require("filename");
+      element.finish();
+    }
+    if (const XmlElement* color = material.child("color")) {
+      check_color(*color, of_robot ? material.owner() : owner);
+    } else if (of_robot && texture == nullptr) {
+      material.required_child("color");
+    }
+    material.finish();
   }
 
  private:
@@ -54,19 +72,24 @@ class ShapeChecker {
       element.numbers("scale", 3);
       element.finish();
     }
+    if (xml.children.empty()) {
+      messages_.error(geometry.name_spot(), "bad-urdf", fmt::format("{} names no shape", geometry.owner()), {},
+                      "shapes: box, sphere, cylinder, mesh");
+    }
     geometry.finish();
   }
 
-  void check_material(const XmlElement& xml, const std::string& owner) {
-    Element material = part(xml, owner);
-    material.find("name");
-    if (const XmlElement* color = material.child("color")) {
-      Element element = part(*color, owner);
-      element.numbers("rgba", 4);
-      element.finish();
+  void check_color(const XmlElement& xml, const std::string& owner) {
+    Element color = part(xml, owner);
+    if (color.require("rgba") != nullptr) {
+      for (const double part : color.numbers("rgba", 4)) {
+        if (part >= 0.0 && part <= 1.0) continue;
+        messages_.error(spot_of(*xml.attribute("rgba")), "bad-urdf",
+                        fmt::format("'rgba' of {} must be from 0 to 1, not {}", color.owner(), part));
+        break;
+      }
     }
-    material.pass_over("texture");
-    material.finish();
+    color.finish();
   }
 
   Messages& messages_;
@@ -76,6 +99,10 @@ class ShapeChecker {
 
 void check_shape(const XmlElement& xml, const std::string& owner, Messages& messages) {
   ShapeChecker(messages).check(xml, owner);
+}
+
+void check_material(const XmlElement& xml, Messages& messages) {
+  ShapeChecker(messages).check_material(xml, "the robot", true);
 }
 
 }  // namespace freeplay::urdf

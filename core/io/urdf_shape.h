@@ -8,7 +8,9 @@
 namespace freeplay::urdf {
 
 /// Checks the numbers and the spelling in a `visual` or `collision` of `owner`, each at its own place. What is allowed
-/// besides (which shapes there are, that radii are positive) is left to urdfdom.
+/// besides (that radii are positive) is left to urdfdom.
 void check_shape(const XmlElement& xml, const std::string& owner, Messages& messages);
+/// Likewise a `material` that stands in the robot itself.
+void check_material(const XmlElement& xml, Messages& messages);
 
 }  // namespace freeplay::urdf

@@ -25,53 +25,49 @@ class UrdfSection {
   UrdfSection(const CheckedValue& section, const std::string& model_file)
       : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section, "urdf")) {
     const auto file = section.node().is_scalar() ? std::optional<CheckedValue>(section) : map_.require("file");
-    good_ = map_.good() && file.has_value();
-    if (file) read_file(*file, model_file);
+    readable_ = file && read_file(*file, model_file);
+    // A key that is wrong has the value with which the robot shows no mistakes that are not there.
     using Plane = urdf::Options::Plane;
-    constexpr Plane planes[] = {Plane::xy, Plane::xz, Plane::yz};
-    if (const auto index = word("plane", {"xy", "xz", "yz"})) options.plane = planes[*index];
-    options.floating_base = word("base", {"fixed", "floating"}) == std::optional<int>(1);
-    options.two_parents = word("loops", {"elements", "two-parents"}) == std::optional<int>(1);
-    options.repair_inertia = word("repair", {"inertia"}).has_value();
-    if (word("limits", {"ignore", "stop"}) == std::optional<int>(1)) {
-      good_ = false;
+    constexpr std::optional<Plane> planes[] = {Plane::xy, Plane::xz, Plane::yz, std::nullopt};
+    options.plane = planes[word("plane", {"xy", "xz", "yz"}, 3)];
+    options.floating_base = word("base", {"fixed", "floating"}, 0) == 1;
+    options.two_parents = word("loops", {"elements", "two-parents"}, 1) == 1;
+    options.repair_inertia = map_.find("repair").has_value();
+    word("repair", {"inertia"}, 0);
+    if (word("limits", {"ignore", "stop"}, 0) == 1) {
       map_.find("limits")->fail("wrong-type", "stops at the limits of joints are not in this release", {},
                                 "'limits: ignore' is the default");
     }
     if (const auto merge = map_.find("merge_fixed")) {
-      const auto value = merge->boolean();
-      good_ = good_ && value;
-      options.merge_fixed = value.value_or(false);
+      options.merge_fixed = merge->boolean().value_or(false);
     }
     map_.finish();
   }
 
-  bool good() const { return good_; }
+  bool readable() const { return readable_; }
 
   urdf::Options options;
   std::string path, text;
 
  private:
-  void read_file(const CheckedValue& file, const std::string& model_file) {
+  bool read_file(const CheckedValue& file, const std::string& model_file) {
     const auto name = file.string();
-    good_ = good_ && name;
-    if (!name) return;
+    if (!name) return false;
     path = (std::filesystem::path(model_file).parent_path() / *name).string();
     const std::string why = read_input(path, text);
     if (!why.empty()) file.fail("file-not-found", fmt::format("cannot read '{}': {}", path, why));
     if (text.size() > largest_input) file.fail("too-large", fmt::format("'{}' is larger than 16 MiB", path));
-    good_ = good_ && why.empty() && text.size() <= largest_input;
+    return why.empty() && text.size() <= largest_input;
   }
 
-  std::optional<int> word(const char* key, const Words& words) {
+  /// Index of the word; 0 where the key is not written, `wrong` after a message.
+  int word(const char* key, const Words& words, int wrong) {
     const auto value = map_.find(key);
-    const auto index = value ? value->word(words) : std::optional<int>();
-    good_ = good_ && (!value || index);
-    return index;
+    return value ? value->word(words).value_or(wrong) : 0;
   }
 
   MapReader map_;
-  bool good_ = true;
+  bool readable_ = false;
 };
 
 class Merger {
@@ -181,7 +177,7 @@ bool add_robot(Document& document, Diagnostics& diagnostics) {
     return false;
   }
   UrdfSection section(value, document.file_name());
-  if (!section.good()) return false;
+  if (!section.readable()) return false;
   diagnostics.add_source(section.path, section.text);
   const std::string* file = document.add_file(section.path, section.text);
   const auto sections = urdf::add_sections(section.text, file, section.options, document, diagnostics);

@@ -20,8 +20,8 @@ class TreeBuilder {
     if (robot_.ambiguous) return;
     order_links();
     report_cycles();
-    // Mistakes that are no matter of what hangs where do not hide those that are found further on.
-    if (!is_tree_) return;
+    // A second root or parent hides no mistake that is found further on; what hangs on a cycle hangs nowhere.
+    if (has_cycle_) return;
     for (const int link : robot_.order) mount(link);
   }
 
@@ -39,7 +39,6 @@ class TreeBuilder {
       } else if (options_.two_parents) {
         candidate.closes_loop = true;
       } else {
-        is_tree_ = false;
         messages_.error(candidate.child.spot, "bad-urdf",
                         fmt::format("link '{}' has two parents: it is the child of '{}' (line {}) already",
                                     link(candidate.child.link).name, joint(parent).name, joint(parent).spot.line),
@@ -60,7 +59,6 @@ class TreeBuilder {
       if (robot_.root == no_link) {
         robot_.root = root;
       } else {
-        is_tree_ = false;
         messages_.error(link(root).spot, "bad-urdf",
                         fmt::format("link '{}' is a second root: no joint connects it with '{}'", link(root).name,
                                     link(robot_.root).name));
@@ -92,7 +90,7 @@ class TreeBuilder {
   }
 
   void report_cycle(int start) {
-    is_tree_ = false;
+    has_cycle_ = true;
     std::vector<int> joints;
     for (int here = start; joints.empty() || here != start; here = joint(joints.back()).parent.link) {
       joints.push_back(robot_.parent_joint[at(here)]);
@@ -115,10 +113,16 @@ class TreeBuilder {
     const Link& here = link(index);
     Mount& mount = robot_.mounts[at(index)];
     const bool names_ground = here.name == "world" || here.name == "ground";
-    if (index == robot_.root) {
+    if (robot_.parent_joint[at(index)] < 0) {
       if (!names_ground && here.has_mass()) mount.body = index;
       if (names_ground && here.has_mass()) messages_.ignore("mass of ground, link", here.name);
       note_massless(here);
+      if (options_.floating_base && index == robot_.root && mount.body != index) {
+        messages_.warning(here.spot, "urdf-ignored",
+                          fmt::format("the robot does not float: its root link '{}' {}", here.name,
+                                      names_ground ? "is ground" : "has no mass and is a part of ground"),
+                          "'base: floating' needs a root link with mass that is not named 'world' or 'ground'");
+      }
       return;
     }
     const Joint& parent = joint(robot_.parent_joint[at(index)]);
@@ -147,7 +151,7 @@ class TreeBuilder {
   const Options& options_;
   Messages& messages_;
   std::vector<bool> reached_;
-  bool is_tree_ = true;
+  bool has_cycle_ = false;
 };
 
 }  // namespace

@@ -187,7 +187,9 @@ class XmlParser {
     at_ += 2;
     const std::string name = at_ < text_.size() && begins_name(text_[at_]) ? read_name() : std::string();
     skip_blanks();
-    if (at_ >= text_.size() || text_[at_] != '>') fail(begin, "an end tag must read </name>");
+    if (at_ >= text_.size() || text_[at_] != '>') {
+      fail(begin, fmt::format("an end tag holds nothing but its name: </{}>", name.empty() ? "name" : name));
+    }
     ++at_;
     const bool known = std::any_of(open_.begin(), open_.end(), [&](const Open& o) { return o.element->name == name; });
     if (!known) fail(begin, fmt::format("the end tag </{}> closes nothing", name));
@@ -278,14 +280,19 @@ class XmlParser {
         return;
       }
     }
+    const std::string written = fmt::format("&{};", std::string(name.substr(0, 32)));
     if (name.starts_with('#')) {
       const bool hexadecimal = name.starts_with("#x");
       name.remove_prefix(hexadecimal ? 2 : 1);
       unsigned long code = 0;
       const auto [stop, error] = std::from_chars(name.data(), name.data() + name.size(), code, hexadecimal ? 16 : 10);
-      if (error == std::errc() && stop == name.data() + name.size() && is_allowed(code)) return append_utf8(out, code);
+      const bool whole = !name.empty() && error != std::errc::invalid_argument && stop == name.data() + name.size();
+      if (whole && error == std::errc() && is_allowed(code)) return append_utf8(out, code);
+      fail(position,
+           fmt::format("'{}' {}", written,
+                       whole ? "stands for a character that XML does not allow" : "is not the number of a character"));
     }
-    fail(position, fmt::format("unknown entity '&{};'", std::string(name.substr(0, 32))));
+    fail(position, fmt::format("unknown entity '{}'", written));
   }
 
   std::string_view text_;

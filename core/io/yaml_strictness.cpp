@@ -149,12 +149,6 @@ std::optional<YamlFault> find_bad_character(std::string_view text) {
   return std::nullopt;
 }
 
-void end_lines_by_line_feeds(std::string& text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n')) text[i] = '\n';
-  }
-}
-
 std::string without_tabs_in_empty_lines(std::string text) {
   int block = none_open;  // blanks before the line that opens the block scalar around
   for (std::size_t at = 0; at < text.size(); at = line_end(text, at) + 1) {

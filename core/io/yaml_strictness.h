@@ -19,10 +19,6 @@ struct YamlFault {
 /// later.
 std::optional<YamlFault> find_directive_fault(std::string_view text, bool map);
 
-/// Makes each carriage return that stands alone a line feed, as YAML reads it; the parser library does not. No byte
-/// moves.
-void end_lines_by_line_feeds(std::string& text);
-
 /// For the parser alone, which takes a tab in an empty line, or before a comment that has a line of its own, for
 /// indentation: there blanks stand for tabs. Block scalars, where tabs are text, stay as they are. No byte moves.
 std::string without_tabs_in_empty_lines(std::string text);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "base/token.h"
 
 namespace freeplay {
 namespace {
@@ -21,6 +22,7 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 CsvText::CsvText(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
+  end_lines_by_line_feeds(text_);
   std::string_view rest = text_;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   bool header = true;
@@ -70,14 +72,15 @@ std::size_t CsvText::fields(std::size_t row) const {
 
 Location CsvText::body_location() const { return rows_.empty() ? header(0).location : field(0, 0).location; }
 
-std::optional<Location> CsvText::foreign_byte() const {
+std::optional<CsvText::Field> CsvText::foreign_byte() const {
   std::size_t line_begin = 0;
   for (std::size_t i = 0; i < text_.size();) {
     const std::size_t length = text_[i] == '\0' ? 0 : character_bytes(text_, i);
     if (length == 0) {
       const auto line = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(i), '\n');
       const std::string_view before = std::string_view(text_).substr(line_begin, i - line_begin);
-      return Location{file_, static_cast<int>(line) + 1, character_count(before) + 1};
+      return Field{std::string_view(text_).substr(i, 1),
+                   {file_, static_cast<int>(line) + 1, character_count(before) + 1}};
     }
     if (text_[i] == '\n') line_begin = i + 1;
     i += length;
@@ -89,7 +92,12 @@ std::optional<double> csv_number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (end != text.data() + text.size()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) {
+    const bool negative = text.starts_with('-');
+    return (negative ? -1.0 : 1.0) * number_value(text.substr(negative ? 1 : 0));
+  }
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

@@ -12,8 +12,8 @@
 namespace freeplay {
 
 /// Fields are separated by commas, lines that begin with '#' are comments, and the first other line names the columns.
-/// Blanks around a field and empty lines do not count; there are no quotes. Columns and rows beyond the limits are left
-/// out.
+/// Blanks around a field and empty lines do not count; there are no quotes. Lines end as in any other text file.
+/// Columns and rows beyond the limits are left out.
 class CsvText {
  public:
   static constexpr std::size_t most_columns = 10'000, most_rows = 2'000'000;
@@ -32,8 +32,8 @@ class CsvText {
   const std::vector<std::string>& names() const { return names_; }
   /// The name of a column where it stands; of column 0 also in a text without a header: the begin of the text.
   Field header(std::size_t column) const;
-  /// The first byte that is not UTF-8 text (a zero byte is none either).
-  std::optional<Location> foreign_byte() const;
+  /// The first byte that is not UTF-8, or a zero byte, which no text has.
+  std::optional<Field> foreign_byte() const;
   /// Was anything left out?
   bool too_large() const { return too_large_; }
   std::size_t rows() const { return rows_.size(); }
@@ -58,7 +58,8 @@ class CsvText {
   bool too_large_ = false;
 };
 
-/// A finite number with a decimal point, whatever the locale; nothing else may stand beside it.
+/// A number with a decimal point, whatever the locale; nothing else may stand beside it. Infinite where it is too large
+/// for a double, 0 where it is too small.
 std::optional<double> csv_number(std::string_view text);
 
 }  // namespace freeplay

@@ -104,7 +104,7 @@ class DriverEntry {
     if (!value) return;
     const Dimension dimension = dimension_of(kind, coordinate);
     if (value->key() == "table") {
-      driver.table = read_table(draft_, *value, dimension);
+      driver.table = read_table(draft_, *value, dimension, &driver.table_source);
       if (!driver.table) return;
     } else {
       std::optional<Expression> expression = value->time_function(dimension, derivatives_of(kind));
@@ -185,6 +185,10 @@ class DriverEntry {
     kinematics.path_location = path->location();
     kinematics.marker = *marker;
     kinematics.path = *components;
+    constexpr std::array<const char*, 3> keys{"x", "y", "angle"};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (const Node* text = path->node().find(keys[i])) kinematics.path_text[i] = text->text;
+    }
     kinematics.first_driver = static_cast<int>(draft_.model.drivers.size());
     kinematics.driver_count = static_cast<int>(count);
     for (std::size_t i = 0; i < count; ++i) expand((*driven)[i], (*modes)[i], elbow.has_value(), joints->location());

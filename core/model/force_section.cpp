@@ -79,7 +79,7 @@ class ForceEntry {
     const auto acceleration = value ? value->vector(dimension::acceleration) : std::nullopt;
     const auto items = on ? on->list() : std::nullopt;
     if (!items) return;
-    OwnGravity own{part_.full(entry_.key()), {}, acceleration.value_or(Vector3{})};
+    OwnGravity own{part_.full(entry_.key()), {}, acceleration.value_or(Vector3{}), draft_.model.force_elements.size()};
     for (const CheckedValue& item : *items) {
       for (const BodyId body : bodies(item)) {
         if (body == ground) warn_of_ground(item, "gravity");

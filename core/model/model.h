@@ -79,6 +79,16 @@ struct Gear {
 enum class DriverKind { angle, position, velocity, torque, force };
 inline bool prescribes(DriverKind kind) { return kind != DriverKind::torque && kind != DriverKind::force; }
 
+/// What a table was read from, as written.
+struct TableSource {
+  std::string file;             ///< path; empty: points in the model file
+  std::string time, value;      ///< names of columns; empty: the first and the second
+  std::string time_unit, unit;  ///< of the columns; empty: SI
+  Interpolation interpolation = Interpolation::cubic;
+  SplineEnds ends = SplineEnds::natural;
+  Outside outside = Outside::hold;
+};
+
 /// One driven joint.
 struct Driver {
   std::string name;
@@ -88,6 +98,7 @@ struct Driver {
   Expression value;  ///< of time; unused when `table` or `kinematics` is set
   std::string text;  ///< of the expression, as written
   std::shared_ptr<const TimeTable> table;
+  TableSource table_source;
   int kinematics = -1;  ///< index into Model::kinematics: motion by inverse kinematics
   int elbow = 1;        ///< working mode of the leg, 1 or -1
   bool elbow_given = false;
@@ -99,6 +110,7 @@ struct InverseKinematics {
   Location location, frame_location, path_location;
   int marker = 0;
   std::array<std::optional<Expression>, 3> path;  ///< x, y [m], angle [rad]; left out: follows from the mechanism
+  std::array<std::string, 3> path_text;           ///< of each expression, as written
   int first_driver = 0, driver_count = 0;
 };
 
@@ -120,6 +132,7 @@ struct OwnGravity {
   std::string name;
   std::vector<BodyId> bodies;  ///< as written, each once
   Vector3 value{};             ///< [m/s^2]
+  std::size_t place = 0;       ///< how many of Model::force_elements are declared before
 };
 
 /// An entry of `forces` that reports results: an applied force, or a joint without rows.

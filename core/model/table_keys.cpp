@@ -38,8 +38,8 @@ std::string free_name(const std::vector<InputFile>& inputs, const std::filesyste
 
 class TableReader {
  public:
-  TableReader(Draft& draft, const CheckedValue& value, const Dimension& dimension)
-      : draft_(draft), value_(value), dimension_(dimension) {}
+  TableReader(Draft& draft, const CheckedValue& value, const Dimension& dimension, TableSource* source)
+      : draft_(draft), value_(value), dimension_(dimension), source_(source) {}
 
   std::shared_ptr<const TimeTable> read() {
     const bool short_form = value_.node().is_scalar();
@@ -56,6 +56,17 @@ class TableReader {
     const auto ends = word(map.find("ends"), {"natural", "clamped", "periodic"});
     const auto outside = word(map.find("outside"), {"hold", "repeat", "error"});
     const auto time_column = map.find("time"), value_column = map.find("value");
+    if (source_ != nullptr) {
+      const auto text = [](const std::optional<CheckedValue>& key) { return key ? key->node().text : std::string(); };
+      *source_ = {text(file),
+                  text(time_column),
+                  text(value_column),
+                  text(map.find("time_unit")),
+                  text(map.find("unit")),
+                  static_cast<Interpolation>(interpolation.value_or(0)),
+                  static_cast<SplineEnds>(ends.value_or(0)),
+                  static_cast<Outside>(outside.value_or(0))};
+    }
     map.conflict("file", "points");
     if (!file) {
       for (const char* of_a_file : {"time", "value"}) map.conflict("points", of_a_file);
@@ -194,7 +205,10 @@ class TableReader {
   /// Is the first row one of names, each of which stands for one column?
   bool has_header(const CsvText& text) const {
     if (const auto foreign = text.foreign_byte()) {
-      draft_.diagnostics.error(*foreign, 1, "bad-table", "this byte is not UTF-8", "", "save the file as UTF-8");
+      const bool zero = foreign->text.starts_with('\0');
+      draft_.diagnostics.error(foreign->location, 1, "bad-table",
+                               zero ? "a control character cannot stand in the file" : "this byte is not UTF-8", "",
+                               zero ? "" : "save the file as UTF-8");
       return false;
     }
     const std::vector<std::string>& names = text.names();
@@ -233,17 +247,16 @@ class TableReader {
         ++mistakes;
         continue;
       }
-      const auto t = field(text, row, time), x = field(text, row, values);
+      const auto t = field(text, row, time, *time_unit_), x = field(text, row, values, *unit_);
       mistakes += (t ? 0 : 1) + (x ? 0 : 1);
       if (!t) continue;
-      const double now = *t * *time_unit_;
-      if (last && !(now > *last)) {
-        bad(text.field(row, time), fmt::format("times must increase: {} s follows {} s", now, *last));
+      if (last && !(*t > *last)) {
+        bad(text.field(row, time), fmt::format("times must increase: {} s follows {} s", *t, *last));
         ++mistakes;
       }
-      last = now;
-      table.times.push_back(now);
-      table.values.push_back(x.value_or(0.0) * *unit_);
+      last = t;
+      table.times.push_back(*t);
+      table.values.push_back(x.value_or(0.0));
     }
     return mistakes == 0;
   }
@@ -268,9 +281,9 @@ class TableReader {
       file.fail("too-large", "the tables of the model are larger than 32 MiB together");
       return nullptr;
     }
-    draft_.diagnostics.add_source(path.string(), text);
     draft_.model.inputs.push_back({free_name(draft_.model.inputs, path), text});
     auto table = std::make_unique<CsvText>(path.string(), std::move(text));
+    draft_.diagnostics.add_source(path.string(), table->text());
     return draft_.tables.emplace(path.string(), std::move(table)).first->second.get();
   }
 
@@ -292,14 +305,15 @@ class TableReader {
     return std::nullopt;
   }
 
-  std::optional<double> field(const CsvText& text, std::size_t row, std::size_t column) const {
+  /// In SI; `factor` is that of the unit of the column.
+  std::optional<double> field(const CsvText& text, std::size_t row, std::size_t column, double factor) const {
     const CsvText::Field field = text.field(row, column);
     const auto number = csv_number(field.text);
-    if (!number) {
-      bad(field,
-          field.text.empty() ? "a number is missing" : fmt::format("'{}' is not a number", printable(field.text)));
-    }
-    return number;
+    if (number && std::isfinite(*number * factor)) return *number * factor;
+    bad(field, field.text.empty() ? "a number is missing"
+               : number           ? fmt::format("the number '{}' is too large", printable(field.text))
+                                  : fmt::format("'{}' is not a number", printable(field.text)));
+    return std::nullopt;
   }
 
   void bad(const CsvText::Field& field, const std::string& message, const std::string& hint = {}) const {
@@ -320,13 +334,15 @@ class TableReader {
   Draft& draft_;
   const CheckedValue& value_;
   Dimension dimension_;
+  TableSource* source_;                     ///< may be null
   std::optional<double> time_unit_, unit_;  ///< factors to SI
 };
 
 }  // namespace
 
-std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& value, const Dimension& dimension) {
-  return TableReader(draft, value, dimension).read();
+std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& value, const Dimension& dimension,
+                                            TableSource* source) {
+  return TableReader(draft, value, dimension, source).read();
 }
 
 }  // namespace freeplay

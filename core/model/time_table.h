@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/expression.h"
@@ -31,6 +32,10 @@ class TimeTable {
   /// The first time after t at which the slope jumps; infinite when there is none. That of a repeated
   /// table may be told twice, with different rounding.
   double next_kink(double t) const noexcept;
+
+  std::span<const double> times() const { return times_; }
+  std::span<const double> values() const { return values_; }
+
   /// Integral from the first time to t.
   bool integral(double t, double& out, EvaluationFailure& failure) const noexcept;
 

@@ -209,7 +209,7 @@ class Drawing {
   }
 
   void draw_joint(const JointElement& joint) {
-    if (joint.gear >= 0) return;
+    if (joint.gear >= 0) return draw_gear(joint);
     const Marker &a = marker(joint.marker_a), &b = marker(joint.marker_b);
     const Point from = page(world(a)), to = page(world(b));
     const bool apart = length(to - from) > 6.0;
@@ -230,6 +230,24 @@ class Drawing {
       draw_pin(joint, to);
       label(joint.name, to, "");
     }
+  }
+
+  /// A toothed rim about each of the two joints, and a line between them.
+  void draw_gear(const JointElement& joint) {
+    const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
+    const Point from = place(gear.first), to = place(gear.second);
+    for (const Point& at : {from, to}) {
+      circle(at, 12.0, "fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" stroke-dasharray=\"2 2\"");
+    }
+    line(from, to, "stroke=\"#aa3377\" stroke-dasharray=\"6 2 1 2\"");
+    label(joint.name, 0.5 * (from + to), "font-style=\"italic\"");
+  }
+
+  /// On the page: where a joint moves its second body.
+  Point place(int index) const {
+    const JointElement& joint = model_.joints[static_cast<std::size_t>(index)];
+    return joint.gear >= 0 ? place(model_.gears[static_cast<std::size_t>(joint.gear)].second)
+                           : page(world(marker(joint.marker_b)));
   }
 
   void draw_pin(const JointElement& joint, const Point& at) {

@@ -34,8 +34,8 @@ std::string words(const Json& value) {
 }
 
 std::string frame_text(const Json& frame) {
-  if (frame.is_array()) return words(frame) + " m";
-  return fmt::format("{} m  angle {} rad", words(frame["position"]), words(frame["angle"]));
+  if (frame.is_string()) return words(frame);
+  return fmt::format("{}  angle {}", words(frame["position"]), words(frame["angle"]));
 }
 
 std::size_t widest(const Json& map) {
@@ -54,18 +54,10 @@ std::string frames_text(const Json& frames, int indent) {
 }
 
 std::string body_text(const std::string& name, const Json& body) {
-  std::string out = fmt::format("  {}: mass {} kg  inertia {} kg*m^2  com {} m\n", name, words(body["mass"]),
+  std::string out = fmt::format("  {}: mass {}  inertia {}  com {}\n", name, words(body["mass"]),
                                 words(body["inertia"]), words(body["com"]));
-  if (body.contains("pose")) {
-    const Json& pose = body["pose"];
-    out += "    pose";
-    if (pose.contains("position")) out += fmt::format("  position {} m", words(pose["position"]));
-    if (pose.contains("angle")) out += fmt::format("  angle {} rad", words(pose["angle"]));
-    out += "\n";
-  }
-  if (body.contains("velocity")) {
-    out += fmt::format("    velocity  linear {} m/s  angular {} rad/s\n", words(body["velocity"]["linear"]),
-                       words(body["velocity"]["angular"]));
+  for (const char* guess : {"pose", "velocity"}) {
+    if (body.contains(guess)) out += fmt::format("    {}  {}\n", guess, map_text(body[guess]));
   }
   return out + frames_text(body["frames"], 4);
 }
@@ -97,11 +89,30 @@ std::string section_text(const char* heading, const Json& section) {
 }
 
 std::string start_text(const Json& initial) {
-  std::string out;
-  for (const auto& [key, values] : initial.items()) {
-    for (const auto& [joint, value] : values.items()) out += fmt::format("  {} {} of {}\n", key, words(value), joint);
+  std::string out = "initial\n";
+  for (const char* key : {"joints", "speeds"}) {
+    for (const auto& [joint, value] : initial[key].items()) {
+      out += fmt::format("  {} {} of {}\n", key, words(value), joint);
+    }
   }
-  return out.empty() ? out : "initial\n" + out;
+  return out + "  assembly  " + map_text(initial["assembly"]) + "\n";
+}
+
+std::string simulation_text(const Json& simulation) {
+  const Json& step = simulation.contains("step") ? simulation["step"] : Json();
+  std::string steps = step.is_null() ? fmt::format("in steps for an accuracy of {}", words(simulation["accuracy"]))
+                                     : fmt::format("in steps of {}", words(step));
+  if (step.is_object()) {
+    Json rest = step;
+    for (const char* told : {"size", "adaptive"}) rest.erase(told);
+    steps = fmt::format("in adaptive steps, the first of {}  {}", words(step["size"]), map_text(rest));
+  }
+  std::string out =
+      fmt::format("simulation\n  {} to {} {}\n", words(simulation["start"]), words(simulation["end"]), steps);
+  if (!simulation["integrator"].is_null()) out += "  integrator  " + map_text(simulation["integrator"]) + "\n";
+  out += "  output  " + map_text(simulation["output"]) + "\n";
+  for (const Json& condition : simulation["stop"]) out += "  stop  " + map_text(condition) + "\n";
+  return out;
 }
 
 /// For Graphviz; `second` stands on a line of its own.
@@ -135,17 +146,13 @@ std::string moved_body(const Json& model, const Json& joint) {
 }  // namespace
 
 std::string model_tree(const Json& model) {
-  const Json& simulation = model["simulation"];
   std::string out =
-      fmt::format("{}: {}, gravity {} m/s^2\n", words(model["name"]), words(model["space"]), words(model["gravity"]));
+      fmt::format("{}: {}, gravity {}\n", words(model["name"]), words(model["space"]), words(model["gravity"]));
   out += "ground\n" + frames_text(model["ground"]["frames"], 2);
   out += "bodies\n";
   for (const auto& [name, body] : model["bodies"].items()) out += body_text(name, body);
-  out += section_text("joints", model["joints"]) + section_text("drivers", model["drivers"]);
-  out += section_text("forces", model["forces"]) + start_text(model["initial"]);
-  const std::string integrator = simulation["integrator"].is_null() ? "" : words(simulation["integrator"]["type"]);
-  return out + fmt::format("simulation\n  {} s to {} s in steps of {} s  {}\n", words(simulation["start"]),
-                           words(simulation["end"]), words(simulation["step"]), integrator);
+  for (const char* section : {"joints", "drivers", "paths", "forces"}) out += section_text(section, model[section]);
+  return out + start_text(model["initial"]) + simulation_text(model["simulation"]);
 }
 
 std::string model_graph(const Json& model) {

@@ -105,6 +105,7 @@ sweep: {parameters: {k: [1, 2]}, reducers: {a: {channel: joint.u2.axle.angle, re
         self.freeplay("convert", "m.yaml", os.path.join("to", "m.urdf"))
         side = os.path.join("to", "m.urdf.sidecar.yaml")
         self.assertIn("table: ../push.csv", self.read(side))
+        self.assertRegex(self.read(side), r'channels: \["?body.u\*.x"?, "?joint.\*"?, "?time"?, "?energy.\*"?, "?frame.\*"?\]')
         self.assert_same("m.yaml", side, names=lambda name: name.replace(".", "_"))
         self.freeplay("convert", side, "back.yaml")
         self.assertIn("table: push.csv", self.read("back.yaml"))

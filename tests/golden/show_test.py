@@ -30,6 +30,54 @@ class Show(ProgramTest):
         self.assertIn("  B  revolute  crank/tip - coupler/origin\n", out)
         self.assertEqual("", err)
 
+    def test_everything_that_the_file_says_is_shown_with_its_unit(self):
+        self.write("motor.csv", "t,force\n0,1\n1,2\n")
+        self.write("m.yaml", """freeplay: 1
+bodies: {a: {mass: 1, inertia: 1, pose: {angle: 0.5}}, b: {mass: 1, inertia: 1}, c: {mass: 1, inertia: 1}}
+joints:
+  A: {type: revolute, between: [ground, a], clearance: {bearing_radius: 10 mm, radial_clearance: 0.1 mm,
+      contact: {law: hertz, K: 1e8}}}
+  D: {type: distance, between: [a, b], length: 300 mm}
+  P: {type: prismatic, between: [ground, b]}
+  R: {type: revolute, between: [ground, c]}
+  G: {type: gear, of: [P, R], ratio: 20}
+drivers:
+  m: {joint: P, kind: force, table: {points: [[0, 1], [100 ms, 2 kN]], outside: repeat}}
+  n: {joint: R, kind: torque, table: {file: motor.csv, value: force, unit: Nmm, interpolation: linear}}
+forces:
+  g: {type: gravity, on: [a], value: [0, 1]}
+  s: {type: spring-damper, kind: rotational, between: [ground, c], stiffness: 2}
+  h: {type: gravity, on: [b], value: [0, 2]}
+initial: {joints: {R: 90 deg}}
+simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], output: {frames: [a], channels: [body.*]}}
+""")
+        out, _ = self.freeplay("show", "m.yaml")
+        for text in ("angle 0.5 rad\n", "bearing_radius 0.01 m  ", "K 1e+08 N/m^1.5", "length 0.3 m\n",
+                     "G  gear  P - R  ratio 20 rad/m", "points ((0 s, 1 N), (0.1 s, 2000 N))  interpolation cubic",
+                     "file motor.csv  value force  time_unit s  unit Nmm  interpolation linear", "stiffness 2 N*m/rad",
+                     "value (0, 1) m/s^2", "joints 1.5707963267948966 rad of R", "0 s to 1 s in steps for an accuracy of 1e-06 m",
+                     "interval 0.001 s  channels (body.*)  frames (a/origin)", "stop  channel body.a.x  above 0.001 m"):
+            self.assertIn(text, out)
+        model = json.loads(self.freeplay("show", "m.yaml", "--json")[0])
+        self.assertEqual(["g", "s", "h"], list(model["forces"]))
+        self.assertEqual([[0, 1], [0.1, 2000]], model["drivers"]["m"]["table"]["points"])
+        self.assertEqual(("motor.csv", "Nmm"), tuple(model["drivers"]["n"]["table"][k] for k in ("file", "unit")))
+        self.assertEqual(0.3, model["joints"]["D"]["length"])
+        simulation = model["simulation"]
+        self.assertEqual(1e-6, simulation["accuracy"])
+        self.assertNotIn("step", simulation)
+        self.assertEqual([{"channel": "body.a.x", "above": 0.001, "after": 0}], simulation["stop"])
+        self.assertEqual(["body.*"], simulation["output"]["channels"])
+
+    def test_a_path_and_steps_are_shown(self):
+        out, _ = self.freeplay("show", mechanism("3-rrr"))
+        self.assertRegex(out, r"paths\n  circle +frame platform/origin  path \{x .*y .*angle ")
+        self.assertIn("0 s to 0.6 s in steps of 2e-06 s\n", out)
+        self.write("m.yaml", "freeplay: 1\nbodies: {a: {mass: 1, inertia: 1}}\n"
+                   "simulation: {step: {size: 1 ms, adaptive: true, min: 1 us}}\n")
+        out, _ = self.freeplay("show", "m.yaml")
+        self.assertIn("in adaptive steps, the first of 0.001 s  tolerance 1e-06  min 1e-06 s  max 0.01 s", out)
+
     def test_graph_has_an_edge_for_each_joint(self):
         out, _ = self.freeplay("show", mechanism("four-bar"), "--format", "dot")
         self.assertEqual([("ground", "crank"), ("crank", "coupler"), ("coupler", "rocker"), ("ground", "rocker")],
@@ -45,6 +93,22 @@ class Show(ProgramTest):
         self.assertEqual(6, out.count("#cc3311\" stroke-width=\"1.5\""))  # rings: six joints have clearance
         texts = re.findall(r'<text x="([-0-9.]+)" y="([-0-9.]+)"', out)
         self.assertTrue(all(0 <= float(x) <= 900 and 0 <= float(y) <= 1400 for x, y in texts))
+
+    def test_drawing_shows_gears_with_their_names(self):
+        self.write("m.yaml", """freeplay: 1
+bodies:
+  a: {mass: 1, inertia: 1}
+  b: {mass: 1, inertia: 1}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  B: {type: revolute, between: [ground/far, b]}
+  mesh: {type: gear, of: [A, B], ratio: -2}
+frames: {ground/far: [1, 0]}
+""")
+        out, _ = self.freeplay("show", "m.yaml", "--format", "svg")
+        labels = [e.text for e in xml.fromstring(out).iter("{http://www.w3.org/2000/svg}text")]
+        self.assertIn("mesh", labels)
+        self.assertEqual(2, out.count('stroke-width="3" stroke-dasharray="2 2"'))
 
     def test_drawing_in_the_readme_is_the_program_s(self):
         with open(os.path.join(ROOT, "docs", "images", "3-rrr.svg"), encoding="utf-8") as file:
@@ -81,7 +145,7 @@ frames: {ground/far: [5, 0]}
         self.assertEqual({"moon": {"type": "gravity", "on": ["b"], "value": [0, -1.62]},
                           "i.up": {"type": "gravity", "on": ["i.c"], "value": [0, 1]}}, forces)
         out, _ = self.freeplay("show", "m.yaml")
-        self.assertIn("  moon  gravity  on (b)  value (0, -1.62)\n", out)
+        self.assertIn("  moon  gravity  on (b)  value (0, -1.62) m/s^2\n", out)
         self.freeplay("show", "m.yaml", "--format", "dot")
 
     def test_control_characters_of_a_name_reach_no_terminal(self):

@@ -363,6 +363,18 @@ joints: {pin: {type: revolute, between: [upper/tip, extra]}}
             self.assertEqual([place], [at for at, _ in places if at not in [("model.yaml", n) for n, _ in own]], places)
             self.assertEqual(own, [(at[1], i) for at, i in places if (at[1], i) in own], places)
 
+    def test_a_bad_value_of_the_section_hides_nothing_else(self):
+        self.write("r.urdf", """<robot name="r"><link name="world"/>
+<link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="A" type="continuous"><parent link="world"/><child link="a"/><axis xyz="0 0 1"/></joint></robot>
+""")
+        for bad in ("limits: stop", "plane: xx", "base: loose", "loops: no", "repair: mass", "merge_fixed: 2"):
+            self.write("m.yaml", "freeplay: 1\nurdf: {file: r.urdf, %s}\nframes: {b/x: [0, 0]}\n"
+                       "joints: {A: {type: revolute}}\n" % bad)
+            messages = json.loads(self.freeplay("validate", "m.yaml", "--json", code=3)[0])["messages"]
+            self.assertEqual([(2, "wrong-type"), (3, "unknown-name"), (4, "unknown-key")],
+                             [(m["line"], m["id"]) for m in messages if m["severity"] == "error"], bad)
+
 
 if __name__ == "__main__":
     unittest.main()

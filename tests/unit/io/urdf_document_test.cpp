@@ -364,5 +364,66 @@ TEST(ReadUrdf, SaysOnceThatANameExistsTwice) {
   EXPECT_EQ(out.report.find("duplicate-name"), std::string::npos) << out.report;
 }
 
+std::string hinged(const std::string& in_joint, const std::string& in_robot = "") {
+  return robot("<link name='world'/>\n" + link("a") + "\n<joint name='j' type='continuous'><parent link='world'/>" +
+               "<child link='a'/><axis xyz='0 0 1'/>\n" + in_joint + "\n</joint>\n" + in_robot);
+}
+
+TEST(ReadUrdf, TakesBlanksAroundANumber) {
+  EXPECT_EQ(read(robot("<link name='world'/>" + link("a", "<mass value=' 2\n'/>") +
+                       "<joint name='j' type='continuous'><parent link='world'/><child link='a'/><axis xyz='0 0 1'/>"
+                       "</joint>"))
+                .report,
+            "");
+}
+
+TEST(ReadUrdf, TellsMistakesOfUnusedElementsAtTheirPlacesTogether) {
+  const std::string report = read(hinged("<calibration rising='x'/>\n<safety_controller k_position='y'/>",
+                                         "<material name='m'><color rgba='0 0 2 1'/></material>\n<material name='n'/>"))
+                                 .report;
+  for (const char* place : {"r.urdf:4:14: error: 'rising' of the calibration of joint 'j'",
+                            "r.urdf:5:2: error: the attribute 'k_velocity' of the safety_controller",
+                            "r.urdf:5:20: error: 'k_position'", "r.urdf:7:27: error: 'rgba' of the color",
+                            "r.urdf:8:1: error: the element 'color' of the material of the robot is missing"}) {
+    EXPECT_NE(report.find(place), std::string::npos) << place << "\n" << report;
+  }
+}
+
+TEST(ReadUrdf, SaysWhatItDoesNotUseOnce) {
+  const std::string tilted = "<origin rpy='0.5 0 0'/><calibration rising='0'/>";
+  const std::string report = read(hinged(tilted)).report;
+  EXPECT_NE(report.find("calibration"), std::string::npos) << report;
+  EXPECT_EQ(report.find("not used"), report.rfind("not used")) << report;
+}
+
+TEST(ReadUrdf, SaysThatARootOnGroundDoesNotFloat) {
+  Options options;
+  options.floating_base = true;
+  EXPECT_NE(read(hinged(""), options).report.find("does not float: its root link 'world' is ground"),
+            std::string::npos);
+  EXPECT_EQ(read(hinged("")).report, "");
+  EXPECT_EQ(read(robot(link("a")), options).report, "");
+}
+
+TEST(ReadUrdf, TellsMistakesOfOneKindBesideThoseOfAnother) {
+  const std::string inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz=";
+  const std::string rest =
+      "<link name='a'><inertial><mass value='1'/>\n" + inertia + "'-5'/></inertial></link>\n" +
+      "<link name='c'/><link name='com'/>\n<joint name='A' type='continuous'><parent link='world'/><child link='a'/>" +
+      "<axis xyz='0 0 1'/></joint>\n<joint name='B' type='continuous'><parent link='a'/><child link='b'/>" +
+      "<axis xyz='0 0 1'/></joint>\n<joint name='C' type='continuous'><parent link='b'/><child link='c'/>\n" +
+      "<axis xyz='0 0.1 1'/></joint>\n<joint name='D' type='fixed'><parent link='b'/><child link='com'/></joint>";
+  Options any;
+  any.plane.reset();
+  for (const std::string& first : {link("b") + "<link name='lonely'/>", "<link name='b'><inertial><mass value='1'/>" +
+                                                                            inertia + "'x'/></inertial></link>"}) {
+    const std::string report = read(robot("<link name='world'/>" + first + "\n" + rest), any).report;
+    for (const char* told : {"r.urdf:3:50: error: impossible inertia of link 'a'",
+                             "r.urdf:4:7: error: link 'c' has no mass", "urdf-not-planar", "r.urdf:1:"}) {
+      EXPECT_NE(report.find(told), std::string::npos) << told << "\n" << report;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::urdf

@@ -109,5 +109,24 @@ TEST(ParseXml, RefusesWhatWouldEatMemoryOrTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));  // linear: a fraction of a second
 }
 
+std::string message(const std::string& text) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(parse_xml(text, "r.xml", "bad-xml", diagnostics).has_value()) << text;
+  return diagnostics.sorted().empty() ? "" : diagnostics.sorted().front().message;
+}
+
+TEST(ParseXml, NamesReferencesAsTheyStandInTheFile) {
+  EXPECT_EQ(message("<a n='b&#0;'/>"), "'&#0;' stands for a character that XML does not allow");
+  EXPECT_EQ(message("<a n='b&#x1b;'/>"), "'&#x1b;' stands for a character that XML does not allow");
+  EXPECT_EQ(message("<a n='b&#x110000000000000000;'/>"),
+            "'&#x110000000000000000;' stands for a character that XML does not allow");
+  EXPECT_EQ(message("<a n='b&#q;'/>"), "'&#q;' is not the number of a character");
+  EXPECT_EQ(message("<a n='b&nbsp;'/>"), "unknown entity '&nbsp;'");
+}
+
+TEST(ParseXml, SaysWhatAnEndTagHolds) {
+  EXPECT_EQ(message("<a></a n='b'>"), "an end tag holds nothing but its name: </a>");
+}
+
 }  // namespace
 }  // namespace freeplay

@@ -312,5 +312,23 @@ TEST(ReadYaml, SaysThatAValueHasEndedWhereMoreFollowsOnItsLine) {
   EXPECT_EQ(message("a:\n    b: 1\n  c: 1\n").substr(0, 21), "this line is indented");
 }
 
+TEST(ReadYaml, PointsAtAnEscapeThatNobodyKnows) {
+  EXPECT_EQ(errors("a: 1\nb: \"x\\q\"\n"), "2:6 yaml-syntax");
+  EXPECT_EQ(errors("b: \"\\uD800\"\n"), "1:5 yaml-syntax");
+  EXPECT_EQ(message("b: \"\\uD800\"\n").substr(0, 30), "this escape names no character");
+}
+
+TEST(ReadYaml, SaysOfAWordWhyItIsNotRead) {
+  EXPECT_EQ(errors("a: {e: 1, b c\n  d: 1}\n"), "1:11 yaml-syntax");
+  EXPECT_EQ(message("a: {b c\n  d: 1}\n"),
+            "a key between brackets goes over more than one line here | write it on one line");
+  EXPECT_EQ(message("a: [b c\n  d: 1]\n").substr(0, 22), "a key between brackets");
+  EXPECT_EQ(message("a: {?b: 1}\n"), "a word that begins with '?' is not read between brackets | quote it");
+  EXPECT_EQ(message("a: ,b\n"), "a value cannot begin with this character | quote the value");
+  EXPECT_EQ(message("a: 1\n" + std::string(1100, 'k') + ": 1\n").substr(0, 31), "a key has at most 1024 characte");
+  EXPECT_EQ(message("a: [1, 2\nb: 1\n").substr(0, 27), "this '[' is not closed befo");
+  EXPECT_EQ(message("a: {b: 1\nc: 1\n").substr(0, 27), "this '{' is not closed befo");
+}
+
 }  // namespace
 }  // namespace freeplay
