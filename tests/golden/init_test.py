@@ -22,7 +22,7 @@ class ModelStarters(ProgramTest):
             self.freeplay("init", "copy-of-" + name, "--from", name)
             self.freeplay("validate", "copy-of-%s.yaml" % name)
             comments = [line for line in self.read("copy-of-%s.yaml" % name).splitlines() if "# " in line]
-            self.assertGreater(len(comments), 4, name)
+            self.assertGreater(len(comments), 3, name)
 
     def test_names_with_blanks_and_quotes_are_kept(self):
         self.freeplay("init", "a 'b'", "--from", "pendulum")
