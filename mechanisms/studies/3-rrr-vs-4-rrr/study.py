@@ -1,7 +1,8 @@
-"""Compares the 3-RRR with the 4-RRR: study.py PROGRAM DOCS. Results go to results/, the page and its figures to DOCS.
+"""Compares the 3-RRR with the 4-RRR: study.py PROGRAM DOCS [PLAN RESULTS].
 
-What is varied stands in study.yaml. Each series is run twice in parallel processes; a result that is there already and
-was made by the same program, model and options is used again.
+The page and its figures go to the folder DOCS. What is varied stands in PLAN (study.yaml beside this file); results of
+runs are kept in RESULTS (results/studies/NAME). One that is there already and was made by the same program, model and
+options is used again.
 """
 import concurrent.futures
 import csv
@@ -63,13 +64,19 @@ class Study:
         points = [(m, name, value) for m in self.mechanisms for name, values in self.plan["series"].items()
                   for value in values]
         points += [(m, "ideal", period) for m in self.mechanisms for period in self.plan["series"]["T"]]
-        def one(point):
+
+        def key(point):
             mechanism, name, value = point
             changed = {"T": value} if name == "ideal" else {name: value}
-            period = changed.get("T", self.plan["base"]["T"])
-            return Run(self.run(mechanism, name == "ideal", **changed), period)
+            return mechanism, name == "ideal", tuple(sorted({**self.plan["base"], **changed}.items()))
+
+        def run(mechanism, ideal, values):
+            return Run(self.run(mechanism, ideal, **dict(values)), dict(values)["T"])
+
+        # The point about which the series vary is in all of them.
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            return dict(zip(points, pool.map(one, points)))
+            started = {one: pool.submit(run, *one) for one in dict.fromkeys(map(key, points))}
+            return {point: started[key(point)].result() for point in points}
 
     def analysis(self, mechanism, *words):
         rows = self.call("analyze", "error", self.model(mechanism), *words).splitlines()
@@ -144,12 +151,12 @@ class Run:
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) not in (3, 5):
         raise SystemExit(__doc__)
     program, docs = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    with open(os.path.join(HERE, "study.yaml"), encoding="utf-8") as file:
+    given, results = sys.argv[3:] or (os.path.join(HERE, "study.yaml"), os.path.join(ROOT, "results", "studies", NAME))
+    with open(given, encoding="utf-8") as file:
         plan = yaml.safe_load(file)
-    results = os.path.join(ROOT, "results", "studies", NAME)
     os.makedirs(results, exist_ok=True)
     study = Study(program, plan, results)
     static = {m: {"bounds": study.bounds(m), "centre": study.centre(m), "map": study.map(m)} for m in study.mechanisms}
