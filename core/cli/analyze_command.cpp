@@ -44,9 +44,9 @@ class AnalyzeJob {
   AnalysisTable execute() {
     find_freedoms();
     find_stations();
+    if (options_.branches) find_branches();
     check_reach();
     check_inputs();
-    if (options_.branches) find_branches();
     AnalysisTable table = rows();
     add_summary(table);
     return table;
@@ -261,7 +261,7 @@ class AnalyzeJob {
     }
   }
 
-  /// Each station becomes one for every posture that it has.
+  /// Each station becomes one for every posture that it has, reached from the start or not.
   void find_branches() {
     if (!wants("ik") || (options_.pose.empty() && options_.input.empty())) {
       throw Error(Error::Category::usage, "bad-value", "--branches is for ik with --pose or --input");
@@ -272,8 +272,12 @@ class AnalyzeJob {
       for (Posture& posture : all_postures(mechanism_, station.demand)) {
         all.push_back(station);
         all.back().posture = std::move(posture);
+        all.back().reachable = true;
         branch_of_.push_back(++number);
       }
+      if (number > 0) continue;
+      all.push_back(station);
+      branch_of_.push_back(0);
     }
     stations_ = std::move(all);
   }
