@@ -78,7 +78,7 @@ std::vector<double> Expression::kinks(double from, double to) const {
     if (times.size() < static_cast<std::size_t>(looks / 8) || looks >= most_looks) break;
   }
   std::ranges::sort(times);
-  times.erase(std::ranges::unique(times).begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
