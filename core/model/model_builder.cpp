@@ -188,8 +188,9 @@ class ModelBuilder {
     const Node* instances = root.find("instances");
     const bool all =
         instances == nullptr ? misspelt_section && templates_ : !instances->is_map() && !instances->is_null();
-    for (const auto& [kind, name] : {std::pair("body.", "bodies"), std::pair("joint.", "joints"),
+    for (const auto& [kind, word] : {std::pair("body.", "bodies"), std::pair("joint.", "joints"),
                                      std::pair("driver.", "drivers"), std::pair("force.", "forces")}) {
+      const char* const name = word;  // clang 14 captures no structured bindings
       const bool missing = misspelt_section && root.find(name) == nullptr;
       const bool wrong = std::ranges::any_of(draft_.parts, [&](const Part& part) {
         const auto section = part.section(name);
