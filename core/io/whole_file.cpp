@@ -18,9 +18,20 @@ void require(const std::error_code& error, const char* what, const std::filesyst
 
 }  // namespace
 
-void write_whole_file(const std::filesystem::path& path, std::string_view text) {
+void write_whole_file(const std::filesystem::path& given, std::string_view text) {
+  std::error_code error, ignored;
+  const std::filesystem::file_status status = std::filesystem::status(given, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    // A terminal, a pipe: there is nothing to put in its place.
+    GrowingFile file(given);
+    file.line() += text;
+    return file.close();
+  }
+  // Of a link, the file that it names is replaced.
+  const bool link = std::filesystem::is_symlink(std::filesystem::symlink_status(given, ignored));
+  const std::filesystem::path path = link ? std::filesystem::weakly_canonical(given, error) : given;
+  require(error, "find", given);
   const std::filesystem::path temporary = path.parent_path() / fmt::format(".{}.part", path.filename().string());
-  std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   require(error, "make the directory", path.parent_path());
   try {
@@ -33,7 +44,6 @@ void write_whole_file(const std::filesystem::path& path, std::string_view text) 
   }
   std::filesystem::rename(temporary, path, error);
   if (error) {
-    std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
   }
   require(error, "write", path);
