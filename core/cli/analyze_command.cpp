@@ -325,12 +325,12 @@ class AnalyzeJob {
     Json shares = Json::object();
     std::size_t k = 0;
     for (const Play& play : mechanism_.plays()) {
-      shares[model().joints[static_cast<std::size_t>(play.joint)].name] =
+      shares["joint." + model().joints[static_cast<std::size_t>(play.joint)].name] =
           json_number(play.radius * error->sensitivity[k++]);
     }
     for (const int j : mechanism_.platform().inputs) {
       const double share = mechanism_.input_error() * error->sensitivity[k++];
-      if (share > 0.0) shares[model().joints[static_cast<std::size_t>(j)].name] = json_number(share);
+      if (share > 0.0) shares["driver." + model().joints[static_cast<std::size_t>(j)].name] = json_number(share);
     }
     return {{"displacement", {json_number(worst[0]), json_number(worst[1]), json_number(worst[2])}},
             {"direction", json_number(std::atan2(worst[1], worst[0]))},

@@ -91,11 +91,21 @@ class Analyze(ProgramTest):
         document = json.loads(out)
         worst = document["summary"]["worst"]
         self.assertAlmostEqual(document["rows"][0][7], sum(worst["share"].values()), 15)
-        self.assertAlmostEqual(0.000105179478119538, worst["share"]["leg3.B"] + worst["share"]["leg3.C"], 12)
+        self.assertAlmostEqual(0.000105179478119538, worst["share"]["joint.leg3.B"] + worst["share"]["joint.leg3.C"], 12)
         self.assertAlmostEqual(document["rows"][0][7], math.hypot(*worst["displacement"][:2]), 15)
         row, = self.rows("error", mechanism("4-rrr"), "--pose", "0.05,0,0", "--sensitivity")
-        self.assertAlmostEqual(worst["share"]["leg3.B"], 1e-4 * float(row["joint.leg3.B.sensitivity"]), 15)
+        self.assertAlmostEqual(worst["share"]["joint.leg3.B"], 1e-4 * float(row["joint.leg3.B.sensitivity"]), 15)
         self.assertIn("driver.leg4.A.sensitivity", row)
+
+    def test_shares_add_up_where_one_joint_has_play_and_a_driver(self):
+        with open(mechanism("3-rrr"), encoding="utf-8") as file:
+            text = file.read().split("\nanalysis:")[0]
+        self.write("m.yaml", text + "\nanalysis: {error: {clearance: {leg1.A: 0.1 mm, leg2.A: 0.1 mm}, input: 0.05 deg}}\n")
+        out, _ = self.freeplay("analyze", "error", "m.yaml", "--pose", "0.05,0,0", "--json")
+        document = json.loads(out)
+        share = document["summary"]["worst"]["share"]
+        self.assertTrue({"joint.leg1.A", "driver.leg1.A"} <= share.keys())
+        self.assertAlmostEqual(document["rows"][0][7], sum(share.values()), 15)
 
     def test_samples_are_feasible_and_repeat(self):
         words = ("error", mechanism("4-rrr"), "--pose", "0.05,0,0", "--samples", "20000")
