@@ -380,6 +380,34 @@ bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vec
   return true;
 }
 
+Posture regular_start(IdealMechanism& mechanism, const Components& given) {
+  const Posture& start = mechanism.start();
+  PostureSolver solver(mechanism);
+  std::vector<double> v, a;
+  const auto is_regular = [&](const Posture& posture) {
+    Demand demand;
+    demand.t = mechanism.model().settings.start;
+    demand.given = given;
+    const FramePose here = solver.frame(posture);
+    for (std::size_t i = 0; i < 3; ++i) demand.pose[i] = Jet::constant(here[i]);
+    return solver.rates(demand, posture, v, a);
+  };
+  if (is_regular(start)) return start;
+  const std::vector<double> inputs = solver.inputs(start);
+  for (const double share : {0.3, 0.1, 0.03}) {
+    Demand turned;
+    turned.t = mechanism.model().settings.start;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const double unit = mechanism.is_angle(static_cast<int>(i)) ? 1.0 : mechanism.system().size();
+      turned.inputs.push_back(Jet::constant(inputs[i] + mechanism.platform().elbow[i] * share * unit));
+    }
+    Posture posture;
+    Unreachable why;
+    if (solver.reach(turned, start, posture, why) && is_regular(posture)) return posture;
+  }
+  return start;
+}
+
 void close_joints(const IdealMechanism& mechanism, double t, Posture& posture) {
   PostureSolver solver(mechanism);
   Demand demand;

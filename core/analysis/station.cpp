@@ -36,8 +36,9 @@ Demand path_demand(IdealMechanism& mechanism, double t) {
 /// Reaches points of a grid from their neighbours.
 class GridFlood {
  public:
-  GridFlood(IdealMechanism& mechanism, const std::array<long, 3>& counts, std::vector<Station>& stations)
-      : solver_(mechanism), start_(mechanism.start()), counts_(counts), stations_(stations) {}
+  GridFlood(IdealMechanism& mechanism, const Components& given, const std::array<long, 3>& counts,
+            std::vector<Station>& stations)
+      : solver_(mechanism), start_(regular_start(mechanism, given)), counts_(counts), stations_(stations) {}
 
   void run() {
     // From the start to the point next to it that can be reached; further points only if all nearer ones fail.
@@ -111,7 +112,10 @@ std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Dem
     Station& station = stations.emplace_back();
     station.demand = demand;
     const bool direct = mechanism.closed_form() && demand.inputs.empty() && count(demand.given) == 3;
-    station.reachable = solver.reach(demand, direct ? Posture{} : mechanism.start(), station.posture, station.why);
+    const Posture from = direct                  ? Posture{}
+                         : demand.inputs.empty() ? regular_start(mechanism, demand.given)
+                                                 : mechanism.start();
+    station.reachable = solver.reach(demand, from, station.posture, station.why);
   }
   return stations;
 }
@@ -155,7 +159,7 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridVal
     }
   }
   if (!mechanism.closed_form() || count(given) < 3) {
-    GridFlood(mechanism, counts, stations).run();
+    GridFlood(mechanism, given, counts, stations).run();
     return stations;
   }
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {

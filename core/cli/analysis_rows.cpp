@@ -150,7 +150,7 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
   AnalysisTable table;
   table.columns = {"x", "y", "angle", "reachable", "legs", "condition"};
   table.rows.resize(stations.size());
-  const Posture start = mechanism.closed_form() ? Posture{} : mechanism.start();
+  const Posture start = mechanism.closed_form() ? Posture{} : regular_start(mechanism, given);
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {

@@ -97,6 +97,16 @@ class Analyze(ProgramTest):
         self.assertAlmostEqual(worst["share"]["joint.leg3.B"], 1e-4 * float(row["joint.leg3.B.sensitivity"]), 15)
         self.assertIn("driver.leg4.A.sensitivity", row)
 
+    def test_a_mechanism_that_starts_stretched_can_be_posed(self):
+        # Crank of 50 mm, coupler of 120 mm in line with the slide: x = 50 cos a + 120 cos b, 50 sin a = -120 sin b.
+        model = mechanism("slider-crank")
+        for elbow in (1, -1):
+            row, = self.rows("ik", model, "--frame", "slider", "--pose", "x=0.15", "--elbow", str(elbow))
+            angle = math.acos((0.15 ** 2 + 0.05 ** 2 - 0.12 ** 2) / (2 * 0.15 * 0.05))
+            self.assertAlmostEqual(elbow * angle, float(row["joint.main.angle"]), 9)
+        rows = self.rows("workspace", model, "--frame", "slider", "--grid", "x=0.065:0.175:12")
+        self.assertEqual([0] + 10 * [1] + [0], [int(row["reachable"]) for row in rows])
+
     def test_shares_add_up_where_one_joint_has_play_and_a_driver(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:
             text = file.read().split("\nanalysis:")[0]
