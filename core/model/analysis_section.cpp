@@ -27,7 +27,11 @@ void read_input_error(AnalysisSection& analysis, const CheckedValue& value) {
                                          dimension_name(error->dimension));
     return;
   }
-  analysis.input = std::abs(error->value);
+  if (!not_negative.contains(error->value)) {
+    value.fail("out-of-range", "'" + value.path() + "' must be " + not_negative.text("1"));
+    return;
+  }
+  analysis.input = error->value;
   analysis.input_location = value.location();
   analysis.input_is_length = error->dimension == dimension::length;
 }

@@ -345,7 +345,9 @@ class Analyze(ProgramTest):
         text = self.text("five-bar")
         for piece, message in (("{frame: coupler1/D", "has no frame 'D'"), ("{joints: [A3]", "unknown joint 'A3'"),
                                ("{joints: [A1, A1]", "named as an input twice"), ("{elbow: [1, 1, 1]", "3 values"),
-                               ("{frame: ground/A1", "is on ground"), ("{error: {input: 1 kg}", "must be of angle")):
+                               ("{frame: ground/A1", "is on ground"), ("{error: {input: 1 kg}", "must be of angle"),
+                               ("{error: {input: 10 um}", "is a length, but the input 'A1' turns"),
+                               ("{error: {input: -1e-5}", "must be >= 0")):
             model = self.write("m.yaml", text[:text.index("analysis:")] + "analysis: %s}\n" % piece)
             err = self.message("error", model, "--pose", "0.05,0.25", code=3)
             self.assertIn(message, err)
