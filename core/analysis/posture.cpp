@@ -175,7 +175,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand, const Postu
     double g[6] = {}, entries[3];
     g[planar::components[i]] = 1.0;
     planar::body_row(g, arm, entries);
-    for (int c = 0; c < 3; ++c) matrix_(row, 3 * mechanism_.platform_body() + c) = entries[c];
+    for (int c = 0; c < 3; ++c) matrix_(row, column_[at(mechanism_.platform_body())] + c) = entries[c];
     const double gap = demand.pose[i].value - here[i];
     right_[row++] = i == 2 ? nearest_turn(gap) : gap;
   }
@@ -187,7 +187,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand, const Postu
     const JointElement& joint = model.joints[at(j)];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
-      for (int c = 0; c < 3 && bodies[k] != ground; ++c) matrix_(row, 3 * bodies[k] + c) += entries[3 * k + c];
+      for (int c = 0; c < 3 && bodies[k] != ground; ++c) matrix_(row, column_[at(bodies[k])] + c) += entries[3 * k + c];
     }
     const double gap = demand.inputs[i].value - e_.coordinate[at(j)];
     right_[row++] = mechanism_.is_angle(static_cast<int>(i)) ? nearest_turn(gap) : gap;
@@ -312,19 +312,32 @@ bool PostureSolver::settle(const Part& part, const Demand& demand, Posture& post
 
 int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unreachable& why) {
   Posture posture = from.q.empty() ? blank() : from;
+  const bool whole_pose = count(demand.given) == 3;
   int legs = 0;
   bool told = false;
   for (const Part& part : mechanism_.parts()) {
+    if (!whole_pose && part.inputs.empty()) continue;
     Unreachable reason;
     reason.input = part.inputs.empty() ? -1 : part.inputs.front();
     bool reached = false;
-    if (part.leg) {
+    if (part.leg && whole_pose) {
       reached = place_leg(part, *part.leg, demand, posture, reason);
     } else if (!from.q.empty()) {
       const FramePose here = frame(from);
       Posture moved = from;
+      Task task{part.bodies, part.rows, false};
+      if (!whole_pose) {
+        // What is left of the mechanism without the other legs.
+        task.bodies.push_back(mechanism_.platform_body());
+        for (const Part& other : mechanism_.parts()) {
+          if (!other.inputs.empty()) continue;
+          task.bodies.insert(task.bodies.end(), other.bodies.begin(), other.bodies.end());
+          task.rows.insert(task.rows.end(), other.rows.begin(), other.rows.end());
+        }
+        task.whole = true;
+      }
       reached = follow(
-          Task{part.bodies, part.rows, false},
+          task,
           [&](double s) {
             Demand share = demand;
             for (std::size_t i = 0; i < 3; ++i) {

@@ -116,6 +116,10 @@ std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Dem
                          : demand.inputs.empty() ? regular_start(mechanism, demand.given)
                                                  : mechanism.start();
     station.reachable = solver.reach(demand, from, station.posture, station.why);
+    if (station.reachable || station.why.input >= 0 || !demand.inputs.empty()) continue;
+    Unreachable leg;
+    solver.legs_in_reach(demand, from, leg);
+    if (leg.input >= 0) station.why = leg;
   }
   return stations;
 }

@@ -161,7 +161,7 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
         condition = singularity_of(looker.look(station), given, mechanism.length()).condition;
       } else {
         Unreachable why;
-        legs = count(given) == 3 ? looker.solver.legs_in_reach(station.demand, start, why) : 0;
+        legs = looker.solver.legs_in_reach(station.demand, start, why);
       }
       append(table.rows[i], {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0, legs, condition});
     }

@@ -107,6 +107,15 @@ class Analyze(ProgramTest):
         rows = self.rows("workspace", model, "--frame", "slider", "--grid", "x=0.065:0.175:12")
         self.assertEqual([0] + 10 * [1] + [0], [int(row["reachable"]) for row in rows])
 
+    def test_legs_of_a_five_bar_are_counted_and_named(self):
+        # Cranks of 150 mm on pins at x = -100 and 100 mm, couplers of 200 mm.
+        rows = self.rows("workspace", mechanism("five-bar"), "--grid", "x=-0.36:0.36:10", "--grid", "y=0.05:0.41:7")
+        for row in rows:
+            x, y = float(row["x"]), float(row["y"])
+            reach = [0.05 < math.hypot(x - a, y) < 0.35 for a in (-0.1, 0.1)]
+            self.assertEqual((sum(reach), all(reach)), (int(row["legs"]), row["reachable"] == "1"), (x, y))
+        self.assertIn("leg of 'A2'", self.message("ik", mechanism("five-bar"), "--pose", "-0.1,0.29", code=4))
+
     def test_shares_add_up_where_one_joint_has_play_and_a_driver(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:
             text = file.read().split("\nanalysis:")[0]
