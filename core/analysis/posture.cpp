@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "run/leg_modes.h"
 
 namespace freeplay {
 namespace {
@@ -394,7 +395,11 @@ bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vec
 }
 
 Posture regular_start(IdealMechanism& mechanism, const Components& given) {
-  const Posture& start = mechanism.start();
+  const Platform& platform = mechanism.platform();
+  Posture start = mechanism.start();
+  for (std::size_t i = 0; platform.elbow_given && i < platform.inputs.size(); ++i) {
+    bend_leg(mechanism.model(), platform.inputs[i], platform.marker, platform.elbow[i], start.q);
+  }
   PostureSolver solver(mechanism);
   std::vector<double> v, a;
   const auto is_regular = [&](const Posture& posture) {
@@ -412,7 +417,7 @@ Posture regular_start(IdealMechanism& mechanism, const Components& given) {
     turned.t = mechanism.model().settings.start;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const double unit = mechanism.is_angle(static_cast<int>(i)) ? 1.0 : mechanism.system().size();
-      turned.inputs.push_back(Jet::constant(inputs[i] + mechanism.platform().elbow[i] * share * unit));
+      turned.inputs.push_back(Jet::constant(inputs[i] + platform.elbow[i] * share * unit));
     }
     Posture posture;
     Unreachable why;

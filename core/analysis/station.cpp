@@ -130,7 +130,10 @@ std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& tim
       mechanism.closed_form() && mechanism.platform().has_path() && count(mechanism.platform().path_components()) == 3;
   std::vector<Station> stations;
   double last = mechanism.model().settings.start;
-  Posture from = direct ? Posture{} : mechanism.start();
+  const bool posed = mechanism.platform().has_path();
+  Posture from = direct  ? Posture{}
+                 : posed ? regular_start(mechanism, mechanism.platform().path_components())
+                         : mechanism.start();
   for (long k = 0; k < times.count; ++k) {
     Station& station = stations.emplace_back();
     station.time = times.value(k);

@@ -55,20 +55,26 @@ bool has_pose(const Model& model, int m) {
 
 }  // namespace
 
-bool bend_legs(const Model& model, const InverseKinematics& entry, std::span<double> q) {
+bool bend_leg(const Model& model, int joint, int marker, int elbow, std::span<double> q) {
+  const std::optional<LegChain> leg = find_leg_chain(model, joint, marker);
+  if (!leg) return false;
   const Bodies bodies(model, q);
+  const Point a = bodies.world(leg->crank_at_a), b = bodies.world(leg->crank_at_b);
+  const Point c = bodies.world(leg->coupler_at_c), line = c - a;
+  if (elbow * cross(line, b - a) >= 0.0) return false;
+  bodies.put(leg->crank_at_a, 2.0 * (direction(line) - direction(b - a)), a);
+  bodies.put(leg->coupler_at_c, 2.0 * (direction(line) - direction(c - b)), c);
+  return true;
+}
+
+bool bend_legs(const Model& model, const InverseKinematics& entry, std::span<double> q) {
   bool bent = false;
   for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
     const Driver& driver = model.drivers[static_cast<std::size_t>(d)];
     const std::optional<LegChain> leg = find_leg_chain(model, driver.joint, entry.marker);
     if (!leg) continue;
     if (!driver.elbow_given && (has_pose(model, leg->crank_at_a) || has_pose(model, leg->coupler_at_c))) continue;
-    const Point a = bodies.world(leg->crank_at_a), b = bodies.world(leg->crank_at_b);
-    const Point c = bodies.world(leg->coupler_at_c), line = c - a;
-    if (driver.elbow * cross(line, b - a) >= 0.0) continue;
-    bodies.put(leg->crank_at_a, 2.0 * (direction(line) - direction(b - a)), a);
-    bodies.put(leg->coupler_at_c, 2.0 * (direction(line) - direction(c - b)), c);
-    bent = true;
+    bent = bend_leg(model, driver.joint, entry.marker, driver.elbow, q) || bent;
   }
   return bent;
 }

@@ -116,6 +116,20 @@ class Analyze(ProgramTest):
             self.assertEqual((sum(reach), all(reach)), (int(row["legs"]), row["reachable"] == "1"), (x, y))
         self.assertIn("leg of 'A2'", self.message("ik", mechanism("five-bar"), "--pose", "-0.1,0.29", code=4))
 
+    def test_elbow_chooses_the_mode_of_a_leg_with_fewer_freedoms_than_three(self):
+        def crank(a, elbow, x, y):
+            d = math.hypot(x - a, y)
+            return math.atan2(y, x - a) + elbow * math.acos((d * d + 0.15 ** 2 - 0.2 ** 2) / (2 * d * 0.15))
+
+        # The leg of A2 ends with a pin on the body of the frame; that of A1 ends with the body itself and keeps its side.
+        for elbow in (1, -1):
+            row, = self.rows("ik", mechanism("five-bar"), "--pose", "0.04,0.25", "--elbow", str(elbow))
+            on_path, = self.rows("ik", mechanism("five-bar"), "--time", "0:0:1", "--elbow", str(elbow))
+            for found in (row, on_path):
+                for name, a, side in (("A1", -0.1, 1), ("A2", 0.1, elbow)):
+                    gap = float(found["joint.%s.angle" % name]) - crank(a, side, 0.04, 0.25)
+                    self.assertAlmostEqual(0, math.remainder(gap, 2 * math.pi), 9)
+
     def test_shares_add_up_where_one_joint_has_play_and_a_driver(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:
             text = file.read().split("\nanalysis:")[0]
