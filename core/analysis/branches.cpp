@@ -62,7 +62,7 @@ std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& deman
     }
   } else {
     found.push_back(mechanism.closed_form() ? solver.blank() : mechanism.start());
-    for (const Part& part : mechanism.parts()) {
+    for (const Limb& part : mechanism.parts()) {
       std::vector<Posture> ways;
       for (const Posture& before : found) {
         if (part.leg) {

@@ -81,7 +81,7 @@ IdealMechanism::IdealMechanism(const Model& model, Platform platform)
   find_lengths();
   const bool gears_keep_start = std::ranges::any_of(model_->gears, [](const Gear& gear) { return !gear.offset; });
   closed_form_ = !gears_keep_start && model_->drivers.empty() &&
-                 std::ranges::all_of(parts_, [](const Part& part) { return part.leg.has_value(); });
+                 std::ranges::all_of(parts_, [](const Limb& part) { return part.leg.has_value(); });
   if (!closed_form_) assemble_start();
 }
 
@@ -145,7 +145,7 @@ void IdealMechanism::find_parts() {
     if (!ties(j)) continue;
     const std::vector<BodyId> all = bodies_of(j);
     if (all.empty()) parts_.emplace_back();
-    Part& part = all.empty() ? parts_.back() : parts_[part_of.at(find(all[0]))];
+    Limb& part = all.empty() ? parts_.back() : parts_[part_of.at(find(all[0]))];
     part_of_joint[at(j)] = static_cast<std::size_t>(&part - parts_.data());
     const Slice rows = system_->layout().rows(j);
     for (int r = 0; r < rows.size; ++r) part.rows.push_back(rows.offset + r);
@@ -161,11 +161,11 @@ void IdealMechanism::find_parts() {
     parts_[part_of_joint[at(platform_.inputs[at(i)])]].inputs.push_back(i);
   }
   // Legs in the order of their inputs, what has none behind them.
-  const auto first_input = [](const Part& part) {
+  const auto first_input = [](const Limb& part) {
     return part.inputs.empty() ? std::numeric_limits<int>::max() : part.inputs.front();
   };
   std::ranges::stable_sort(parts_, {}, first_input);
-  for (Part& part : parts_) {
+  for (Limb& part : parts_) {
     if (part.inputs.size() != 1 || part.bodies.size() != 2 || part.rows.size() != 6) continue;
     std::optional<Leg> leg = find_leg(*model_, platform_.inputs[at(part.inputs[0])], platform_.marker);
     if (!leg) continue;

@@ -19,7 +19,7 @@ struct Posture {
 
 /// Bodies that hang together when platform and ground are taken away, with what ties them: a leg, mostly. A joint
 /// between platform and ground is a part without bodies.
-struct Part {
+struct Limb {
   std::vector<BodyId> bodies;
   std::vector<int> rows;    ///< of the closed system
   std::vector<int> inputs;  ///< places in Platform::inputs
@@ -47,7 +47,7 @@ class IdealMechanism {
   const System& system() const { return *system_; }
   const Platform& platform() const { return platform_; }
   BodyId platform_body() const { return body_; }
-  std::span<const Part> parts() const { return parts_; }
+  std::span<const Limb> parts() const { return parts_; }
   /// By joint, radius greater than 0: of joints with clearance, or as `analysis: {error: {clearance}}` says.
   std::span<const Play> plays() const { return plays_; }
   /// Error of each input [rad or m].
@@ -77,7 +77,7 @@ class IdealMechanism {
   std::unique_ptr<Model> model_;
   std::unique_ptr<System> system_;
   BodyId body_ = ground;
-  std::vector<Part> parts_;
+  std::vector<Limb> parts_;
   std::vector<Play> plays_;
   std::vector<double> cranks_;
   double length_ = 1.0;

@@ -117,14 +117,14 @@ Posture PostureSolver::blank() const {
   return {std::vector<double>(at(system_.layout().nq())), std::vector<double>(at(system_.layout().nh()))};
 }
 
-bool PostureSolver::place(const Part& part, int elbow, const Demand& demand, Posture& posture) const {
+bool PostureSolver::place(const Limb& part, int elbow, const Demand& demand, Posture& posture) const {
   Leg leg = *part.leg;
   leg.elbow = elbow;
   Unreachable why;
   return place_leg(part, leg, demand, posture, why);
 }
 
-bool PostureSolver::place_leg(const Part& part, const Leg& leg, const Demand& demand, Posture& posture,
+bool PostureSolver::place_leg(const Limb& part, const Leg& leg, const Demand& demand, Posture& posture,
                               Unreachable& why) const {
   const Model& model = mechanism_.model();
   const double turn = demand.pose[2].value - model.markers[at(mechanism_.platform().marker)].angle;
@@ -266,14 +266,14 @@ bool PostureSolver::reach(const std::function<Demand(double)>& way, const Postur
   why = {};
   posture = from.q.empty() ? blank() : from;
   if (count(last.given) < 3 || !last.inputs.empty()) return follow(whole_task(), way, posture, why);
-  for (const Part& part : mechanism_.parts()) {
+  for (const Limb& part : mechanism_.parts()) {
     if (part.leg) continue;
     why = {};
     why.input = part.inputs.empty() ? -1 : part.inputs.front();
     if (!follow(Task{part.bodies, part.rows, false}, way, posture, why)) return false;
   }
   place_platform(last, posture);
-  for (const Part& part : mechanism_.parts()) {
+  for (const Limb& part : mechanism_.parts()) {
     if (part.leg && !place_leg(part, *part.leg, last, posture, why)) return false;
   }
   return true;
@@ -306,7 +306,7 @@ bool PostureSolver::settle(const Demand& demand, Posture& posture) {
   return correct(whole_task(), demand, posture, 1e3, 50) == Step::converged;
 }
 
-bool PostureSolver::settle(const Part& part, const Demand& demand, Posture& posture) {
+bool PostureSolver::settle(const Limb& part, const Demand& demand, Posture& posture) {
   place_platform(demand, posture);
   return correct(Task{part.bodies, part.rows, false}, demand, posture, 1e3, 50) == Step::converged;
 }
@@ -316,7 +316,7 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
   const bool whole_pose = count(demand.given) == 3;
   int legs = 0;
   bool told = false;
-  for (const Part& part : mechanism_.parts()) {
+  for (const Limb& part : mechanism_.parts()) {
     if (!whole_pose && part.inputs.empty()) continue;
     Unreachable reason;
     reason.input = part.inputs.empty() ? -1 : part.inputs.front();
@@ -330,7 +330,7 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
       if (!whole_pose) {
         // What is left of the mechanism without the other legs.
         task.bodies.push_back(mechanism_.platform_body());
-        for (const Part& other : mechanism_.parts()) {
+        for (const Limb& other : mechanism_.parts()) {
           if (!other.inputs.empty()) continue;
           task.bodies.insert(task.bodies.end(), other.bodies.begin(), other.bodies.end());
           task.rows.insert(task.rows.end(), other.rows.begin(), other.rows.end());

@@ -47,9 +47,9 @@ class PostureSolver {
   /// when it does not converge.
   bool settle(const Demand& demand, Posture& posture);
   /// The same for one part, with the platform at the demanded pose.
-  bool settle(const Part& part, const Demand& demand, Posture& posture);
+  bool settle(const Limb& part, const Demand& demand, Posture& posture);
   /// Puts the bodies of a part that has a closed form in the mode `elbow`; false when the pose is out of reach.
-  bool place(const Part& part, int elbow, const Demand& demand, Posture& posture) const;
+  bool place(const Limb& part, int elbow, const Demand& demand, Posture& posture) const;
   /// Puts the platform at a pose that gives x, y and angle; else returns false.
   bool place_platform(const Demand& demand, Posture& posture) const;
   /// All bodies at the origin.
@@ -81,7 +81,7 @@ class PostureSolver {
   enum class Step { converged, too_far, contradiction };
 
   Task whole_task() const;
-  bool place_leg(const Part& part, const Leg& leg, const Demand& demand, Posture& posture, Unreachable& why) const;
+  bool place_leg(const Limb& part, const Leg& leg, const Demand& demand, Posture& posture, Unreachable& why) const;
   bool follow(const Task& task, const std::function<Demand(double)>& way, Posture& posture, Unreachable& why);
   Step correct(const Task& task, const Demand& demand, Posture& posture, double longest, int iterations);
   void assemble(const Task& task, const Demand& demand, const Posture& posture);

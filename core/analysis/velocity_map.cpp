@@ -32,7 +32,7 @@ void VelocityMapper::make_group(std::vector<int> parts) {
   Group& group = groups_.emplace_back();
   std::vector<int> local(at(system_.layout().nc()), -1);
   for (const int p : parts) {
-    const Part& part = mechanism_.parts()[at(p)];
+    const Limb& part = mechanism_.parts()[at(p)];
     for (const BodyId b : part.bodies) {
       column_[at(b)] = group.columns;
       group.columns += 3;

@@ -216,5 +216,21 @@ class Names(unittest.TestCase):
         self.assertFalse(self.occurs("fixed", "a fixed step"))
 
 
+    def test_no_two_headers_define_one_name(self):
+        # The linker would take one for the other, silently.
+        places = {}
+        for folder, _, names in os.walk(os.path.join(ROOT, "core")):
+            for name in names:
+                if not name.endswith(".h"):
+                    continue
+                with open(os.path.join(folder, name), encoding="utf-8") as file:
+                    text = file.read()
+                scopes = re.findall(r"^namespace ([\w:]+) \{", text, re.M)
+                for kind in re.findall(r"^(?:struct|class) (\w+)(?: final)?(?: : [^{;]*)? \{", text, re.M):
+                    places.setdefault((scopes[0] if scopes else "", kind), []).append(os.path.join(folder, name))
+        self.assertGreater(len(places), 100)
+        self.assertEqual({}, {kind: where for kind, where in places.items() if len(where) > 1})
+
+
 if __name__ == "__main__":
     unittest.main()
