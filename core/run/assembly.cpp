@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -12,6 +11,7 @@
 
 #include "component/joint_answer.h"
 #include "linear/row_solutions.h"
+#include "run/force_turns.h"
 #include "run/gear_turns.h"
 #include "run/leg_modes.h"
 #include "run/newton_stage_solver.h"
@@ -471,28 +471,6 @@ class Assembler {
     return {0, "a constraint"};
   }
 
-  // A force about the angle of two bodies counts its turns as a joint between them does.
-  double start_angle(int force) const {
-    const JointElement& element = model_.joints[at(force)];
-    const auto body = [&](int marker) { return model_.markers[at(marker)].body; };
-    const auto turned = [&](const JointElement& one) {
-      return model_.markers[at(one.marker_b)].angle - model_.markers[at(one.marker_a)].angle;
-    };
-    for (int j = 0; element.is_force && j < static_cast<int>(model_.joints.size()); ++j) {
-      const JointElement& joint = model_.joints[at(j)];
-      if (joint.is_force || joint.gear >= 0 || system_.layout().turn(j) < 0) continue;
-      const bool same =
-          body(joint.marker_a) == body(element.marker_a) && body(joint.marker_b) == body(element.marker_b);
-      const bool opposite =
-          body(joint.marker_a) == body(element.marker_b) && body(joint.marker_b) == body(element.marker_a);
-      if (!same && !opposite) continue;
-      const double angle = e_.coordinate[at(j)] - turned(joint);
-      const double near = (same ? angle : -angle) + turned(element), own = e_.coordinate[at(force)];
-      return own + 2.0 * std::numbers::pi * std::round((near - own) / (2.0 * std::numbers::pi));
-    }
-    return e_.coordinate[at(force)];
-  }
-
   // Journals that rest in their bearings need the reactions of the ideal mechanism.
   bool load_journals() {
     if (model_.clearance_joints() == 0) return false;
@@ -520,7 +498,9 @@ class Assembler {
     std::ranges::copy(state_.q(), state.q().begin());
     std::ranges::copy(state_.v(), state.v().begin());
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      if (const int turn = system_.layout().turn(j); turn >= 0) state.h()[at(turn)] = start_angle(j);
+      if (const int turn = system_.layout().turn(j); turn >= 0) {
+        state.h()[at(turn)] = start_angle(model_, e_.coordinate, j);
+      }
     }
     initialize_joints(state);
     Evaluation released(system_);
