@@ -1,6 +1,7 @@
 """The page of the study: tables of what was found, and of each claim whether it holds."""
 import math
 
+COUPLER = 0.24  # m, l2 of both models
 NAMES = {"c": "clearance", "T": "turn", "mu": "friction"}
 WORDS = {"c": "{:.2f} mm", "T": "{:g} s", "mu": "{:g}"}
 SCALES = {"c": 1e3, "T": 1.0, "mu": 1.0}
@@ -193,4 +194,4 @@ def text(plan, static, runs, images):
         claims=table(["The 4-RRR has the", "", "found"], claims), static=static_table(static),
         table_c=run_rows(plan, static, runs, "c"), table_T=run_rows(plan, static, runs, "T"),
         table_mu=run_rows(plan, static, runs, "mu"), envelope=envelope, worst=1e6 * worst,
-        second=1e6 * (2 * max(plan["series"]["c"])) ** 2 / (2 * 0.24))
+        second=1e6 * (2 * max(plan["series"]["c"])) ** 2 / (2 * COUPLER))
