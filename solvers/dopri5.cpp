@@ -92,35 +92,40 @@ class Dopri5 final : public Integrator {
     Span<double> q, rest, increment, spare, z_start, z_spare;
   };
 
+  /// out += sum over stages j of dt w_j times what stands `stride` numbers further for each.
+  template <int count>
+  static void add_stages(double dt, const double* w, const double* of_first, std::size_t stride, Span<double> out) {
+    double step[count];
+    for (int j = 0; j < count; ++j) step[j] = dt * w[j];
+    for (std::size_t i = 0; i < out.size; ++i) {
+      double sum = out.data[i];
+      for (int j = 0; j < count; ++j) sum += step[j] * of_first[static_cast<std::size_t>(j) * stride + i];
+      out.data[i] = sum;
+    }
+  }
+  template <int count>
+  static void add_all(double dt, const double* w, const Stages& k, Span<double> d, Span<double> v, Span<double> z) {
+    const std::size_t stride = k.offset(1);
+    add_stages<count>(dt, w, k.v(0).data, stride, d);
+    add_stages<count>(dt, w, k.a(0).data, stride, v);
+    add_stages<count>(dt, w, k.z_rate(0).data, stride, z);
+  }
+
   /// increment, v and z of stage s from the derivatives of those before.
   static void advance(double dt, int s, const Stages& k, StateView& to) {
     std::fill(k.increment.begin(), k.increment.end(), 0.0);
     std::copy(k.v(0).begin(), k.v(0).end(), to.v.begin());
     std::copy(k.z_start.begin(), k.z_start.end(), to.z.begin());
-    for (int j = 0; j < s; ++j) {
-      const double w = dt * weight[s][j];
-      const Span<double> v = k.v(j), a = k.a(j), z_rate = k.z_rate(j);
-      for (std::size_t i = 0; i < k.nv; ++i) {
-        k.increment[i] += w * v[i];
-        to.v[i] += w * a[i];
-      }
-      for (std::size_t i = 0; i < k.nz; ++i) to.z[i] += w * z_rate[i];
-    }
+    constexpr decltype(&add_all<1>) by_stage[stages] = {nullptr,    add_all<1>, add_all<2>, add_all<3>,
+                                                        add_all<4>, add_all<5>, add_all<6>};
+    by_stage[s](dt, weight[s], k, k.increment, to.v, to.z);
   }
 
   static double error(double dt, const Stages& k, const StateView& end, StageSolver& solver) {
     std::fill(k.increment.begin(), k.increment.end(), 0.0);
     std::fill(k.spare.begin(), k.spare.end(), 0.0);
     std::fill(k.z_spare.begin(), k.z_spare.end(), 0.0);
-    for (int j = 0; j < stages; ++j) {
-      const double w = dt * error_weight[j];
-      const Span<double> v = k.v(j), a = k.a(j), z_rate = k.z_rate(j);
-      for (std::size_t i = 0; i < k.nv; ++i) {
-        k.increment[i] += w * v[i];
-        k.spare[i] += w * a[i];
-      }
-      for (std::size_t i = 0; i < k.nz; ++i) k.z_spare[i] += w * z_rate[i];
-    }
+    add_all<stages>(dt, error_weight, k, k.increment, k.spare, k.z_spare);
     return std::max(solver.error_norm(k.increment, k.spare), solver.internal_error_norm(dt, end, k.z_spare));
   }
 };

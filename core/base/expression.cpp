@@ -15,7 +15,7 @@ namespace {
 
 // Formulas that people write need a handful of places; the deepest that 10 000 characters can ask for is one operand
 // and one operator a level.
-constexpr int usual_stack = 32, deepest_stack = 5001;
+constexpr int shallow_stack = 8, usual_stack = 32, deepest_stack = 5001;
 
 constexpr std::size_t longest_readable = 40'000;  // bytes; anything longer has too many characters to be compiled
 
@@ -163,6 +163,7 @@ bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexc
 }
 
 bool Expression::evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept {
+  if (stack_depth_ <= shallow_stack) return run<shallow_stack>(t, out, failure);
   return stack_depth_ <= usual_stack ? run<usual_stack>(t, out, failure) : run<deepest_stack>(t, out, failure);
 }
 

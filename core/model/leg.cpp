@@ -96,30 +96,33 @@ std::optional<Leg> closed_form_leg(const Model& model, int driver) {
 
 namespace {
 
+// As with constant jets, without the zeros.
+Jet operator*(double factor, const Jet& a) { return {factor * a.value, factor * a.rate, factor * a.acceleration}; }
+Jet operator+(const Jet& a, double constant) { return {a.value + constant, a.rate, a.acceleration}; }
+Jet operator-(const Jet& a, double constant) { return {a.value - constant, a.rate, a.acceleration}; }
+
 // C relative to A.
 struct Reach {
   Jet x, y;
 };
 
 Reach reach_of(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
-  const auto constant = [](double value) { return Jet::constant(value); };
-  const Jet c = cos(angle), s = sin(angle);
-  return {x + c * constant(leg.cx) - s * constant(leg.cy) - constant(leg.ax),
-          y + s * constant(leg.cx) + c * constant(leg.cy) - constant(leg.ay)};
+  const double cosine = std::cos(angle.value), sine = std::sin(angle.value);
+  const Jet c = chain(cosine, -sine, -cosine, angle), s = chain(sine, cosine, -sine, angle);
+  return {x + leg.cx * c - leg.cy * s - leg.ax, y + leg.cx * s + leg.cy * c - leg.ay};
 }
 
 CrankPose solve_crank(const Leg& leg, const Reach& reach) {
-  const auto constant = [](double value) { return Jet::constant(value); };
   const Jet squared = reach.x * reach.x + reach.y * reach.y;
-  const Jet w1 = constant(2.0 * leg.crank) * reach.x, w2 = constant(2.0 * leg.crank) * reach.y;
-  const Jet w3 = squared + constant(leg.crank * leg.crank - leg.coupler * leg.coupler);
+  const Jet w1 = 2.0 * leg.crank * reach.x, w2 = 2.0 * leg.crank * reach.y;
+  const Jet w3 = squared + (leg.crank * leg.crank - leg.coupler * leg.coupler);
   const Jet room = w1 * w1 + w2 * w2 - w3 * w3;
   CrankPose pose;
   pose.distance = std::sqrt(squared.value);
   pose.reachable = room.value > 0.0;
   if (!pose.reachable) return pose;
-  const Jet direction = atan2(w2, w1) + constant(leg.elbow) * atan2(sqrt(room), w3);
-  pose.crank = direction - constant(leg.crank_direction);
+  const Jet direction = atan2(w2, w1) + leg.elbow * atan2(sqrt(room), w3);
+  pose.crank = direction - leg.crank_direction;
   return pose;
 }
 

@@ -16,6 +16,7 @@ constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double largest_turn = 1.0;      // of a joint in one step [rad]: angles are continued over turns
 constexpr double event_time = 1e-11;      // a located event is as sharp as this [s], or as its function can be
 constexpr double event_rounding = 1e-15;  // [unit of the function]
+constexpr double event_share = 1e-5;      // or as this part of what a position may err by in a step
 constexpr int most_tries = 40;            // to end a step at an event
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
@@ -143,11 +144,13 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   if (found.joint >= 0 && !same) hunted = found;
   // The step ends just past the zero, so that what begins there acts from the first on.
   const double past = hunted.value;
-  const bool sharp = past <= event_rounding || past <= event_time * hunted.rate || tries > most_tries / 2;
+  const double tolerance = std::max(StepEvents::tolerance, event_share * allowed);
+  const double late = std::max(event_time * hunted.rate, event_share * allowed);
+  const bool sharp = past <= event_rounding || past <= late || tries > most_tries / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
   // An event may lie so close to the start of the step that the time cannot tell them apart.
   const double least = std::nextafter(accepted.t(), unbounded) - accepted.t();
-  if (ends_there && past >= 0.0 && ((past <= StepEvents::tolerance && sharp) || dt <= least)) {
+  if (ends_there && past >= 0.0 && ((past <= tolerance && sharp) || dt <= least)) {
     done = true;
     return true;
   }
@@ -157,10 +160,11 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
                                model.joints[at(hunted.joint)].name));
   }
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
-  const double aim = std::min(0.1 * event_time * hunted.rate, 0.5 * StepEvents::tolerance);
+  const double aim = std::min(std::max(0.1 * event_time * hunted.rate, 0.5 * event_share * allowed), 0.5 * tolerance);
   const double newton = dt - (hunted.value - aim) / hunted.rate;
   const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
-  double next = near ? newton : (found.joint >= 0 ? found.fraction * dt : dt);
+  const double root = found.fraction * dt + (hunted.rate > 0.0 ? aim / hunted.rate : 0.0);
+  double next = near ? newton : (found.joint >= 0 ? root : dt);
   if (next == dt) next = past < 0.0 ? dt * (1.0 + 4.0 * rounding) : dt * (1.0 - 4.0 * rounding);
   if (!(next > 0.0)) next = 0.5 * dt;
   dt = std::max(next, least);

@@ -63,7 +63,7 @@ class NewtonStageSolver {
   bool mobility(const State& state, int joint, std::span<double> out);
 
   /// The equations where they were looked at last.
-  const Evaluation& evaluation() const { return e_; }
+  Evaluation& evaluation() { return e_; }
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
   const Fault& fault() const { return e_.fault; }
   const char* trouble() const { return trouble_; }
@@ -104,6 +104,7 @@ class NewtonStageSolver {
   /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
   /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
   bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
+  bool velocities_hold(std::span<const double> v);
   /// Whether every equation of the index-1 system holds as well as its terms are rounded (Oettli and Prager 1964).
   bool holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c);
 
@@ -119,7 +120,7 @@ class NewtonStageSolver {
   std::vector<SparseEntry> entries_;
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   std::vector<char> dependent_;
-  bool any_dependent_ = false;
+  bool any_dependent_ = false, drifts_ = true;
   int rank_ = -1;  // of the rows that are kept; -1 before the first look
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
   const EnergyAccount* flows_ = nullptr;

@@ -98,10 +98,10 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
       motion_before(model.drivers.size()),
       motion_behind(model.drivers.size()) {
   if (adaptive) {
-    const double tolerance = local_tolerance(owner);
+    allowed = local_tolerance(owner);
     require_attainable_accuracy(owner);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
-    solver.control_error(tolerance, tolerance, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
+    solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
     owner.end_steps_at_events(settings.per_contact);
   }
   if (flows > 0) solver.integrate_flows(energy);

@@ -97,8 +97,9 @@ struct Simulation::Impl {
   std::vector<TimeValue> motion_before, motion_behind;
   std::vector<std::string> warnings;
   Outcome outcome;
-  Fault plugin_fault;  // of the last attempt
-  double error = 0.0;  // of the last attempt
+  Fault plugin_fault;    // of the last attempt
+  double error = 0.0;    // of the last attempt
+  double allowed = 0.0;  // by which positions may err in one step, with error control [m]
   long next_row = 1;
   std::chrono::steady_clock::time_point started;
   double last_progress = 0.0;

@@ -8,10 +8,15 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr MatrixEntry nowhere{-1, -1};
-constexpr int left_out = -1;
-// A slot from 0 on is one of the factored matrix, one from `outside` down a coupling, and from `in_block` down a number
-// in the blocks of prescribed bodies.
-constexpr int outside = -2, in_block = -(1 << 29);
+constexpr int left_out = 0;  // the number that nobody reads
+constexpr int first_block = 1;
+// Column by column, so that no comparison waits for all those before.
+double largest_entry(const Eigen::Matrix3d& m) {
+  const Eigen::Array3d a = m.col(0).array().abs(), b = m.col(1).array().abs(), c = m.col(2).array().abs();
+  const auto greater = [](double x, double y) { return x > y ? x : y; };
+  return greater(greater(greater(a[0], a[1]), greater(a[2], b[0])),
+                 greater(greater(b[1], b[2]), greater(c[0], greater(c[1], c[2]))));
+}
 
 }  // namespace
 
@@ -53,18 +58,25 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
     for (int c = 0; c < 3; ++c) owner[at(3 * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
     prescribed_.emplace_back().who = body;
   }
+  const std::vector<MatrixEntry> all = entries(dependent);
+  std::vector<char> coupled(at(size), 0);  // shares a row or column with another free unknown
+  for (const auto [row, column] : all) {
+    if (row < 0 || row == column || owner[at(row)] >= 0 || owner[at(column)] >= 0) continue;
+    coupled[at(row)] = coupled[at(column)] = 1;
+  }
+  alone_.clear();
   unknowns_.clear();
-  std::vector<int> place(at(size), -1);  // in rest_
+  std::vector<int> place(at(size), -1);  // in alone_ or in rest_
   for (int i = 0; i < size; ++i) {
     if (owner[at(i)] >= 0) continue;
-    place[at(i)] = static_cast<int>(unknowns_.size());
-    unknowns_.push_back(i);
+    std::vector<int>& list = coupled[at(i)] ? unknowns_ : alone_;
+    place[at(i)] = static_cast<int>(list.size());
+    list.push_back(i);
   }
 
-  const std::vector<MatrixEntry> all = entries(dependent);
-  slots_.assign(all.size(), left_out);
+  std::vector<int> slots(all.size(), left_out);
   std::vector<MatrixEntry> factored;
-  std::vector<std::size_t> factored_entry;
+  std::vector<std::size_t> factored_entry, alone_entry;
   // Couplings in the order in which they are used: by kind and body.
   struct Sorted {
     int kind, body;
@@ -76,13 +88,17 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
     if (row < 0) continue;
     const int row_owner = owner[at(row)], column_owner = owner[at(column)];
     if (row_owner < 0 && column_owner < 0) {
-      factored.push_back({place[at(row)], place[at(column)]});
-      factored_entry.push_back(i);
+      if (coupled[at(row)]) {
+        factored.push_back({place[at(row)], place[at(column)]});
+        factored_entry.push_back(i);
+      } else {
+        alone_entry.push_back(i);
+      }
     } else if (row_owner == column_owner && (row < nv) != (column < nv)) {
       if (row < nv) continue;  // the transposed block
       const PrescribedBody& who = prescribed_[at(row_owner)].who;
       const auto r = std::ranges::find(who.rows, row - nv) - who.rows.begin();
-      slots_[i] = in_block - (9 * row_owner + 3 * (column - 3 * who.body) + static_cast<int>(r));
+      slots[i] = first_block + 9 * row_owner + 3 * (column - 3 * who.body) + static_cast<int>(r);
     } else if (row_owner < 0) {
       if (column < nv) sorted.push_back({2, 0, i});  // multipliers of prescribed bodies act on them alone
     } else {
@@ -90,10 +106,11 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
     }
   }
   std::ranges::stable_sort(sorted, {}, [](const Sorted& s) { return std::pair(s.kind, s.body); });
+  first_coupling_ = at(first_block) + 9 * prescribed_.size();
   couplings_.clear();
   for (const auto& [kind, body, entry] : sorted) {
-    slots_[entry] = outside - static_cast<int>(couplings_.size());
-    couplings_.push_back({all[entry].row, all[entry].column, 0.0});
+    slots[entry] = static_cast<int>(first_coupling_ + couplings_.size());
+    couplings_.push_back({all[entry].row, all[entry].column});
   }
   const auto first_of = [&](int kind, int body) {
     return static_cast<std::size_t>(
@@ -107,50 +124,57 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
     body.end_row_part = first_of(0, p + 1);
     body.first_motion_part = first_of(1, p);
     body.end_motion_part = first_of(1, p + 1);
-    body.block = 9 * at(p);
   }
   first_free_part_ = first_of(2, 0);
-  blocks_.assign(9 * prescribed_.size(), 0.0);
+  first_alone_ = first_coupling_ + couplings_.size();
+  for (const std::size_t i : alone_entry) slots[i] = static_cast<int>(first_alone_) + place[at(all[i].row)];
+  first_rest_ = first_alone_ + alone_.size();
+  const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
+  for (std::size_t i = 0; i < found.size(); ++i) slots[factored_entry[i]] = static_cast<int>(first_rest_) + found[i];
   rest_right_.assign(unknowns_.size(), 0.0);
   rest_update_.assign(unknowns_.size(), 0.0);
-  const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
-  for (std::size_t i = 0; i < found.size(); ++i) slots_[factored_entry[i]] = found[i];
-}
 
-void StageMatrix::add(int slot, double value) {
-  if (slot >= 0) {
-    rest_.values()[at(slot)] += value;
-  } else if (slot <= in_block) {
-    blocks_[at(in_block - slot)] += value;
-  } else if (slot <= outside) {
-    couplings_[at(outside - slot)].value += value;
+  const auto first_forces = slots.begin() + size;
+  const auto first_rows = first_forces + static_cast<std::ptrdiff_t>(forces_ ? 36 * system_.force_blocks().size() : 0);
+  slots_ = {{slots.begin(), first_forces}, {first_forces, first_rows}, {first_rows, slots.end()}};
+  constants_.assign(first_rest_ + rest_.values().size(), 0.0);
+  values_ = constants_;
+  for (int i = 0; i < size; ++i) {
+    constants_[at(slots_.constant[at(i)])] += i < nv ? system_.mass()[at(i)] : 1.0;
   }
 }
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
-  std::ranges::fill(rest_.values(), 0.0);
-  std::ranges::fill(blocks_, 0.0);
-  for (Coupling& coupling : couplings_) coupling.value = 0.0;
-  const int* slot = slots_.data();
-  for (const double mass : system_.mass()) add(*slot++, mass);
-  for (int r = 0; r < system_.layout().nc(); ++r) add(*slot++, 1.0);
+  std::ranges::copy(constants_, values_.begin());
   if (forces_) {
+    const int* slot = slots_.forces.data();
     if (!internal_.empty()) {
       internal_.prepare(e, beta_q, beta_v, beta_z);
-      internal_.add_to_matrix(
-          [&](std::size_t block, int r, int c, double value) { add(slot[36 * block + at(6 * r + c)], value); });
+      internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
+        values_[at(slot[36 * block + at(6 * r + c)])] += value;
+      });
     }
-    for (std::size_t i = 0; i < e.force_v.size(); ++i) add(*slot++, -(beta_v * e.force_v[i] + beta_q * e.force_q[i]));
+    for (std::size_t i = 0; i < e.force_v.size(); ++i) {
+      values_[at(*slot++)] -= beta_v * e.force_v[i] + beta_q * e.force_q[i];
+    }
   }
+  const int* slot = slots_.rows.data();
   for (const double entry : e.jacobian) {
-    add(*slot++, entry);
-    add(*slot++, entry);
+    values_[at(*slot++)] += entry;
+    values_[at(*slot++)] += entry;
   }
+  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
+              rest_.values().begin());
   double smallest = rest_.factor();
+  for (std::size_t i = first_alone_; i < first_rest_; ++i) {
+    if (values_[i] == 0.0 || !std::isfinite(values_[i])) smallest = 0.0;
+  }
+  const double* numbers = &values_[at(first_block)];
   for (Prescribed& body : prescribed_) {
-    const Eigen::Map<const Eigen::Matrix3d> block(&blocks_[body.block]);
+    const Eigen::Map<const Eigen::Matrix3d> block(numbers);
+    numbers += 9;
     body.inverse = block.inverse();
-    const double size = block.cwiseAbs().maxCoeff() * body.inverse.cwiseAbs().maxCoeff();
+    const double size = largest_entry(block) * largest_entry(body.inverse);
     smallest = std::min(smallest, size > 0.0 && std::isfinite(size) ? 1.0 / size : 0.0);
   }
   return smallest;
@@ -158,9 +182,10 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
 
 void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const double> update,
                            std::span<double> right) const {
+  const double* value = values_.data() + first_coupling_;
   for (std::size_t i = first; i < end; ++i) {
     const Coupling& c = couplings_[i];
-    right[at(c.row)] -= c.value * update[at(c.column)];
+    right[at(c.row)] -= value[i] * update[at(c.column)];
   }
 }
 
@@ -175,9 +200,13 @@ void StageMatrix::solve(std::span<double> right, std::span<double> update) const
     std::copy_n(change.data(), 3, update.begin() + 3 * body.who.body);
   }
   subtract(first_free_part_, couplings_.size(), update, right);
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) rest_right_[i] = right[at(unknowns_[i])];
-  rest_.solve(rest_right_, rest_update_);
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) update[at(unknowns_[i])] = rest_update_[i];
+  const double* value = values_.data() + first_alone_;
+  for (std::size_t i = 0; i < alone_.size(); ++i) update[at(alone_[i])] = right[at(alone_[i])] / value[i];
+  if (!unknowns_.empty()) {
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) rest_right_[i] = right[at(unknowns_[i])];
+    rest_.solve(rest_right_, rest_update_);
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) update[at(unknowns_[i])] = rest_update_[i];
+  }
   for (std::size_t p = prescribed_.size(); p-- > 0;) {
     const Prescribed& body = prescribed_[p];
     subtract(body.first_motion_part, body.end_motion_part, update, right);

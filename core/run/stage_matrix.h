@@ -4,7 +4,8 @@
 //   [ Phi_q  0       ]
 //
 // Prescribed bodies p are taken out of the unknowns: their rows give da_p at once, what is left is solved without them,
-// and their motion equations then give the multipliers of their rows, with them the loads of the drivers.
+// and their motion equations then give the multipliers of their rows, with them the loads of the drivers. Unknowns that
+// are then alone in their row and column, as those of a body that only forces move, are divided out.
 #pragma once
 
 #include <span>
@@ -38,19 +39,22 @@ class StageMatrix {
   /// An entry outside of the matrix that is factored: `right[row] -= value * update[column]`.
   struct Coupling {
     int row, column;
-    double value;
   };
   /// Ranges of couplings_ that are used with it, and Phi_q of its rows in its own columns.
   struct Prescribed {
     PrescribedBody who;
     std::size_t first_row_part = 0, end_row_part = 0;        // its rows in the columns of bodies before it
     std::size_t first_motion_part = 0, end_motion_part = 0;  // its motion equations without its own multipliers
-    std::size_t block = 0;                                   // of values_
     Eigen::Matrix3d inverse;
+  };
+  /// The slots of all entries, in the order in which factor() fills them.
+  struct Slots {
+    std::vector<int> constant;  // masses, and ones of dependent rows
+    std::vector<int> forces;    // 36 for each force block
+    std::vector<int> rows;      // Phi_q and, behind each, its transposed
   };
   std::vector<MatrixEntry> entries(std::span<const char> dependent) const;
   void subtract(std::size_t first, std::size_t end, std::span<const double> update, std::span<double> right) const;
-  void add(int slot, double value);
 
   const System& system_;
   bool forces_;
@@ -59,9 +63,13 @@ class StageMatrix {
   std::vector<Prescribed> prescribed_;
   std::vector<Coupling> couplings_;
   std::size_t first_free_part_ = 0;  // couplings of what is factored with prescribed bodies stand from here to the end
-  std::vector<double> blocks_;       // 3 x 3 numbers for each prescribed body, by columns
+  std::vector<int> alone_;           // places of unknowns that are divided out
   std::vector<int> unknowns_;        // places of the unknowns of rest_ in the whole system
-  std::vector<int> slots_;           // by entry: where its value goes, see add()
+  Slots slots_;
+  // A number for what is left out, 3 x 3 by columns for each prescribed body, then couplings_, alone_, rest_: present
+  // values, and those that stay.
+  std::vector<double> values_, constants_;
+  std::size_t first_coupling_ = 0, first_alone_ = 0, first_rest_ = 0;
   mutable std::vector<double> rest_right_, rest_update_;
 };
 

@@ -187,6 +187,28 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       }
     }
   }
+  return found.joint < 0 || found.fraction == 1.0 || sharpen(before, e_before, after, e_after, found, fault);
+}
+
+// Newton's steps on the interpolated motion, which knows more than the cubics of the function.
+bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
+                         Passage& found, Fault& fault) {
+  const Span<const Event> events = system_.joint_layout(found.joint).events;
+  const std::span g = std::span(gm_).first(events.size), rate = std::span(rm_).first(events.size);
+  const double sign = events[at(found.event)].crossing == Crossing::rising ? 1.0 : -1.0;
+  const double dt = after.t() - before.t();
+  for (int step = 0; step < 2; ++step) {
+    DenseStep(before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
+    if (!system_.evaluate(point(between_), term_event, e_between_)) {
+      fault = e_between_.fault;
+      return false;
+    }
+    if (!functions(found.joint, point(between_), e_between_, g, rate, fault)) return false;
+    const double change = sign * g[at(found.event)] / (sign * rate[at(found.event)] * dt);
+    // Far from the cubics' root it is another root, or none.
+    if (!(std::abs(change) < 0.1 * found.fraction) || !(found.fraction - change < 1.0)) break;
+    found.fraction -= change;
+  }
   return true;
 }
 

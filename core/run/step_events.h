@@ -60,6 +60,8 @@ class StepEvents {
                    const Evaluation& e_after, Fault& fault);
   bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
                  Fault& fault) const;
+  bool sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
+               Passage& found, Fault& fault);
   bool tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault);
   bool tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
             const double* mobility = nullptr);

@@ -7,7 +7,6 @@
 namespace freeplay {
 namespace {
 
-constexpr int widest_joint = 6;  // rows of a joint that leaves no freedom
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Largest distance between anything that the model places: bodies are as far apart as their markers let them be.
@@ -35,7 +34,6 @@ System::System(const Model& model, Variant variant)
       layout_(model, variant),
       motions_(std::make_shared<Motions>(model)),
       offsets_(model.joints.size(), InitialOffset{}),
-      coordinate_terms_(model.joints.size(), term_coordinate),
       size_(model_size(model)) {
   for (const Body& body : model.bodies) {
     mass_.insert(mass_.end(), {body.mass, body.mass, body.inertia[8]});
@@ -50,26 +48,50 @@ System::System(const Model& model, Variant variant)
     offset += rows * planar::velocities;
     return static_cast<int>(blocks_.size()) - 1;
   };
+  records_.reserve(model.joints.size());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const bool is_gear = model.joints[at(j)].gear >= 0;
-    const Slice rows = is_gear ? Slice{} : layout_.rows(j);
-    row_block_a_.push_back(add_block(body_a(j), rows.offset, rows.size));
-    row_block_b_.push_back(add_block(body_b(j), rows.offset, rows.size));
-    const JointLayout& layout = joint_layout(j);
-    if (layout.constraint_rows > 0 && layout.rows_without_coordinate == 0) coordinate_terms_[at(j)] |= term_position;
+    const JointElement& element = model.joints[at(j)];
+    const bool closed = variant == Variant::closed;
+    const JointLayout& layout = closed ? element.ideal_layout : element.layout;
+    JointRecord r;
+    r.joint = closed ? element.ideal : element.joint;
+    r.layout = &layout;
+    r.index = j;
+    r.marker_a = element.marker_a;
+    r.marker_b = element.marker_b;
+    r.body_a = model.markers[at(element.marker_a)].body;
+    r.body_b = model.markers[at(element.marker_b)].body;
+    r.stands_off = closed && element.has_play;
+    r.rows = layout_.rows(j);
+    r.internal = layout_.internal(j);
+    r.history = layout_.history(j);
+    r.turn = layout_.turn(j);
+    r.coordinate_terms = term_coordinate;
+    if (layout.constraint_rows > 0 && layout.rows_without_coordinate == 0) r.coordinate_terms |= term_position;
     if (layout.forces_without_coordinate == 0) {
-      if (layout.forces != 0) coordinate_terms_[at(j)] |= term_force;
-      if (!layout.events.empty() || layout.history > 0) coordinate_terms_[at(j)] |= term_event;
+      if (layout.forces != 0) r.coordinate_terms |= term_force;
+      if (!layout.events.empty() || layout.history > 0) r.coordinate_terms |= term_event;
     }
-    if (joint_layout(j).forces != 0) {
-      const int nz = layout_.internal(j).size;
-      force_blocks_.push_back({j, body_a(j), body_b(j), nz, internal_offset});
-      internal_offset += nz * (18 + nz);
+    if (element.gear < 0 && r.rows.size > 0) {
+      r.block_a = add_block(r.body_a, r.rows.offset, r.rows.size);
+      r.block_b = add_block(r.body_b, r.rows.offset, r.rows.size);
+      r.row_space = static_cast<int>(row_blank_.size());
+      for (const int count : {12 * r.rows.size, r.rows.size, r.rows.size, r.rows.size}) {
+        row_blank_.insert(row_blank_.end(), at(count), 0.0);
+        row_blank_.insert(row_blank_.end(), guard::marks, guard::mark());
+      }
+      with_rows_.push_back(j);
     }
+    if (layout.coordinate != Coordinate::none) with_coordinate_.push_back(j);
+    if (layout.forces != 0) {
+      force_blocks_.push_back({j, r.body_a, r.body_b, r.internal.size, internal_offset});
+      internal_offset += r.internal.size * (18 + r.internal.size);
+    }
+    records_.push_back(r);
   }
   for (const Gear& gear : model.gears) {
     const int row = layout_.rows(gear.joint).offset;
-    for (const int j : {gear.first, gear.second}) coordinate_terms_[at(j)] |= term_position;
+    for (const int j : {gear.first, gear.second}) records_[at(j)].coordinate_terms |= term_position;
     gear_blocks_.push_back({add_block(body_a(gear.first), row, 1), add_block(body_b(gear.first), row, 1),
                             add_block(body_a(gear.second), row, 1), add_block(body_b(gear.second), row, 1)});
     gear_offsets_.push_back(gear.offset.value_or(0.0));
@@ -77,7 +99,7 @@ System::System(const Model& model, Variant variant)
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int joint = model.drivers[at(d)].joint;
     const int row = layout_.driver_row(d);
-    coordinate_terms_[at(joint)] |= term_position | term_force;  // its rate makes the driver's power
+    records_[at(joint)].coordinate_terms |= term_position | term_force;  // its rate makes the driver's power
     driver_block_a_.push_back(row < 0 ? -1 : add_block(body_a(joint), row, 1));
     driver_block_b_.push_back(row < 0 ? -1 : add_block(body_b(joint), row, 1));
   }
@@ -139,7 +161,7 @@ Evaluation::Evaluation(const System& system) {
   shifted.assign(joints, still);
   int widest = 0;
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
-  row_space.resize(at(15 * widest_joint) + 4 * guard::marks);
+  row_space = system.row_blank_;
   rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
   turns.resize(model.bodies.size());
@@ -147,25 +169,16 @@ Evaluation::Evaluation(const System& system) {
   place.resize(at(1 + layout.nq() + layout.nv() + layout.nz() + layout.nh()));
 }
 
-const JointRef& System::joint(int index) const {
-  const JointElement& element = model_.joints[at(index)];
-  return variant_ == Variant::closed ? element.ideal : element.joint;
-}
-const JointLayout& System::joint_layout(int index) const {
-  const JointElement& element = model_.joints[at(index)];
-  return variant_ == Variant::closed ? element.ideal_layout : element.layout;
-}
-BodyId System::body_a(int joint) const { return model_.markers[at(model_.joints[at(joint)].marker_a)].body; }
-BodyId System::body_b(int joint) const { return model_.markers[at(model_.joints[at(joint)].marker_b)].body; }
-
 void System::add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const {
   for (const JacobianBlock& block : blocks_) {
     const double* entries = &e.jacobian[at(block.offset)];
     double* to = &out[3 * at(block.body)];
-    for (int r = 0; r < block.rows; ++r) {
+    double sum[3] = {to[0], to[1], to[2]};
+    for (int r = 0; r < block.rows; ++r, entries += 3) {
       const double l = lambda[at(block.row + r)];
-      for (int c = 0; c < 3; ++c) to[c] += entries[3 * r + c] * l;
+      for (int c = 0; c < 3; ++c) sum[c] += entries[c] * l;
     }
+    std::copy_n(sum, 3, to);
   }
 }
 
@@ -195,8 +208,8 @@ void System::reaction(int index, const Evaluation& e, std::span<const double> la
   double body_force[3] = {0.0, 0.0, 0.0};
   const Slice rows = layout_.rows(index);
   const int gear = model_.joints[at(index)].gear;
-  const int block_a = gear >= 0 ? gear_blocks_[at(gear)][2] : row_block_a_[at(index)];
-  const int block_b = gear >= 0 ? gear_blocks_[at(gear)][3] : row_block_b_[at(index)];
+  const int block_a = gear >= 0 ? gear_blocks_[at(gear)][2] : records_[at(index)].block_a;
+  const int block_b = gear >= 0 ? gear_blocks_[at(gear)][3] : records_[at(index)].block_b;
   const bool second = block_b >= 0;
   const int block = second ? block_b : block_a;
   const JointElement& element = model_.joints[at(gear >= 0 ? model_.gears[at(gear)].second : index)];

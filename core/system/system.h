@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "component/joint_ref.h"
 #include "linear/sparse_matrix.h"
 #include "system/layout.h"
 #include "system/motion.h"
@@ -75,6 +76,21 @@ struct InternalDerivatives {
   InternalDerivatives(const ForceBlock& block, std::span<double> all);
 };
 
+/// What the time loop reads of a joint, in one place.
+struct JointRecord {
+  JointRef joint;
+  const JointLayout* layout = nullptr;
+  int index = 0;                   ///< into Model::joints
+  int marker_a = 0, marker_b = 0;  ///< into Evaluation::markers
+  BodyId body_a = ground, body_b = ground;
+  bool stands_off = false;         ///< its second marker is Evaluation::shifted
+  unsigned coordinate_terms = 0;   ///< terms that need its coordinate
+  int block_a = -1, block_b = -1;  ///< of its rows, into System::jacobian_blocks(); -1 on ground
+  int row_space = 0;               ///< its part of Evaluation::row_space
+  Slice rows, internal, history;
+  int turn = -1;  ///< Layout::turn
+};
+
 struct Evaluation;
 
 class System {
@@ -101,13 +117,14 @@ class System {
 
   /// Closed variant: the second marker of a joint with play stands off by this, world axes.
   void set_offset(int joint, const InitialOffset& offset) { offsets_[static_cast<std::size_t>(joint)] = offset; }
-  const JointRef& joint(int index) const;
-  const JointLayout& joint_layout(int index) const;
+  const JointRef& joint(int index) const { return records_[static_cast<std::size_t>(index)].joint; }
+  const JointLayout& joint_layout(int index) const { return *records_[static_cast<std::size_t>(index)].layout; }
 
   /// Fills the wanted terms; false with `Evaluation::fault` when an element fails. Does not allocate.
   bool evaluate(const Point& point, unsigned terms, Evaluation& out) const;
-  /// The same where `known` may hold the terms at this very point already, but for the joints' coordinates.
-  bool evaluate(const Point& point, unsigned terms, const Evaluation& known, Evaluation& out) const;
+  /// The same where `known` may hold the terms at this very point already, but for the joints' coordinates: the two
+  /// then change places.
+  bool evaluate(const Point& point, unsigned terms, Evaluation& known, Evaluation& out) const;
 
   /// out += Phi_q^T lambda and out = Phi_q v.
   void add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
@@ -136,18 +153,18 @@ class System {
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
   static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
   static bool refuse(int joint, const char* why, Evaluation& e);
-  bool markers_are_finite(int joint, const Evaluation& e) const;
+  static bool blame(int joint, Evaluation& e);
+  static bool markers_are_finite(const JointRecord& record, const Evaluation& e);
   bool evaluate_rows(const Point& point, Evaluation& e) const;
   void evaluate_gear_rows(Evaluation& e) const;
   void evaluate_driver_rows(Evaluation& e) const;
   bool evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const;
   bool evaluate_applied(const Point& point, Evaluation& e) const;
-  void map_row(int joint, const double* marker_row, const Evaluation& e, double* row) const;
-  double row_velocity_product(int joint, const double* marker_row, const Evaluation& e) const;
+  JointInput input(const JointRecord& record, const Point& point, const Evaluation& e) const;
   void map_derivatives(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
   void map_internal(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
-  BodyId body_a(int joint) const;
-  BodyId body_b(int joint) const;
+  BodyId body_a(int joint) const { return records_[static_cast<std::size_t>(joint)].body_a; }
+  BodyId body_b(int joint) const { return records_[static_cast<std::size_t>(joint)].body_b; }
 
   const Model& model_;
   Variant variant_;
@@ -156,9 +173,10 @@ class System {
   std::vector<double> mass_, weight_;
   std::vector<planar::Mount> mounts_;
   std::vector<InitialOffset> offsets_;
-  std::vector<unsigned> coordinate_terms_;  // by joint: terms that its coordinate is needed for
+  std::vector<JointRecord> records_;              // by joint
+  std::vector<int> with_coordinate_, with_rows_;  // joints, into records_; gears have no rows of their own here
   std::vector<JacobianBlock> blocks_;
-  std::vector<int> row_block_a_, row_block_b_;  // by joint: index into blocks_ of its rows, -1 on ground
+  std::vector<double> row_blank_;  // what Evaluation::row_space holds before joints fill it
   std::vector<int> driver_block_a_, driver_block_b_;
   std::vector<std::array<int, 4>> gear_blocks_;  // by gear: of the bodies of its first and of its second joint
   std::vector<double> gear_offsets_;
@@ -193,11 +211,28 @@ struct Evaluation {
 
   // Work space.
   std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
-  std::vector<double> row_space, rate_space, derivative_space;
+  std::vector<double> row_space;          ///< of every joint with rows: G, phi, nu, gamma, with marks behind each
+  std::vector<double> rate_space, derivative_space;
   std::vector<planar::Turn> turns;
   double motion_time;
   unsigned filled = 0;        ///< terms that `place` speaks of
   std::vector<double> place;  ///< t, q, v, z, h of the last evaluation that did not fail
 };
+
+inline JointInput System::input(const JointRecord& record, const Point& point, const Evaluation& e) const {
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  return {point.t,
+          &e.markers[at(record.marker_a)],
+          record.stands_off ? &e.shifted[at(record.index)] : &e.markers[at(record.marker_b)],
+          e.coordinate[at(record.index)],
+          e.coordinate_rate[at(record.index)],
+          {point.z.data() + record.internal.offset, at(record.internal.size)},
+          {point.h.data() + record.history.offset, at(record.history.size)},
+          per_contact_};
+}
+
+inline JointInput System::input(int index, const Point& point, const Evaluation& e) const {
+  return input(records_[static_cast<std::size_t>(index)], point, e);
+}
 
 }  // namespace freeplay

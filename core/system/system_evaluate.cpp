@@ -41,9 +41,9 @@ bool Evaluation::is_at(const Point& point, unsigned terms) const {
   return true;
 }
 
-bool System::evaluate(const Point& point, unsigned terms, const Evaluation& known, Evaluation& e) const {
+bool System::evaluate(const Point& point, unsigned terms, Evaluation& known, Evaluation& e) const {
   if (!known.is_at(point, terms & ~unsigned{term_coordinate})) return evaluate(point, terms, e);
-  e = known;
+  std::swap(e, known);
   return (terms & term_coordinate) == 0 || evaluate_coordinates(point, term_coordinate, e);
 }
 
@@ -102,36 +102,19 @@ bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
   return true;
 }
 
-JointInput System::input(int index, const Point& point, const Evaluation& e) const {
-  const JointElement& element = model_.joints[at(index)];
-  const bool stands_off = variant_ == Variant::closed && element.has_play;
-  const Slice internal = layout_.internal(index), history = layout_.history(index);
-  return {point.t,
-          &e.markers[at(element.marker_a)],
-          stands_off ? &e.shifted[at(index)] : &e.markers[at(element.marker_b)],
-          e.coordinate[at(index)],
-          e.coordinate_rate[at(index)],
-          {point.z.data() + internal.offset, at(internal.size)},
-          {point.h.data() + history.offset, at(history.size)},
-          per_contact_};
-}
-
 bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const {
-  for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-    if (joint_layout(j).coordinate == Coordinate::none || (coordinate_terms_[at(j)] & terms) == 0) continue;
-    const JointInput in = input(j, point, e);
+  for (const int j : with_coordinate_) {
+    const JointRecord& record = records_[at(j)];
+    if ((record.coordinate_terms & terms) == 0) continue;
+    const JointInput in = input(record, point, e);
     CoordinateRow& row = e.coordinate_rows[at(j)] = CoordinateRow{};
-    if (!joint(j).coordinate(in, row, e.fault.message)) {
-      e.fault.kind = Fault::Kind::plugin;
-      e.fault.joint = j;
-      return false;
-    }
-    if (!std::isfinite(row.value) && markers_are_finite(j, e)) {
+    if (!record.joint.coordinate(in, row, e.fault.message)) return blame(j, e);
+    if (!std::isfinite(row.value) && markers_are_finite(record, e)) {
       return refuse(j, "it returned a coordinate that is not a finite number", e);
     }
-    if (const int turn = layout_.turn(j); turn >= 0) {
+    if (record.turn >= 0) {
       // The turn nearest to the last accepted angle: a step never turns a joint by more than half a revolution.
-      row.value += 2.0 * M_PI * std::round((point.h[at(turn)] - row.value) / (2.0 * M_PI));
+      row.value += 2.0 * M_PI * std::round((point.h[at(record.turn)] - row.value) / (2.0 * M_PI));
     }
     e.coordinate[at(j)] = row.value;
     e.coordinate_rate[at(j)] = rate_of(row.jacobian, *in.a, *in.b);
@@ -139,18 +122,22 @@ bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation
   return true;
 }
 
-/// Notes what a joint has done wrong. A point that is no number itself is nobody's fault but the iteration's.
-bool System::refuse(int joint, const char* why, Evaluation& e) {
-  e.fault.message.id[0] = '\0';
-  abi::copy_text(e.fault.message.text, sizeof e.fault.message.text, why);
+/// A joint said itself, in the fault's message, why it failed.
+bool System::blame(int joint, Evaluation& e) {
   e.fault.kind = Fault::Kind::plugin;
   e.fault.joint = joint;
   return false;
 }
 
-bool System::markers_are_finite(int joint, const Evaluation& e) const {
-  const JointElement& element = model_.joints[at(joint)];
-  return is_finite(e.markers[at(element.marker_a)]) && is_finite(e.markers[at(element.marker_b)]);
+/// Notes what a joint has done wrong. A point that is no number itself is nobody's fault but the iteration's.
+bool System::refuse(int joint, const char* why, Evaluation& e) {
+  e.fault.message.id[0] = '\0';
+  abi::copy_text(e.fault.message.text, sizeof e.fault.message.text, why);
+  return blame(joint, e);
+}
+
+bool System::markers_are_finite(const JointRecord& record, const Evaluation& e) {
+  return is_finite(e.markers[at(record.marker_a)]) && is_finite(e.markers[at(record.marker_b)]);
 }
 
 }  // namespace freeplay

@@ -16,10 +16,10 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
-    const JointInput in = input(j, point, e);
-    const JointLayout& layout = joint_layout(j);
-    const Slice internal = layout_.internal(j);
-    const std::size_t nz = at(internal.size), table = (12 + nz) * (24 + nz);
+    const JointRecord& record = records_[at(j)];
+    const JointInput in = input(record, point, e);
+    const JointLayout& layout = *record.layout;
+    const std::size_t nz = at(record.internal.size), table = (12 + nz) * (24 + nz);
     JointForces out{};
     const Span<double> rate(e.rate_space.data(), nz);
     std::ranges::fill(rate, 0.0);
@@ -30,20 +30,16 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
       std::fill_n(e.derivative_space.begin(), table, 0.0);
       out.derivatives = slopes = {e.derivative_space.data(), table};
     }
-    bool good = joint(j).apply(in, out, e.fault.message);
+    bool good = record.joint.apply(in, out, e.fault.message);
     if (good && derivatives && layout.analytic_derivatives == 0) {
-      good = difference_forces(joint(j), in, layout.coordinate != Coordinate::none,
+      good = difference_forces(record.joint, in, layout.coordinate != Coordinate::none,
                                std::span(e.derivative_space).first(table), std::span(e.derivative_space).subspan(table),
                                e.fault.message);
     }
-    if (!good) {
-      e.fault.kind = Fault::Kind::plugin;
-      e.fault.joint = j;
-      return false;
-    }
+    if (!good) return blame(j, e);
     if (!guard::intact(rate.end())) return refuse(j, beside, e);
-    std::ranges::copy(rate, e.internal_rate.begin() + internal.offset);
-    if (!(is_finite(out) && is_finite(rate) && is_finite(slopes)) && markers_are_finite(j, e)) {
+    std::ranges::copy(rate, e.internal_rate.begin() + record.internal.offset);
+    if (!(is_finite(out) && is_finite(rate) && is_finite(slopes)) && markers_are_finite(record, e)) {
       return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
     }
     double* wrench = &e.wrench[12 * at(j)];
@@ -51,9 +47,8 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     std::copy_n(out.wrench_b, 6, wrench + 6);
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
-    const JointElement& element = model_.joints[at(j)];
-    if (block.a != ground) planar::add_wrench(wrench, e.arms[at(element.marker_a)], &e.force[3 * at(block.a)]);
-    if (block.b != ground) planar::add_wrench(wrench + 6, e.arms[at(element.marker_b)], &e.force[3 * at(block.b)]);
+    if (block.a != ground) planar::add_wrench(wrench, e.arms[at(record.marker_a)], &e.force[3 * at(block.a)]);
+    if (block.b != ground) planar::add_wrench(wrench + 6, e.arms[at(record.marker_b)], &e.force[3 * at(block.b)]);
     if (derivatives) map_derivatives(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
     if (derivatives && nz > 0) map_internal(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
   }

@@ -7,62 +7,50 @@
 
 namespace freeplay {
 namespace {
+constexpr std::size_t widest_joint = 6;  // rows of a joint that leaves no freedom
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-void System::map_row(int joint, const double* marker_row, const Evaluation& e, double* row) const {
-  const JointElement& element = model_.joints[at(joint)];
-  planar::body_row(marker_row, e.arms[at(element.marker_a)], row);
-  planar::body_row(marker_row + 6, e.arms[at(element.marker_b)], row + 3);
-}
-
-double System::row_velocity_product(int joint, const double* marker_row, const Evaluation& e) const {
-  const JointElement& element = model_.joints[at(joint)];
-  double product = 0.0;
-  if (body_a(joint) != ground) product += planar::velocity_product(marker_row, e.arms[at(element.marker_a)]);
-  if (body_b(joint) != ground) product += planar::velocity_product(marker_row + 6, e.arms[at(element.marker_b)]);
-  return product;
-}
-
 bool System::evaluate_rows(const Point& point, Evaluation& e) const {
-  for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-    const Slice rows = layout_.rows(j);
-    if (rows.size == 0 || model_.joints[at(j)].gear >= 0) continue;
-    double* next = e.row_space.data();
-    const auto part = [&next](int count) {
-      const Span<double> span(next, at(count));
-      std::fill_n(next, count, 0.0);
-      guard::set(next += count);
-      next += guard::marks;
-      return span;
-    };
-    const Span<double> jacobian = part(12 * rows.size), phi = part(rows.size), nu = part(rows.size),
-                       gamma = part(rows.size);
-    ConstraintRows out{phi, jacobian, nu, gamma};
-    if (!joint(j).constrain(input(j, point, e), out, e.fault.message)) {
-      e.fault.kind = Fault::Kind::plugin;
-      e.fault.joint = j;
-      return false;
+  std::ranges::copy(row_blank_, e.row_space.begin());
+  for (const int j : with_rows_) {
+    const JointRecord& record = records_[at(j)];
+    const std::size_t count = at(record.rows.size);
+    double* const jacobian = &e.row_space[at(record.row_space)];
+    double* const phi = jacobian + 12 * count + guard::marks;
+    double* const nu = phi + count + guard::marks;
+    double* const gamma = nu + count + guard::marks;
+    ConstraintRows out{{phi, count}, {jacobian, 12 * count}, {nu, count}, {gamma, count}};
+    if (!record.joint.constrain(input(record, point, e), out, e.fault.message)) return blame(j, e);
+    for (const double* end : {phi - guard::marks, phi + count, nu + count, gamma + count}) {
+      if (!guard::intact(end)) return refuse(j, beside, e);
     }
-    for (const Span<double>& filled : {jacobian, phi, nu, gamma}) {
-      if (!guard::intact(filled.end())) return refuse(j, beside, e);
-    }
-    out = {phi, jacobian, nu, gamma};
-    if (!is_finite(out) && markers_are_finite(j, e))
+    // The marks between the parts are finite numbers.
+    if (!is_finite({jacobian, at(static_cast<int>(gamma - jacobian)) + count}) && markers_are_finite(record, e)) {
       return refuse(j, "it returned a row that is not a finite number", e);
-    const int block_a = row_block_a_[at(j)], block_b = row_block_b_[at(j)];
-    for (int r = 0; r < rows.size; ++r) {
-      const double* marker_row = jacobian.data + 12 * r;
-      const std::size_t to = at(rows.offset + r), from = at(r);
-      double row[6];
-      map_row(j, marker_row, e, row);
-      if (block_a >= 0) std::copy_n(row, 3, &e.jacobian[at(blocks_[at(block_a)].offset + 3 * r)]);
-      if (block_b >= 0) std::copy_n(row + 3, 3, &e.jacobian[at(blocks_[at(block_b)].offset + 3 * r)]);
-      e.phi[to] = phi[from];
-      e.nu[to] = nu[from];
-      e.gamma[to] = gamma[from] - row_velocity_product(j, marker_row, e);
-      if (variant_ == Variant::closed) {
-        for (int i = 0; i < 3; ++i) e.nu[at(rows.offset + r)] += marker_row[6 + i] * offsets_[at(j)].velocity[i];
+    }
+    const std::size_t first = at(record.rows.offset);
+    for (std::size_t r = 0; r < count; ++r) {
+      e.phi[first + r] = phi[r];
+      e.nu[first + r] = nu[r];
+    }
+    double products[widest_joint] = {};
+    const auto map = [&](int block, int marker, const double* rows) {
+      if (block < 0) return;
+      const planar::Arm& arm = e.arms[at(marker)];
+      double* to = &e.jacobian[at(blocks_[at(block)].offset)];
+      for (std::size_t r = 0; r < count; ++r) {
+        planar::body_row(rows + 12 * r, arm, to + planar::velocities * r);
+        products[r] += planar::velocity_product(rows + 12 * r, arm);
+      }
+    };
+    map(record.block_a, record.marker_a, jacobian);
+    map(record.block_b, record.marker_b, jacobian + 6);
+    for (std::size_t r = 0; r < count; ++r) e.gamma[first + r] = gamma[r] - products[r];
+    if (variant_ == Variant::closed) {
+      const double* velocity = offsets_[at(j)].velocity;
+      for (std::size_t r = 0; r < count; ++r) {
+        for (std::size_t i = 0; i < 3; ++i) e.nu[first + r] += jacobian[12 * r + 6 + i] * velocity[i];
       }
     }
   }
@@ -70,9 +58,14 @@ bool System::evaluate_rows(const Point& point, Evaluation& e) const {
 }
 
 void System::coordinate_row(int index, const Evaluation& e, double* row, double& bias) const {
+  const JointRecord& record = records_[at(index)];
   const CoordinateRow& marker_row = e.coordinate_rows[at(index)];
-  map_row(index, marker_row.jacobian, e, row);
-  bias = marker_row.bias + row_velocity_product(index, marker_row.jacobian, e);
+  const planar::Arm &arm_a = e.arms[at(record.marker_a)], &arm_b = e.arms[at(record.marker_b)];
+  planar::body_row(marker_row.jacobian, arm_a, row);
+  planar::body_row(marker_row.jacobian + 6, arm_b, row + 3);
+  bias = marker_row.bias;
+  if (record.body_a != ground) bias += planar::velocity_product(marker_row.jacobian, arm_a);
+  if (record.body_b != ground) bias += planar::velocity_product(marker_row.jacobian + 6, arm_b);
 }
 
 // Phi = s2 - ratio s1 - offset.
