@@ -22,11 +22,11 @@ constexpr double error_weight[stages] = {71.0 / 57600.0,      0.0,          -71.
                                          -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
 
 /// Explicit Runge-Kutta pair of orders 5 and 4 on the index-1 form
-///   d' = v,  v' = a(t, q, v, z),  z' = z'(t, q, v, z)  with  q = retract(q_n, d)
-/// where a comes from the equations of motion with the constraints at acceleration level. At the end of the step q is
-/// projected on Phi = 0 and v on Phi_q v = nu, which moves them by less than the local error; the last stage is taken
-/// there, and is the first of the next step. The result of order 5 is kept. Dormand and Prince 1980; Hairer, Norsett
-/// and Wanner 1993, II.5.
+///   d' = rate(d, v),  v' = a(t, q, v, z),  z' = z'(t, q, v, z)  with  q = retract(q_n, d)
+/// where d' is v but for rotations in space (Munthe-Kaas 1999) and a comes from the equations of motion with the
+/// constraints at acceleration level. At the end of the step q is projected on Phi = 0 and v on Phi_q v = nu, which
+/// moves them by less than the local error; the last stage is taken there, and is the first of the next step. The
+/// result of order 5 is kept. Dormand and Prince 1980; Hairer, Norsett and Wanner 1993, II.5.
 class Dopri5 final : public Integrator {
  public:
   explicit Dopri5(const Parameters&) {}
@@ -58,7 +58,7 @@ class Dopri5 final : public Integrator {
         solver.project_velocity(to);
       }
       solver.accelerate(to, k.z_rate(s));
-      std::copy(to.v.begin(), to.v.end(), k.v(s).begin());
+      solver.increment_rate(k.increment, to.v, k.v(s));
       std::copy(to.a.begin(), to.a.end(), k.a(s).begin());
     }
     std::copy_n(k.z_rate(stages - 1).begin(), to.z.size, to.memory.begin());
@@ -66,7 +66,7 @@ class Dopri5 final : public Integrator {
   }
 
  private:
-  /// Start of the step and derivatives (v, a, z') of every stage, in slices of the scratch.
+  /// Start of the step and derivatives (d', a, z') of every stage, in slices of the scratch.
   struct Stages {
     Stages(const StateView& s, Span<double> scratch)
         : nv(s.v.size),

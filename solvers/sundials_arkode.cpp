@@ -78,7 +78,7 @@ class Stepper {
   Span<const double> internal_error() const { return {e_.data() + 2 * nv_, nz_}; }
 
  private:
-  /// y' = (v, a, z') at the time t since the start of the step.
+  /// y' = (d', a, z') at the time t since the start of the step.
   static int right_hand_side(double t, N_Vector y, N_Vector y_rate, void* user) noexcept {
     auto& me = *static_cast<Stepper*>(user);
     try {
@@ -100,7 +100,7 @@ class Stepper {
                  {y + 2 * nv_, nz_},
                  {}};
     solver_->accelerate(at, {y_rate + 2 * nv_, nz_});
-    std::copy_n(y + nv_, nv_, y_rate);
+    solver_->increment_rate({y, nv_}, {y + nv_, nv_}, {y_rate, nv_});
     std::copy(a_.begin(), a_.end(), y_rate + nv_);
   }
 
@@ -116,7 +116,7 @@ class Stepper {
 };
 
 /// Explicit Runge-Kutta pair of orders 6 and 5 of Verner on the index-1 form
-///   d' = v,  v' = a(t, q, v, z),  z' = z'(t, q, v, z)  with  q = retract(q_n, d)
+///   d' = rate(d, v),  v' = a(t, q, v, z),  z' = z'(t, q, v, z)  with  q = retract(q_n, d)
 /// stepped by ARKODE of SUNDIALS: an implementation by others to hold our own against. At the end of the step q is
 /// projected on Phi = 0 and v on Phi_q v = nu, and a, lambda are solved there. Verner 1978; Reynolds, Gardner, Woodward
 /// and Chinomona 2023 (ARKODE).

@@ -99,7 +99,7 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
   for (Index i = 0; i < inputs; ++i) out.input.push_back(-lambda[nc + i]);
   out.force.clear();
   for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
-    double wrench[3];
+    double wrench[6];
     system.reaction(j, e, {lambda.data(), at(nc)}, wrench);
     out.force.push_back({wrench[0], wrench[1]});
   }

@@ -92,6 +92,10 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
              [](void* self, double dt, const StateView* end, Span<const double> error) noexcept {
                const auto& me = *static_cast<FailingStageSolver*>(self);
                return me.inner_.internal_error_norm(me.inner_.self, dt, end, error);
+             },
+             [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               me.inner_.increment_rate(me.inner_.self, increment, v, rate);
              }},
       good_stages_(good_stages) {}
 

@@ -17,6 +17,9 @@
 namespace freeplay {
 
 using Vector3 = std::array<double, 3>;
+/// World (or body) from frame axes, row-major.
+using Rotation = std::array<double, 9>;
+inline constexpr Rotation no_rotation{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
 /// Index of a body in Model::bodies, or `ground`.
 using BodyId = int;
@@ -24,23 +27,25 @@ inline constexpr BodyId ground = -1;
 
 struct Body {
   std::string name;
-  Location location;                ///< of the entry
-  double mass = 0.0;                ///< [kg]
-  std::array<double, 9> inertia{};  ///< about the centre of mass, body axes [kg m^2]; planar: the last entry
-  Vector3 com{};                    ///< centre of mass in the body frame [m]
-  Vector3 gravity{};                ///< acceleration of free fall [m/s^2]
-  std::optional<Vector3> position;  ///< starting guess of the body frame [m]
-  std::optional<double> angle;      ///< planar starting guess [rad]
-  Vector3 velocity{};               ///< starting guess for the body frame's origin [m/s]
-  Vector3 angular_velocity{};       ///< [rad/s]; planar: z
+  Location location;                 ///< of the entry
+  double mass = 0.0;                 ///< [kg]
+  std::array<double, 9> inertia{};   ///< about the centre of mass, body axes [kg m^2]; planar: the last entry
+  Vector3 com{};                     ///< centre of mass in the body frame [m]
+  Vector3 gravity{};                 ///< acceleration of free fall [m/s^2]
+  std::optional<Vector3> position;   ///< starting guess of the body frame [m]
+  std::optional<double> angle;       ///< planar starting guess [rad]
+  std::optional<Rotation> rotation;  ///< spatial starting guess of the body frame
+  Vector3 velocity{};                ///< starting guess for the body frame's origin [m/s]
+  Vector3 angular_velocity{};        ///< [rad/s]; planar: z
 };
 
 /// Point with axes fixed on a body ("frame" in model files).
 struct Marker {
   BodyId body = ground;
-  std::string name;    ///< BODY/FRAME
-  Vector3 position{};  ///< in the body frame [m]
-  double angle = 0.0;  ///< planar [rad]
+  std::string name;                 ///< BODY/FRAME
+  Vector3 position{};               ///< in the body frame [m]
+  double angle = 0.0;               ///< planar [rad]
+  Rotation rotation = no_rotation;  ///< spatial: body from marker axes
 };
 
 /// A value of `initial` that assembly holds exactly.

@@ -182,7 +182,7 @@ bool Simulation::Impl::write_rows_inside() {
 // A consistent state inside the step that was just made, in `between` and e_between.
 bool Simulation::Impl::look_inside(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
-  DenseStep(accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(s, between);
+  DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(s, between);
   between.t() = t;
   StateView view = between.view();
   solver.use_history(between.h());
@@ -224,10 +224,12 @@ std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const 
   if (limiting_joint >= 0) return text + fmt::format("; joint '{}' asks for it", model.joints[at(limiting_joint)].name);
   const int worst = solver.worst_component();
   if (worst < 0) return text;
-  const char* directions[] = {"x", "y", "angle"};
-  text +=
-      fmt::format("; the error is largest in body '{}' ({})", model.bodies[at(worst / 3)].name, directions[worst % 3]);
-  if (const int joint = hardest_joint(worst / 3); joint >= 0) {
+  const int width = system.body_velocities(), body = worst / width, part = worst % width;
+  constexpr const char* planar[] = {"x", "y", "angle"};
+  constexpr const char* spatial[] = {"x", "y", "z", "rotation", "rotation", "rotation"};
+  text += fmt::format("; the error is largest in body '{}' ({})", model.bodies[at(body)].name,
+                      width == 3 ? planar[part] : spatial[part]);
+  if (const int joint = hardest_joint(body); joint >= 0) {
     text += fmt::format(", on which joint '{}' pulls hardest", model.joints[at(joint)].name);
   }
   return text + "; allow smaller steps or a larger error";

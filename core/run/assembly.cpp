@@ -244,12 +244,15 @@ class Assembler {
         out.residual[i] = path.residual(closed_, point(state_), e_, path_value(path));
         continue;
       }
-      double row[6], bias = 0.0;
+      double row[12], bias = 0.0;
       closed_.coordinate_row(j, e_, row, bias);
+      const int width = closed_.body_velocities();
       const JointElement& joint = model_.joints[at(j)];
       const int bodies[2] = {model_.markers[at(joint.marker_a)].body, model_.markers[at(joint.marker_b)].body};
       for (int k = 0; k < 2; ++k) {
-        for (int c = 0; c < 3 && bodies[k] != ground; ++c) entries.emplace_back(i, 3 * bodies[k] + c, row[3 * k + c]);
+        for (int c = 0; c < width && bodies[k] != ground; ++c) {
+          entries.emplace_back(i, width * bodies[k] + c, row[width * k + c]);
+        }
       }
       out.residual[i] = speeds ? e_.coordinate_rate[at(j)] - joint.start_speed->value
                                : e_.coordinate[at(j)] - joint.start_coordinate->value;
@@ -276,9 +279,8 @@ class Assembler {
       const std::vector<double> q(state_.q().begin(), state_.q().end());
       double length = 1.0, after = before;
       for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
-        for (std::size_t i = 0; i < q.size(); ++i) {
-          state_.q()[i] = q[i] + length * step[static_cast<Eigen::Index>(i)];
-        }
+        const VectorXd increment = length * step;
+        closed_.retract(q, {increment.data(), at(static_cast<int>(increment.size()))}, state_.q());
         now = rows(false);
         after = now.residual.norm();
         if (after < before) break;
@@ -312,10 +314,13 @@ class Assembler {
   bool converge_from_turned(const std::vector<double>& guess) {
     for (const double turn : {0.1, 0.5, 1.5}) {
       std::ranges::copy(guess, state_.q().begin());
-      for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-        const double share = static_cast<double>(b + 1) * 0.6180339887498949;  // golden ratio: spread evenly
-        state_.q()[3 * b + 2] += turn * (2.0 * (share - std::floor(share)) - 1.0);
+      std::vector<double> increment(state_.v().size(), 0.0);
+      for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
+        if (!closed_.is_turn(i)) continue;
+        const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
+        increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
       }
+      closed_.retract(guess, increment, state_.q());
       if (holds(converge())) return true;
     }
     return false;
@@ -403,14 +408,21 @@ class Assembler {
 
   // Least change of the given velocities in kinetic energy; in m and rad where the mass says nothing.
   void solve_velocities() {
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      const Body& body = model_.bodies[b];
-      const double angle = state_.q()[3 * b + 2], w = body.angular_velocity[2];
-      const double x = std::cos(angle) * body.com[0] - std::sin(angle) * body.com[1];
-      const double y = std::sin(angle) * body.com[0] + std::cos(angle) * body.com[1];
-      state_.v()[3 * b] = body.velocity[0] - w * y;
-      state_.v()[3 * b + 1] = body.velocity[1] + w * x;
-      state_.v()[3 * b + 2] = w;
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const Body& body = model_.bodies[at(b)];
+      const Pose frame = closed_.frame_pose(b, state_.q());
+      const Vector3& w = body.angular_velocity;
+      double arm[3] = {};
+      for (std::size_t r = 0; r < 3; ++r) {
+        for (std::size_t c = 0; c < 3; ++c) arm[r] += frame.rotation[3 * r + c] * body.com[c];
+      }
+      const double twist[6] = {body.velocity[0] + (w[1] * arm[2] - w[2] * arm[1]),
+                               body.velocity[1] + (w[2] * arm[0] - w[0] * arm[2]),
+                               body.velocity[2] + (w[0] * arm[1] - w[1] * arm[0]),
+                               w[0],
+                               w[1],
+                               w[2]};
+      closed_.set_body_twist(b, state_.q(), twist, state_.v());
     }
     const int nv = closed_.layout().nv();
     const Eigen::Map<const VectorXd> mass(system_.mass().data(), nv);
@@ -481,9 +493,9 @@ class Assembler {
     evaluate(term_position | term_velocity | term_force);
     std::vector<std::array<double, 3>> reactions(model_.joints.size());
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      double wrench[3];
+      double wrench[6];
       closed_.reaction(j, e_, state_.lambda(), wrench);
-      reactions[at(j)] = {wrench[0], wrench[1], 0.0};
+      reactions[at(j)] = {wrench[0], wrench[1], wrench[2]};
     }
     return set_offsets(reactions);
   }

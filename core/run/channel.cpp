@@ -5,15 +5,21 @@
 
 namespace freeplay {
 
-Channels::Channels(const Model& model) {
+Channels::Channels(const Model& model) : planar_(model.space == Space::planar) {
+  struct Column {
+    const char *name, *unit;
+  };
+  constexpr Column in_plane[] = {{".x", "m"},    {".y", "m"},    {".angle", "rad"},
+                                 {".vx", "m/s"}, {".vy", "m/s"}, {".omega", "rad/s"}};
+  constexpr Column in_space[] = {{".x", "m"},      {".y", "m"},      {".z", "m"},     {".qw", "1"},   {".qx", "1"},
+                                 {".qy", "1"},     {".qz", "1"},     {".vx", "m/s"},  {".vy", "m/s"}, {".vz", "m/s"},
+                                 {".wx", "rad/s"}, {".wy", "rad/s"}, {".wz", "rad/s"}};
   time = add("time", "s");
   const auto pose = [&](const std::string& prefix) {
-    const int first = add(prefix + ".x", "m");
-    add(prefix + ".y", "m");
-    add(prefix + ".angle", "rad");
-    add(prefix + ".vx", "m/s");
-    add(prefix + ".vy", "m/s");
-    add(prefix + ".omega", "rad/s");
+    const int first = static_cast<int>(all_.size());
+    for (const Column& column : planar_ ? std::span<const Column>(in_plane) : in_space) {
+      add(prefix + column.name, column.unit);
+    }
     return first;
   };
   for (const Body& body : model.bodies) bodies.push_back(pose("body." + body.name));
@@ -31,8 +37,8 @@ Channels::Channels(const Model& model) {
     }
     const std::size_t f = static_cast<std::size_t>(element.applied);
     const std::string prefix = "force." + model.forces[f].name;
-    forces[f] = {add(prefix + ".fx", "N"), add(prefix + ".fy", "N"), add(prefix + ".torque", "N*m"),
-                 add(prefix + ".power", "W")};
+    forces[f].force = add_wrench(prefix);
+    forces[f].power = add(prefix + ".power", "W");
   }
   for (const int frame : model.settings.frames) {
     frames.push_back(pose("frame." + model.markers[static_cast<std::size_t>(frame)].name));
@@ -53,9 +59,7 @@ JointColumns Channels::add_joint(const JointElement& joint, const std::string& p
     if (!joint.is_force) columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
   };
   if (!joint.is_force) add_coordinate();
-  columns.force_x = add(prefix + ".fx", "N");
-  columns.force_y = add(prefix + ".fy", "N");
-  columns.torque = add(prefix + ".torque", "N*m");
+  columns.force = add_wrench(prefix);
   if (joint.is_force) {
     columns.power = add(prefix + ".power", "W");
     add_coordinate();
@@ -67,11 +71,24 @@ JointColumns Channels::add_joint(const JointElement& joint, const std::string& p
     // The names that the contract gives a meaning in summaries, whatever type publishes them.
     if (name == "ex") columns.eccentricity_x = index;
     if (name == "ey") columns.eccentricity_y = index;
+    if (name == "ez") columns.eccentricity_z = index;
     if (name == "delta") columns.penetration = index;
     if (name == "fn") columns.normal_force = index;
     if (name == "contact") columns.contact = index;
   }
   return columns;
+}
+
+int Channels::add_wrench(const std::string& prefix) {
+  const int first = add(prefix + ".fx", "N");
+  add(prefix + ".fy", "N");
+  if (planar_) {
+    add(prefix + ".torque", "N*m");
+    return first;
+  }
+  add(prefix + ".fz", "N");
+  for (const char* moment : {".tx", ".ty", ".tz"}) add(prefix + moment, "N*m");
+  return first;
 }
 
 void Channels::add_drivers(const Model& model) {

@@ -16,9 +16,10 @@ struct ChannelInfo {
 
 /// Where the columns of one joint stand in a row; -1 where it has none.
 struct JointColumns {
-  int coordinate = -1, speed = -1, force_x = -1, force_y = -1, torque = -1;
+  int coordinate = -1, speed = -1;
+  int force = -1;  ///< first of the wrench's columns: fx fy torque; in space fx fy fz tx ty tz
   int power = -1;  ///< of an entry of `forces`
-  int penetration = -1, normal_force = -1, contact = -1, eccentricity_x = -1, eccentricity_y = -1;
+  int penetration = -1, normal_force = -1, contact = -1, eccentricity_x = -1, eccentricity_y = -1, eccentricity_z = -1;
   int own = -1;  ///< first of the type's own channels
 };
 struct DriverColumns {
@@ -29,7 +30,8 @@ struct PathColumns {
   int error_x = -1, error_y = -1, error_angle = -1;
 };
 struct ForceColumns {
-  int force_x = -1, force_y = -1, torque = -1, power = -1;
+  int force = -1;  ///< as of joints
+  int power = -1;
 };
 struct EnergyColumns {
   int kinetic = -1, potential = -1, dissipated = -1, work = -1, residual = -1;
@@ -46,18 +48,21 @@ class Channels {
   int find(std::string_view name) const;
 
   int time = 0;
-  std::vector<int> bodies;  ///< first of six columns: x y angle vx vy omega
+  /// First of the columns x y angle vx vy omega; in space x y z qw qx qy qz vx vy vz wx wy wz.
+  std::vector<int> bodies;
   std::vector<JointColumns> joints;
   std::vector<DriverColumns> drivers;
   std::vector<PathColumns> paths;
   std::vector<ForceColumns> forces;  ///< of applied forces
-  std::vector<int> frames;           ///< first of six columns, as for bodies
+  std::vector<int> frames;           ///< as for bodies
   EnergyColumns energy;
 
  private:
+  int add_wrench(const std::string& prefix);
   void add_drivers(const Model& model);
   JointColumns add_joint(const JointElement& joint, const std::string& prefix);
   int add(std::string name, const char* unit);
+  bool planar_;
   std::vector<ChannelInfo> all_;
 };
 

@@ -5,18 +5,23 @@
 
 namespace freeplay {
 
-/// Between two states of one motion: q by the quintic of (q, v, a) at both ends, v and a as its derivatives, z by the
-/// cubic of (z, z'), lambda straight. Errors of order 6 in q and 5 in v where the ends are exact; constraints hold to
-/// that order and not better. h is that of the start: no event lies inside.
+/// Between two states of one motion: the increment of q since the start by the quintic of its value and two derivatives
+/// at both ends, v and a as its derivatives (a of bodies in space straight, as lambda is), z by the cubic of (z, z').
+/// Errors of order 6 in q and 5 in v where the ends are exact; constraints hold to that order and not better. h is that
+/// of the start: no event lies inside.
 class DenseStep {
  public:
-  DenseStep(const State& start, std::span<const double> start_rate, const State& end, std::span<const double> end_rate)
-      : start_(start), end_(end), start_rate_(start_rate), end_rate_(end_rate) {}
+  DenseStep(const System& system, const State& start, std::span<const double> start_rate, const State& end,
+            std::span<const double> end_rate)
+      : system_(system), start_(start), end_(end), start_rate_(start_rate), end_rate_(end_rate) {}
 
   /// The state at the fraction s of the step; `out` has the layout of both.
   void at(double s, State& out) const;
 
  private:
+  void bodies_in_space(double s, State& out) const;
+
+  const System& system_;
   const State& start_;
   const State& end_;
   std::span<const double> start_rate_, end_rate_;  ///< z' of the joints' internal variables

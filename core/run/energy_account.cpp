@@ -33,9 +33,7 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
     out[flow++] = effort * e.coordinate_rate[at(model.drivers[at(d)].joint)];
   }
   for (std::size_t f = 0; f < model.forces.size(); ++f) {
-    const MarkerKinematics& k = e.markers[at(model.forces[f].marker)];
-    const double* applied = &e.applied[3 * f];
-    out[flow++] = applied[0] * k.velocity[0] + applied[1] * k.velocity[1] + applied[2] * k.angular_velocity[2];
+    out[flow++] = power(&e.applied[6 * f], e.markers[at(model.forces[f].marker)]);
   }
   for (const ForceBlock& block : system_.force_blocks()) {
     const JointElement& joint = model.joints[at(block.joint)];

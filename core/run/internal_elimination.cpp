@@ -34,7 +34,7 @@ void solve_small(double* matrix, int size, double* right, int columns) {
 }  // namespace
 
 InternalElimination::InternalElimination(const System& system)
-    : system_(system), residual_(at(system.layout().nz()), 0.0) {
+    : system_(system), columns_(2 * system.body_velocities()), residual_(at(system.layout().nz()), 0.0) {
   std::size_t total = 0, widest = 0;
   for (std::size_t f = 0; f < system.force_blocks().size(); ++f) {
     const ForceBlock& block = system.force_blocks()[f];
@@ -46,18 +46,19 @@ InternalElimination::InternalElimination(const System& system)
                        {block.a, block.b},
                        total,
                        total + nz * nz,
-                       total + nz * nz + 6 * nz});
-    total += nz * nz + 12 * nz;
-    widest = std::max(widest, nz * nz + nz * (nz + 6));
+                       total + nz * nz + at(columns_) * nz});
+    total += nz * nz + 2 * at(columns_) * nz;
+    widest = std::max(widest, nz * nz + nz * (nz + at(columns_)));
   }
   numbers_.resize(total + widest);  // work space of prepare() at the end
 }
 
 void InternalElimination::prepare(Evaluation& e, double beta_q, double beta_v, double beta_z) {
   for (const Block& block : blocks_) {
-    const InternalDerivatives d(system_.force_blocks()[block.force_block], e.internal_derivatives);
+    const InternalDerivatives d(system_.force_blocks()[block.force_block], system_.body_velocities(),
+                                e.internal_derivatives);
     const int nz = block.size;
-    const std::size_t square = at(nz * nz), columns = at(nz + 6);
+    const std::size_t square = at(nz * nz), columns = at(nz + columns_);
     double* matrix = &numbers_[numbers_.size() - square - at(nz) * columns];
     double* right = matrix + square;
     for (int r = 0; r < nz; ++r) {
@@ -65,16 +66,18 @@ void InternalElimination::prepare(Evaluation& e, double beta_q, double beta_v, d
         matrix[r * nz + c] = (r == c ? 1.0 : 0.0) - beta_z * d.rate_z[at(r * nz + c)];
         right[at(r) * columns + at(c)] = r == c ? 1.0 : 0.0;
       }
-      for (int c = 0; c < 6; ++c) {
-        right[at(r) * columns + at(nz + c)] = beta_q * d.rate_q[at(6 * r + c)] + beta_v * d.rate_v[at(6 * r + c)];
+      for (int c = 0; c < columns_; ++c) {
+        const std::size_t i = at(columns_ * r + c);
+        right[at(r) * columns + at(nz + c)] = beta_q * d.rate_q[i] + beta_v * d.rate_v[i];
       }
     }
-    solve_small(matrix, nz, right, nz + 6);
+    solve_small(matrix, nz, right, nz + columns_);
     for (int r = 0; r < nz; ++r) {
       for (int c = 0; c < nz; ++c) numbers_[block.inverse + at(r * nz + c)] = right[at(r) * columns + at(c)];
-      for (int c = 0; c < 6; ++c) numbers_[block.slope + at(6 * r + c)] = right[at(r) * columns + at(nz + c)];
+      for (int c = 0; c < columns_; ++c)
+        numbers_[block.slope + at(columns_ * r + c)] = right[at(r) * columns + at(nz + c)];
     }
-    for (std::size_t i = 0; i < at(6 * nz); ++i) numbers_[block.force + i] = beta_z * d.force_z[i];
+    for (std::size_t i = 0; i < at(columns_ * nz); ++i) numbers_[block.force + i] = beta_z * d.force_z[i];
   }
 }
 
@@ -89,11 +92,12 @@ void InternalElimination::add_to_right(std::span<const double> internal_rate, st
       }
       residual_[at(block.offset + z)] = sum;
     }
-    for (int r = 0; r < 6; ++r) {
-      const int body = block.bodies[r / 3];
+    const int width = columns_ / 2;
+    for (int r = 0; r < columns_; ++r) {
+      const int body = block.bodies[r / width];
       if (body == ground) continue;
       for (int z = 0; z < block.size; ++z) {
-        right[at(3 * body + r % 3)] += force(block, r, z) * residual_[at(block.offset + z)];
+        right[at(width * body + r % width)] += force(block, r, z) * residual_[at(block.offset + z)];
       }
     }
   }
@@ -106,9 +110,10 @@ double InternalElimination::advance(std::span<const double> change, double beta_
     for (int i = 0; i < block.size; ++i) {
       const std::size_t index = at(block.offset + i);
       double sum = residual_[index];
-      for (int c = 0; c < 6; ++c) {
-        const int body = block.bodies[c / 3];
-        if (body != ground) sum += slope(block, i, c) * change[at(3 * body + c % 3)];
+      const int width = columns_ / 2;
+      for (int c = 0; c < columns_; ++c) {
+        const int body = block.bodies[c / width];
+        if (body != ground) sum += slope(block, i, c) * change[at(width * body + c % width)];
       }
       z_rate[index] += sum;
       const double size = std::max(std::abs(z[index]), beta_z * std::abs(z_rate[index]));

@@ -24,8 +24,8 @@ class InternalElimination {
   template <class Add>
   void add_to_matrix(Add&& add) const {
     for (const Block& block : blocks_) {
-      for (int r = 0; r < 6; ++r) {
-        for (int c = 0; c < 6; ++c) {
+      for (int r = 0; r < columns_; ++r) {
+        for (int c = 0; c < columns_; ++c) {
           double value = 0.0;
           for (int z = 0; z < block.size; ++z) value -= force(block, r, z) * slope(block, z, c);
           add(block.force_block, r, c, value);
@@ -49,9 +49,12 @@ class InternalElimination {
   double force(const Block& b, int row, int z) const {
     return numbers_[b.force + static_cast<std::size_t>(row * b.size + z)];
   }
-  double slope(const Block& b, int z, int c) const { return numbers_[b.slope + static_cast<std::size_t>(z * 6 + c)]; }
+  double slope(const Block& b, int z, int c) const {
+    return numbers_[b.slope + static_cast<std::size_t>(z * columns_ + c)];
+  }
 
   const System& system_;
+  int columns_;  // velocities of two bodies
   std::vector<Block> blocks_;
   std::vector<double> numbers_, residual_;
 };

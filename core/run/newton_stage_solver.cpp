@@ -58,19 +58,22 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
                return static_cast<NewtonStageSolver*>(self)->error_norm(position, velocity);
              },
-             [](void*, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
-               planar::retract(q_base, increment, q);
+             [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
+               static_cast<NewtonStageSolver*>(self)->system_.retract(q_base, increment, q);
              },
              0,
              [](void* self, double dt, const StateView* end, Span<const double> error) noexcept {
                return static_cast<NewtonStageSolver*>(self)->internal_error_norm(dt, *end, error);
+             },
+             [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
+               static_cast<NewtonStageSolver*>(self)->system_.increment_rate(increment, v, rate);
              }},
       e_(system),
       rows_(system.layout().nc(), system.layout().nv()),
       index_one_{.matrix = StageMatrix(system, false)} {
   const int nv = system.layout().nv(), nc = system.layout().nc();
   for (int i = 0; i < kept_factors; ++i) factors_.push_back({.matrix = StageMatrix(system, true)});
-  for (int i = 0; i < nv; ++i) unit_.push_back(i % 3 == 2 ? 1.0 : system.size());
+  for (int i = 0; i < nv; ++i) unit_.push_back(system.is_turn(i) ? 1.0 : system.size());
   right_.resize(at(nv + nc));
   update_.resize(at(nv + nc));
   increment_.resize(at(nv));
@@ -183,7 +186,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       out.v[i] = stage.v_known[i] + beta_v * out.a[i];
       increment_[i] = stage.increment_known[i] + beta_q * out.a[i];
     }
-    planar::retract(stage.q_base, increment_, out.q);
+    system_.retract(stage.q_base, increment_, out.q);
     for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
     const unsigned terms = term_position | term_velocity | term_force;
     const bool renew = !factor.valid || (!fresh && ratio > slow_contraction && iteration > 1);
@@ -240,7 +243,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
         out.v[i] = stage.v_known[i] + beta_v * out.a[i];
         increment_[i] = stage.increment_known[i] + beta_q * out.a[i];
       }
-      planar::retract(stage.q_base, increment_, out.q);
+      system_.retract(stage.q_base, increment_, out.q);
       for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
       if (any_dependent_) {
         // Rows that were left out must hold by themselves.
@@ -343,12 +346,13 @@ bool NewtonStageSolver::holds_to_rounding(std::span<const double> x_a, std::span
     work_[nv + r] = right_c_[r];
     size_[nv + r] = std::abs(right_c_[r]);
   }
+  const std::size_t width = at(system_.body_velocities());
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     const double* entry = &e_.jacobian[at(block.offset)];
-    const std::size_t body = at(3 * block.body);
-    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r, entry += 3) {
+    const std::size_t body = width * at(block.body);
+    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r, entry += width) {
       double left = work_[nv + r], size = size_[nv + r];
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < width; ++c) {
         const double force = entry[c] * x_c[r], moved = entry[c] * x_a[body + c];
         work_[body + c] -= force;
         size_[body + c] += std::abs(force);
@@ -373,12 +377,13 @@ bool NewtonStageSolver::velocities_hold(std::span<const double> v) {
     right_c_[r] = e_.nu[r];
     size_[r] = std::abs(e_.nu[r]);
   }
+  const std::size_t width = at(system_.body_velocities());
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     const double* entry = &e_.jacobian[at(block.offset)];
-    const double* rate = &v[at(3 * block.body)];
-    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r, entry += 3) {
+    const double* rate = &v[width * at(block.body)];
+    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r, entry += width) {
       double left = right_c_[r], size = size_[r];
-      for (int c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < width; ++c) {
         const double moved = entry[c] * rate[c];
         left -= moved;
         size += std::abs(moved);
@@ -425,7 +430,7 @@ bool NewtonStageSolver::project_position(StateView& state) {
       if (!dependent_[r]) right_[increment_.size() + r] = -e_.phi[r];
     }
     index_one_.matrix.solve(right_, update_);
-    planar::retract(state.q, std::span(update_).first(increment_.size()), state.q);
+    system_.retract(state.q, std::span(update_).first(increment_.size()), state.q);
   }
   trouble_ = "positions could not be projected on the constraints";
   return false;
@@ -518,27 +523,30 @@ bool NewtonStageSolver::mobility(const State& state, int joint, std::span<double
   const JointElement& element = system_.model().joints[at(joint)];
   const int markers[2] = {element.marker_a, element.marker_b};
   std::ranges::fill(out, 0.0);
-  for (std::size_t direction = 0; direction < 2; ++direction) {
+  const std::size_t directions = system_.model().space == Space::planar ? 2 : 3;
+  for (std::size_t direction = 0; direction < directions; ++direction) {
     std::ranges::fill(right_a_, 0.0);
     std::ranges::fill(right_c_, 0.0);
-    for (std::size_t end = 0; end < 2; ++end) {
-      const BodyId body = system_.model().markers[at(markers[end])].body;
-      if (body == ground) continue;
-      double wrench[6] = {};
+    double wrench[6] = {};
+    for (const int end : {0, 1}) {
       wrench[direction] = end == 0 ? -1.0 : 1.0;
-      planar::add_wrench(wrench, e_.arms[at(markers[end])], &right_a_[3 * at(body)]);
+      if (system_.model().markers[at(markers[end])].body != ground) {
+        system_.add_wrench(markers[end], wrench, e_, right_a_);
+      }
     }
     std::ranges::fill(increment_, 0.0);
     std::ranges::fill(multipliers_, 0.0);
     if (!refine(increment_, multipliers_, 0.0)) return false;
-    for (std::size_t end = 0; end < 2; ++end) {
+    const std::size_t width = at(system_.body_velocities());
+    for (const int end : {0, 1}) {
       const BodyId body = system_.model().markers[at(markers[end])].body;
       if (body == ground) continue;
-      const double* x = &increment_[3 * at(body)];
-      const planar::Arm& arm = e_.arms[at(markers[end])];
-      const double sign = end == 0 ? -1.0 : 1.0;
-      out[direction] += sign * (x[0] - arm.y * x[2]);
-      out[3 + direction] += sign * (x[1] + arm.x * x[2]);
+      for (std::size_t i = 0; i < directions; ++i) {
+        double g[6] = {}, row[6];
+        g[i] = end == 0 ? -1.0 : 1.0;
+        system_.marker_row(markers[end], g, e_, row);
+        for (std::size_t c = 0; c < width; ++c) out[3 * i + direction] += row[c] * increment_[width * at(body) + c];
+      }
     }
   }
   return true;

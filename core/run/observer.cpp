@@ -1,7 +1,10 @@
 #include "run/observer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include <Eigen/Geometry>
 
 #include "component/joint_answer.h"
 #include "run/energy_account.h"
@@ -16,12 +19,7 @@ bool Observer::observe(const Point& point, const Evaluation& e, std::span<const 
                        Fault& fault) const {
   const Model& model = system_.model();
   row[at(channels_.time)] = point.t;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      row[at(channels_.bodies[b]) + i] = point.q[3 * b + i];
-      row[at(channels_.bodies[b]) + 3 + i] = point.v[3 * b + i];
-    }
-  }
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, point, row);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     if (!observe_joint(j, point, e, lambda, row, fault)) return false;
   }
@@ -38,6 +36,27 @@ bool Observer::observe(const Point& point, const Evaluation& e, std::span<const 
   return true;
 }
 
+void Observer::observe_body(int index, const Point& point, std::span<double> row) const {
+  double* to = &row[at(channels_.bodies[at(index)])];
+  if (system_.model().space == Space::planar) {
+    std::copy_n(&point.q[3 * at(index)], 3, to);
+    std::copy_n(&point.v[3 * at(index)], 3, to + 3);
+    return;
+  }
+  std::copy_n(&point.q[7 * at(index)], 3, to);
+  std::ranges::copy(system_.frame_quaternion(index, point.q), to + 3);
+  system_.body_twist(index, point.q, point.v, to + 7);
+}
+
+// A wrench (6 numbers) in the columns from `to` on.
+void Observer::write_wrench(const double* wrench, double* to) const {
+  if (system_.model().space == Space::planar) {
+    to[0] = wrench[0], to[1] = wrench[1], to[2] = wrench[5];
+  } else {
+    std::copy_n(wrench, 6, to);
+  }
+}
+
 bool Observer::observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
                              std::span<double> row, Fault& fault) const {
   const JointColumns& columns = channels_.joints[at(index)];
@@ -45,11 +64,9 @@ bool Observer::observe_joint(int index, const Point& point, const Evaluation& e,
     row[at(columns.coordinate)] = e.coordinate[at(index)];
     if (columns.speed >= 0) row[at(columns.speed)] = e.coordinate_rate[at(index)];
   }
-  double wrench[3];
+  double wrench[6];
   system_.reaction(index, e, lambda, wrench);
-  row[at(columns.force_x)] = wrench[0];
-  row[at(columns.force_y)] = wrench[1];
-  row[at(columns.torque)] = wrench[2];
+  write_wrench(wrench, &row[at(columns.force)]);
   if (columns.power >= 0) {
     const JointElement& joint = system_.model().joints[at(index)];
     row[at(columns.power)] = power(&e.wrench[12 * at(index)], e.markers[at(joint.marker_a)]) +
@@ -104,17 +121,24 @@ bool Observer::observe_path(int index, const Point& point, const Evaluation& e, 
 
 void Observer::observe_force(int index, const Evaluation& e, std::span<double> row) const {
   const ForceColumns& columns = channels_.forces[at(index)];
-  const MarkerKinematics& k = e.markers[at(system_.model().forces[at(index)].marker)];
-  const double* applied = &e.applied[3 * at(index)];
-  row[at(columns.force_x)] = applied[0];
-  row[at(columns.force_y)] = applied[1];
-  row[at(columns.torque)] = applied[2];
-  row[at(columns.power)] = applied[0] * k.velocity[0] + applied[1] * k.velocity[1] + applied[2] * k.angular_velocity[2];
+  const double* applied = &e.applied[6 * at(index)];
+  write_wrench(applied, &row[at(columns.force)]);
+  row[at(columns.power)] = power(applied, e.markers[at(system_.model().forces[at(index)].marker)]);
 }
 
 void Observer::observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const {
   const int marker = system_.model().settings.frames[at(index)];
   const MarkerKinematics& k = e.markers[at(marker)];
+  if (system_.model().space == Space::spatial) {
+    double* to = &row[at(channels_.frames[at(index)])];
+    std::copy_n(k.position, 3, to);
+    const Eigen::Quaterniond turned(
+        spatial::Matrix(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(k.rotation)));
+    to[3] = turned.w(), to[4] = turned.x(), to[5] = turned.y(), to[6] = turned.z();
+    std::copy_n(k.velocity, 3, to + 7);
+    std::copy_n(k.angular_velocity, 3, to + 10);
+    return;
+  }
   const double values[6] = {k.position[0], k.position[1], marker_angle(system_.model(), marker, point.q),
                             k.velocity[0], k.velocity[1], k.angular_velocity[2]};
   std::copy_n(values, 6, row.begin() + channels_.frames[at(index)]);

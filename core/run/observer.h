@@ -19,6 +19,8 @@ class Observer {
                Fault& fault) const;
 
  private:
+  void observe_body(int index, const Point& point, std::span<double> row) const;
+  void write_wrench(const double* wrench, double* to) const;
   bool observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
                      std::span<double> row, Fault& fault) const;
   void observe_driver(int index, const Evaluation& e, std::span<const double> lambda, std::span<double> row) const;

@@ -10,8 +10,25 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+// Where a frame stands: in the plane with the angle counted over turns, in space with a rotation.
 struct PlanarPose {
   double x = 0.0, y = 0.0, angle = 0.0;
+
+  static PlanarPose of(const Marker& m) { return {m.position[0], m.position[1], m.angle}; }
+  static PlanarPose guess(const Body& body) {
+    const Vector3 place = body.position.value_or(Vector3{});
+    return {place[0], place[1], body.angle.value_or(0.0)};
+  }
+  // The second frame of a joint in the first.
+  static PlanarPose of(const Pose& relative, bool is_angle, double coordinate) {
+    double angle = std::atan2(relative.rotation[3], relative.rotation[0]);
+    if (is_angle) angle += 2.0 * M_PI * std::round((coordinate - angle) / (2.0 * M_PI));
+    return {relative.position[0], relative.position[1], angle};
+  }
+  // Turned as the body's own guess says, if it does, for a frame that stands at `end`.
+  static void turn_as_given(const Body& body, const Marker& far, PlanarPose& end) {
+    if (body.angle) end.angle = *body.angle + far.angle;
+  }
 };
 
 PlanarPose operator*(const PlanarPose& a, const PlanarPose& b) {
@@ -23,6 +40,34 @@ PlanarPose inverse(const PlanarPose& a) {
   return {-c * a.x - s * a.y, s * a.x - c * a.y, -a.angle};
 }
 
+struct SpatialPose {
+  spatial::Vector position = spatial::Vector::Zero();
+  spatial::Matrix rotation = spatial::Matrix::Identity();
+
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  static SpatialPose of(const Marker& m) {
+    return {spatial::vector(m.position.data()), Eigen::Map<const RowMajor>(m.rotation.data())};
+  }
+  static SpatialPose guess(const Body& body) {
+    SpatialPose pose;
+    if (body.position) pose.position = spatial::vector(body.position->data());
+    if (body.rotation) pose.rotation = Eigen::Map<const RowMajor>(body.rotation->data());
+    return pose;
+  }
+  static SpatialPose of(const Pose& relative, bool, double) {
+    return {spatial::vector(relative.position), Eigen::Map<const RowMajor>(relative.rotation)};
+  }
+  static void turn_as_given(const Body& body, const Marker& far, SpatialPose& end) {
+    if (body.rotation) end.rotation = guess(body).rotation * of(far).rotation;
+  }
+};
+
+SpatialPose operator*(const SpatialPose& a, const SpatialPose& b) {
+  return {a.position + a.rotation * b.position, a.rotation * b.rotation};
+}
+SpatialPose inverse(const SpatialPose& a) { return {-(a.rotation.transpose() * a.position), a.rotation.transpose()}; }
+
+template <class Frame>
 class Walk {
  public:
   Walk(const System& closed, std::span<const double> coordinates)
@@ -33,28 +78,26 @@ class Walk {
         placed_(model_.bodies.size(), 0) {}
 
   void run() {
-    place_paths();
+    if constexpr (std::is_same_v<Frame, PlanarPose>) place_paths();
     for (std::size_t b = 0; b < frames_.size(); ++b) {
       const Body& body = model_.bodies[b];
-      if (!placed_[b] && body.position) {
-        put(static_cast<int>(b), {(*body.position)[0], (*body.position)[1], body.angle.value_or(0.0)});
-      }
+      if (!placed_[b] && body.position) put(static_cast<int>(b), Frame::guess(body));
     }
     while (place_next()) {
     }
     for (std::size_t b = 0; b < frames_.size(); ++b) {
-      if (!placed_[b]) frames_[b] = {0.0, 0.0, model_.bodies[b].angle.value_or(0.0)};
+      if (!placed_[b]) frames_[b] = Frame::guess(model_.bodies[b]);
     }
   }
 
-  PlanarPose frame(int body) const { return frames_[at(body)]; }
+  Frame frame(int body) const { return frames_[at(body)]; }
 
  private:
   const Marker& marker(int m) const { return model_.markers[at(m)]; }
-  PlanarPose mount(int m) const { return {marker(m).position[0], marker(m).position[1], marker(m).angle}; }
+  Frame mount(int m) const { return Frame::of(marker(m)); }
   bool placed(BodyId body) const { return body == ground || placed_[at(body)] != 0; }
-  PlanarPose pose(BodyId body) const { return body == ground ? PlanarPose{} : frames_[at(body)]; }
-  void put(BodyId body, const PlanarPose& pose) {
+  Frame pose(BodyId body) const { return body == ground ? Frame{} : frames_[at(body)]; }
+  void put(BodyId body, const Frame& pose) {
     frames_[at(body)] = pose;
     placed_[at(body)] = 1;
   }
@@ -119,16 +162,13 @@ class Walk {
                               model_.instances.words_of(*joint.component), message.text),
                   joint.location);
     }
-    double angle = std::atan2(relative.rotation[3], relative.rotation[0]);
-    if (system_.joint_layout(j).coordinate == Coordinate::angle) {
-      angle += 2.0 * M_PI * std::round((coordinate - angle) / (2.0 * M_PI));
-    }
-    const PlanarPose b_in_a{relative.position[0], relative.position[1], angle};
+    const bool is_angle = system_.joint_layout(j).coordinate == Coordinate::angle;
+    const Frame b_in_a = Frame::of(relative, is_angle, coordinate);
     const int near = second_is_free ? joint.marker_a : joint.marker_b;
     const int far = second_is_free ? joint.marker_b : joint.marker_a;
-    PlanarPose end = pose(marker(near).body) * mount(near) * (second_is_free ? b_in_a : inverse(b_in_a));
+    Frame end = pose(marker(near).body) * mount(near) * (second_is_free ? b_in_a : inverse(b_in_a));
     const BodyId body = marker(far).body;
-    if (const auto& given = model_.bodies[at(body)].angle) end.angle = *given + marker(far).angle;
+    Frame::turn_as_given(model_.bodies[at(body)], marker(far), end);
     put(body, end * inverse(mount(far)));
     return true;
   }
@@ -136,16 +176,28 @@ class Walk {
   const System& system_;
   const Model& model_;
   std::span<const double> coordinates_;
-  std::vector<PlanarPose> frames_;
+  std::vector<Frame> frames_;
   std::vector<char> placed_;
 };
 
 }  // namespace
 
 void place_bodies(const System& closed, std::span<const double> coordinates, std::span<double> q) {
-  Walk walk(closed, coordinates);
-  walk.run();
   const Model& model = closed.model();
+  if (model.space == Space::spatial) {
+    Walk<SpatialPose> walk(closed, coordinates);
+    walk.run();
+    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+      const SpatialPose frame = walk.frame(b);
+      Pose pose;
+      spatial::target(pose.position) = frame.position;
+      Eigen::Map<SpatialPose::RowMajor>(pose.rotation) = frame.rotation;
+      closed.set_frame_pose(b, pose, q);
+    }
+    return;
+  }
+  Walk<PlanarPose> walk(closed, coordinates);
+  walk.run();
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Vector3& com = model.bodies[at(b)].com;
     const PlanarPose centre = walk.frame(b) * PlanarPose{com[0], com[1], 0.0};

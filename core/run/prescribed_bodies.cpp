@@ -30,9 +30,9 @@ std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<co
     if (known[at(body)]) continue;
     std::vector<int> own;
     std::ranges::copy_if(rows_of[at(body)], std::back_inserter(own), [&](int r) { return open[at(r)] == 1; });
-    if (own.size() != 3) continue;
+    if (own.size() != at(system.body_velocities())) continue;
     known[at(body)] = 1;
-    found.push_back({body, {own[0], own[1], own[2]}});
+    std::ranges::copy(own, found.emplace_back(PrescribedBody{body, {}}).rows.begin());
     for (const int r : rows_of[at(body)]) {
       if (--open[at(r)] != 1) continue;
       for (const int other : bodies_of[at(r)]) {

@@ -9,14 +9,15 @@
 
 namespace freeplay {
 
-/// A body and the three rows that prescribe it: they touch no other body but ground and those before it in the list.
+/// A body and the rows that prescribe it, as many as it has velocities: they touch no other body but ground and those
+/// before it in the list.
 struct PrescribedBody {
   BodyId body = ground;
-  std::array<int, 3> rows{};
+  std::array<int, 6> rows{};
 };
 
-/// Found from the pattern of Phi_q alone, rows marked in `dependent` left out. A body on which more than three such
-/// rows act is not listed.
+/// Found from the pattern of Phi_q alone, rows marked in `dependent` left out. A body on which more such rows
+/// act is not listed.
 std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent);
 
 }  // namespace freeplay

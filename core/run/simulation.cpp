@@ -175,9 +175,9 @@ int Simulation::Impl::hardest_joint(BodyId body) const {
         model.markers[at(joint.marker_b)].body != body) {
       continue;
     }
-    double wrench[3];
+    double wrench[6];
     system.reaction(j, e_accepted, accepted.lambda(), wrench);
-    const double force = std::hypot(wrench[0], wrench[1]);
+    const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
     if (force > largest) largest = force, hardest = j;
   }
   return hardest;
@@ -192,7 +192,7 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
   int suspect = -1;
   for (const ForceBlock& block : system.force_blocks()) {
     const double* wrench = &e_accepted.wrench[12 * at(block.joint) + 6];
-    const double force = std::hypot(wrench[0], wrench[1]);
+    const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
     if (force > largest) largest = force, suspect = block.joint;
   }
   if (suspect >= 0) {
@@ -296,7 +296,7 @@ void Simulation::Impl::add_energy() {
   if (flows > 0 || energy.flows() == 0) {
     return energy.take(dt, e_trial, trial.lambda(), std::span<const double>(trial.z()).last(at(flows)));
   }
-  DenseStep(accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(0.5, between);
+  DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(0.5, between);
   std::ranges::copy(trial.h(), between.h().begin());  // as the attempt had it
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.
   const bool seen = system.evaluate(point(between), term_force, e_between);

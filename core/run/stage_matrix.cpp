@@ -10,37 +10,46 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr MatrixEntry nowhere{-1, -1};
 constexpr int left_out = 0;  // the number that nobody reads
 constexpr int first_block = 1;
-// Column by column, so that no comparison waits for all those before.
-double largest_entry(const Eigen::Matrix3d& m) {
-  const Eigen::Array3d a = m.col(0).array().abs(), b = m.col(1).array().abs(), c = m.col(2).array().abs();
-  const auto greater = [](double x, double y) { return x > y ? x : y; };
-  return greater(greater(greater(a[0], a[1]), greater(a[2], b[0])),
-                 greater(greater(b[1], b[2]), greater(c[0], greater(c[1], c[2]))));
+// In pairs, so that no comparison waits for all those before.
+template <int width>
+double largest_entry(const Eigen::Matrix<double, width, width>& m) {
+  double by_column[width];
+  for (int c = 0; c < width; ++c) {
+    by_column[c] = std::abs(m(0, c));
+    for (int r = 1; r < width; ++r) by_column[c] = by_column[c] > std::abs(m(r, c)) ? by_column[c] : std::abs(m(r, c));
+  }
+  for (int c = 1; c < width; ++c) by_column[0] = by_column[0] > by_column[c] ? by_column[0] : by_column[c];
+  return by_column[0];
 }
 
 }  // namespace
 
 // Every entry that factor() fills, in its order, at its place in the whole system.
 std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) const {
-  const int nv = system_.layout().nv(), nc = system_.layout().nc();
+  const int nv = system_.layout().nv(), nc = system_.layout().nc(), width = system_.body_velocities();
   std::vector<MatrixEntry> all;
   for (int i = 0; i < nv; ++i) all.push_back({i, i});
   for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
   if (forces_) {
     for (const ForceBlock& block : system_.force_blocks()) {
       const BodyId bodies[2] = {block.a, block.b};
-      for (int r = 0; r < 6; ++r) {
-        for (int c = 0; c < 6; ++c) {
-          const BodyId row = bodies[r / 3], column = bodies[c / 3];
+      for (int r = 0; r < 2 * width; ++r) {
+        for (int c = 0; c < 2 * width; ++c) {
+          const BodyId row = bodies[r / width], column = bodies[c / width];
           const bool inside = row != ground && column != ground;
-          all.push_back(inside ? MatrixEntry{3 * row + r % 3, 3 * column + c % 3} : nowhere);
+          all.push_back(inside ? MatrixEntry{width * row + r % width, width * column + c % width} : nowhere);
         }
+      }
+    }
+    for (int b = 0; width == 6 && b < nv / 6; ++b) {
+      for (int r = 6 * b + 3; r < 6 * b + 6; ++r) {
+        for (int c = 6 * b + 3; c < 6 * b + 6; ++c) all.push_back({r, c});
       }
     }
   }
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     for (int r = block.row; r < block.row + block.rows; ++r) {
-      for (int c = 3 * block.body; c < 3 * block.body + 3; ++c) {
+      for (int c = width * block.body; c < width * (block.body + 1); ++c) {
         all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{nv + r, c});
         all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{c, nv + r});
       }
@@ -50,12 +59,12 @@ std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) c
 }
 
 void StageMatrix::set_pattern(std::span<const char> dependent) {
-  const int nv = system_.layout().nv(), size = nv + system_.layout().nc();
+  const int nv = system_.layout().nv(), size = nv + system_.layout().nc(), width = system_.body_velocities();
   prescribed_.clear();
   std::vector<int> owner(at(size), -1);  // of a coordinate or row: its prescribed body
   for (const PrescribedBody& body : prescribed_bodies(system_, dependent)) {
     const int index = static_cast<int>(prescribed_.size());
-    for (int c = 0; c < 3; ++c) owner[at(3 * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
+    for (int c = 0; c < width; ++c) owner[at(width * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
     prescribed_.emplace_back().who = body;
   }
   const std::vector<MatrixEntry> all = entries(dependent);
@@ -98,7 +107,7 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
       if (row < nv) continue;  // the transposed block
       const PrescribedBody& who = prescribed_[at(row_owner)].who;
       const auto r = std::ranges::find(who.rows, row - nv) - who.rows.begin();
-      slots[i] = first_block + 9 * row_owner + 3 * (column - 3 * who.body) + static_cast<int>(r);
+      slots[i] = first_block + width * (width * row_owner + column - width * who.body) + static_cast<int>(r);
     } else if (row_owner < 0) {
       if (column < nv) sorted.push_back({2, 0, i});  // multipliers of prescribed bodies act on them alone
     } else {
@@ -106,7 +115,7 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
     }
   }
   std::ranges::stable_sort(sorted, {}, [](const Sorted& s) { return std::pair(s.kind, s.body); });
-  first_coupling_ = at(first_block) + 9 * prescribed_.size();
+  first_coupling_ = at(first_block) + at(width * width) * prescribed_.size();
   couplings_.clear();
   for (const auto& [kind, body, entry] : sorted) {
     slots[entry] = static_cast<int>(first_coupling_ + couplings_.size());
@@ -135,8 +144,13 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
   rest_update_.assign(unknowns_.size(), 0.0);
 
   const auto first_forces = slots.begin() + size;
-  const auto first_rows = first_forces + static_cast<std::ptrdiff_t>(forces_ ? 36 * system_.force_blocks().size() : 0);
-  slots_ = {{slots.begin(), first_forces}, {first_forces, first_rows}, {first_rows, slots.end()}};
+  const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.force_blocks().size() : 0;
+  const auto first_turning = first_forces + static_cast<std::ptrdiff_t>(of_forces);
+  const auto first_rows = first_turning + (forces_ && width == 6 ? 9 * (nv / 6) : 0);
+  slots_ = {{slots.begin(), first_forces},
+            {first_forces, first_turning},
+            {first_turning, first_rows},
+            {first_rows, slots.end()}};
   constants_.assign(first_rest_ + rest_.values().size(), 0.0);
   values_ = constants_;
   for (int i = 0; i < size; ++i) {
@@ -150,12 +164,16 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
     const int* slot = slots_.forces.data();
     if (!internal_.empty()) {
       internal_.prepare(e, beta_q, beta_v, beta_z);
+      const std::size_t columns = at(2 * system_.body_velocities());
       internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
-        values_[at(slot[36 * block + at(6 * r + c)])] += value;
+        values_[at(slot[columns * (columns * block + at(r)) + at(c)])] += value;
       });
     }
     for (std::size_t i = 0; i < e.force_v.size(); ++i) {
       values_[at(*slot++)] -= beta_v * e.force_v[i] + beta_q * e.force_q[i];
+    }
+    for (std::size_t i = 0; i < slots_.turning.size(); ++i) {
+      values_[at(slots_.turning[i])] -= beta_v * e.gyroscopic_v[i];
     }
   }
   const int* slot = slots_.rows.data();
@@ -169,12 +187,20 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
   for (std::size_t i = first_alone_; i < first_rest_; ++i) {
     if (values_[i] == 0.0 || !std::isfinite(values_[i])) smallest = 0.0;
   }
-  const double* numbers = &values_[at(first_block)];
+  return std::min(smallest, system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>());
+}
+
+template <int width>
+double StageMatrix::invert_blocks() {
+  using Square = Eigen::Matrix<double, width, width>;
+  double smallest = 1.0;
+  const double* numbers = values_.data() + first_block;
   for (Prescribed& body : prescribed_) {
-    const Eigen::Map<const Eigen::Matrix3d> block(numbers);
-    numbers += 9;
-    body.inverse = block.inverse();
-    const double size = largest_entry(block) * largest_entry(body.inverse);
+    const Square block = Eigen::Map<const Square>(numbers);
+    numbers += width * width;
+    const Square inverse = block.inverse();
+    Eigen::Map<Square>(body.inverse) = inverse;
+    const double size = largest_entry<width>(block) * largest_entry<width>(inverse);
     smallest = std::min(smallest, size > 0.0 && std::isfinite(size) ? 1.0 / size : 0.0);
   }
   return smallest;
@@ -190,14 +216,20 @@ void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const d
 }
 
 void StageMatrix::solve(std::span<double> right, std::span<double> update) const {
-  using Vector = Eigen::Vector3d;
+  system_.body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
+}
+
+template <int width>
+void StageMatrix::substitute(std::span<double> right, std::span<double> update) const {
+  using Square = Eigen::Matrix<double, width, width>;
+  using Vector = Eigen::Matrix<double, width, 1>;
   const int nv = system_.layout().nv();
   for (const Prescribed& body : prescribed_) {
     subtract(body.first_row_part, body.end_row_part, update, right);
-    const auto& rows = body.who.rows;
-    const Vector b(right[at(nv + rows[0])], right[at(nv + rows[1])], right[at(nv + rows[2])]);
-    const Vector change = body.inverse * b;
-    std::copy_n(change.data(), 3, update.begin() + 3 * body.who.body);
+    Vector b;
+    for (int r = 0; r < width; ++r) b[r] = right[at(nv + body.who.rows[at(r)])];
+    const Vector change = Eigen::Map<const Square>(body.inverse) * b;
+    std::copy_n(change.data(), width, &update[at(width * body.who.body)]);
   }
   subtract(first_free_part_, couplings_.size(), update, right);
   const double* value = values_.data() + first_alone_;
@@ -210,8 +242,9 @@ void StageMatrix::solve(std::span<double> right, std::span<double> update) const
   for (std::size_t p = prescribed_.size(); p-- > 0;) {
     const Prescribed& body = prescribed_[p];
     subtract(body.first_motion_part, body.end_motion_part, update, right);
-    const Vector multipliers = body.inverse.transpose() * Eigen::Map<const Vector>(&right[at(3 * body.who.body)]);
-    for (int r = 0; r < 3; ++r) update[at(nv + body.who.rows[at(r)])] = multipliers[r];
+    const Vector multipliers = Eigen::Map<const Square>(body.inverse).transpose() *
+                               Eigen::Map<const Vector>(&right[at(width * body.who.body)]);
+    for (int r = 0; r < width; ++r) update[at(nv + body.who.rows[at(r)])] = multipliers[r];
   }
 }
 

@@ -45,14 +45,19 @@ class StageMatrix {
     PrescribedBody who;
     std::size_t first_row_part = 0, end_row_part = 0;        // its rows in the columns of bodies before it
     std::size_t first_motion_part = 0, end_motion_part = 0;  // its motion equations without its own multipliers
-    Eigen::Matrix3d inverse;
+    double inverse[36];                                      // by columns; in the plane 3 x 3
   };
   /// The slots of all entries, in the order in which factor() fills them.
   struct Slots {
     std::vector<int> constant;  // masses, and ones of dependent rows
-    std::vector<int> forces;    // 36 for each force block
+    std::vector<int> forces;    // of each force block, 6 x 6 or 12 x 12
+    std::vector<int> turning;   // in space, with forces: 3 x 3 by body
     std::vector<int> rows;      // Phi_q and, behind each, its transposed
   };
+  template <int width>
+  double invert_blocks();
+  template <int width>
+  void substitute(std::span<double> right, std::span<double> update) const;
   std::vector<MatrixEntry> entries(std::span<const char> dependent) const;
   void subtract(std::size_t first, std::size_t end, std::span<const double> update, std::span<double> right) const;
 
@@ -66,7 +71,7 @@ class StageMatrix {
   std::vector<int> alone_;           // places of unknowns that are divided out
   std::vector<int> unknowns_;        // places of the unknowns of rest_ in the whole system
   Slots slots_;
-  // A number for what is left out, 3 x 3 by columns for each prescribed body, then couplings_, alone_, rest_: present
+  // A number for what is left out, Phi_q of each prescribed body by columns, then couplings_, alone_, rest_: present
   // values, and those that stay.
   std::vector<double> values_, constants_;
   std::size_t first_coupling_ = 0, first_alone_ = 0, first_rest_ = 0;

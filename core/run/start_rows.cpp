@@ -72,7 +72,7 @@ void refuse_massless_motion(const System& system, const Evaluation& e) {
   if (!motion) return;
   Eigen::Index worst = 0;
   motion->cwiseAbs().maxCoeff(&worst);
-  const Body& body = system.model().bodies[at(static_cast<int>(worst) / 3)];
+  const Body& body = system.model().bodies[at(static_cast<int>(worst) / system.body_velocities())];
   throw Error(Error::Category::input, "singular-mass",
               fmt::format("body '{}' can move without moving any mass", body.name), body.location,
               "give it inertia, or hold that motion by a joint");

@@ -25,7 +25,8 @@ Statistics::Statistics(const Model& model, const Channels& channels)
       joints_(model.joints.size()),
       drivers_(model.drivers.size()),
       paths_(channels.paths.size()),
-      body_speed_(model.bodies.size(), -1.0) {}
+      body_speed_(model.bodies.size(), -1.0),
+      planar_(model.space == Space::planar) {}
 
 void Statistics::add(std::span<const double> row, std::span<const double> driver_work,
                      std::span<const double> joint_loss, double position, double velocity) {
@@ -41,21 +42,26 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
   position_ = std::max(position_, position);
   velocity_ = std::max(velocity_, velocity);
   energy_ = std::max(energy_, std::abs(value(channels_.energy.residual)));
+  // Length of the vector from a column on, in the plane of two numbers.
+  const auto length = [&](int column) {
+    const double flat = std::hypot(value(column), value(column + 1));
+    return planar_ ? flat : std::hypot(flat, value(column + 2));
+  };
   for (std::size_t b = 0; b < body_speed_.size(); ++b) {
-    const int column = channels_.bodies[b] + 3;
-    body_speed_[b] = std::max(body_speed_[b], std::hypot(value(column), value(column + 1)));
+    body_speed_[b] = std::max(body_speed_[b], length(channels_.bodies[b] + (planar_ ? 3 : 7)));
   }
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const JointColumns& columns = channels_.joints[j];
     JointSums& sums = joints_[j];
-    sums.force.add(std::hypot(value(columns.force_x), value(columns.force_y)), dt, first);
+    sums.force.add(length(columns.force), dt, first);
     if (first) sums.loss_start = joint_loss[j];
     sums.loss = joint_loss[j] - sums.loss_start;
     if (columns.contact < 0) continue;
     sums.penetration = first ? value(columns.penetration) : std::max(sums.penetration, value(columns.penetration));
     sums.normal = std::max(sums.normal, value(columns.normal_force));
     sums.eccentricity =
-        std::max(sums.eccentricity, std::hypot(value(columns.eccentricity_x), value(columns.eccentricity_y)));
+        std::max(sums.eccentricity, std::hypot(std::hypot(value(columns.eccentricity_x), value(columns.eccentricity_y)),
+                                               columns.eccentricity_z >= 0 ? value(columns.eccentricity_z) : 0.0));
     if (!first) sums.contact_time += 0.5 * dt * (sums.last_contact + value(columns.contact));
     sums.last_contact = value(columns.contact);
   }

@@ -69,6 +69,7 @@ class Statistics {
   std::vector<DriverSums> drivers_;
   std::vector<PathSums> paths_;
   std::vector<double> body_speed_;
+  bool planar_;
   long contacts_ = 0, contacts_total_ = 0;
   double position_ = 0.0, velocity_ = 0.0, energy_ = 0.0;
 };

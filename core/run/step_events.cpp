@@ -126,8 +126,12 @@ bool StepEvents::apply_joint(std::size_t watched, const State& before, const Eva
 bool StepEvents::tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault) {
   const double dt = after.t() - before.t();
   between_.t() = before.t() + s * dt;
-  for (std::size_t i = 0; i < before.q().size(); ++i) {
-    between_.q()[i] = Hermite{before.q()[i], before.v()[i] * dt, after.q()[i], after.v()[i] * dt}.at(s);
+  if (system_.model().space == Space::planar) {
+    for (std::size_t i = 0; i < before.q().size(); ++i) {
+      between_.q()[i] = Hermite{before.q()[i], before.v()[i] * dt, after.q()[i], after.v()[i] * dt}.at(s);
+    }
+  } else {
+    DenseStep(system_, before, {}, after, {}).at(s, between_);
   }
   for (std::size_t i = 0; i < before.v().size(); ++i) {
     between_.v()[i] = Hermite{before.v()[i], before.a()[i] * dt, after.v()[i], after.a()[i] * dt}.at(s);
@@ -145,7 +149,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
                                 const Evaluation& e_after, Passage& found, Fault& fault) {
   found = {};
   if (watched_.empty()) return true;
-  DenseStep(before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
+  DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
   if (!system_.evaluate(point(between_), term_event, e_between_)) {
     fault = e_between_.fault;
     return false;
@@ -198,7 +202,7 @@ bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const 
   const double sign = events[at(found.event)].crossing == Crossing::rising ? 1.0 : -1.0;
   const double dt = after.t() - before.t();
   for (int step = 0; step < 2; ++step) {
-    DenseStep(before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
+    DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
     if (!system_.evaluate(point(between_), term_event, e_between_)) {
       fault = e_between_.fault;
       return false;

@@ -1,12 +1,16 @@
 #include "system/layout.h"
 
 #include "system/planar_kinematics.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 
 Layout::Layout(const Model& model, Variant variant) {
-  nq_ = planar::coordinates * static_cast<int>(model.bodies.size());
-  nv_ = planar::velocities * static_cast<int>(model.bodies.size());
+  const bool planar = model.space == Space::planar;
+  body_coordinates_ = planar ? planar::coordinates : spatial::coordinates;
+  body_velocities_ = planar ? planar::velocities : spatial::velocities;
+  nq_ = body_coordinates_ * static_cast<int>(model.bodies.size());
+  nv_ = body_velocities_ * static_cast<int>(model.bodies.size());
   const auto take = [](int& total, int count) {
     const Slice slice{total, count};
     total += count;

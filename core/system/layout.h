@@ -22,6 +22,9 @@ class Layout {
   int nq() const { return nq_; }
   int nv() const { return nv_; }
   int nc() const { return nc_; }
+  /// Of one body: 3 and 3 in the plane, 7 and 6 in space.
+  int body_coordinates() const { return body_coordinates_; }
+  int body_velocities() const { return body_velocities_; }
   int nz() const { return nz_; }
   int nh() const { return nh_; }
   /// Rows of joints stand before this one, rows of drivers from it on.
@@ -39,6 +42,7 @@ class Layout {
     Slice rows, internal, history;
     int turn = -1;
   };
+  int body_coordinates_ = 0, body_velocities_ = 0;
   int nq_ = 0, nv_ = 0, nc_ = 0, nz_ = 0, nh_ = 0, first_driver_row_ = 0;
   std::vector<JointSlices> joints_;
   std::vector<int> drivers_;

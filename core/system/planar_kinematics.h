@@ -79,6 +79,14 @@ inline void add_wrench(const double* wrench, const Arm& arm, double* force) {
   force[2] += wrench[5] + arm.x * wrench[1] - arm.y * wrench[0];
 }
 
+/// The wrench at the marker that a generalised force of its body is.
+inline void wrench_of(const double* force, const Arm& arm, double* wrench) {
+  wrench[0] = force[0];
+  wrench[1] = force[1];
+  wrench[2] = wrench[3] = wrench[4] = 0.0;
+  wrench[5] = force[2] - (arm.x * force[1] - arm.y * force[0]);
+}
+
 /// J a + J' v: linear and angular acceleration of a marker, 6 numbers.
 inline void marker_acceleration(const double* a, const Arm& arm, double* out) {
   out[0] = a[0] - arm.y * a[2] - arm.x * arm.w * arm.w;
@@ -87,9 +95,13 @@ inline void marker_acceleration(const double* a, const Arm& arm, double* out) {
   out[5] = a[2];
 }
 
-/// q <- base + increment.
-inline void retract(std::span<const double> base, std::span<const double> increment, std::span<double> q) {
-  for (std::size_t i = 0; i < q.size(); ++i) q[i] = base[i] + increment[i];
-}
+/// The types above, for code that serves both spaces.
+struct Bodies {
+  using Mount = planar::Mount;
+  using Turn = planar::Turn;
+  using Arm = planar::Arm;
+  static constexpr int coordinates = planar::coordinates, velocities = planar::velocities;
+};
+inline Turn turn(Bodies, const double* q, const double*) { return {std::cos(q[2]), std::sin(q[2])}; }
 
 }  // namespace freeplay::planar

@@ -4,24 +4,41 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
+
 namespace freeplay {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+double length(const Vector3& v) { return std::hypot(std::hypot(v[0], v[1]), v[2]); }
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+// Body axes from principal axes, right-handed; the body's own where they are principal already.
+spatial::Matrix principal_axes(const Body& body, spatial::Vector& moments) {
+  const spatial::Matrix inertia = Eigen::Map<const RowMajor>(body.inertia.data());
+  moments = inertia.diagonal();
+  if (inertia(0, 1) == 0.0 && inertia(0, 2) == 0.0 && inertia(1, 2) == 0.0) return spatial::Matrix::Identity();
+  const Eigen::SelfAdjointEigenSolver<spatial::Matrix> solver(inertia);
+  moments = solver.eigenvalues();
+  spatial::Matrix axes = solver.eigenvectors();
+  if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
+  return axes;
+}
+
 // Largest distance between anything that the model places: bodies are as far apart as their markers let them be.
 double model_size(const Model& model) {
   double size = 0.0;
   for (const Marker& marker : model.markers) {
-    double x = marker.position[0], y = marker.position[1];
+    Vector3 place = marker.position;
     if (marker.body != ground) {
-      x -= model.bodies[at(marker.body)].com[0];
-      y -= model.bodies[at(marker.body)].com[1];
+      for (std::size_t i = 0; i < 3; ++i) place[i] -= model.bodies[at(marker.body)].com[i];
     }
-    size = std::max(size, std::hypot(x, y));
+    size = std::max(size, length(place));
   }
   for (const Body& body : model.bodies) {
-    if (body.position) size = std::max(size, std::hypot((*body.position)[0], (*body.position)[1]));
+    if (body.position) size = std::max(size, length(*body.position));
   }
   return size > 0.0 ? size : 1.0;
 }
@@ -35,17 +52,39 @@ System::System(const Model& model, Variant variant)
       motions_(std::make_shared<Motions>(model)),
       offsets_(model.joints.size(), InitialOffset{}),
       size_(model_size(model)) {
+  const bool planar = model.space == Space::planar;
   for (const Body& body : model.bodies) {
-    mass_.insert(mass_.end(), {body.mass, body.mass, body.inertia[8]});
-    weight_.insert(weight_.end(), {body.mass * body.gravity[0], body.mass * body.gravity[1], 0.0});
+    const double m = body.mass;
+    if (planar) {
+      mass_.insert(mass_.end(), {m, m, body.inertia[8]});
+      weight_.insert(weight_.end(), {m * body.gravity[0], m * body.gravity[1], 0.0});
+      continue;
+    }
+    spatial::Vector moments;
+    principal_.push_back(principal_axes(body, moments));
+    mass_.insert(mass_.end(), {m, m, m, moments[0], moments[1], moments[2]});
+    weight_.insert(weight_.end(), {m * body.gravity[0], m * body.gravity[1], m * body.gravity[2], 0.0, 0.0, 0.0});
   }
-  for (const Marker& marker : model.markers) mounts_.push_back(planar::mount(model, marker));
+  for (const Marker& marker : model.markers) {
+    if (planar) {
+      mounts_.push_back(planar::mount(model, marker));
+      continue;
+    }
+    spatial::Mount mount{marker.body, spatial::vector(marker.position.data()),
+                         Eigen::Map<const RowMajor>(marker.rotation.data())};
+    if (marker.body != ground) {
+      const spatial::Matrix to_principal = principal_[at(marker.body)].transpose();
+      mount.position = to_principal * (mount.position - spatial::vector(model.bodies[at(marker.body)].com.data()));
+      mount.rotation = to_principal * mount.rotation;
+    }
+    spatial_mounts_.push_back(mount);
+  }
 
   int offset = 0, internal_offset = 0;
   const auto add_block = [&](BodyId body, int row, int rows) {
     if (body == ground || rows == 0) return -1;
     blocks_.push_back({row, rows, body, offset});
-    offset += rows * planar::velocities;
+    offset += rows * body_velocities();
     return static_cast<int>(blocks_.size()) - 1;
   };
   records_.reserve(model.joints.size());
@@ -85,7 +124,7 @@ System::System(const Model& model, Variant variant)
     if (layout.coordinate != Coordinate::none) with_coordinate_.push_back(j);
     if (layout.forces != 0) {
       force_blocks_.push_back({j, r.body_a, r.body_b, r.internal.size, internal_offset});
-      internal_offset += r.internal.size * (18 + r.internal.size);
+      internal_offset += r.internal.size * (6 * body_velocities() + r.internal.size);
     }
     records_.push_back(r);
   }
@@ -110,17 +149,17 @@ void System::take_start_of(const System& other) {
   gear_offsets_ = other.gear_offsets_;
 }
 
-InternalDerivatives::InternalDerivatives(const ForceBlock& block, std::span<double> all) {
+InternalDerivatives::InternalDerivatives(const ForceBlock& block, int body_velocities, std::span<double> all) {
   std::size_t next = at(block.internal_offset);
   const auto take = [&](int count) {
     const auto part = all.subspan(next, at(count));
     next += at(count);
     return part;
   };
-  const int nz = block.internal;
-  force_z = take(6 * nz);
-  rate_q = take(6 * nz);
-  rate_v = take(6 * nz);
+  const int nz = block.internal, columns = 2 * body_velocities;
+  force_z = take(columns * nz);
+  rate_q = take(nz * columns);
+  rate_v = take(nz * columns);
   rate_z = take(nz * nz);
 }
 
@@ -131,23 +170,38 @@ Evaluation::Evaluation(const System& system) {
   MarkerKinematics still{};
   still.rotation[0] = still.rotation[4] = still.rotation[8] = 1.0;
   markers.assign(model.markers.size(), still);
-  arms.resize(model.markers.size());
+  const bool planar = model.space == Space::planar;
+  if (planar) {
+    arms.resize(model.markers.size());
+    turns.resize(model.bodies.size());
+  } else {
+    spatial_arms.resize(model.markers.size());
+    spatial_turns.resize(model.bodies.size());
+    gyroscopic_v.resize(9 * model.bodies.size());
+  }
   for (std::size_t m = 0; m < markers.size(); ++m) {
-    const double rest[3] = {0.0, 0.0, 0.0};
+    const double rest[7] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, still_body[6] = {};
     if (model.markers[m].body != ground) continue;
-    planar::marker_kinematics(system.mounts_[m], rest, rest, planar::Turn{}, markers[m], arms[m]);
+    if (planar) {
+      planar::marker_kinematics(system.mounts_[m], still_body, still_body, planar::Turn{}, markers[m], arms[m]);
+    } else {
+      spatial::marker_kinematics(system.spatial_mounts_[m], rest, still_body, spatial::Turn{}, markers[m],
+                                 spatial_arms[m]);
+    }
   }
   phi.resize(at(layout.nc()));
   nu.resize(at(layout.nc()));
   gamma.resize(at(layout.nc()));
   force.resize(at(layout.nv()));
   std::size_t jacobian_size = 0;
-  for (const JacobianBlock& block : system.blocks_) jacobian_size += at(block.rows * planar::velocities);
+  for (const JacobianBlock& block : system.blocks_) jacobian_size += at(block.rows * layout.body_velocities());
   jacobian.resize(jacobian_size);
-  force_q.resize(36 * system.force_blocks_.size());
-  force_v.resize(36 * system.force_blocks_.size());
+  const std::size_t columns = at(2 * layout.body_velocities());
+  force_q.resize(columns * columns * system.force_blocks_.size());
+  force_v.resize(force_q.size());
   for (const ForceBlock& block : system.force_blocks_) {
-    internal_derivatives.resize(at(block.internal_offset + block.internal * (18 + block.internal)));
+    internal_derivatives.resize(
+        at(block.internal_offset + block.internal * (6 * layout.body_velocities() + block.internal)));
   }
   coordinate.resize(joints);
   coordinate_rate.resize(joints);
@@ -157,55 +211,62 @@ Evaluation::Evaluation(const System& system) {
   potential_rate.resize(joints);
   wrench.resize(12 * joints);
   internal_rate.resize(at(layout.nz()));
-  applied.resize(3 * model.forces.size());
+  applied.resize(6 * model.forces.size());
   shifted.assign(joints, still);
   int widest = 0;
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
   row_space = system.row_blank_;
   rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
-  turns.resize(model.bodies.size());
   motion_time = std::numeric_limits<double>::quiet_NaN();
   place.resize(at(1 + layout.nq() + layout.nv() + layout.nz() + layout.nh()));
 }
 
 void System::add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const {
-  for (const JacobianBlock& block : blocks_) {
-    const double* entries = &e.jacobian[at(block.offset)];
-    double* to = &out[3 * at(block.body)];
-    double sum[3] = {to[0], to[1], to[2]};
-    for (int r = 0; r < block.rows; ++r, entries += 3) {
-      const double l = lambda[at(block.row + r)];
-      for (int c = 0; c < 3; ++c) sum[c] += entries[c] * l;
+  by_space([&]<class Bodies>(Bodies) {
+    constexpr int width = Bodies::velocities;
+    for (const JacobianBlock& block : blocks_) {
+      const double* entries = &e.jacobian[at(block.offset)];
+      double* to = &out[at(width * block.body)];
+      double sum[width];
+      std::copy_n(to, width, sum);
+      for (int r = 0; r < block.rows; ++r, entries += width) {
+        const double l = lambda[at(block.row + r)];
+        for (int c = 0; c < width; ++c) sum[c] += entries[c] * l;
+      }
+      std::copy_n(sum, width, to);
     }
-    std::copy_n(sum, 3, to);
-  }
+  });
 }
 
 void System::multiply(const Evaluation& e, std::span<const double> v, std::span<double> out) const {
   std::ranges::fill(out, 0.0);
-  for (const JacobianBlock& block : blocks_) {
-    const double* entries = &e.jacobian[at(block.offset)];
-    const double* from = &v[3 * at(block.body)];
-    for (int r = 0; r < block.rows; ++r) {
-      out[at(block.row + r)] += entries[3 * r] * from[0] + entries[3 * r + 1] * from[1] + entries[3 * r + 2] * from[2];
+  by_space([&]<class Bodies>(Bodies) {
+    constexpr int width = Bodies::velocities;
+    for (const JacobianBlock& block : blocks_) {
+      const double* entries = &e.jacobian[at(block.offset)];
+      const double* from = &v[at(width * block.body)];
+      for (int r = 0; r < block.rows; ++r, entries += width) {
+        double sum = entries[0] * from[0];
+        for (int c = 1; c < width; ++c) sum += entries[c] * from[c];
+        out[at(block.row + r)] += sum;
+      }
     }
-  }
+  });
 }
 
 void System::jacobian_entries(const Evaluation& e, std::vector<SparseEntry>& out) const {
+  const int width = body_velocities();
   out.clear();
   for (const JacobianBlock& block : blocks_) {
     const double* entry = &e.jacobian[at(block.offset)];
     for (int r = block.row; r < block.row + block.rows; ++r) {
-      for (int c = 0; c < 3; ++c) out.emplace_back(r, 3 * block.body + c, *entry++);
+      for (int c = 0; c < width; ++c) out.emplace_back(r, width * block.body + c, *entry++);
     }
   }
 }
 
 void System::reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const {
-  // Rows hold the marker's columns in body form: the moment about the marker is that about the centre less s x F.
-  double body_force[3] = {0.0, 0.0, 0.0};
   const Slice rows = layout_.rows(index);
   const int gear = model_.joints[at(index)].gear;
   const int block_a = gear >= 0 ? gear_blocks_[at(gear)][2] : records_[at(index)].block_a;
@@ -213,33 +274,43 @@ void System::reaction(int index, const Evaluation& e, std::span<const double> la
   const bool second = block_b >= 0;
   const int block = second ? block_b : block_a;
   const JointElement& element = model_.joints[at(gear >= 0 ? model_.gears[at(gear)].second : index)];
+  double constraint[6] = {};
   if (block >= 0) {
-    const double* entries = &e.jacobian[at(blocks_[at(block)].offset)];
-    for (int r = 0; r < rows.size; ++r) {
-      for (int c = 0; c < 3; ++c) body_force[c] -= entries[3 * r + c] * lambda[at(rows.offset + r)];
-    }
-    const planar::Arm& arm = e.arms[at(second ? element.marker_b : element.marker_a)];
-    body_force[2] -= arm.x * body_force[1] - arm.y * body_force[0];
+    by_space([&]<class Bodies>(Bodies) {
+      constexpr int width = Bodies::velocities;
+      const double* entries = &e.jacobian[at(blocks_[at(block)].offset)];
+      double force[width] = {};
+      for (int r = 0; r < rows.size; ++r, entries += width) {
+        for (int c = 0; c < width; ++c) force[c] -= entries[c] * lambda[at(rows.offset + r)];
+      }
+      // Rows hold the marker's columns in body form: the moment about the marker is that about the centre less s x F.
+      wrench_of(force, e.arms_of<Bodies>()[at(second ? element.marker_b : element.marker_a)], constraint);
+    });
     if (!second) {
       // Only the first body moves: its force turned round, and the moment carried to the second marker.
       const MarkerKinematics& a = e.markers[at(element.marker_a)];
       const MarkerKinematics& b = e.markers[at(element.marker_b)];
-      const double dx = a.position[0] - b.position[0], dy = a.position[1] - b.position[1];
-      for (double& component : body_force) component = -component;
-      body_force[2] += dx * body_force[1] - dy * body_force[0];
+      const double d[3] = {a.position[0] - b.position[0], a.position[1] - b.position[1], a.position[2] - b.position[2]};
+      for (double& component : constraint) component = -component;
+      const double* f = constraint;
+      constraint[3] += d[1] * f[2] - d[2] * f[1];
+      constraint[4] += d[2] * f[0] - d[0] * f[2];
+      constraint[5] += d[0] * f[1] - d[1] * f[0];
     }
   }
   const double* applied = &e.wrench[12 * at(index) + 6];
-  for (std::size_t i = 0; i < 3; ++i) wrench[i] = body_force[i] + applied[planar::components[i]];
+  for (std::size_t i = 0; i < 6; ++i) wrench[i] = constraint[i] + applied[i];
 }
 
 void System::marker_accelerations(int index, const Evaluation& e, std::span<const double> a,
                                   MarkerAccelerations& out) const {
-  const JointElement& element = model_.joints[at(index)];
-  const double rest[3] = {0.0, 0.0, 0.0};
-  const auto of = [&](BodyId body) { return body == ground ? rest : &a[3 * at(body)]; };
-  planar::marker_acceleration(of(body_a(index)), e.arms[at(element.marker_a)], out.a);
-  planar::marker_acceleration(of(body_b(index)), e.arms[at(element.marker_b)], out.b);
+  const JointRecord& record = records_[at(index)];
+  by_space([&]<class Bodies>(Bodies) {
+    const double rest[Bodies::velocities] = {};
+    const auto of = [&](BodyId body) { return body == ground ? rest : &a[Bodies::velocities * at(body)]; };
+    marker_acceleration(of(record.body_a), e.arms_of<Bodies>()[at(record.marker_a)], out.a);
+    marker_acceleration(of(record.body_b), e.arms_of<Bodies>()[at(record.marker_b)], out.b);
+  });
 }
 
 double System::kinetic_energy(std::span<const double> v) const {
@@ -250,7 +321,11 @@ double System::kinetic_energy(std::span<const double> v) const {
 
 double System::gravity_potential(std::span<const double> q) const {
   double energy = 0.0;
-  for (std::size_t i = 0; i < weight_.size(); ++i) energy -= weight_[i] * q[i];
+  const std::size_t coordinates = at(body_coordinates()), velocities = at(body_velocities());
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+    // Weight acts on positions, which come first in both.
+    for (std::size_t i = 0; i < 3; ++i) energy -= weight_[velocities * b + i] * q[coordinates * b + i];
+  }
   return energy;
 }
 

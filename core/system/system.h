@@ -17,6 +17,7 @@
 #include "system/layout.h"
 #include "system/motion.h"
 #include "system/planar_kinematics.h"
+#include "system/spatial_kinematics.h"
 #include "system/state.h"
 
 namespace freeplay {
@@ -53,12 +54,14 @@ struct Fault {
   }
 };
 
-/// Rows of one element in the columns of one body: `rows` x 3 numbers from `offset` of Evaluation::jacobian.
+/// Rows of one element in the columns of one body: `rows` x body_velocities() numbers from `offset` of
+/// Evaluation::jacobian.
 struct JacobianBlock {
   int row = 0, rows = 0, body = 0, offset = 0;
 };
 
-/// Derivatives of the generalised forces of one joint: 6 x 6 numbers each, rows and columns [body a, body b].
+/// Derivatives of the generalised forces of one joint: 6 x 6 numbers each in the plane, 12 x 12 in space, rows and
+/// columns [body a, body b].
 struct ForceBlock {
   int joint = 0;
   BodyId a = ground, b = ground;
@@ -68,12 +71,12 @@ struct ForceBlock {
 
 /// Row-major pieces of a joint's part of Evaluation::internal_derivatives, in the order they stand there.
 struct InternalDerivatives {
-  std::span<double> force_z;  ///< 6 x nz: generalised forces by z
-  std::span<double> rate_q;   ///< nz x 6: z' by the bodies' coordinates
-  std::span<double> rate_v;   ///< nz x 6: z' by their velocities
+  std::span<double> force_z;  ///< 2 w x nz, w velocities of a body: generalised forces by z
+  std::span<double> rate_q;   ///< nz x 2 w: z' by increments of the bodies
+  std::span<double> rate_v;   ///< nz x 2 w: z' by their velocities
   std::span<double> rate_z;   ///< nz x nz
 
-  InternalDerivatives(const ForceBlock& block, std::span<double> all);
+  InternalDerivatives(const ForceBlock& block, int body_velocities, std::span<double> all);
 };
 
 /// What the time loop reads of a joint, in one place.
@@ -108,7 +111,27 @@ class System {
   void take_start_of(const System& other);
   /// Offset of a gear that keeps the one it finds at the start [rad or m].
   void set_gear_offset(int gear, double offset) { gear_offsets_[static_cast<std::size_t>(gear)] = offset; }
-  /// Diagonal of M: mass, mass, inertia of every body.
+  int body_coordinates() const { return layout_.body_coordinates(); }
+  int body_velocities() const { return layout_.body_velocities(); }
+  /// Whether an entry of v is the rate of an angle [rad/s], not of a length.
+  bool is_turn(int velocity) const { return model_.space == Space::planar ? velocity % 3 == 2 : velocity % 6 >= 3; }
+  /// q <- base + increment: rotations in space turn by the increment's rotation vector in principal axes.
+  void retract(std::span<const double> base, std::span<const double> increment, std::span<double> q) const;
+  /// The increment that leads from `base` to `q`.
+  void difference(std::span<const double> base, std::span<const double> q, std::span<double> increment) const;
+  /// Rate of an increment at the velocities v where it has led to; and the velocities for its rate. The same numbers in
+  /// the plane.
+  void increment_rate(std::span<const double> increment, std::span<const double> v, std::span<double> rate) const;
+  void velocities_of(std::span<const double> increment, std::span<const double> rate, std::span<double> v) const;
+  /// Pose of a body's frame in the world, and the coordinates for one.
+  Pose frame_pose(BodyId body, std::span<const double> q) const;
+  void set_frame_pose(BodyId body, const Pose& pose, std::span<double> q) const;
+  /// Unit quaternion w x y z of a body's frame; spatial models.
+  std::array<double, 4> frame_quaternion(BodyId body, std::span<const double> q) const;
+  /// Velocity of a body's centre of mass and its angular velocity [m/s, rad/s], 6 numbers in world axes; and v for it.
+  void body_twist(BodyId body, std::span<const double> q, std::span<const double> v, double* twist) const;
+  void set_body_twist(BodyId body, std::span<const double> q, const double* twist, std::span<double> v) const;
+  /// Diagonal of M: mass, mass, inertia of every body; in space mass three times and the principal inertias.
   std::span<const double> mass() const { return mass_; }
   /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
   void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
@@ -137,10 +160,16 @@ class System {
 
   /// What joint `index` sees at an evaluated point; valid while `e` and the point's arrays are.
   JointInput input(int index, const Point& point, const Evaluation& e) const;
-  /// Row and bias of a joint's coordinate in the columns of its two bodies (6 numbers); the coordinate is evaluated.
+  /// Row and bias of a joint's coordinate in the columns of its two bodies (2 body_velocities() numbers); the
+  /// coordinate is evaluated.
   void coordinate_row(int index, const Evaluation& e, double* row, double& bias) const;
-  /// Force and torque (Fx, Fy, Mz) on the second body at its marker: constraint and applied parts together. Of a gear:
-  /// what it exerts on the second body of its second joint at that joint.
+  /// A row g of a marker's twist (6 numbers) in the columns of its body: body_velocities() numbers; and g J' v.
+  void marker_row(int marker, const double* g, const Evaluation& e, double* row) const;
+  double marker_row_product(int marker, const double* g, const Evaluation& e) const;
+  /// Adds the generalised force of a wrench (6 numbers) at a marker that is on a body.
+  void add_wrench(int marker, const double* wrench, const Evaluation& e, std::span<double> force) const;
+  /// Wrench (6 numbers) on the second body at its marker: constraint and applied parts together. Of a gear: what it
+  /// exerts on the second body of its second joint at that joint.
   void reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const;
   /// Accelerations of a joint's two markers.
   void marker_accelerations(int index, const Evaluation& e, std::span<const double> a, MarkerAccelerations& out) const;
@@ -150,19 +179,41 @@ class System {
 
  private:
   bool fill(const Point& point, unsigned terms, Evaluation& e) const;
+  template <class Bodies>
+  bool fill_in(const Point& point, unsigned terms, Evaluation& e) const;
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
   static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
   static bool refuse(int joint, const char* why, Evaluation& e);
   static bool blame(int joint, Evaluation& e);
   static bool markers_are_finite(const JointRecord& record, const Evaluation& e);
+  template <class Bodies>
   bool evaluate_rows(const Point& point, Evaluation& e) const;
+  template <class Bodies>
+  void write_coordinate_row(int index, const Evaluation& e, double* row, double& bias) const;
+  template <class Bodies>
   void evaluate_gear_rows(Evaluation& e) const;
+  template <class Bodies>
   void evaluate_driver_rows(Evaluation& e) const;
+  template <class Bodies>
   bool evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const;
+  template <class Bodies>
   bool evaluate_applied(const Point& point, Evaluation& e) const;
+  void add_gyroscopic(const Point& point, bool derivatives, Evaluation& e) const;
   JointInput input(const JointRecord& record, const Point& point, const Evaluation& e) const;
+  template <class Bodies>
   void map_derivatives(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
+  template <class Bodies>
   void map_internal(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const;
+  template <class Bodies>
+  const auto& mounts_of() const {
+    if constexpr (Bodies::velocities == planar::velocities) {
+      return mounts_;
+    } else {
+      return spatial_mounts_;
+    }
+  }
+  template <class Body>
+  auto by_space(Body&& body) const;
   BodyId body_a(int joint) const { return records_[static_cast<std::size_t>(joint)].body_a; }
   BodyId body_b(int joint) const { return records_[static_cast<std::size_t>(joint)].body_b; }
 
@@ -172,6 +223,8 @@ class System {
   std::shared_ptr<Motions> motions_;
   std::vector<double> mass_, weight_;
   std::vector<planar::Mount> mounts_;
+  std::vector<spatial::Mount> spatial_mounts_;
+  std::vector<spatial::Matrix> principal_;  // by body: body axes from principal axes; in space
   std::vector<InitialOffset> offsets_;
   std::vector<JointRecord> records_;              // by joint
   std::vector<int> with_coordinate_, with_rows_;  // joints, into records_; gears have no rows of their own here
@@ -190,9 +243,11 @@ struct Evaluation {
   explicit Evaluation(const System& system);
 
   std::vector<MarkerKinematics> markers;
-  std::vector<planar::Arm> arms;
+  std::vector<planar::Arm> arms;           ///< by marker, in the plane
+  std::vector<spatial::Arm> spatial_arms;  ///< by marker, in space
   std::vector<double> phi, nu, gamma, jacobian, force;
-  std::vector<double> force_q, force_v;             ///< 36 numbers per force block
+  std::vector<double> force_q, force_v;             ///< of force blocks
+  std::vector<double> gyroscopic_v;                 ///< in space, 3 x 3 by body: its gyroscopic moment by its w
   std::vector<double> internal_derivatives;         ///< of force blocks with internal variables
   std::vector<double> coordinate, coordinate_rate;  ///< by joint
   std::vector<CoordinateRow> coordinate_rows;       ///< by joint, in marker space
@@ -201,7 +256,7 @@ struct Evaluation {
   std::vector<double> potential_rate;               ///< its time derivative [W]; NaN where the joint does not tell
   std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
   std::vector<double> internal_rate;                ///< z'
-  std::vector<double> applied;                      ///< by applied force: Fx, Fy, Mz in world axes at its marker
+  std::vector<double> applied;                      ///< by applied force: wrench in world axes at its marker
   Fault fault;
 
   /// Whether phi, Phi_q and nu are those of this time and these coordinates.
@@ -209,15 +264,44 @@ struct Evaluation {
   /// Whether these terms were filled at this very point.
   bool is_at(const Point& point, unsigned terms) const;
 
+  /// Those of the space that `Bodies` are in.
+  template <class Bodies>
+  auto& arms_of() {
+    if constexpr (Bodies::velocities == planar::velocities) {
+      return arms;
+    } else {
+      return spatial_arms;
+    }
+  }
+  template <class Bodies>
+  const auto& arms_of() const {
+    return const_cast<Evaluation*>(this)->arms_of<Bodies>();
+  }
+  template <class Bodies>
+  auto& turns_of() {
+    if constexpr (Bodies::velocities == planar::velocities) {
+      return turns;
+    } else {
+      return spatial_turns;
+    }
+  }
+
   // Work space.
   std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
   std::vector<double> row_space;          ///< of every joint with rows: G, phi, nu, gamma, with marks behind each
   std::vector<double> rate_space, derivative_space;
   std::vector<planar::Turn> turns;
+  std::vector<spatial::Turn> spatial_turns;
   double motion_time;
   unsigned filled = 0;        ///< terms that `place` speaks of
   std::vector<double> place;  ///< t, q, v, z, h of the last evaluation that did not fail
 };
+
+/// Calls `body` with the bodies of the model's space, planar::Bodies{} or spatial::Bodies{}.
+template <class Body>
+auto System::by_space(Body&& body) const {
+  return model_.space == Space::planar ? body(planar::Bodies{}) : body(spatial::Bodies{});
+}
 
 inline JointInput System::input(const JointRecord& record, const Point& point, const Evaluation& e) const {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };

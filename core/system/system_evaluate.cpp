@@ -61,16 +61,21 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
 }
 
 bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
+  return by_space([&]<class Bodies>(Bodies) { return fill_in<Bodies>(point, terms, e); });
+}
+
+template <class Bodies>
+bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
   e.fault.kind = Fault::Kind::none;
-  for (std::size_t b = 0; b < e.turns.size(); ++b) {
-    const double angle = point.q[3 * b + 2];
-    e.turns[b] = {std::cos(angle), std::sin(angle)};
-  }
-  for (std::size_t m = 0; m < mounts_.size(); ++m) {
-    const BodyId body = mounts_[m].body;
+  auto& turns = e.turns_of<Bodies>();
+  const auto q = [&](std::size_t body) { return &point.q[Bodies::coordinates * body]; };
+  const auto v = [&](std::size_t body) { return &point.v[Bodies::velocities * body]; };
+  for (std::size_t b = 0; b < turns.size(); ++b) turns[b] = turn(Bodies{}, q(b), v(b));
+  const auto& mounts = mounts_of<Bodies>();
+  for (std::size_t m = 0; m < mounts.size(); ++m) {
+    const BodyId body = mounts[m].body;
     if (body == ground) continue;
-    planar::marker_kinematics(mounts_[m], &point.q[3 * at(body)], &point.v[3 * at(body)], e.turns[at(body)],
-                              e.markers[m], e.arms[m]);
+    marker_kinematics(mounts[m], q(at(body)), v(at(body)), turns[at(body)], e.markers[m], e.arms_of<Bodies>()[m]);
   }
   if (variant_ == Variant::closed) {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
@@ -92,14 +97,33 @@ bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
   }
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
-    if (!evaluate_rows(point, e)) return false;
-    evaluate_gear_rows(e);
-    evaluate_driver_rows(e);
+    if (!evaluate_rows<Bodies>(point, e)) return false;
+    evaluate_gear_rows<Bodies>(e);
+    evaluate_driver_rows<Bodies>(e);
   }
   if ((terms & term_force) != 0) {
-    return evaluate_forces(point, (terms & term_derivative) != 0, e) && evaluate_applied(point, e);
+    if (!evaluate_forces<Bodies>(point, (terms & term_derivative) != 0, e) || !evaluate_applied<Bodies>(point, e)) {
+      return false;
+    }
+    if (Bodies::velocities == spatial::velocities) add_gyroscopic(point, (terms & term_derivative) != 0, e);
   }
   return true;
+}
+
+// The moment -w x (I w) of a turning body, in principal axes, and its derivative by w.
+void System::add_gyroscopic(const Point& point, bool derivatives, Evaluation& e) const {
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+    const spatial::Vector w = spatial::vector(&point.v[6 * b + 3]), inertia = spatial::vector(&mass_[6 * b + 3]);
+    const spatial::Vector spin = inertia.cwiseProduct(w);
+    Eigen::Map<spatial::Vector>(&e.force[6 * b + 3]) -= w.cross(spin);
+    if (!derivatives) continue;
+    double* by_w = &e.gyroscopic_v[9 * b];  // row-major
+    for (int c = 0; c < 3; ++c) {
+      const spatial::Vector unit = spatial::Vector::Unit(c);
+      const spatial::Vector column = -(unit.cross(spin) + inertia[c] * w.cross(unit));
+      for (int r = 0; r < 3; ++r) by_w[3 * r + c] = column[r];
+    }
+  }
 }
 
 bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const {

@@ -9,8 +9,15 @@
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// System has a member of the name that the kinematics give it.
+template <class Arm>
+void add_to_force(const double* wrench, const Arm& arm, double* force) {
+  add_wrench(wrench, arm, force);
+}
 }  // namespace
 
+template <class Bodies>
 bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const {
   std::ranges::copy(weight_, e.force.begin());
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
@@ -47,17 +54,21 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     std::copy_n(out.wrench_b, 6, wrench + 6);
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
-    if (block.a != ground) planar::add_wrench(wrench, e.arms[at(record.marker_a)], &e.force[3 * at(block.a)]);
-    if (block.b != ground) planar::add_wrench(wrench + 6, e.arms[at(record.marker_b)], &e.force[3 * at(block.b)]);
-    if (derivatives) map_derivatives(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
-    if (derivatives && nz > 0) map_internal(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
+    const auto& arms = e.arms_of<Bodies>();
+    constexpr std::size_t width = Bodies::velocities;
+    if (block.a != ground) add_to_force(wrench, arms[at(record.marker_a)], &e.force[width * at(block.a)]);
+    if (block.b != ground) add_to_force(wrench + 6, arms[at(record.marker_b)], &e.force[width * at(block.b)]);
+    if (derivatives) map_derivatives<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
+    if (derivatives && nz > 0) map_internal<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
   }
   return true;
 }
 
 // From marker space to the columns of the two bodies: Q = J^T W, so dQ = J^T dW + dJ^T W with
 // dpose = J dq, dtwist = J dv + (dJ v) and d(s x F)/dtheta = -s.F.
-void System::map_derivatives(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const {
+template <>
+void System::map_derivatives<planar::Bodies>(int joint, std::size_t block, const double* marker_space, int width,
+                                             Evaluation& e) const {
   const JointElement& element = model_.joints[at(joint)];
   const planar::Arm arms[2] = {e.arms[at(element.marker_a)], e.arms[at(element.marker_b)]};
   double* by_q = &e.force_q[36 * block];
@@ -95,11 +106,49 @@ void System::map_derivatives(int joint, std::size_t block, const double* marker_
   }
 }
 
+// The same in space.
+template <>
+void System::map_derivatives<spatial::Bodies>(int joint, std::size_t block, const double* marker_space, int width,
+                                              Evaluation& e) const {
+  const JointElement& element = model_.joints[at(joint)];
+  const spatial::Arm* arms[2] = {&e.spatial_arms[at(element.marker_a)], &e.spatial_arms[at(element.marker_b)]};
+  double* by_q = &e.force_q[144 * block];
+  double* by_v = &e.force_v[144 * block];
+  for (std::size_t i = 0; i < 2; ++i) {    // wrench on body i
+    for (std::size_t k = 0; k < 2; ++k) {  // moved by body k
+      for (int c = 0; c < 6; ++c) {
+        double pose[6], twist[6], speed[6];
+        spatial::by_increment(c, *arms[k], pose, twist);
+        spatial::by_velocity(c, *arms[k], speed);
+        double wrench_q[6], wrench_v[6];
+        for (std::size_t r = 0; r < 6; ++r) {
+          const double* row = marker_space + (6 * i + r) * at(width) + 6 * k;
+          wrench_q[r] = wrench_v[r] = 0.0;
+          for (std::size_t n = 0; n < 6; ++n) {
+            wrench_q[r] += row[n] * pose[n] + row[12 + n] * twist[n];
+            wrench_v[r] += row[12 + n] * speed[n];
+          }
+        }
+        double force_q[6] = {}, force_v[6] = {};
+        spatial::add_wrench(wrench_q, *arms[i], force_q);
+        spatial::add_wrench(wrench_v, *arms[i], force_v);
+        if (i == k) spatial::add_wrench_derivative(c, &e.wrench[12 * at(joint) + 6 * i], *arms[i], force_q);
+        for (std::size_t r = 0; r < 6; ++r) {
+          by_q[(6 * i + r) * 12 + 6 * k + at(c)] = force_q[r];
+          by_v[(6 * i + r) * 12 + 6 * k + at(c)] = force_v[r];
+        }
+      }
+    }
+  }
+}
+
 // The same for z and z': rows and columns of internal variables have no arm.
-void System::map_internal(int joint, std::size_t block, const double* marker_space, int width, Evaluation& e) const {
+template <>
+void System::map_internal<planar::Bodies>(int joint, std::size_t block, const double* marker_space, int width,
+                                          Evaluation& e) const {
   const JointElement& element = model_.joints[at(joint)];
   const planar::Arm arms[2] = {e.arms[at(element.marker_a)], e.arms[at(element.marker_b)]};
-  const InternalDerivatives out(force_blocks_[block], e.internal_derivatives);
+  const InternalDerivatives out(force_blocks_[block], planar::velocities, e.internal_derivatives);
   const std::size_t nz = at(force_blocks_[block].internal);
   const auto row = [&](std::size_t r) { return marker_space + r * at(width); };
   for (std::size_t z = 0; z < nz; ++z) {
@@ -121,20 +170,53 @@ void System::map_internal(int joint, std::size_t block, const double* marker_spa
   }
 }
 
+template <>
+void System::map_internal<spatial::Bodies>(int joint, std::size_t block, const double* marker_space, int width,
+                                           Evaluation& e) const {
+  const JointElement& element = model_.joints[at(joint)];
+  const spatial::Arm* arms[2] = {&e.spatial_arms[at(element.marker_a)], &e.spatial_arms[at(element.marker_b)]};
+  const InternalDerivatives out(force_blocks_[block], spatial::velocities, e.internal_derivatives);
+  const std::size_t nz = at(force_blocks_[block].internal);
+  const auto row = [&](std::size_t r) { return marker_space + r * at(width); };
+  for (std::size_t z = 0; z < nz; ++z) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      double wrench[6], force[6] = {};
+      for (std::size_t r = 0; r < 6; ++r) wrench[r] = row(6 * i + r)[24 + z];
+      spatial::add_wrench(wrench, *arms[i], force);
+      for (std::size_t r = 0; r < 6; ++r) out.force_z[(6 * i + r) * nz + z] = force[r];
+      const double* rate = row(12 + z) + 6 * i;
+      for (int c = 0; c < 6; ++c) {
+        double pose[6], twist[6], speed[6], by_q = 0.0, by_v = 0.0;
+        spatial::by_increment(c, *arms[i], pose, twist);
+        spatial::by_velocity(c, *arms[i], speed);
+        for (std::size_t n = 0; n < 6; ++n) {
+          by_q += rate[n] * pose[n] + rate[12 + n] * twist[n];
+          by_v += rate[12 + n] * speed[n];
+        }
+        out.rate_q[12 * z + 6 * i + at(c)] = by_q;
+        out.rate_v[12 * z + 6 * i + at(c)] = by_v;
+      }
+    }
+    for (std::size_t k = 0; k < nz; ++k) out.rate_z[z * nz + k] = row(12 + z)[24 + k];
+  }
+}
+
+template <class Bodies>
 bool System::evaluate_applied(const Point& point, Evaluation& e) const {
+  constexpr std::size_t width = Bodies::velocities;
   for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
     if (layout_.driver_row(d) >= 0) continue;
     const int j = model_.drivers[at(d)].joint;
-    double row[6], bias = 0.0;
+    double row[2 * width], bias = 0.0;
     coordinate_row(j, e, row, bias);
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (body_a(j) != ground) e.force[3 * at(body_a(j)) + i] += e.motion[at(d)].value * row[i];
-      if (body_b(j) != ground) e.force[3 * at(body_b(j)) + i] += e.motion[at(d)].value * row[3 + i];
+    for (std::size_t i = 0; i < width; ++i) {
+      if (body_a(j) != ground) e.force[width * at(body_a(j)) + i] += e.motion[at(d)].value * row[i];
+      if (body_b(j) != ground) e.force[width * at(body_b(j)) + i] += e.motion[at(d)].value * row[width + i];
     }
   }
   for (std::size_t f = 0; f < model_.forces.size(); ++f) {
     const AppliedForce& force = model_.forces[f];
-    double value[2] = {0.0, 0.0};
+    double value[3] = {0.0, 0.0, 0.0};
     for (std::size_t i = 0; i < force.value.size(); ++i) {
       Jet jet;
       EvaluationFailure failure;
@@ -150,20 +232,33 @@ bool System::evaluate_applied(const Point& point, Evaluation& e) const {
     }
     const MarkerKinematics& k = e.markers[at(force.marker)];
     double wrench[6] = {};
-    if (force.kind == ForceKind::torque) {
+    const bool turns = force.kind == ForceKind::torque;
+    double* part = turns ? wrench + 3 : wrench;
+    if (turns && force.value.size() == 1) {
       wrench[5] = value[0];
     } else if (force.frame_axes) {
-      wrench[0] = k.rotation[0] * value[0] + k.rotation[1] * value[1];
-      wrench[1] = k.rotation[3] * value[0] + k.rotation[4] * value[1];
+      for (std::size_t r = 0; r < 3; ++r) {
+        part[r] = k.rotation[3 * r] * value[0] + k.rotation[3 * r + 1] * value[1];
+        if (width > 3) part[r] += k.rotation[3 * r + 2] * value[2];
+      }
     } else {
-      wrench[0] = value[0];
-      wrench[1] = value[1];
+      std::copy_n(value, 3, part);
     }
-    for (std::size_t i = 0; i < 3; ++i) e.applied[3 * f + i] = wrench[planar::components[i]];
+    std::copy_n(wrench, 6, &e.applied[6 * f]);
     const BodyId body = model_.markers[at(force.marker)].body;
-    if (body != ground) planar::add_wrench(wrench, e.arms[at(force.marker)], &e.force[3 * at(body)]);
+    if (body != ground) add_to_force(wrench, e.arms_of<Bodies>()[at(force.marker)], &e.force[width * at(body)]);
   }
   return true;
 }
+
+void System::add_wrench(int marker, const double* wrench, const Evaluation& e, std::span<double> force) const {
+  const std::size_t body = at(model_.markers[at(marker)].body), width = at(body_velocities());
+  by_space([&]<class Bodies>(Bodies) { add_to_force(wrench, e.arms_of<Bodies>()[at(marker)], &force[width * body]); });
+}
+
+template bool System::evaluate_forces<planar::Bodies>(const Point&, bool, Evaluation&) const;
+template bool System::evaluate_forces<spatial::Bodies>(const Point&, bool, Evaluation&) const;
+template bool System::evaluate_applied<planar::Bodies>(const Point&, Evaluation&) const;
+template bool System::evaluate_applied<spatial::Bodies>(const Point&, Evaluation&) const;
 
 }  // namespace freeplay

@@ -11,6 +11,7 @@ constexpr std::size_t widest_joint = 6;  // rows of a joint that leaves no freed
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
+template <class Bodies>
 bool System::evaluate_rows(const Point& point, Evaluation& e) const {
   std::ranges::copy(row_blank_, e.row_space.begin());
   for (const int j : with_rows_) {
@@ -37,11 +38,11 @@ bool System::evaluate_rows(const Point& point, Evaluation& e) const {
     double products[widest_joint] = {};
     const auto map = [&](int block, int marker, const double* rows) {
       if (block < 0) return;
-      const planar::Arm& arm = e.arms[at(marker)];
+      const auto& arm = e.arms_of<Bodies>()[at(marker)];
       double* to = &e.jacobian[at(blocks_[at(block)].offset)];
       for (std::size_t r = 0; r < count; ++r) {
-        planar::body_row(rows + 12 * r, arm, to + planar::velocities * r);
-        products[r] += planar::velocity_product(rows + 12 * r, arm);
+        body_row(rows + 12 * r, arm, to + Bodies::velocities * r);
+        products[r] += velocity_product(rows + 12 * r, arm);
       }
     };
     map(record.block_a, record.marker_a, jacobian);
@@ -57,19 +58,34 @@ bool System::evaluate_rows(const Point& point, Evaluation& e) const {
   return true;
 }
 
-void System::coordinate_row(int index, const Evaluation& e, double* row, double& bias) const {
+template <class Bodies>
+void System::write_coordinate_row(int index, const Evaluation& e, double* row, double& bias) const {
   const JointRecord& record = records_[at(index)];
   const CoordinateRow& marker_row = e.coordinate_rows[at(index)];
-  const planar::Arm &arm_a = e.arms[at(record.marker_a)], &arm_b = e.arms[at(record.marker_b)];
-  planar::body_row(marker_row.jacobian, arm_a, row);
-  planar::body_row(marker_row.jacobian + 6, arm_b, row + 3);
+  const auto &arm_a = e.arms_of<Bodies>()[at(record.marker_a)], &arm_b = e.arms_of<Bodies>()[at(record.marker_b)];
+  body_row(marker_row.jacobian, arm_a, row);
+  body_row(marker_row.jacobian + 6, arm_b, row + Bodies::velocities);
   bias = marker_row.bias;
-  if (record.body_a != ground) bias += planar::velocity_product(marker_row.jacobian, arm_a);
-  if (record.body_b != ground) bias += planar::velocity_product(marker_row.jacobian + 6, arm_b);
+  if (record.body_a != ground) bias += velocity_product(marker_row.jacobian, arm_a);
+  if (record.body_b != ground) bias += velocity_product(marker_row.jacobian + 6, arm_b);
+}
+
+void System::coordinate_row(int index, const Evaluation& e, double* row, double& bias) const {
+  by_space([&]<class Bodies>(Bodies) { write_coordinate_row<Bodies>(index, e, row, bias); });
+}
+
+void System::marker_row(int marker, const double* g, const Evaluation& e, double* row) const {
+  by_space([&]<class Bodies>(Bodies) { body_row(g, e.arms_of<Bodies>()[at(marker)], row); });
+}
+
+double System::marker_row_product(int marker, const double* g, const Evaluation& e) const {
+  return by_space([&]<class Bodies>(Bodies) { return velocity_product(g, e.arms_of<Bodies>()[at(marker)]); });
 }
 
 // Phi = s2 - ratio s1 - offset.
+template <class Bodies>
 void System::evaluate_gear_rows(Evaluation& e) const {
+  constexpr std::size_t width = Bodies::velocities;
   for (std::size_t g = 0; g < model_.gears.size(); ++g) {
     const Gear& gear = model_.gears[g];
     const int joints[2] = {gear.first, gear.second};
@@ -78,24 +94,25 @@ void System::evaluate_gear_rows(Evaluation& e) const {
     e.phi[r] = e.coordinate[at(gear.second)] - gear.ratio * e.coordinate[at(gear.first)] - gear_offsets_[g];
     e.nu[r] = e.gamma[r] = 0.0;
     for (std::size_t i = 0; i < 2; ++i) {
-      double row[6], bias = 0.0;
-      coordinate_row(joints[i], e, row, bias);
+      double row[2 * width], bias = 0.0;
+      write_coordinate_row<Bodies>(joints[i], e, row, bias);
       e.gamma[r] -= factors[i] * bias;
-      for (std::size_t c = 0; c < 6; ++c) {
-        const int block = gear_blocks_[g][2 * i + c / 3];
-        if (block >= 0) e.jacobian[at(blocks_[at(block)].offset) + c % 3] = factors[i] * row[c];
+      for (std::size_t c = 0; c < 2 * width; ++c) {
+        const int block = gear_blocks_[g][2 * i + c / width];
+        if (block >= 0) e.jacobian[at(blocks_[at(block)].offset) + c % width] = factors[i] * row[c];
       }
     }
   }
 }
 
+template <class Bodies>
 void System::evaluate_driver_rows(Evaluation& e) const {
   for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
     const int r = layout_.driver_row(d);
     if (r < 0) continue;
     const int j = model_.drivers[at(d)].joint;
-    double row[6], bias = 0.0;
-    coordinate_row(j, e, row, bias);
+    double row[2 * Bodies::velocities], bias = 0.0;
+    write_coordinate_row<Bodies>(j, e, row, bias);
     const TimeValue& f = e.motion[at(d)];
     double error = e.coordinate[at(j)] - f.value;
     if (motions_->modulo_turns(d)) error -= 2.0 * M_PI * std::round(error / (2.0 * M_PI));
@@ -103,9 +120,17 @@ void System::evaluate_driver_rows(Evaluation& e) const {
     e.nu[at(r)] = f.rate;
     e.gamma[at(r)] = f.acceleration - bias;
     const int block_a = driver_block_a_[at(d)], block_b = driver_block_b_[at(d)];
-    if (block_a >= 0) std::copy_n(row, 3, e.jacobian.begin() + blocks_[at(block_a)].offset);
-    if (block_b >= 0) std::copy_n(row + 3, 3, e.jacobian.begin() + blocks_[at(block_b)].offset);
+    constexpr int width = Bodies::velocities;
+    if (block_a >= 0) std::copy_n(row, width, e.jacobian.begin() + blocks_[at(block_a)].offset);
+    if (block_b >= 0) std::copy_n(row + width, width, e.jacobian.begin() + blocks_[at(block_b)].offset);
   }
 }
+
+template bool System::evaluate_rows<planar::Bodies>(const Point&, Evaluation&) const;
+template bool System::evaluate_rows<spatial::Bodies>(const Point&, Evaluation&) const;
+template void System::evaluate_gear_rows<planar::Bodies>(Evaluation&) const;
+template void System::evaluate_gear_rows<spatial::Bodies>(Evaluation&) const;
+template void System::evaluate_driver_rows<planar::Bodies>(Evaluation&) const;
+template void System::evaluate_driver_rows<spatial::Bodies>(Evaluation&) const;
 
 }  // namespace freeplay

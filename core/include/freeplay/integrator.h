@@ -1,6 +1,7 @@
 // Integrator: turns one time step into a few nonlinear stages. The host solves the stages.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "freeplay/parameter.h"
@@ -49,6 +50,7 @@ struct StageSolverTable {
   void (*retract)(void*, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept;
   std::uint32_t estimates;
   double (*internal_error_norm)(void*, double dt, const StateView* end, Span<const double> error) noexcept;
+  void (*increment_rate)(void*, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept;
 };
 }  // namespace abi
 
@@ -97,6 +99,12 @@ class StageSolver {
   /// q = retract(q_base, increment); for methods that make their own stages.
   void retract(Span<const double> q_base, Span<const double> increment, Span<double> q) const {
     table_->retract(table_->self, q_base, increment, q);
+  }
+  /// Rate d' of the increment d of such a stage at its velocities v: v itself but for rotations in space, where
+  /// d' = v + d x v/2 + ...; methods above order 2 need it.
+  void increment_rate(Span<const double> increment, Span<const double> v, Span<double> rate) const {
+    if (table_->increment_rate != nullptr) return table_->increment_rate(table_->self, increment, v, rate);
+    std::copy(v.begin(), v.end(), rate.begin());
   }
 
  private:

@@ -37,6 +37,7 @@ struct Oscillator {
             error_norm,
             retract,
             0,
+            nullptr,
             nullptr};
   }
   static Oscillator& self(void* s) { return *static_cast<Oscillator*>(s); }
