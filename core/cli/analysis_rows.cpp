@@ -227,7 +227,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
     }
   }
   table.rows.resize(stations.size());
-  std::vector<char> singular(stations.size(), 0);
+  std::vector<char> singular(stations.size(), 0), unclosed = singular;
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, {true, true, true});
     for (std::size_t i = first; i < last; ++i) {
@@ -248,18 +248,23 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
       if (columns.sensitivity) append_all(row, error->sensitivity);
       if (columns.samples > 0) {
         // Every row draws its own numbers, whichever thread it falls to.
-        const auto s = sample_play(mechanism, looker.map, columns.samples, columns.seed + 0x9E3779B97F4A7C15u * i);
-        append(row, {s->rms_position, s->rms_dangle, s->max_position, s->max_dangle});
+        const auto s =
+            sample_play(mechanism, looker.map, columns.samples, columns.seed + 0x9E3779B97F4A7C15u * i, columns.law);
+        unclosed[i] = !s;
+        if (s) append(row, {s->rms_position, s->rms_dangle, s->max_position, s->max_dangle});
+        row.resize(table.columns.size(), nan);
       }
     }
   });
-  const auto count = std::ranges::count(singular, 1);
-  if (count > 0) {
-    const auto first = static_cast<std::size_t>(std::ranges::find(singular, 1) - singular.begin());
-    warnings.push_back(
-        fmt::format("{}: singular: the platform moves while its inputs are held, its error has no bound{}",
-                    station_words(stations[first]), count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
-  }
+  const auto warn = [&](const std::vector<char>& marked, const char* what) {
+    const auto count = std::ranges::count(marked, 1);
+    if (count == 0) return;
+    const auto first = static_cast<std::size_t>(std::ranges::find(marked, 1) - marked.begin());
+    warnings.push_back(fmt::format("{}: {}{}", station_words(stations[first]), what,
+                                   count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
+  };
+  warn(singular, "singular: the platform moves while its inputs are held, its error has no bound");
+  warn(unclosed, "the mechanism does not close with every pin on its rim, there are no samples");
   return table;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/play_law.h"
 #include "analysis/station.h"
 #include "cli/analysis_table.h"
 
@@ -12,6 +13,7 @@ namespace freeplay {
 struct ErrorColumns {
   long samples = 0;  ///< of random play
   std::uint64_t seed = 0;
+  PlayLaw law;
   bool sensitivity = false;
 };
 

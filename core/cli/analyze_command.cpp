@@ -292,6 +292,7 @@ class AnalyzeJob {
       columns.sensitivity = options_.sensitivity;
       if (!options_.samples.empty()) columns.samples = whole_number("--samples", options_.samples, 1);
       if (!options_.seed.empty()) columns.seed = static_cast<std::uint64_t>(whole_number("--seed", options_.seed, 0));
+      if (!options_.distribution.empty()) columns.law = play_law_of(options_.distribution);
       if (mechanism_.plays().empty() && mechanism_.input_error() == 0.0) {
         warnings_.push_back("no joint has clearance and no input errs: all errors are 0");
       }
@@ -387,8 +388,14 @@ void refuse_idle_options(const AnalyzeOptions& options) {
   only(options.sensitivity, "--sensitivity", "error");
   only(!options.samples.empty(), "--samples", "error");
   only(!options.seed.empty(), "--seed", "error");
+  only(!options.distribution.empty(), "--distribution", "error");
   only(!options.preload.empty(), "--preload", "inverse-dynamics");
   only(options.branches, "--branches", "ik");
+  for (const auto& [text, option] : {std::pair{&options.seed, "--seed"}, {&options.distribution, "--distribution"}}) {
+    if (text->empty() || !options.samples.empty()) continue;
+    throw Error(Error::Category::usage, "bad-value", fmt::format("{} is given without --samples", option), {},
+                "--samples N draws random play");
+  }
 }
 
 int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
@@ -443,6 +450,8 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
   app->add_flag("--sensitivity", options->sensitivity, "error: sensitivity to the clearance of each joint");
   app->add_option("--samples", options->samples, "error: columns of N samples of random play")->type_name("N");
   app->add_option("--seed", options->seed, "Of the samples (0)")->type_name("S");
+  app->add_option("--distribution", options->distribution, "Of the samples: uniform (default), rim or normal[:SIGMA]")
+      ->type_name("LAW");
   app->add_flag("--branches", options->branches, "ik: all working modes of a --pose, all assemblies of an --input");
   app->add_option("--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers")
       ->type_name("VALUE");

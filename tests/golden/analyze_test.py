@@ -149,6 +149,24 @@ class Analyze(ProgramTest):
         self.assertEqual([row], self.rows(*words, "--seed", "5"))
         self.assertNotEqual([row], self.rows(*words, "--seed", "6"))
 
+    def test_samples_follow_the_law_that_is_given(self):
+        # One loose joint: the position errs by a number of the law, whose standard deviation is known.
+        model = self.write("m.yaml", self.text("five-bar").split("\nanalysis:")[0] +
+                           "\nanalysis: {error: {clearance: {B2: 0.1 mm}}}\n")
+        words = ("error", model, "--pose", "0.05,0.25", "--samples", "100000")
+        default, = self.rows(*words)
+        q = 4.5  # 1 / (2 sigma^2) for sigma = 1/3
+        for law, variance in (("uniform", 1 / 4), ("rim", 1 / 2), ("normal", (1 - q / math.expm1(q)) / 9),
+                              ("normal:0.05", 0.0025), ("normal: 10 ", 1 / 4)):
+            row, = self.rows(*words, "--distribution", law)
+            wanted = float(row["position"]) * math.sqrt(variance)
+            self.assertAlmostEqual(1, float(row["sample_rms_position"]) / wanted, delta=0.01)
+            self.assertEqual(law == "uniform", row == default)
+        # With redundancy, too, none exceeds the worst case.
+        for law in ("rim", "normal:0.4"):
+            row, = self.rows("error", mechanism("4-rrr"), "--pose", "0.05,0", "--samples", "20000", "--distribution", law)
+            self.assertLess(float(row["sample_max_position"]), float(row["position"]))
+
     # --- sources of poses ----------------------------------------------------------------------------------------
 
     def test_ways_to_write_a_pose(self):
@@ -356,6 +374,15 @@ class Analyze(ProgramTest):
                 (("error", model, "--frame", "ground", "--pose", "0,0,0"), 3, "is on ground"),
                 (("ik", model, "--samples", "9"), 2, "--samples is for error, not for ik"),
                 (("error", model, "--pose", "0,0,0", "--samples", "many"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "norml"), 2, "did you mean 'normal'?"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "gamma"), 2, "one of uniform, rim"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "normal:0"), 2, "greater than 0"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "normal:"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "normal:1 mm"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "rim:1"), 2, "'rim' takes no number"),
+                (("error", model, "--pose", "0,0,0", "--distribution", "rim"), 2, "--distribution is given without --samples"),
+                (("error", model, "--pose", "0,0,0", "--seed", "1"), 2, "--seed is given without --samples"),
+                (("ik", model, "--distribution", "rim"), 2, "--distribution is for error, not for ik"),
                 (("error", model, "--pose", "0,0,0", "--svg", "m.svg"), 2, "--svg draws a map"),
                 (("inverse-dynamics", model, "--pose", "0,0,0", "--preload", "1"), 2, "no driver is redundant"),
                 (("error", model, "--pos", "0,0,0"), 2, "did you mean '--pose'?"),
