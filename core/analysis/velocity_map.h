@@ -16,12 +16,14 @@ namespace freeplay {
 ///   A dX = B dtheta + C delta
 /// dX: the kept ones of dx, dy [m] and dangle [rad] of the platform's frame. dtheta: by input [rad or m]. delta: by
 /// play, 2 numbers, journal centre minus bearing centre [m], world axes. All other coordinates are eliminated part by
-/// part by left null vectors of their columns of the constraint Jacobian, so a row belongs to one part. Rows are scaled
-/// to unit length of their part in (dx, dy): for a leg, A holds the direction u of its passive link, from the input
-/// towards the platform, and its moment about the frame (Gosselin and Angeles 1990). Where a part has as many rows as
-/// inputs, more than one, each row belongs to one input; where it has another number, its rows are orthonormal in
-/// (dx, dy, L dangle). Of a single kept component, A and B (over the crank's length) have length 1 together. Rows that
-/// only play can violate (redundant joints) have A = B = 0.
+/// part by left null vectors of their columns of the constraint Jacobian, so a row belongs to one part. Kept x and y:
+/// rows are scaled to unit length of their part in (dx, dy); for a leg, A holds the direction u of its passive link,
+/// from the input towards the platform, and its moment about the frame (Gosselin and Angeles 1990). Kept angle with x
+/// or y: unit length in them, the angle times L. A single kept component: rows of A and B together are orthonormal, an
+/// angle times L, inputs times the length of their crank; singular values of A and B then do not depend on the choice
+/// of rows. Where a part has as many rows as inputs, more than one, each row belongs to one input (of a single kept
+/// component it does not); where it has another number, its rows are orthonormal in (dx, dy, L dangle). Rows that only
+/// play can violate (redundant joints) have A = B = 0 and stand behind the others of their part.
 struct VelocityMap {
   Eigen::MatrixXd a;         ///< rows x kept components
   Eigen::MatrixXd b;         ///< rows x inputs
@@ -59,6 +61,8 @@ class VelocityMapper {
   void make_group(std::vector<int> parts);
   void eliminate(Group& group, const Evaluation& e);
   Eigen::Index take(Group& group, const Evaluation& e, Eigen::Index first, VelocityMap& out);
+  Eigen::Index separate(const Group& group, Eigen::Ref<Eigen::MatrixXd> rows) const;
+  double output_size(double x, double y, double turn) const;
   void scale_single(const Group& group, const Evaluation& e, Eigen::Ref<Eigen::MatrixXd> row) const;
   void scale_several(const Group& group, Eigen::Ref<Eigen::MatrixXd> rows) const;
   double towards_platform(const Group& group, const Evaluation& e, double x, double y) const;

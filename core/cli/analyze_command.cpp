@@ -43,6 +43,7 @@ class AnalyzeJob {
 
   AnalysisTable execute() {
     find_freedoms();
+    warn_idle_elbow();
     find_stations();
     if (options_.branches) find_branches();
     check_reach();
@@ -130,6 +131,29 @@ class AnalyzeJob {
                             mechanism_.platform().inputs.size(), mobility_->general.held,
                             mobility_->general.held == 1 ? "" : "s"),
                 section().joints_location.value_or(mechanism_.platform().location));
+  }
+
+  /// Working modes are those of a crank and a coupler on pins below the frame.
+  void warn_idle_elbow() {
+    const bool option = !options_.elbow.empty();
+    if (!option && !section().elbow_location) return;
+    if (option && (!options_.input.empty() || options_.branches)) {
+      warnings_.push_back(
+          fmt::format("--elbow chooses nothing with {} [elbow-ignored]",
+                      options_.branches ? "--branches: every mode is shown" : "--input: the start tells the assembly"));
+      return;
+    }
+    std::vector<std::string> idle;
+    for (const int j : mechanism_.platform().inputs) {
+      if (find_leg_chain(mechanism_.model(), j, mechanism_.platform().marker)) continue;
+      idle.push_back(fmt::format("'{}'", model().joints[static_cast<std::size_t>(j)].name));
+    }
+    if (idle.empty()) return;
+    warnings_.push_back(
+        fmt::format("{}: no crank and coupler on pins lead from {} to the platform: the start tells {} "
+                    "working mode{} [elbow-ignored]",
+                    option ? "--elbow" : "'analysis.elbow'", fmt::join(idle, ", "), idle.size() == 1 ? "its" : "their",
+                    idle.size() == 1 ? "" : "s"));
   }
 
   void find_stations() {
@@ -235,14 +259,20 @@ class AnalyzeJob {
     on_grid_ = true;
   }
 
-  /// Where nobody says which components of the pose are meant: the first that the mechanism can be given.
-  Components default_components() const {
+  /// The components of the path or the grid. Where nobody says which are meant: the first that the mechanism can be
+  /// given, with a word where that matters.
+  Components default_components() {
     const Components path = mechanism_.platform().path_components();
     if (count(path) == std::min(freedoms_, 3)) return path;
     Components grid{};
     for (std::size_t i = 0; i < 3; ++i) grid[i] = section().grid[i].has_value();
     if (count(grid) == std::min(freedoms_, 3)) return grid;
-    return {true, freedoms_ > 1, freedoms_ > 2};
+    const Components first{true, freedoms_ > 1, freedoms_ > 2};
+    if (freedoms_ < 3 && (wants("workspace") || wants("singularity"))) {
+      warnings_.push_back(fmt::format("no path or grid of 'analysis' tells the outputs: {} taken",
+                                      freedoms_ > 1 ? "x and y are" : "x is"));
+    }
+    return first;
   }
 
   void check_reach() {
@@ -357,6 +387,13 @@ class AnalyzeJob {
       own["redundant_inputs"] = mobility_->general.redundant_inputs;
       own["redundant_constraints"] = mobility_->general.redundant_rows;
       own["special_configuration"] = mobility_->special();
+    }
+    if (wants("workspace") || wants("singularity")) {
+      constexpr const char* words[] = {"x", "y", "angle"};
+      own["outputs"] = Json::array();
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (given_[i]) own["outputs"].push_back(words[i]);
+      }
     }
     own["points"] = stations_.size();
     own["reachable"] = std::ranges::count(stations_, true, &Station::reachable);

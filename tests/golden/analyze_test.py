@@ -130,6 +130,41 @@ class Analyze(ProgramTest):
                     gap = float(found["joint.%s.angle" % name]) - crank(a, side, 0.04, 0.25)
                     self.assertAlmostEqual(0, math.remainder(gap, 2 * math.pi), 9)
 
+    def test_elbow_that_chooses_nothing_is_told(self):
+        five_bar = ("ik", mechanism("five-bar"), "--pose", "0.04,0.25")
+        for words, wanted in (
+                (("ik", mechanism("3-rpr"), "--pose", "0,0.1,0.1", "--elbow", "-1"), "lead from 'leg1.P', 'leg2.P', 'leg3.P' to"),
+                ((*five_bar, "--elbow", "-1"), "lead from 'A1' to the platform: the start tells its working mode"),
+                ((*five_bar, "--elbow", "1", "--branches"), "chooses nothing with --branches"),
+                (("ik", mechanism("five-bar"), "--input", "A1=2,A2=1.1", "--elbow", "1"), "chooses nothing with --input"),
+                (five_bar, None), (("ik", mechanism("3-rrr"), "--pose", "0,0,0", "--elbow", "-1"), None)):
+            _, err = self.freeplay("analyze", *words)
+            if wanted is None:
+                self.assertEqual("", err)
+            else:
+                self.assertIn(wanted, err)
+                self.assertRegex(err, r"^\S+\.yaml: warning: --elbow.*\[elbow-ignored\]\n$")
+        text = self.text("3-rpr").replace("analysis:\n", "analysis:\n  elbow: -1\n")
+        _, err = self.freeplay("analyze", "ik", self.write("m.yaml", text), "--pose", "0,0.1,0.1")
+        self.assertIn("'analysis.elbow': no crank and coupler", err)
+
+    def test_outputs_are_those_of_the_pose(self):
+        def outputs(*words):
+            out, err = self.freeplay("analyze", "singularity", *words, "--json")
+            return json.loads(out)["summary"]["outputs"], err
+
+        model = self.write("m.yaml", FOUR_BAR + "analysis: {frame: coupler/P}\n")
+        self.assertEqual((["y"], ""), outputs(model, "--pose", "y=0.14"))
+        self.assertEqual((["x", "y"], ""), outputs(mechanism("five-bar"), "--input", "A1=2,A2=1.1"))
+        names, err = outputs(model, "--input", "A=1.2")
+        self.assertEqual(["x"], names)
+        self.assertIn("tells the outputs: x is taken", err)
+        # Dead centres of a slider-crank: of the slider, not of the crank.
+        for frame, component, kind in (("slider", "x", "inverse"), ("crank", "angle", "none")):
+            row, = self.rows("singularity", self.write("s.yaml", self.text("slider-crank") + "analysis: {grid: {%s: 0}}\n" % component),
+                             "--frame", frame, "--input", "main=0")
+            self.assertEqual(kind, row["kind"])
+
     def test_shares_add_up_where_one_joint_has_play_and_a_driver(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:
             text = file.read().split("\nanalysis:")[0]
