@@ -68,7 +68,8 @@ class GridFlood {
   void reach(std::size_t index, const Posture& from) {
     Station& station = stations_[index];
     station.reachable = solver_.reach(station.demand, from, station.posture, station.why);
-    if (station.reachable) open_.push_back(index);
+    station.folded = solver_.folded();
+    if (station.reachable && !station.folded) open_.push_back(index);
   }
   template <class Visit>
   void for_each_neighbour(std::size_t index, const Visit& visit) {
@@ -116,6 +117,7 @@ std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Dem
                          : demand.inputs.empty() ? regular_start(mechanism, demand.given)
                                                  : mechanism.start();
     station.reachable = solver.reach(demand, from, station.posture, station.why);
+    station.folded = solver.folded();
     if (station.reachable || station.why.input >= 0 || !demand.inputs.empty()) continue;
     Unreachable leg;
     solver.legs_in_reach(demand, from, leg);
@@ -142,7 +144,8 @@ std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& tim
       return direct || s == 1.0 ? station.demand : path_demand(mechanism, last + s * (station.time - last));
     };
     station.reachable = solver.reach(way, from, station.posture, station.why);
-    if (direct || !station.reachable) continue;
+    station.folded = solver.folded();
+    if (direct || !station.reachable || station.folded) continue;
     from = station.posture;
     last = station.time;
   }

@@ -14,6 +14,7 @@ struct Station {
   double time = std::numeric_limits<double>::quiet_NaN();  ///< on a path [s]; NaN elsewhere
   Demand demand;
   bool reachable = false;
+  bool folded = false;  ///< on a fold of its branch (PostureSolver::folded): speeds have no value
   Unreachable why;
   Posture posture;  ///< where it is reachable
 };

@@ -84,7 +84,7 @@ void append_inputs(const IdealMechanism& mechanism, const Station& station, Post
                    Row& row) {
   std::vector<double> v(station.posture.q.size(), 0.0), a = v;
   const bool moves = follows_path(station);
-  const bool known = !moves || solver.rates(station.demand, station.posture, v, a);
+  const bool known = !moves || (!station.folded && solver.rates(station.demand, station.posture, v, a));
   const Evaluation& e = solver.evaluate_moving(station.demand.t, station.posture, v, term_velocity);
   const Model& model = mechanism.model();
   for (int i = 0; i < input_count(mechanism); ++i) {
@@ -288,7 +288,7 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
   Turns turns;
   for (const Station& station : stations) {
     std::vector<double> v(station.posture.q.size(), 0.0), a = v;
-    if (follows_path(station) && !solver.rates(station.demand, station.posture, v, a)) {
+    if (follows_path(station) && (station.folded || !solver.rates(station.demand, station.posture, v, a))) {
       throw Error(Error::Category::numerical, "singular",
                   fmt::format("{}: a singular pose, speeds and accelerations have no value", station_words(station)));
     }
