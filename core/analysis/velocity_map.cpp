@@ -11,6 +11,7 @@ using Eigen::MatrixXd;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rank_limit = 1e-10;     // of pivots, relative to the largest
+constexpr double folded_limit = 1e-7;    // of both at a fold, which is known to the root of the rounding
 constexpr double nothing = 1e-9;         // of rows, relative to null vectors of length 1
 constexpr double regular_inputs = 1e-9;  // pivots of B of a part that can be told apart by inputs
 
@@ -115,7 +116,7 @@ void VelocityMapper::eliminate(Group& group, const Evaluation& e) {
     }
   }
   if (group.columns == 0) return;
-  group.qr.setThreshold(rank_limit);
+  group.qr.setThreshold(rank_limit_);
   group.qr.compute(group.passive);
   group.right.applyOnTheLeft(group.qr.householderQ().adjoint());
 }
@@ -200,7 +201,7 @@ Index VelocityMapper::separate(const Group& group, Eigen::Ref<MatrixXd> rows) co
   }
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeFullU);
   Index moving = 0;
-  while (moving < svd.singularValues().size() && svd.singularValues()[moving] > nothing) ++moving;
+  while (moving < svd.singularValues().size() && svd.singularValues()[moving] > row_limit_) ++moving;
   if (moving == rows.rows() && kept_ > 1) return moving;
   rows.applyOnTheLeft(svd.matrixU().transpose());
   rows.bottomRows(rows.rows() - moving).leftCols(kept_ + inputs).setZero();
@@ -241,7 +242,10 @@ Eigen::Index VelocityMapper::take(Group& group, const Evaluation& e, Index first
   return count;
 }
 
-void VelocityMapper::map(const Evaluation& e, VelocityMap& out) {
+void VelocityMapper::map(const Evaluation& e, VelocityMap& out, bool folded) {
+  // Columns of angles have entries of the model's size.
+  rank_limit_ = folded ? folded_limit * std::min(1.0, system_.size()) : rank_limit;
+  row_limit_ = folded ? folded_limit : nothing;
   Index rows = 0;
   for (Group& group : groups_) {
     eliminate(group, e);

@@ -38,8 +38,9 @@ class VelocityMapper {
   /// `kept`: components of the pose that dX holds. What is not kept is eliminated as well.
   VelocityMapper(const IdealMechanism& mechanism, const Components& kept);
 
-  /// `e`: the mechanism's system evaluated at a posture (term_position | term_coordinate).
-  void map(const Evaluation& e, VelocityMap& out);
+  /// `e`: the mechanism's system evaluated at a posture (term_position | term_coordinate). `folded`: the posture is
+  /// known to the root of the rounding only (PostureSolver::folded), so ranks are counted more coarsely.
+  void map(const Evaluation& e, VelocityMap& out, bool folded = false);
 
  private:
   struct Fill {
@@ -73,6 +74,7 @@ class VelocityMapper {
   const System& system_;
   std::array<int, 3> place_{};  // of each component among the kept ones, or -1 - its place among the eliminated
   int kept_ = 0, eliminated_ = 0;
+  double rank_limit_ = 0.0, row_limit_ = 0.0;  // below which pivots and rows of the map in hand are none
   std::vector<Group> groups_;
   std::vector<int> column_;  // by body: first column in its group
 };

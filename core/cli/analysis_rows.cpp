@@ -62,7 +62,7 @@ bool follows_path(const Station& station) { return !std::isnan(station.time); }
 struct Looker {
   Looker(const IdealMechanism& mechanism, const Components& kept) : solver(mechanism), mapper(mechanism, kept) {}
   const VelocityMap& look(const Station& station) {
-    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map);
+    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map, station.folded);
     return map;
   }
   PostureSolver solver;

@@ -24,6 +24,25 @@ drivers: {motor: {joint: A, kind: velocity, value: 60 rpm}}
 initial: {joints: {A: 60 deg}}
 simulation: {end: 1 s, step: 1 ms}
 """
+PARALLEL = """freeplay: 1
+bodies:
+  ground: {frames: {A1: [0, 0], A2: [0.2, 0], A3: [0.4, 0]}}
+  crank1: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {angle: 60 deg}}
+  crank2: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {position: [0.2, 0], angle: 60 deg}}
+  crank3: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {position: [0.4, 0], angle: 60 deg}}
+  bar: {mass: 0.9, inertia: 6e-3, frames: {B1: [0, 0], B2: [0.2, 0], B3: [0.4, 0]}, pose: {position: [0.05, 0.0866025403784]}}
+joints:
+  A1: {type: revolute, between: [ground/A1, crank1]}
+  A2: {type: revolute, between: [ground/A2, crank2]}
+  A3: {type: revolute, between: [ground/A3, crank3]}
+  B1: {type: revolute, between: [crank1/tip, bar/B1]}
+  B2: {type: revolute, between: [crank2/tip, bar/B2]}
+  B3: {type: revolute, between: [crank3/tip, bar/B3]}
+drivers:
+  m1: {joint: A1, kind: angle, value: 60 deg}
+analysis: {frame: bar/B2, joints: [A1], error: {clearance: {B3: 0.1 mm}}}
+simulation: {end: 1 s, step: 1 ms}
+"""
 ERROR = "x,y,angle,reachable,dx,dy,dangle,position,ls_dx,ls_dy,ls_dangle,ls_position"
 KINDS = ("ik", "workspace", "singularity", "error", "inverse-dynamics")
 
@@ -376,6 +395,24 @@ class Analyze(ProgramTest):
         self.assertTrue(out.splitlines()[1].endswith(",1,,,,,,,,"))
         self.assertIn("singular", err)
         self.assertIn("[singular]", self.message("inverse-dynamics", mechanism("3-rrr"), "--pose", "0,0," + theta, code=4))
+
+    def test_poses_on_a_fold_are_reached_and_singular(self):
+        # 0.35 m is the reach of a leg of the five-bar, 50 + 120 mm that of the crank's slider.
+        for words, poses in ((("five-bar",), ("0.11,0.28", "0.25,0")), (("slider-crank", "--frame", "slider"), ("x=0.17", "x=0.07"))):
+            for pose in poses:
+                row, = self.rows("singularity", mechanism(words[0]), *words[1:], "--pose", pose)
+                self.assertEqual(("1", "inverse"), (row["reachable"], row["kind"]), pose)
+        # On a path through it the speeds have no value, and the leg goes back to its side.
+        model = self.write("m.yaml", self.text("five-bar").replace("250 mm + 40 mm*sin(4*pi*t/1 s)", "280 mm").replace(
+            "x: 40 mm*cos(4*pi*t/1 s)", "x: 80 mm + 30 mm*sin(4*pi*t/1 s)"))
+        before, at, after = self.rows("ik", model, "--time", "0.115:0.135:3")
+        self.assertEqual("", at["joint.A1.speed"])
+        self.assertAlmostEqual(float(before["joint.A1.angle"]), float(after["joint.A1.angle"]), 9)
+        self.assertAlmostEqual(math.atan2(0.28, 0.21), float(at["joint.A1.angle"]), 6)
+        # Three parallel cranks in one line.
+        self.write("p.yaml", PARALLEL)
+        row, = self.rows("singularity", "p.yaml", "--pose", "x=0.3")
+        self.assertEqual(("1", "inverse"), (row["reachable"], row["kind"]))
 
     def test_a_grid_without_a_reachable_point(self):
         for kind in ("workspace", "singularity", "error"):
