@@ -70,13 +70,14 @@ class Sampler {
 }  // namespace
 
 std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const VelocityMap& map, long count,
-                                          std::uint64_t seed, const PlayLaw& law) {
+                                          std::uint64_t seed, const PlayLaw& law, const Tick& tick) {
   const std::optional<MatrixXd> inverse = pseudo_inverse(map.a, mechanism.length());
   if (!inverse) return std::nullopt;
   Sampler sampler(map.a, *inverse, generators_of(mechanism, map), law, seed);
   if (!sampler.has_samples()) return std::nullopt;
   PlayStatistics out;
   for (long i = 0; i < count; ++i) {
+    if (tick && i % 1024 == 0) tick(0);
     const Eigen::Vector3d x = sampler.draw();
     const double squared = x.head<2>().squaredNorm();
     out.rms_position += squared;

@@ -5,6 +5,7 @@
 
 #include "analysis/clearance_error.h"
 #include "analysis/play_law.h"
+#include "analysis/station.h"
 
 namespace freeplay {
 
@@ -18,7 +19,7 @@ struct PlayStatistics {
 /// so neighbouring samples resemble each other. Every sample is feasible: none exceeds the exact worst case. Same seed,
 /// same numbers. Empty where A has not rank 3, and where no play with every pin on its rim was found to close.
 std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const VelocityMap& map, long count,
-                                          std::uint64_t seed, const PlayLaw& law = {});
+                                          std::uint64_t seed, const PlayLaw& law = {}, const Tick& tick = {});
 
 /// Root mean squares of the same plays where every leg errs by itself and A dX = d is solved by least squares, in
 /// closed form from the variances of the law. Largest values are left 0. Empty where A has not rank 3.

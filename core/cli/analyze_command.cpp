@@ -15,6 +15,7 @@
 #include "analysis/singularity.h"
 #include "analysis/workspace.h"
 #include "cli/analysis_rows.h"
+#include "cli/analysis_watch.h"
 #include "cli/analyze_options.h"
 #include "cli/failure.h"
 #include "cli/load_model.h"
@@ -38,8 +39,11 @@ int thread_count() {
 /// One analysis of a model that was read.
 class AnalyzeJob {
  public:
-  AnalyzeJob(LoadedModel& loaded, const AnalyzeOptions& options)
-      : loaded_(loaded), options_(options), mechanism_(*loaded.model, platform(*loaded.model, options)) {}
+  AnalyzeJob(LoadedModel& loaded, const AnalyzeOptions& options, AnalysisWatch& watch)
+      : loaded_(loaded),
+        options_(options),
+        watch_(watch),
+        mechanism_(*loaded.model, platform(*loaded.model, options)) {}
 
   AnalysisTable execute() {
     find_freedoms();
@@ -83,7 +87,8 @@ class AnalyzeJob {
     if (!std::ranges::is_sorted(map.x) || !std::ranges::is_sorted(map.y)) {
       throw Error(Error::Category::usage, "bad-value", "--svg needs a grid whose x and y grow");
     }
-    map.determinant = determinants(mechanism_, stations_, given_, thread_count());
+    map.determinant =
+        determinants(mechanism_, stations_, given_, thread_count(), watch_.begin("signs of the map", stations_.size()));
     const auto& path = mechanism_.platform().path;
     for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
       const Settings& settings = model().settings;
@@ -185,7 +190,7 @@ class AnalyzeJob {
       if (demand.given == given_) continue;
       throw Error(Error::Category::usage, "bad-value", "every --pose must give the same of x, y and angle");
     }
-    stations_ = at_demands(mechanism_, demands);
+    stations_ = at_demands(mechanism_, demands, watch_.begin("poses found", demands.size()));
   }
 
   void stations_at_inputs() {
@@ -203,7 +208,7 @@ class AnalyzeJob {
       demands.push_back(demand);
     }
     given_ = default_components();
-    stations_ = at_demands(mechanism_, demands);
+    stations_ = at_demands(mechanism_, demands, watch_.begin("poses found", demands.size()));
   }
 
   void stations_on_path(const GridValues& times) {
@@ -221,7 +226,7 @@ class AnalyzeJob {
     } else {
       given_ = default_components();
     }
-    stations_ = along_path(mechanism_, times);
+    stations_ = along_path(mechanism_, times, watch_.begin("poses found", static_cast<std::size_t>(times.count)));
   }
 
   void stations_on_grid() {
@@ -255,7 +260,8 @@ class AnalyzeJob {
                   from_options ? Location{} : Location{model().file, 0, 0});
     }
     axes_ = values;
-    stations_ = on_grid(mechanism_, axes_, given_, thread_count());
+    stations_ = on_grid(mechanism_, axes_, given_, thread_count(),
+                        watch_.begin("poses found", static_cast<std::size_t>(points)));
     on_grid_ = true;
   }
 
@@ -297,9 +303,10 @@ class AnalyzeJob {
       throw Error(Error::Category::usage, "bad-value", "--branches is for ik with --pose or --input");
     }
     std::vector<Station> all;
+    const Tick tick = watch_.begin("sets of branches found", stations_.size());
     for (const Station& station : stations_) {
       int number = 0;
-      for (Posture& posture : all_postures(mechanism_, station.demand)) {
+      for (Posture& posture : all_postures(mechanism_, station.demand, tick)) {
         all.push_back(station);
         all.back().posture = std::move(posture);
         all.back().reachable = true;
@@ -314,9 +321,10 @@ class AnalyzeJob {
 
   AnalysisTable rows() {
     const int threads = thread_count();
-    if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_);
-    if (wants("workspace")) return workspace(threads);
-    if (wants("singularity")) return singularity_rows(mechanism_, stations_, given_, threads);
+    const Tick tick = watch_.begin("poses analysed", stations_.size());
+    if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_, tick);
+    if (wants("workspace")) return workspace(threads, tick);
+    if (wants("singularity")) return singularity_rows(mechanism_, stations_, given_, threads, tick);
     if (wants("error")) {
       ErrorColumns columns;
       columns.sensitivity = options_.sensitivity;
@@ -326,16 +334,17 @@ class AnalyzeJob {
       if (mechanism_.plays().empty() && mechanism_.input_error() == 0.0) {
         warnings_.push_back("no joint has clearance and no input errs: all errors are 0");
       }
-      return error_rows(mechanism_, stations_, columns, threads, warnings_);
+      return error_rows(mechanism_, stations_, columns, threads, warnings_, tick);
     }
     const double preload = options_.preload.empty() ? 0.0 : preload_of(options_.preload);
-    return inverse_dynamics_rows(mechanism_, stations_, preload);
+    return inverse_dynamics_rows(mechanism_, stations_, preload, tick);
   }
 
-  AnalysisTable workspace(int threads) {
-    AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads);
+  AnalysisTable workspace(int threads, const Tick& tick) {
+    AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads, tick);
     if (!on_grid_ || !given_[0] || !given_[1] || axes_[2].count != 1) return table;
-    const WorkspaceShape shape = workspace_shape(mechanism_, stations_, axes_);
+    const WorkspaceShape shape =
+        workspace_shape(mechanism_, stations_, axes_, watch_.begin("edges searched", stations_.size()));
     table.summary["area"] = shape.area;
     table.summary["regions"] = shape.regions;
     table.summary["holes"] = shape.holes;
@@ -404,6 +413,7 @@ class AnalyzeJob {
 
   LoadedModel& loaded_;
   const AnalyzeOptions& options_;
+  AnalysisWatch& watch_;
   IdealMechanism mechanism_;
   std::optional<GeneralMobility> mobility_;
   int freedoms_ = 3;
@@ -448,10 +458,18 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   std::vector<std::string> warnings;
   std::string drawing;
   try {
-    AnalyzeJob job(loaded, options);
+    AnalysisWatch watch(stderr_is_terminal() && !common.quiet);
+    AnalyzeJob job(loaded, options, watch);
     table = job.execute();
     warnings = job.warnings();
     if (!options.svg.empty()) drawing = job.drawing(table);
+  } catch (const Interrupted&) {
+    Diagnostic diagnostic;
+    diagnostic.id = "interrupted";
+    diagnostic.message = "interrupted, nothing was written";
+    diagnostic.location = {options.model, 0, 0};
+    loaded.diagnostics.add(std::move(diagnostic));
+    return report_failure(loaded.diagnostics, 130, common);
   } catch (const Error& error) {
     if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw;
     Diagnostic diagnostic = as_diagnostic(error);

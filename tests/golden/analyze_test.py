@@ -3,11 +3,16 @@ import csv
 import io
 import json
 import math
+import os
+import pty
 import re
+import signal
+import subprocess
+import time
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, mechanism
 
 FOUR_BAR = """freeplay: 1
 bodies:
@@ -361,6 +366,34 @@ class Analyze(ProgramTest):
         self.assertIn("url(#out)", text)
         self.assertRegex(text, r'stroke-dasharray="8,4"/>\n<path')  # singular curves, and the legend's piece
         self.assertFalse(re.search("nan|inf", text))
+
+    def test_interrupts_end_it_and_leave_nothing(self):
+        words = [PROGRAM, "analyze", "error", mechanism("4-rrr"), "--pose", "0,0", "--samples", "1000000000", "--json",
+                 "--out", "e.csv"]
+        for sign in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                time.sleep(1.0)
+                process.send_signal(sign)
+                out, err = process.communicate(timeout=60)
+            self.assertEqual(130, process.returncode)
+            self.assertEqual((130, "interrupted"), (json.loads(out)["error"]["exit_code"], json.loads(out)["error"]["messages"][0]["id"]))
+            self.assertEqual([], os.listdir(self.folder))
+
+    def test_long_analyses_tell_how_far_they_are(self):
+        def line(*options):
+            ours, theirs = pty.openpty()
+            words = [PROGRAM, "analyze", "error", mechanism("4-rrr"), "--pose", "0,0", "--samples", "1000000000", *options]
+            with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=theirs) as process:
+                time.sleep(1.5)
+                process.terminate()
+                process.wait(timeout=60)
+            os.close(theirs)
+            text = os.read(ours, 100000).decode()
+            os.close(ours)
+            return text
+
+        self.assertRegex(line(), r"\r +0 %  0 / 1 poses analysed  eta --:-- *\r")
+        self.assertNotIn("%", line("--quiet"))
 
     # --- bad input -----------------------------------------------------------------------------------------------
 
