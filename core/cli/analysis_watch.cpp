@@ -1,5 +1,7 @@
 #include "cli/analysis_watch.h"
 
+#include <algorithm>
+
 #include "cli/interrupt.h"
 
 namespace freeplay {
@@ -22,7 +24,7 @@ void AnalysisWatch::count(long done) {
   if (!shown_ || (done > 0 && total_ > 10 * seldom && all % seldom != 0)) return;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || std::chrono::steady_clock::now() - began_ < std::chrono::milliseconds(500)) return;
-  line_->update(what_, all, total_);
+  line_->update(what_, std::max(all - 1, 0L), total_);  // the last one is at work
 }
 
 }  // namespace freeplay
