@@ -377,7 +377,13 @@ class AnalyzeJob {
             {"share", std::move(shares)}};
   }
 
-  static double preload_of(const std::string& text) {
+  /// A torque where all inputs turn, a force where all slide; either where they differ.
+  double preload_of(const std::string& text) const {
+    int turning = 0;
+    const int inputs = static_cast<int>(mechanism_.platform().inputs.size());
+    for (int i = 0; i < inputs; ++i) turning += mechanism_.is_angle(i) ? 1 : 0;
+    if (turning == 0) return signed_quantity("--preload", text, dimension::force);
+    if (turning == inputs) return signed_quantity("--preload", text, dimension::torque);
     try {
       return signed_quantity("--preload", text, dimension::torque);
     } catch (const Error&) {

@@ -490,6 +490,8 @@ class Analyze(ProgramTest):
                 (("ik", model, "--distribution", "rim"), 2, "--distribution is for error, not for ik"),
                 (("error", model, "--pose", "0,0,0", "--svg", "m.svg"), 2, "--svg draws a map"),
                 (("inverse-dynamics", model, "--pose", "0,0,0", "--preload", "1"), 2, "no driver is redundant"),
+                (("inverse-dynamics", mechanism("4-rrr"), "--pose", "0,0,0", "--preload", "1 N"), 2, "expected torque"),
+                (("inverse-dynamics", mechanism("3-rpr"), "--pose", "0,0,0.1", "--preload", "1 N*m"), 2, "expected force"),
                 (("error", model, "--pos", "0,0,0"), 2, "did you mean '--pose'?"),
                 (("ik", mechanism("five-bar"), "--pose", "0,0.2,0"), 2, "leaves its frame 2 freedoms"),
                 (("error", "missing.yaml"), 3, "missing.yaml")):
