@@ -21,7 +21,7 @@ constexpr int most_corrections = 30, most_starts = 1000;
 }  // namespace
 
 ClosedPlay::ClosedPlay(const MatrixXd& across, MatrixXd along, std::vector<PlayRoom> rooms, const PlayLaw& law,
-                       RandomNumbers& random)
+                       RandomDraws& random)
     : closure_(across.transpose()), along_(std::move(along)), rooms_(std::move(rooms)), law_(law), random_(random) {
   plays_ = VectorXd::Zero(closure_.cols());
   if (law_.kind == PlayLaw::Kind::rim) exists_ = find_rims();

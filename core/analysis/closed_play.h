@@ -23,7 +23,7 @@ class ClosedPlay {
   /// Columns of `across` and of `along` are orthonormal, one row for each number of the rooms: y closes where
   /// across^T y = 0, and is then a sum of columns of `along`.
   ClosedPlay(const Eigen::MatrixXd& across, Eigen::MatrixXd along, std::vector<PlayRoom> rooms, const PlayLaw& law,
-             RandomNumbers& random);
+             RandomDraws& random);
   /// False where no play with every pin on its rim was found to close.
   bool exists() const { return exists_; }
   /// The plays after one more step.
@@ -48,7 +48,7 @@ class ClosedPlay {
   Eigen::MatrixXd closure_, along_;
   std::vector<PlayRoom> rooms_;
   PlayLaw law_;
-  RandomNumbers& random_;
+  RandomDraws& random_;
   Eigen::VectorXd plays_;
   Rim rim_;
   bool exists_ = true;

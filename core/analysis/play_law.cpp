@@ -5,7 +5,7 @@ namespace {
 
 /// A normal number of standard deviation sigma, given that it lies in [-1, 1]: rejection, from the uniform law where
 /// that is nearer.
-double cut_normal(double sigma, RandomNumbers& random) {
+double cut_normal(double sigma, RandomDraws& random) {
   while (true) {
     if (sigma < 0.8) {
       const double x = sigma * random.normal();
@@ -34,7 +34,7 @@ double variance(const PlayLaw& law, int size) {
   return sigma * sigma * (1.0 - std::sqrt(2.0 / M_PI) / sigma * std::exp(-q) / std::erf(std::sqrt(q)));
 }
 
-void draw(const PlayLaw& law, RandomNumbers& random, std::span<double> out) {
+void draw(const PlayLaw& law, RandomDraws& random, std::span<double> out) {
   const bool normal = law.kind == PlayLaw::Kind::normal;
   if (out.size() == 1) {
     out[0] = normal ? cut_normal(law.sigma, random) : 2.0 * random.uniform() - 1.0;

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "analysis/random_numbers.h"
+#include "analysis/random_draws.h"
 
 namespace freeplay {
 
@@ -23,6 +23,6 @@ struct PlayLaw {
 double variance(const PlayLaw& law, int size);
 
 /// Draws one play (2 numbers) or input (1 number) by itself.
-void draw(const PlayLaw& law, RandomNumbers& random, std::span<double> out);
+void draw(const PlayLaw& law, RandomDraws& random, std::span<double> out);
 
 }  // namespace freeplay

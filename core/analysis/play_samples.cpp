@@ -60,7 +60,7 @@ class Sampler {
 
  private:
   PlayLaw law_;
-  RandomNumbers random_;
+  RandomDraws random_;
   std::vector<PlayRoom> rooms_;
   MatrixXd image_;
   VectorXd plays_;

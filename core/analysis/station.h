@@ -24,8 +24,8 @@ struct Station {
 /// names a file: the mechanism leaves its frame more or fewer freedoms.
 Components components_to_give(int freedoms, const Components& given, const std::string& what, const Location& place);
 
-/// Called with 1 when a pose is taken up and with 0 now and then inside a long one, by any thread; what it throws ends the
-/// analysis. May be empty.
+/// Called with 1 when a pose is taken up and with 0 now and then inside a long one, by any thread; what it throws ends
+/// the analysis. May be empty.
 using Tick = std::function<void(long done)>;
 
 /// Each reached from the start by a straight way.

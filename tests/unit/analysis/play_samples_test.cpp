@@ -43,7 +43,7 @@ TEST(PlayLaw, VarianceIsTheIntegralOfItsDensity) {
 
 TEST(PlayLaw, DrawsHaveTheVarianceAndStayInBounds) {
   for (const PlayLaw& law : laws) {
-    RandomNumbers random(3);
+    RandomDraws random(3);
     double disc = 0.0, interval = 0.0, cross = 0.0;
     constexpr int count = 200'000;
     for (int i = 0; i < count; ++i) {
@@ -120,7 +120,7 @@ TEST(PlaySamples, OfARedundantMechanismAreThoseThatClose) {
     }
   }
   for (const PlayLaw& law : {PlayLaw{PlayLaw::Kind::rim}, {PlayLaw::Kind::normal, 0.5}}) {
-    RandomNumbers random(5);
+    RandomDraws random(5);
     double squared = 0.0, turned = 0.0;
     int kept = 0;
     for (int i = 0; i < 1'000'000; ++i) {

@@ -1,4 +1,4 @@
-// RandomNumbers: the same numbers with every standard library.
+// RandomDraws: the same numbers with every standard library.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,9 @@
 
 namespace freeplay {
 
-class RandomNumbers {
+class RandomDraws {
  public:
-  explicit RandomNumbers(std::uint64_t seed) : engine_(seed) {}
+  explicit RandomDraws(std::uint64_t seed) : engine_(seed) {}
   /// In [0, 1).
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
   /// Of mean 0 and variance 1 (Box and Muller).
