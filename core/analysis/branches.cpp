@@ -47,7 +47,7 @@ void scatter(const std::vector<BodyId>& bodies, int index, double size, Posture&
 
 }  // namespace
 
-std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& demand) {
+std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& demand, const Tick& tick) {
   PostureSolver solver(mechanism);
   const double size = mechanism.system().size();
   std::vector<Posture> found;
@@ -56,6 +56,7 @@ std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& deman
     std::vector<BodyId> bodies;
     for (int b = 0; b < static_cast<int>(mechanism.model().bodies.size()); ++b) bodies.push_back(b);
     for (int i = 0; i < whole_starts; ++i) {
+      if (tick) tick(0);
       Posture posture = start;
       if (i > 0) scatter(bodies, i, size, posture);
       if (solver.settle(demand, posture)) add(found, posture, size);
@@ -73,6 +74,7 @@ std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& deman
           continue;
         }
         for (int i = 0; i < part_starts; ++i) {
+          if (tick) tick(0);
           Posture posture = before;
           if (i > 0) scatter(part.bodies, i, size, posture);
           if (solver.settle(part, demand, posture)) add(ways, posture, size);

@@ -1,7 +1,7 @@
 // Branches: all postures that a pose, or a set of inputs, leaves open.
 #pragma once
 
-#include "analysis/posture.h"
+#include "analysis/station.h"
 
 namespace freeplay {
 
@@ -9,6 +9,6 @@ namespace freeplay {
 /// 1 first; for other parts what Newton's method finds from many starts. Of other demands (inputs: the assemblies of
 /// the direct problem) what it finds for the whole mechanism. What many starts find is all there is only very likely.
 /// Those found from starts are sorted by the pose of the frame, then by the angles of the bodies.
-std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& demand);
+std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& demand, const Tick& tick = {});
 
 }  // namespace freeplay

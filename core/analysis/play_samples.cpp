@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include <Eigen/SVD>
+
+#include "analysis/closed_play.h"
 
 namespace freeplay {
 namespace {
@@ -13,30 +14,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Numbers that do not depend on the standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  /// In [0, 1).
-  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
-  double normal() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(2.0 * M_PI * uniform());
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-/// A disc (2 numbers) or an interval (1) of size 1 among the plays.
-struct Room {
-  Index place, size;
-};
-
 class Sampler {
  public:
-  Sampler(const MatrixXd& a, const MatrixXd& inverse, const std::vector<Generator>& generators, std::uint64_t seed)
-      : random_(seed) {
+  Sampler(const MatrixXd& a, const MatrixXd& inverse, const std::vector<Generator>& generators, const PlayLaw& law,
+          std::uint64_t seed)
+      : law_(law), random_(seed) {
     Index width = 0;
     for (const Generator& generator : generators) {
       if (generator.size <= 0.0) continue;
@@ -59,68 +41,43 @@ class Sampler {
     const double limit = 1e-12 * std::max(1e-300, all.cwiseAbs().maxCoeff());
     Index rank = 0;
     while (rank < free.singularValues().size() && free.singularValues()[rank] > limit) ++rank;
-    if (rank > 0) directions_ = free.matrixV().rightCols(width - rank);
-    walks_ = rank > 0;
-    for (Index i = 0; walks_ && i < 20 * width; ++i) walk();
+    if (rank == 0) return;
+    const MatrixXd& v = free.matrixV();
+    closed_.emplace(v.leftCols(rank), v.rightCols(width - rank), rooms_, law_, random_);
   }
+  Sampler(const Sampler&) = delete;
+  Sampler& operator=(const Sampler&) = delete;
+
+  bool has_samples() const { return !closed_ || closed_->exists(); }
 
   Eigen::Vector3d draw() {
-    if (walks_) {
-      walk();
-    } else {
-      fill();
+    if (closed_) return image_ * closed_->next();
+    for (const PlayRoom& room : rooms_) {
+      freeplay::draw(law_, random_, {&plays_[room.place], static_cast<std::size_t>(room.size)});
     }
     return image_ * plays_;
   }
 
  private:
-  void fill() {
-    for (const Room& room : rooms_) {
-      if (room.size == 1) {
-        plays_[room.place] = 2.0 * random_.uniform() - 1.0;
-        continue;
-      }
-      const double radius = std::sqrt(random_.uniform()), angle = 2.0 * M_PI * random_.uniform();
-      plays_[room.place] = radius * std::cos(angle);
-      plays_[room.place + 1] = radius * std::sin(angle);
-    }
-  }
-
-  // To a random point of the chord in a random direction.
-  void walk() {
-    if (directions_.cols() == 0) return;
-    VectorXd mixture(directions_.cols());
-    for (Index i = 0; i < mixture.size(); ++i) mixture[i] = random_.normal();
-    const VectorXd direction = directions_ * mixture;
-    double least = -std::numeric_limits<double>::infinity(), most = -least;
-    for (const Room& room : rooms_) {
-      const VectorXd u = direction.segment(room.place, room.size), y = plays_.segment(room.place, room.size);
-      const double a = u.squaredNorm(), b = u.dot(y), c = y.squaredNorm() - 1.0;
-      if (!(a > 0.0)) continue;
-      const double root = std::sqrt(std::max(0.0, b * b - a * c));
-      least = std::max(least, (-b - root) / a);
-      most = std::min(most, (-b + root) / a);
-    }
-    if (!(most > least)) return;
-    plays_ += (least + (most - least) * random_.uniform()) * direction;
-  }
-
-  Random random_;
-  std::vector<Room> rooms_;
-  MatrixXd image_, directions_;
+  PlayLaw law_;
+  RandomDraws random_;
+  std::vector<PlayRoom> rooms_;
+  MatrixXd image_;
   VectorXd plays_;
-  bool walks_ = false;
+  std::optional<ClosedPlay> closed_;
 };
 
 }  // namespace
 
 std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const VelocityMap& map, long count,
-                                          std::uint64_t seed) {
+                                          std::uint64_t seed, const PlayLaw& law, const Tick& tick) {
   const std::optional<MatrixXd> inverse = pseudo_inverse(map.a, mechanism.length());
   if (!inverse) return std::nullopt;
-  Sampler sampler(map.a, *inverse, generators_of(mechanism, map), seed);
+  Sampler sampler(map.a, *inverse, generators_of(mechanism, map), law, seed);
+  if (!sampler.has_samples()) return std::nullopt;
   PlayStatistics out;
   for (long i = 0; i < count; ++i) {
+    if (tick && i % 1024 == 0) tick(0);
     const Eigen::Vector3d x = sampler.draw();
     const double squared = x.head<2>().squaredNorm();
     out.rms_position += squared;
@@ -134,13 +91,14 @@ std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const
   return out;
 }
 
-std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map) {
+std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map,
+                                                 const PlayLaw& law) {
   const std::optional<MatrixXd> inverse = pseudo_inverse(map.a, mechanism.length());
   if (!inverse) return std::nullopt;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Generator& generator : generators_of(mechanism, map)) {
     const MatrixXd image = generator.size * (*inverse * generator.columns);
-    covariance += image * image.transpose() / (image.cols() == 2 ? 4.0 : 3.0);
+    covariance += image * image.transpose() * variance(law, static_cast<int>(image.cols()));
   }
   PlayStatistics out;
   out.rms_position = std::sqrt(covariance(0, 0) + covariance(1, 1));

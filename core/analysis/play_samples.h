@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include "analysis/clearance_error.h"
+#include "analysis/play_law.h"
+#include "analysis/station.h"
 
 namespace freeplay {
 
@@ -12,16 +14,16 @@ struct PlayStatistics {
   double rms_position = 0.0, rms_dangle = 0.0, max_position = 0.0, max_dangle = 0.0;
 };
 
-/// Draws `count` samples: every massless link uniform on its disc, every input error uniform on its interval, given
-/// that rigid bodies close. Without redundancy the draws are independent; with it a Markov chain walks over the plays
-/// that close (hit and run, Smith 1984), so neighbouring samples resemble each other. Every sample is feasible: none
-/// exceeds the exact worst case. Same seed, same numbers. Empty where A has not rank 3.
+/// Draws `count` samples of plays and errors of inputs distributed as `law` says, given that rigid bodies close.
+/// Without redundancy the draws are independent; with it a Markov chain walks over the plays that close (ClosedPlay),
+/// so neighbouring samples resemble each other. Every sample is feasible: none exceeds the exact worst case. Same seed,
+/// same numbers. Empty where A has not rank 3, and where no play with every pin on its rim was found to close.
 std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const VelocityMap& map, long count,
-                                          std::uint64_t seed);
+                                          std::uint64_t seed, const PlayLaw& law = {}, const Tick& tick = {});
 
 /// Root mean squares of the same plays where every leg errs by itself and A dX = d is solved by least squares, in
-/// closed form: a coordinate of a uniform disc has the variance radius^2 / 4, a uniform interval half^2 / 3. Largest
-/// values are left 0. Empty where A has not rank 3.
-std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map);
+/// closed form from the variances of the law. Largest values are left 0. Empty where A has not rank 3.
+std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map,
+                                                 const PlayLaw& law = {});
 
 }  // namespace freeplay

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -20,6 +22,9 @@ constexpr double longest_step = 0.3;     // of one piece of a way
 constexpr double longest_bend = 0.05;    // from the tangent at its start to its end
 constexpr double shortest_piece = 1e-6;  // of a way
 constexpr int most_pieces = 2000;
+constexpr double near_the_end = 1e-3;  // share of a way within which its end may be a fold
+constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
+constexpr int most_halvings = 60;  // of the distance to a fold
 
 double nearest_turn(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
@@ -254,16 +259,49 @@ bool PostureSolver::follow(const Task& task, const std::function<Demand(double)>
     }
     piece *= 0.5;
     if (piece >= shortest_piece) continue;
+    if (1.0 - done < near_the_end && settle_on_fold(task, way(1.0), posture)) return true;
     why.contradiction = step == Step::contradiction && !demand.inputs.empty();
     return false;
   }
   return true;
 }
 
+// Where a way ends on a fold, legs stretched, say, the equations have a double root: Newton's method only halves the
+// distance to it, down to the root of the rounding. The end is in reach when the residual falls to that of rounding.
+bool PostureSolver::settle_on_fold(const Task& task, const Demand& demand, Posture& posture) {
+  Posture trial = posture;
+  if (!task.whole) place_platform(demand, trial);
+  std::ranges::fill(state_.v(), 0.0);
+  double scale = system_.size(), last = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < trial.q.size(); ++i) scale = std::max(scale, i % 3 == 2 ? 0.0 : std::abs(trial.q[i]));
+  for (int i = 0; i < most_halvings; ++i) {
+    if (!load(demand.t, trial, term_position)) return false;
+    assemble(task, demand, trial);
+    // As far down as rounding lets it fall.
+    const double residual = right_.lpNorm<Eigen::Infinity>();
+    if (const double before = std::exchange(last, residual); residual <= rounding * scale && residual >= 0.5 * before) {
+      posture = std::move(trial);
+      if (!posture.h.empty()) count_turns(posture);
+      folded_ = true;
+      return true;
+    }
+    solver_.compute(matrix_);
+    const Eigen::VectorXd step = solver_.solve(right_);
+    if (!(step.lpNorm<Eigen::Infinity>() <= longest_step * std::max(1.0, system_.size()))) return false;
+    for (std::size_t b = 0; b < task.bodies.size(); ++b) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        trial.q[3 * at(task.bodies[b]) + c] += step[static_cast<Eigen::Index>(3 * b + c)];
+      }
+    }
+  }
+  return false;
+}
+
 bool PostureSolver::reach(const std::function<Demand(double)>& way, const Posture& from, Posture& posture,
                           Unreachable& why) {
   const Demand last = way(1.0);
   why = {};
+  folded_ = false;
   posture = from.q.empty() ? blank() : from;
   if (count(last.given) < 3 || !last.inputs.empty()) return follow(whole_task(), way, posture, why);
   for (const Limb& part : mechanism_.parts()) {

@@ -43,6 +43,8 @@ class PostureSolver {
   bool reach(const std::function<Demand(double)>& way, const Posture& from, Posture& posture, Unreachable& why);
   /// The same along a straight line from where `from` is.
   bool reach(const Demand& demand, const Posture& from, Posture& posture, Unreachable& why);
+  /// Did the last reach() end on a fold of its branch, up to rounding? No way goes on from there: branches meet.
+  bool folded() const { return folded_; }
   /// Newton's method from `posture` as it is, of bodies that may be far away, with corrections of least norm. False
   /// when it does not converge.
   bool settle(const Demand& demand, Posture& posture);
@@ -83,6 +85,7 @@ class PostureSolver {
   Task whole_task() const;
   bool place_leg(const Limb& part, const Leg& leg, const Demand& demand, Posture& posture, Unreachable& why) const;
   bool follow(const Task& task, const std::function<Demand(double)>& way, Posture& posture, Unreachable& why);
+  bool settle_on_fold(const Task& task, const Demand& demand, Posture& posture);
   Step correct(const Task& task, const Demand& demand, Posture& posture, double longest, int iterations);
   void assemble(const Task& task, const Demand& demand, const Posture& posture);
   const Evaluation& look(double t, const Posture& posture, unsigned terms);
@@ -93,6 +96,7 @@ class PostureSolver {
   const System& system_;
   State state_;
   Evaluation e_;
+  bool folded_ = false;
   std::vector<int> column_;     // by body: its first column in the task at hand, or -1
   std::vector<int> local_row_;  // by row of the system: its row in the task at hand, or -1
   Eigen::MatrixXd matrix_;

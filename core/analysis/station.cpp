@@ -37,8 +37,12 @@ Demand path_demand(IdealMechanism& mechanism, double t) {
 class GridFlood {
  public:
   GridFlood(IdealMechanism& mechanism, const Components& given, const std::array<long, 3>& counts,
-            std::vector<Station>& stations)
-      : solver_(mechanism), start_(regular_start(mechanism, given)), counts_(counts), stations_(stations) {}
+            std::vector<Station>& stations, const Tick& tick)
+      : tick_(tick),
+        solver_(mechanism),
+        start_(regular_start(mechanism, given)),
+        counts_(counts),
+        stations_(stations) {}
 
   void run() {
     // From the start to the point next to it that can be reached; further points only if all nearer ones fail.
@@ -68,7 +72,9 @@ class GridFlood {
   void reach(std::size_t index, const Posture& from) {
     Station& station = stations_[index];
     station.reachable = solver_.reach(station.demand, from, station.posture, station.why);
-    if (station.reachable) open_.push_back(index);
+    station.folded = solver_.folded();
+    if (tick_) tick_(station.reachable ? 1 : 0);
+    if (station.reachable && !station.folded) open_.push_back(index);
   }
   template <class Visit>
   void for_each_neighbour(std::size_t index, const Visit& visit) {
@@ -81,6 +87,7 @@ class GridFlood {
     }
   }
 
+  const Tick& tick_;
   PostureSolver solver_;
   Posture start_;
   std::array<long, 3> counts_;
@@ -105,17 +112,19 @@ Components components_to_give(int freedoms, const Components& given, const std::
               place, fmt::format("it must give {}", needs));
 }
 
-std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Demand>& demands) {
+std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Demand>& demands, const Tick& tick) {
   PostureSolver solver(mechanism);
   std::vector<Station> stations;
   for (const Demand& demand : demands) {
     Station& station = stations.emplace_back();
     station.demand = demand;
+    if (tick) tick(1);
     const bool direct = mechanism.closed_form() && demand.inputs.empty() && count(demand.given) == 3;
     const Posture from = direct                  ? Posture{}
                          : demand.inputs.empty() ? regular_start(mechanism, demand.given)
                                                  : mechanism.start();
     station.reachable = solver.reach(demand, from, station.posture, station.why);
+    station.folded = solver.folded();
     if (station.reachable || station.why.input >= 0 || !demand.inputs.empty()) continue;
     Unreachable leg;
     solver.legs_in_reach(demand, from, leg);
@@ -124,7 +133,7 @@ std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Dem
   return stations;
 }
 
-std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times) {
+std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times, const Tick& tick) {
   PostureSolver solver(mechanism);
   const bool direct =
       mechanism.closed_form() && mechanism.platform().has_path() && count(mechanism.platform().path_components()) == 3;
@@ -137,12 +146,14 @@ std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& tim
   for (long k = 0; k < times.count; ++k) {
     Station& station = stations.emplace_back();
     station.time = times.value(k);
+    if (tick) tick(1);
     station.demand = path_demand(mechanism, station.time);
     const auto way = [&](double s) {
       return direct || s == 1.0 ? station.demand : path_demand(mechanism, last + s * (station.time - last));
     };
     station.reachable = solver.reach(way, from, station.posture, station.why);
-    if (direct || !station.reachable) continue;
+    station.folded = solver.folded();
+    if (direct || !station.reachable || station.folded) continue;
     from = station.posture;
     last = station.time;
   }
@@ -150,7 +161,7 @@ std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& tim
 }
 
 std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridValues, 3>& axes, const Components& given,
-                             int threads) {
+                             int threads, const Tick& tick) {
   const std::array<long, 3> counts{axes[0].count, axes[1].count, axes[2].count};
   std::vector<Station> stations(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]));
   std::size_t next = 0;
@@ -166,13 +177,14 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridVal
     }
   }
   if (!mechanism.closed_form() || count(given) < 3) {
-    GridFlood(mechanism, given, counts, stations).run();
+    GridFlood(mechanism, given, counts, stations, tick).run();
     return stations;
   }
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     PostureSolver solver(mechanism);
     for (std::size_t i = first; i < last; ++i) {
       stations[i].reachable = solver.reach(stations[i].demand, {}, stations[i].posture, stations[i].why);
+      if (tick) tick(1);
     }
   });
   return stations;

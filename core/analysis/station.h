@@ -14,6 +14,7 @@ struct Station {
   double time = std::numeric_limits<double>::quiet_NaN();  ///< on a path [s]; NaN elsewhere
   Demand demand;
   bool reachable = false;
+  bool folded = false;  ///< on a fold of its branch (PostureSolver::folded): speeds have no value
   Unreachable why;
   Posture posture;  ///< where it is reachable
 };
@@ -23,17 +24,21 @@ struct Station {
 /// names a file: the mechanism leaves its frame more or fewer freedoms.
 Components components_to_give(int freedoms, const Components& given, const std::string& what, const Location& place);
 
+/// Called with 1 when a pose is taken up and with 0 now and then inside a long one, by any thread; what it throws ends
+/// the analysis. May be empty.
+using Tick = std::function<void(long done)>;
+
 /// Each reached from the start by a straight way.
-std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Demand>& demands);
+std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Demand>& demands, const Tick& tick = {});
 
 /// Along the path of Platform::path, or, where there is none, along what drivers prescribe for the inputs; from the
 /// start time on. Throws Error{numerical} "bad-expression" where the path has no value.
-std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times);
+std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times, const Tick& tick = {});
 
 /// x slowest, then y, then angle. Where all has a closed form every point stands by itself; else points are reached
 /// from their neighbours, beginning next to the start. The result does not depend on `threads`.
 std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridValues, 3>& axes, const Components& given,
-                             int threads);
+                             int threads, const Tick& tick = {});
 
 /// Calls work(worker, first, last) for pieces of 0 .. count, `threads` at a time, `worker` being the number of the
 /// piece. Rethrows the first exception by piece.

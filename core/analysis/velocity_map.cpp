@@ -11,6 +11,7 @@ using Eigen::MatrixXd;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rank_limit = 1e-10;     // of pivots, relative to the largest
+constexpr double folded_limit = 1e-7;    // of both at a fold, which is known to the root of the rounding
 constexpr double nothing = 1e-9;         // of rows, relative to null vectors of length 1
 constexpr double regular_inputs = 1e-9;  // pivots of B of a part that can be told apart by inputs
 
@@ -115,7 +116,7 @@ void VelocityMapper::eliminate(Group& group, const Evaluation& e) {
     }
   }
   if (group.columns == 0) return;
-  group.qr.setThreshold(rank_limit);
+  group.qr.setThreshold(rank_limit_);
   group.qr.compute(group.passive);
   group.right.applyOnTheLeft(group.qr.householderQ().adjoint());
 }
@@ -143,6 +144,13 @@ double VelocityMapper::towards_platform(const Group& group, const Evaluation& e,
   return 1.0;
 }
 
+// Length that a row of several outputs is scaled to 1 in; `turn`: its angle over L.
+double VelocityMapper::output_size(double x, double y, double turn) const {
+  if (place_[0] < 0 || place_[1] < 0) return std::hypot(x, y, turn);
+  const double flat = std::hypot(x, y);
+  return flat > nothing * std::abs(turn) ? flat : std::abs(turn);
+}
+
 // One row for the whole group.
 void VelocityMapper::scale_single(const Group& group, const Evaluation& e, Eigen::Ref<MatrixXd> row) const {
   const double x = place_[0] >= 0 ? row(0, place_[0]) : 0.0, y = place_[1] >= 0 ? row(0, place_[1]) : 0.0;
@@ -152,8 +160,8 @@ void VelocityMapper::scale_single(const Group& group, const Evaluation& e, Eigen
     for (std::size_t i = 0; i < group.inputs.size(); ++i) {
       size = std::hypot(size, turn, row(0, kept_ + static_cast<Index>(i)) / mechanism_.crank_length(group.inputs[i]));
     }
-  } else if (size < nothing) {
-    size = std::abs(turn);
+  } else {
+    size = output_size(x, y, turn);
   }
   if (size < nothing) return;
   row *= towards_platform(group, e, x, y) / size;
@@ -168,7 +176,7 @@ void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows
       for (Index r = 0; r < rows.rows(); ++r) {
         const double x = place_[0] >= 0 ? rows(r, place_[0]) : 0.0, y = place_[1] >= 0 ? rows(r, place_[1]) : 0.0;
         const double turn = place_[2] >= 0 ? rows(r, place_[2]) / mechanism_.length() : 0.0;
-        const double size = std::hypot(x, y) > nothing * std::abs(turn) ? std::hypot(x, y) : std::abs(turn);
+        const double size = output_size(x, y, turn);
         if (size > 0.0) rows.row(r) /= size;
       }
       return;
@@ -181,6 +189,24 @@ void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows
   for (Index r = 0; r < svd.singularValues().size(); ++r) {
     if (svd.singularValues()[r] > nothing) rows.row(r) /= svd.singularValues()[r];
   }
+}
+
+// Rows that only play can violate get behind the others, which are told; of a single output these become orthonormal.
+Index VelocityMapper::separate(const Group& group, Eigen::Ref<MatrixXd> rows) const {
+  const Index inputs = static_cast<Index>(group.inputs.size());
+  MatrixXd scaled = rows.leftCols(kept_ + inputs);
+  if (place_[2] >= 0) scaled.col(place_[2]) /= mechanism_.length();
+  for (Index i = 0; i < inputs; ++i) {
+    scaled.col(kept_ + i) /= mechanism_.crank_length(group.inputs[static_cast<std::size_t>(i)]);
+  }
+  const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeFullU);
+  Index moving = 0;
+  while (moving < svd.singularValues().size() && svd.singularValues()[moving] > row_limit_) ++moving;
+  if (moving == rows.rows() && kept_ > 1) return moving;
+  rows.applyOnTheLeft(svd.matrixU().transpose());
+  rows.bottomRows(rows.rows() - moving).leftCols(kept_ + inputs).setZero();
+  for (Index r = 0; r < moving && kept_ == 1; ++r) rows.row(r) /= svd.singularValues()[r];
+  return moving;
 }
 
 double VelocityMapper::smallest_input(const Group& group, const Eigen::Ref<const MatrixXd>& rows) const {
@@ -197,12 +223,13 @@ Eigen::Index VelocityMapper::take(Group& group, const Evaluation& e, Index first
   const Index count = group.rows - rank;
   if (count == 0) return 0;
   auto rows = group.right.bottomRows(count);
-  if (count == 1) {
-    scale_single(group, e, rows);
-  } else {
-    scale_several(group, rows);
+  const Index moving = count == 1 ? 1 : separate(group, rows);
+  if (moving == 1) {
+    scale_single(group, e, rows.topRows(1));
+  } else if (moving > 1 && kept_ > 1) {
+    scale_several(group, rows.topRows(moving));
   }
-  out.inverse_min = std::min(out.inverse_min, smallest_input(group, rows));
+  out.inverse_min = std::min(out.inverse_min, smallest_input(group, rows.topRows(moving)));
   const Index inputs = static_cast<Index>(group.inputs.size());
   out.a.middleRows(first, count) = rows.leftCols(kept_);
   for (Index i = 0; i < inputs; ++i) {
@@ -215,7 +242,10 @@ Eigen::Index VelocityMapper::take(Group& group, const Evaluation& e, Index first
   return count;
 }
 
-void VelocityMapper::map(const Evaluation& e, VelocityMap& out) {
+void VelocityMapper::map(const Evaluation& e, VelocityMap& out, bool folded) {
+  // Columns of angles have entries of the model's size.
+  rank_limit_ = folded ? folded_limit * std::min(1.0, system_.size()) : rank_limit;
+  row_limit_ = folded ? folded_limit : nothing;
   Index rows = 0;
   for (Group& group : groups_) {
     eliminate(group, e);

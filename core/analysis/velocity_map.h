@@ -16,12 +16,14 @@ namespace freeplay {
 ///   A dX = B dtheta + C delta
 /// dX: the kept ones of dx, dy [m] and dangle [rad] of the platform's frame. dtheta: by input [rad or m]. delta: by
 /// play, 2 numbers, journal centre minus bearing centre [m], world axes. All other coordinates are eliminated part by
-/// part by left null vectors of their columns of the constraint Jacobian, so a row belongs to one part. Rows are scaled
-/// to unit length of their part in (dx, dy): for a leg, A holds the direction u of its passive link, from the input
-/// towards the platform, and its moment about the frame (Gosselin and Angeles 1990). Where a part has as many rows as
-/// inputs, more than one, each row belongs to one input; where it has another number, its rows are orthonormal in
-/// (dx, dy, L dangle). Of a single kept component, A and B (over the crank's length) have length 1 together. Rows that
-/// only play can violate (redundant joints) have A = B = 0.
+/// part by left null vectors of their columns of the constraint Jacobian, so a row belongs to one part. Kept x and y:
+/// rows are scaled to unit length of their part in (dx, dy); for a leg, A holds the direction u of its passive link,
+/// from the input towards the platform, and its moment about the frame (Gosselin and Angeles 1990). Kept angle with x
+/// or y: unit length in them, the angle times L. A single kept component: rows of A and B together are orthonormal, an
+/// angle times L, inputs times the length of their crank; singular values of A and B then do not depend on the choice
+/// of rows. Where a part has as many rows as inputs, more than one, each row belongs to one input (of a single kept
+/// component it does not); where it has another number, its rows are orthonormal in (dx, dy, L dangle). Rows that only
+/// play can violate (redundant joints) have A = B = 0 and stand behind the others of their part.
 struct VelocityMap {
   Eigen::MatrixXd a;         ///< rows x kept components
   Eigen::MatrixXd b;         ///< rows x inputs
@@ -36,8 +38,9 @@ class VelocityMapper {
   /// `kept`: components of the pose that dX holds. What is not kept is eliminated as well.
   VelocityMapper(const IdealMechanism& mechanism, const Components& kept);
 
-  /// `e`: the mechanism's system evaluated at a posture (term_position | term_coordinate).
-  void map(const Evaluation& e, VelocityMap& out);
+  /// `e`: the mechanism's system evaluated at a posture (term_position | term_coordinate). `folded`: the posture is
+  /// known to the root of the rounding only (PostureSolver::folded), so ranks are counted more coarsely.
+  void map(const Evaluation& e, VelocityMap& out, bool folded = false);
 
  private:
   struct Fill {
@@ -59,6 +62,8 @@ class VelocityMapper {
   void make_group(std::vector<int> parts);
   void eliminate(Group& group, const Evaluation& e);
   Eigen::Index take(Group& group, const Evaluation& e, Eigen::Index first, VelocityMap& out);
+  Eigen::Index separate(const Group& group, Eigen::Ref<Eigen::MatrixXd> rows) const;
+  double output_size(double x, double y, double turn) const;
   void scale_single(const Group& group, const Evaluation& e, Eigen::Ref<Eigen::MatrixXd> row) const;
   void scale_several(const Group& group, Eigen::Ref<Eigen::MatrixXd> rows) const;
   double towards_platform(const Group& group, const Evaluation& e, double x, double y) const;
@@ -69,6 +74,7 @@ class VelocityMapper {
   const System& system_;
   std::array<int, 3> place_{};  // of each component among the kept ones, or -1 - its place among the eliminated
   int kept_ = 0, eliminated_ = 0;
+  double rank_limit_ = 0.0, row_limit_ = 0.0;  // below which pivots and rows of the map in hand are none
   std::vector<Group> groups_;
   std::vector<int> column_;  // by body: first column in its group
 };

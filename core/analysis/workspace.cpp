@@ -71,7 +71,7 @@ double end_of_reach(PostureSolver& solver, const Demand& good, const Posture& at
 }  // namespace
 
 WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Station>& stations,
-                               const std::array<GridValues, 3>& axes) {
+                               const std::array<GridValues, 3>& axes, const Tick& tick) {
   WorkspaceShape shape;
   const long nx = axes[0].count, ny = axes[1].count;
   const Cells cells(stations, nx, ny);
@@ -86,6 +86,7 @@ WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Stat
   for (long i = 0; i < nx * ny; ++i) {
     const Station& station = stations[static_cast<std::size_t>(i)];
     reachable += station.reachable ? 1 : 0;
+    if (tick) tick(1);
     for (const long next : {i % ny + 1 < ny ? i + 1 : -1, i + ny < nx * ny ? i + ny : -1}) {
       if (next < 0) continue;
       const Station& other = stations[static_cast<std::size_t>(next)];

@@ -16,7 +16,7 @@ struct WorkspaceShape {
 /// `stations` as on_grid() gives them for `axes`, both of them evenly spaced. Boundary points are found by halving to
 /// 1e-9 of the distance between points.
 WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Station>& stations,
-                               const std::array<GridValues, 3>& axes);
+                               const std::array<GridValues, 3>& axes, const Tick& tick = {});
 
 /// How far the frame gets from `pose`, which is in reach, in the direction `angle` [rad] before the first leg ends, at
 /// most `longest` [m]; gaps narrower than a thousandth of it may be missed.

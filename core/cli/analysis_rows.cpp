@@ -62,7 +62,7 @@ bool follows_path(const Station& station) { return !std::isnan(station.time); }
 struct Looker {
   Looker(const IdealMechanism& mechanism, const Components& kept) : solver(mechanism), mapper(mechanism, kept) {}
   const VelocityMap& look(const Station& station) {
-    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map);
+    mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map, station.folded);
     return map;
   }
   PostureSolver solver;
@@ -84,7 +84,7 @@ void append_inputs(const IdealMechanism& mechanism, const Station& station, Post
                    Row& row) {
   std::vector<double> v(station.posture.q.size(), 0.0), a = v;
   const bool moves = follows_path(station);
-  const bool known = !moves || solver.rates(station.demand, station.posture, v, a);
+  const bool known = !moves || (!station.folded && solver.rates(station.demand, station.posture, v, a));
   const Evaluation& e = solver.evaluate_moving(station.demand.t, station.posture, v, term_velocity);
   const Model& model = mechanism.model();
   for (int i = 0; i < input_count(mechanism); ++i) {
@@ -120,7 +120,7 @@ std::string station_words(const Station& station) {
 }
 
 AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
-                      const std::vector<int>& branch_of) {
+                      const std::vector<int>& branch_of, const Tick& tick) {
   AnalysisTable table;
   table.columns = {"time", "x", "y", "angle"};
   for (int i = 0; i < input_count(mechanism); ++i) {
@@ -133,6 +133,7 @@ AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station
   PostureSolver solver(mechanism);
   Turns turns, frame_turns;
   for (std::size_t k = 0; k < stations.size(); ++k) {
+    tick(1);
     const Station& station = stations[k];
     FramePose pose = shown_pose(station, solver);
     if (!station.demand.given[2]) pose[2] = frame_turns.next(0, pose[2], follows_path(station));
@@ -146,7 +147,7 @@ AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station
 }
 
 AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Station>& stations, const Components& given,
-                             int threads) {
+                             int threads, const Tick& tick) {
   AnalysisTable table;
   table.columns = {"x", "y", "angle", "reachable", "legs", "condition"};
   table.rows.resize(stations.size());
@@ -154,6 +155,7 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {
+      tick(1);
       const Station& station = stations[i];
       const FramePose pose = shown_pose(station, looker.solver);
       double legs = input_count(mechanism), condition = nan;
@@ -170,13 +172,14 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
 }
 
 AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
-                               const Components& given, int threads) {
+                               const Components& given, int threads, const Tick& tick) {
   AnalysisTable table;
   table.columns = {"x", "y", "angle", "reachable", "sigma_min", "sigma_max", "condition", "inverse_min", "kind"};
   table.rows.resize(stations.size());
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {
+      tick(1);
       const Station& station = stations[i];
       const FramePose pose = shown_pose(station, looker.solver);
       Row& row = table.rows[i];
@@ -194,12 +197,13 @@ AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vecto
 }
 
 std::vector<double> determinants(const IdealMechanism& mechanism, const std::vector<Station>& stations,
-                                 const Components& given, int threads) {
+                                 const Components& given, int threads, const Tick& tick) {
   if (static_cast<int>(mechanism.platform().inputs.size()) != count(given)) return {};
   std::vector<double> out(stations.size(), nan);
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {
+      tick(1);
       if (!stations[i].reachable) continue;
       const VelocityMap& map = looker.look(stations[i]);
       if (map.a.rows() == map.a.cols()) out[i] = map.a.determinant();
@@ -209,7 +213,8 @@ std::vector<double> determinants(const IdealMechanism& mechanism, const std::vec
 }
 
 AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
-                         const ErrorColumns& columns, int threads, std::vector<std::string>& warnings) {
+                         const ErrorColumns& columns, int threads, std::vector<std::string>& warnings,
+                         const Tick& tick) {
   AnalysisTable table;
   table.columns = {"x",      "y",        "angle", "reachable", "dx",        "dy",
                    "dangle", "position", "ls_dx", "ls_dy",     "ls_dangle", "ls_position"};
@@ -227,10 +232,11 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
     }
   }
   table.rows.resize(stations.size());
-  std::vector<char> singular(stations.size(), 0);
+  std::vector<char> singular(stations.size(), 0), unclosed = singular;
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, {true, true, true});
     for (std::size_t i = first; i < last; ++i) {
+      tick(1);
       const Station& station = stations[i];
       const FramePose pose = shown_pose(station, looker.solver);
       Row& row = table.rows[i];
@@ -248,23 +254,28 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
       if (columns.sensitivity) append_all(row, error->sensitivity);
       if (columns.samples > 0) {
         // Every row draws its own numbers, whichever thread it falls to.
-        const auto s = sample_play(mechanism, looker.map, columns.samples, columns.seed + 0x9E3779B97F4A7C15u * i);
-        append(row, {s->rms_position, s->rms_dangle, s->max_position, s->max_dangle});
+        const auto s = sample_play(mechanism, looker.map, columns.samples, columns.seed + 0x9E3779B97F4A7C15u * i,
+                                   columns.law, tick);
+        unclosed[i] = !s;
+        if (s) append(row, {s->rms_position, s->rms_dangle, s->max_position, s->max_dangle});
+        row.resize(table.columns.size(), nan);
       }
     }
   });
-  const auto count = std::ranges::count(singular, 1);
-  if (count > 0) {
-    const auto first = static_cast<std::size_t>(std::ranges::find(singular, 1) - singular.begin());
-    warnings.push_back(
-        fmt::format("{}: singular: the platform moves while its inputs are held, its error has no bound{}",
-                    station_words(stations[first]), count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
-  }
+  const auto warn = [&](const std::vector<char>& marked, const char* what) {
+    const auto count = std::ranges::count(marked, 1);
+    if (count == 0) return;
+    const auto first = static_cast<std::size_t>(std::ranges::find(marked, 1) - marked.begin());
+    warnings.push_back(fmt::format("{}: {}{}", station_words(stations[first]), what,
+                                   count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
+  };
+  warn(singular, "singular: the platform moves while its inputs are held, its error has no bound");
+  warn(unclosed, "the mechanism does not close with every pin on its rim, there are no samples");
   return table;
 }
 
 AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
-                                    double preload) {
+                                    double preload, const Tick& tick) {
   AnalysisTable table;
   table.columns = {"time", "x", "y", "angle"};
   for (int i = 0; i < input_count(mechanism); ++i) {
@@ -282,8 +293,9 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
   InverseDynamics dynamics(solver);
   Turns turns;
   for (const Station& station : stations) {
+    tick(1);
     std::vector<double> v(station.posture.q.size(), 0.0), a = v;
-    if (follows_path(station) && !solver.rates(station.demand, station.posture, v, a)) {
+    if (follows_path(station) && (station.folded || !solver.rates(station.demand, station.posture, v, a))) {
       throw Error(Error::Category::numerical, "singular",
                   fmt::format("{}: a singular pose, speeds and accelerations have no value", station_words(station)));
     }

@@ -15,6 +15,7 @@
 #include "analysis/singularity.h"
 #include "analysis/workspace.h"
 #include "cli/analysis_rows.h"
+#include "cli/analysis_watch.h"
 #include "cli/analyze_options.h"
 #include "cli/failure.h"
 #include "cli/load_model.h"
@@ -38,11 +39,15 @@ int thread_count() {
 /// One analysis of a model that was read.
 class AnalyzeJob {
  public:
-  AnalyzeJob(LoadedModel& loaded, const AnalyzeOptions& options)
-      : loaded_(loaded), options_(options), mechanism_(*loaded.model, platform(*loaded.model, options)) {}
+  AnalyzeJob(LoadedModel& loaded, const AnalyzeOptions& options, AnalysisWatch& watch)
+      : loaded_(loaded),
+        options_(options),
+        watch_(watch),
+        mechanism_(*loaded.model, platform(*loaded.model, options)) {}
 
   AnalysisTable execute() {
     find_freedoms();
+    warn_idle_elbow();
     find_stations();
     if (options_.branches) find_branches();
     check_reach();
@@ -82,7 +87,8 @@ class AnalyzeJob {
     if (!std::ranges::is_sorted(map.x) || !std::ranges::is_sorted(map.y)) {
       throw Error(Error::Category::usage, "bad-value", "--svg needs a grid whose x and y grow");
     }
-    map.determinant = determinants(mechanism_, stations_, given_, thread_count());
+    map.determinant =
+        determinants(mechanism_, stations_, given_, thread_count(), watch_.begin("signs of the map", stations_.size()));
     const auto& path = mechanism_.platform().path;
     for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
       const Settings& settings = model().settings;
@@ -132,6 +138,29 @@ class AnalyzeJob {
                 section().joints_location.value_or(mechanism_.platform().location));
   }
 
+  /// Working modes are those of a crank and a coupler on pins below the frame.
+  void warn_idle_elbow() {
+    const bool option = !options_.elbow.empty();
+    if (!option && !section().elbow_location) return;
+    if (option && (!options_.input.empty() || options_.branches)) {
+      warnings_.push_back(
+          fmt::format("--elbow chooses nothing with {} [elbow-ignored]",
+                      options_.branches ? "--branches: every mode is shown" : "--input: the start tells the assembly"));
+      return;
+    }
+    std::vector<std::string> idle;
+    for (const int j : mechanism_.platform().inputs) {
+      if (find_leg_chain(mechanism_.model(), j, mechanism_.platform().marker)) continue;
+      idle.push_back(fmt::format("'{}'", model().joints[static_cast<std::size_t>(j)].name));
+    }
+    if (idle.empty()) return;
+    warnings_.push_back(
+        fmt::format("{}: no crank and coupler on pins lead from {} to the platform: the start tells {} "
+                    "working mode{} [elbow-ignored]",
+                    option ? "--elbow" : "'analysis.elbow'", fmt::join(idle, ", "), idle.size() == 1 ? "its" : "their",
+                    idle.size() == 1 ? "" : "s"));
+  }
+
   void find_stations() {
     const int ways = (options_.pose.empty() ? 0 : 1) + (options_.grid.empty() ? 0 : 1) +
                      (options_.time.empty() ? 0 : 1) + (options_.input.empty() ? 0 : 1);
@@ -161,7 +190,7 @@ class AnalyzeJob {
       if (demand.given == given_) continue;
       throw Error(Error::Category::usage, "bad-value", "every --pose must give the same of x, y and angle");
     }
-    stations_ = at_demands(mechanism_, demands);
+    stations_ = at_demands(mechanism_, demands, watch_.begin("poses found", demands.size()));
   }
 
   void stations_at_inputs() {
@@ -179,7 +208,7 @@ class AnalyzeJob {
       demands.push_back(demand);
     }
     given_ = default_components();
-    stations_ = at_demands(mechanism_, demands);
+    stations_ = at_demands(mechanism_, demands, watch_.begin("poses found", demands.size()));
   }
 
   void stations_on_path(const GridValues& times) {
@@ -197,7 +226,7 @@ class AnalyzeJob {
     } else {
       given_ = default_components();
     }
-    stations_ = along_path(mechanism_, times);
+    stations_ = along_path(mechanism_, times, watch_.begin("poses found", static_cast<std::size_t>(times.count)));
   }
 
   void stations_on_grid() {
@@ -231,18 +260,25 @@ class AnalyzeJob {
                   from_options ? Location{} : Location{model().file, 0, 0});
     }
     axes_ = values;
-    stations_ = on_grid(mechanism_, axes_, given_, thread_count());
+    stations_ = on_grid(mechanism_, axes_, given_, thread_count(),
+                        watch_.begin("poses found", static_cast<std::size_t>(points)));
     on_grid_ = true;
   }
 
-  /// Where nobody says which components of the pose are meant: the first that the mechanism can be given.
-  Components default_components() const {
+  /// The components of the path or the grid. Where nobody says which are meant: the first that the mechanism can be
+  /// given, with a word where that matters.
+  Components default_components() {
     const Components path = mechanism_.platform().path_components();
     if (count(path) == std::min(freedoms_, 3)) return path;
     Components grid{};
     for (std::size_t i = 0; i < 3; ++i) grid[i] = section().grid[i].has_value();
     if (count(grid) == std::min(freedoms_, 3)) return grid;
-    return {true, freedoms_ > 1, freedoms_ > 2};
+    const Components first{true, freedoms_ > 1, freedoms_ > 2};
+    if (freedoms_ < 3 && (wants("workspace") || wants("singularity"))) {
+      warnings_.push_back(fmt::format("no path or grid of 'analysis' tells the outputs: {} taken",
+                                      freedoms_ > 1 ? "x and y are" : "x is"));
+    }
+    return first;
   }
 
   void check_reach() {
@@ -267,9 +303,10 @@ class AnalyzeJob {
       throw Error(Error::Category::usage, "bad-value", "--branches is for ik with --pose or --input");
     }
     std::vector<Station> all;
+    const Tick tick = watch_.begin("sets of branches found", stations_.size());
     for (const Station& station : stations_) {
       int number = 0;
-      for (Posture& posture : all_postures(mechanism_, station.demand)) {
+      for (Posture& posture : all_postures(mechanism_, station.demand, tick)) {
         all.push_back(station);
         all.back().posture = std::move(posture);
         all.back().reachable = true;
@@ -284,27 +321,30 @@ class AnalyzeJob {
 
   AnalysisTable rows() {
     const int threads = thread_count();
-    if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_);
-    if (wants("workspace")) return workspace(threads);
-    if (wants("singularity")) return singularity_rows(mechanism_, stations_, given_, threads);
+    const Tick tick = watch_.begin("poses analysed", stations_.size());
+    if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_, tick);
+    if (wants("workspace")) return workspace(threads, tick);
+    if (wants("singularity")) return singularity_rows(mechanism_, stations_, given_, threads, tick);
     if (wants("error")) {
       ErrorColumns columns;
       columns.sensitivity = options_.sensitivity;
       if (!options_.samples.empty()) columns.samples = whole_number("--samples", options_.samples, 1);
       if (!options_.seed.empty()) columns.seed = static_cast<std::uint64_t>(whole_number("--seed", options_.seed, 0));
+      if (!options_.distribution.empty()) columns.law = play_law_of(options_.distribution);
       if (mechanism_.plays().empty() && mechanism_.input_error() == 0.0) {
         warnings_.push_back("no joint has clearance and no input errs: all errors are 0");
       }
-      return error_rows(mechanism_, stations_, columns, threads, warnings_);
+      return error_rows(mechanism_, stations_, columns, threads, warnings_, tick);
     }
     const double preload = options_.preload.empty() ? 0.0 : preload_of(options_.preload);
-    return inverse_dynamics_rows(mechanism_, stations_, preload);
+    return inverse_dynamics_rows(mechanism_, stations_, preload, tick);
   }
 
-  AnalysisTable workspace(int threads) {
-    AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads);
+  AnalysisTable workspace(int threads, const Tick& tick) {
+    AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads, tick);
     if (!on_grid_ || !given_[0] || !given_[1] || axes_[2].count != 1) return table;
-    const WorkspaceShape shape = workspace_shape(mechanism_, stations_, axes_);
+    const WorkspaceShape shape =
+        workspace_shape(mechanism_, stations_, axes_, watch_.begin("edges searched", stations_.size()));
     table.summary["area"] = shape.area;
     table.summary["regions"] = shape.regions;
     table.summary["holes"] = shape.holes;
@@ -337,7 +377,13 @@ class AnalyzeJob {
             {"share", std::move(shares)}};
   }
 
-  static double preload_of(const std::string& text) {
+  /// A torque where all inputs turn, a force where all slide; either where they differ.
+  double preload_of(const std::string& text) const {
+    int turning = 0;
+    const int inputs = static_cast<int>(mechanism_.platform().inputs.size());
+    for (int i = 0; i < inputs; ++i) turning += mechanism_.is_angle(i) ? 1 : 0;
+    if (turning == 0) return signed_quantity("--preload", text, dimension::force);
+    if (turning == inputs) return signed_quantity("--preload", text, dimension::torque);
     try {
       return signed_quantity("--preload", text, dimension::torque);
     } catch (const Error&) {
@@ -357,6 +403,13 @@ class AnalyzeJob {
       own["redundant_constraints"] = mobility_->general.redundant_rows;
       own["special_configuration"] = mobility_->special();
     }
+    if (wants("workspace") || wants("singularity")) {
+      constexpr const char* words[] = {"x", "y", "angle"};
+      own["outputs"] = Json::array();
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (given_[i]) own["outputs"].push_back(words[i]);
+      }
+    }
     own["points"] = stations_.size();
     own["reachable"] = std::ranges::count(stations_, true, &Station::reachable);
     if (wants("error") && stations_.size() == 1 && stations_.front().reachable) own["worst"] = causes();
@@ -366,6 +419,7 @@ class AnalyzeJob {
 
   LoadedModel& loaded_;
   const AnalyzeOptions& options_;
+  AnalysisWatch& watch_;
   IdealMechanism mechanism_;
   std::optional<GeneralMobility> mobility_;
   int freedoms_ = 3;
@@ -387,8 +441,14 @@ void refuse_idle_options(const AnalyzeOptions& options) {
   only(options.sensitivity, "--sensitivity", "error");
   only(!options.samples.empty(), "--samples", "error");
   only(!options.seed.empty(), "--seed", "error");
+  only(!options.distribution.empty(), "--distribution", "error");
   only(!options.preload.empty(), "--preload", "inverse-dynamics");
   only(options.branches, "--branches", "ik");
+  for (const auto& [text, option] : {std::pair{&options.seed, "--seed"}, {&options.distribution, "--distribution"}}) {
+    if (text->empty() || !options.samples.empty()) continue;
+    throw Error(Error::Category::usage, "bad-value", fmt::format("{} is given without --samples", option), {},
+                "--samples N draws random play");
+  }
 }
 
 int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
@@ -404,10 +464,18 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   std::vector<std::string> warnings;
   std::string drawing;
   try {
-    AnalyzeJob job(loaded, options);
+    AnalysisWatch watch(stderr_is_terminal() && !common.quiet);
+    AnalyzeJob job(loaded, options, watch);
     table = job.execute();
     warnings = job.warnings();
     if (!options.svg.empty()) drawing = job.drawing(table);
+  } catch (const Interrupted&) {
+    Diagnostic diagnostic;
+    diagnostic.id = "interrupted";
+    diagnostic.message = "interrupted, nothing was written";
+    diagnostic.location = {options.model, 0, 0};
+    loaded.diagnostics.add(std::move(diagnostic));
+    return report_failure(loaded.diagnostics, 130, common);
   } catch (const Error& error) {
     if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw;
     Diagnostic diagnostic = as_diagnostic(error);
@@ -443,6 +511,8 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
   app->add_flag("--sensitivity", options->sensitivity, "error: sensitivity to the clearance of each joint");
   app->add_option("--samples", options->samples, "error: columns of N samples of random play")->type_name("N");
   app->add_option("--seed", options->seed, "Of the samples (0)")->type_name("S");
+  app->add_option("--distribution", options->distribution, "Of the samples: uniform (default), rim or normal[:SIGMA]")
+      ->type_name("LAW");
   app->add_flag("--branches", options->branches, "ik: all working modes of a --pose, all assemblies of an --input");
   app->add_option("--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers")
       ->type_name("VALUE");

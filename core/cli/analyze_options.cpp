@@ -132,6 +132,23 @@ std::vector<Jet> inputs_of(const std::string& text, const Model& model, const st
   return values;
 }
 
+PlayLaw play_law_of(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string word = trimmed(text.substr(0, colon));
+  require_word("distribution of --distribution", word, {"uniform", "rim", "normal"});
+  PlayLaw law;
+  law.kind = word == "rim" ? PlayLaw::Kind::rim : word == "normal" ? PlayLaw::Kind::normal : PlayLaw::Kind::uniform;
+  if (colon == std::string::npos) return law;
+  if (word != "normal") bad_value("--distribution", text, fmt::format("'{}' takes no number", word));
+  law.sigma = signed_quantity("--distribution", text.substr(colon + 1), dimension::none);
+  constexpr double widest = 1000.0;  // as good as uniform
+  if (!(law.sigma > 0.0) || law.sigma > widest) {
+    bad_value("--distribution", text,
+              "the standard deviation is a share of the clearance, greater than 0 and at most 1000");
+  }
+  return law;
+}
+
 long whole_number(const std::string& option, const std::string& text, long least) {
   const double value = signed_quantity(option, text, dimension::none);
   if (value != std::floor(value) || value < static_cast<double>(least) || value > 1e9) {

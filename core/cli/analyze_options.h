@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "analysis/play_law.h"
 #include "analysis/station.h"
 #include "cli/options.h"
 
 namespace freeplay {
 
 struct AnalyzeOptions {
-  std::string kind, model, frame, time, elbow, out, svg, samples, seed, preload;
+  std::string kind, model, frame, time, elbow, out, svg, samples, seed, distribution, preload;
   std::vector<std::string> grid, pose, input;
   bool sensitivity = false, branches = false;
   ModelOptions build;
@@ -35,6 +36,8 @@ std::vector<int> elbow_of(const std::string& text);
 /// "JOINT=VALUE,...": values by input, NaN for those that are not named. Throws Error{usage} "bad-value",
 /// "unknown-name".
 std::vector<Jet> inputs_of(const std::string& text, const Model& model, const std::vector<int>& inputs);
+/// "uniform", "rim", "normal" or "normal:SIGMA". Throws Error{usage} "bad-value", "unknown-name".
+PlayLaw play_law_of(const std::string& text);
 /// A whole number from `least` to 10^9. Throws Error{usage} "bad-value".
 long whole_number(const std::string& option, const std::string& text, long least);
 

@@ -23,11 +23,22 @@ std::string clock_text(double seconds) {
   return fmt::format("{:02}:{:02}", s / 60, s % 60);
 }
 
+/// For a share that is done after `elapsed` seconds.
+std::string eta_text(double share, double elapsed) {
+  return share > 0.0 ? clock_text(elapsed * (1.0 - share) / share) : "--:--";
+}
+
 }  // namespace
+
+std::string progress_text(const char* what, long done, long total, double elapsed) {
+  const double share = total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 0.0;
+  return fmt::format("{:4.0f} %  {} / {} {}  eta {}", std::floor(100.0 * share), grouped(done), grouped(total), what,
+                     eta_text(share, elapsed));
+}
 
 std::string progress_text(double start, double end, double t, long steps, double elapsed) {
   const double done = std::clamp((t - start) / (end - start), 0.0, 1.0);
-  const std::string eta = done > 0.0 ? clock_text(elapsed * (1.0 - done) / done) : "--:--";
+  const std::string eta = eta_text(done, elapsed);
   return fmt::format("{:4.0f} %  t = {:.3g} / {:g} s  {} steps  eta {}", std::floor(100.0 * done), t, end,
                      grouped(steps), eta);
 }
@@ -42,11 +53,21 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::update(double t, long steps) {
-  const auto now = std::chrono::steady_clock::now();
-  if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return;
-  last_ = now;
-  show(progress_text(start_, end_, t, steps, std::chrono::duration<double>(now - began_).count()));
+  if (due()) show(progress_text(start_, end_, t, steps, elapsed()));
 }
+
+void ProgressLine::update(const char* what, long done, long total) {
+  if (due()) show(progress_text(what, done, total, elapsed()));
+}
+
+bool ProgressLine::due() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!shown_ || now - last_ < std::chrono::milliseconds(100)) return false;
+  last_ = now;
+  return true;
+}
+
+double ProgressLine::elapsed() const { return std::chrono::duration<double>(last_ - began_).count(); }
 
 void ProgressLine::show(const std::string& line) {
   // Blanks over the rest of the last line: escape sequences are not for every terminal.

@@ -11,14 +11,20 @@ namespace freeplay {
 class ProgressLine {
  public:
   ProgressLine(double start, double end, bool shown);
+  /// Of something that is counted.
+  explicit ProgressLine(bool shown) : ProgressLine(0.0, 0.0, shown) {}
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// Shows simulated time `t` [s]; at most ten times a second.
   void update(double t, long steps);
+  /// Shows how many of `total` are done, and what they are.
+  void update(const char* what, long done, long total);
 
  private:
+  bool due();
+  double elapsed() const;
   void show(const std::string& line);
 
   double start_, end_;
@@ -29,5 +35,7 @@ class ProgressLine {
 
 /// `  42 %  t = 0.252 / 0.6 s  126 000 steps  eta 00:12`, after `elapsed` seconds of work.
 std::string progress_text(double start, double end, double t, long steps, double elapsed);
+/// `  42 %  16 800 / 40 000 poses found  eta 00:12`.
+std::string progress_text(const char* what, long done, long total, double elapsed);
 
 }  // namespace freeplay

@@ -1,6 +1,7 @@
 #include "model/leg.h"
 
 #include <cmath>
+#include <limits>
 
 namespace freeplay {
 namespace {
@@ -147,11 +148,20 @@ LegAngles leg_angles(const Leg& leg, double x, double y, double cosine, double s
   const double squared = px * px + py * py;
   const double w1 = 2.0 * leg.crank * px, w2 = 2.0 * leg.crank * py;
   const double w3 = squared + leg.crank * leg.crank - leg.coupler * leg.coupler;
-  const double room = w1 * w1 + w2 * w2 - w3 * w3;
+  double room = w1 * w1 + w2 * w2 - w3 * w3;
   LegAngles angles;
   angles.distance = std::sqrt(squared);
-  angles.reachable = room >= 0.0;
-  if (!angles.reachable) return angles;
+  if (room < 0.0) {
+    // A pose on the edge of reach, written in decimals, misses it by the rounding of pin C: d(room) is
+    // 8 l1 l2 |C - A| times that, besides the rounding of room itself.
+    constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+    const double pin = std::abs(x) + std::abs(y) + std::abs(leg.cx) + std::abs(leg.cy) + std::abs(leg.ax) +
+                       std::abs(leg.ay) + leg.crank + leg.coupler;
+    const double slack = 8.0 * leg.crank * leg.coupler * angles.distance * pin + w1 * w1 + w2 * w2 + w3 * w3;
+    angles.reachable = room >= -rounding * slack;
+    if (!angles.reachable) return angles;
+    room = 0.0;
+  }
   const double direction = std::atan2(w2, w1) + leg.elbow * std::atan2(std::sqrt(room), w3);
   angles.crank = direction - leg.crank_direction;
   angles.coupler =

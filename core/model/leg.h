@@ -60,7 +60,7 @@ CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const Jet& ang
 LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
 
 /// Angles of the bodies of crank and coupler [rad], principal values, without derivatives. A leg that is just stretched
-/// or folded is in reach.
+/// or folded, up to rounding, is in reach.
 struct LegAngles {
   double crank = 0.0, coupler = 0.0;
   bool reachable = true;

@@ -3,11 +3,16 @@ import csv
 import io
 import json
 import math
+import os
+import pty
 import re
+import signal
+import subprocess
+import time
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, mechanism
 
 FOUR_BAR = """freeplay: 1
 bodies:
@@ -22,6 +27,25 @@ joints:
   D: {type: revolute, between: [ground/D, rocker]}
 drivers: {motor: {joint: A, kind: velocity, value: 60 rpm}}
 initial: {joints: {A: 60 deg}}
+simulation: {end: 1 s, step: 1 ms}
+"""
+PARALLEL = """freeplay: 1
+bodies:
+  ground: {frames: {A1: [0, 0], A2: [0.2, 0], A3: [0.4, 0]}}
+  crank1: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {angle: 60 deg}}
+  crank2: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {position: [0.2, 0], angle: 60 deg}}
+  crank3: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {position: [0.4, 0], angle: 60 deg}}
+  bar: {mass: 0.9, inertia: 6e-3, frames: {B1: [0, 0], B2: [0.2, 0], B3: [0.4, 0]}, pose: {position: [0.05, 0.0866025403784]}}
+joints:
+  A1: {type: revolute, between: [ground/A1, crank1]}
+  A2: {type: revolute, between: [ground/A2, crank2]}
+  A3: {type: revolute, between: [ground/A3, crank3]}
+  B1: {type: revolute, between: [crank1/tip, bar/B1]}
+  B2: {type: revolute, between: [crank2/tip, bar/B2]}
+  B3: {type: revolute, between: [crank3/tip, bar/B3]}
+drivers:
+  m1: {joint: A1, kind: angle, value: 60 deg}
+analysis: {frame: bar/B2, joints: [A1], error: {clearance: {B3: 0.1 mm}}}
 simulation: {end: 1 s, step: 1 ms}
 """
 ERROR = "x,y,angle,reachable,dx,dy,dangle,position,ls_dx,ls_dy,ls_dangle,ls_position"
@@ -130,6 +154,41 @@ class Analyze(ProgramTest):
                     gap = float(found["joint.%s.angle" % name]) - crank(a, side, 0.04, 0.25)
                     self.assertAlmostEqual(0, math.remainder(gap, 2 * math.pi), 9)
 
+    def test_elbow_that_chooses_nothing_is_told(self):
+        five_bar = ("ik", mechanism("five-bar"), "--pose", "0.04,0.25")
+        for words, wanted in (
+                (("ik", mechanism("3-rpr"), "--pose", "0,0.1,0.1", "--elbow", "-1"), "lead from 'leg1.P', 'leg2.P', 'leg3.P' to"),
+                ((*five_bar, "--elbow", "-1"), "lead from 'A1' to the platform: the start tells its working mode"),
+                ((*five_bar, "--elbow", "1", "--branches"), "chooses nothing with --branches"),
+                (("ik", mechanism("five-bar"), "--input", "A1=2,A2=1.1", "--elbow", "1"), "chooses nothing with --input"),
+                (five_bar, None), (("ik", mechanism("3-rrr"), "--pose", "0,0,0", "--elbow", "-1"), None)):
+            _, err = self.freeplay("analyze", *words)
+            if wanted is None:
+                self.assertEqual("", err)
+            else:
+                self.assertIn(wanted, err)
+                self.assertRegex(err, r"^\S+\.yaml: warning: --elbow.*\[elbow-ignored\]\n$")
+        text = self.text("3-rpr").replace("analysis:\n", "analysis:\n  elbow: -1\n")
+        _, err = self.freeplay("analyze", "ik", self.write("m.yaml", text), "--pose", "0,0.1,0.1")
+        self.assertIn("'analysis.elbow': no crank and coupler", err)
+
+    def test_outputs_are_those_of_the_pose(self):
+        def outputs(*words):
+            out, err = self.freeplay("analyze", "singularity", *words, "--json")
+            return json.loads(out)["summary"]["outputs"], err
+
+        model = self.write("m.yaml", FOUR_BAR + "analysis: {frame: coupler/P}\n")
+        self.assertEqual((["y"], ""), outputs(model, "--pose", "y=0.14"))
+        self.assertEqual((["x", "y"], ""), outputs(mechanism("five-bar"), "--input", "A1=2,A2=1.1"))
+        names, err = outputs(model, "--input", "A=1.2")
+        self.assertEqual(["x"], names)
+        self.assertIn("tells the outputs: x is taken", err)
+        # Dead centres of a slider-crank: of the slider, not of the crank.
+        for frame, component, kind in (("slider", "x", "inverse"), ("crank", "angle", "none")):
+            row, = self.rows("singularity", self.write("s.yaml", self.text("slider-crank") + "analysis: {grid: {%s: 0}}\n" % component),
+                             "--frame", frame, "--input", "main=0")
+            self.assertEqual(kind, row["kind"])
+
     def test_shares_add_up_where_one_joint_has_play_and_a_driver(self):
         with open(mechanism("3-rrr"), encoding="utf-8") as file:
             text = file.read().split("\nanalysis:")[0]
@@ -148,6 +207,24 @@ class Analyze(ProgramTest):
         self.assertGreater(float(row["sample_rms_position"]), 5e-5)
         self.assertEqual([row], self.rows(*words, "--seed", "5"))
         self.assertNotEqual([row], self.rows(*words, "--seed", "6"))
+
+    def test_samples_follow_the_law_that_is_given(self):
+        # One loose joint: the position errs by a number of the law, whose standard deviation is known.
+        model = self.write("m.yaml", self.text("five-bar").split("\nanalysis:")[0] +
+                           "\nanalysis: {error: {clearance: {B2: 0.1 mm}}}\n")
+        words = ("error", model, "--pose", "0.05,0.25", "--samples", "100000")
+        default, = self.rows(*words)
+        q = 4.5  # 1 / (2 sigma^2) for sigma = 1/3
+        for law, variance in (("uniform", 1 / 4), ("rim", 1 / 2), ("normal", (1 - q / math.expm1(q)) / 9),
+                              ("normal:0.05", 0.0025), ("normal: 10 ", 1 / 4)):
+            row, = self.rows(*words, "--distribution", law)
+            wanted = float(row["position"]) * math.sqrt(variance)
+            self.assertAlmostEqual(1, float(row["sample_rms_position"]) / wanted, delta=0.01)
+            self.assertEqual(law == "uniform", row == default)
+        # With redundancy, too, none exceeds the worst case.
+        for law in ("rim", "normal:0.4"):
+            row, = self.rows("error", mechanism("4-rrr"), "--pose", "0.05,0", "--samples", "20000", "--distribution", law)
+            self.assertLess(float(row["sample_max_position"]), float(row["position"]))
 
     # --- sources of poses ----------------------------------------------------------------------------------------
 
@@ -290,6 +367,34 @@ class Analyze(ProgramTest):
         self.assertRegex(text, r'stroke-dasharray="8,4"/>\n<path')  # singular curves, and the legend's piece
         self.assertFalse(re.search("nan|inf", text))
 
+    def test_interrupts_end_it_and_leave_nothing(self):
+        words = [PROGRAM, "analyze", "error", mechanism("4-rrr"), "--pose", "0,0", "--samples", "1000000000", "--json",
+                 "--out", "e.csv"]
+        for sign in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                time.sleep(1.0)
+                process.send_signal(sign)
+                out, err = process.communicate(timeout=60)
+            self.assertEqual(130, process.returncode)
+            self.assertEqual((130, "interrupted"), (json.loads(out)["error"]["exit_code"], json.loads(out)["error"]["messages"][0]["id"]))
+            self.assertEqual([], os.listdir(self.folder))
+
+    def test_long_analyses_tell_how_far_they_are(self):
+        def line(*options):
+            ours, theirs = pty.openpty()
+            words = [PROGRAM, "analyze", "error", mechanism("4-rrr"), "--pose", "0,0", "--samples", "1000000000", *options]
+            with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=theirs) as process:
+                time.sleep(1.5)
+                process.terminate()
+                process.wait(timeout=60)
+            os.close(theirs)
+            text = os.read(ours, 100000).decode()
+            os.close(ours)
+            return text
+
+        self.assertRegex(line(), r"\r +0 %  0 / 1 poses analysed  eta --:-- *\r")
+        self.assertNotIn("%", line("--quiet"))
+
     # --- bad input -----------------------------------------------------------------------------------------------
 
     def test_no_platform(self):
@@ -324,6 +429,24 @@ class Analyze(ProgramTest):
         self.assertIn("singular", err)
         self.assertIn("[singular]", self.message("inverse-dynamics", mechanism("3-rrr"), "--pose", "0,0," + theta, code=4))
 
+    def test_poses_on_a_fold_are_reached_and_singular(self):
+        # 0.35 m is the reach of a leg of the five-bar, 50 + 120 mm that of the crank's slider.
+        for words, poses in ((("five-bar",), ("0.11,0.28", "0.25,0")), (("slider-crank", "--frame", "slider"), ("x=0.17", "x=0.07"))):
+            for pose in poses:
+                row, = self.rows("singularity", mechanism(words[0]), *words[1:], "--pose", pose)
+                self.assertEqual(("1", "inverse"), (row["reachable"], row["kind"]), pose)
+        # On a path through it the speeds have no value, and the leg goes back to its side.
+        model = self.write("m.yaml", self.text("five-bar").replace("250 mm + 40 mm*sin(4*pi*t/1 s)", "280 mm").replace(
+            "x: 40 mm*cos(4*pi*t/1 s)", "x: 80 mm + 30 mm*sin(4*pi*t/1 s)"))
+        before, at, after = self.rows("ik", model, "--time", "0.115:0.135:3")
+        self.assertEqual("", at["joint.A1.speed"])
+        self.assertAlmostEqual(float(before["joint.A1.angle"]), float(after["joint.A1.angle"]), 9)
+        self.assertAlmostEqual(math.atan2(0.28, 0.21), float(at["joint.A1.angle"]), 6)
+        # Three parallel cranks in one line.
+        self.write("p.yaml", PARALLEL)
+        row, = self.rows("singularity", "p.yaml", "--pose", "x=0.3")
+        self.assertEqual(("1", "inverse"), (row["reachable"], row["kind"]))
+
     def test_a_grid_without_a_reachable_point(self):
         for kind in ("workspace", "singularity", "error"):
             out, err = self.freeplay("analyze", kind, mechanism("3-rrr"), "--grid", "x=1:2:3", "--grid", "y=1:2:3",
@@ -356,8 +479,19 @@ class Analyze(ProgramTest):
                 (("error", model, "--frame", "ground", "--pose", "0,0,0"), 3, "is on ground"),
                 (("ik", model, "--samples", "9"), 2, "--samples is for error, not for ik"),
                 (("error", model, "--pose", "0,0,0", "--samples", "many"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "norml"), 2, "did you mean 'normal'?"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "gamma"), 2, "one of uniform, rim"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "normal:0"), 2, "greater than 0"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "normal:"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "normal:1 mm"), 2, "[bad-value]"),
+                (("error", model, "--pose", "0,0,0", "--samples", "9", "--distribution", "rim:1"), 2, "'rim' takes no number"),
+                (("error", model, "--pose", "0,0,0", "--distribution", "rim"), 2, "--distribution is given without --samples"),
+                (("error", model, "--pose", "0,0,0", "--seed", "1"), 2, "--seed is given without --samples"),
+                (("ik", model, "--distribution", "rim"), 2, "--distribution is for error, not for ik"),
                 (("error", model, "--pose", "0,0,0", "--svg", "m.svg"), 2, "--svg draws a map"),
                 (("inverse-dynamics", model, "--pose", "0,0,0", "--preload", "1"), 2, "no driver is redundant"),
+                (("inverse-dynamics", mechanism("4-rrr"), "--pose", "0,0,0", "--preload", "1 N"), 2, "expected torque"),
+                (("inverse-dynamics", mechanism("3-rpr"), "--pose", "0,0,0.1", "--preload", "1 N*m"), 2, "expected force"),
                 (("error", model, "--pos", "0,0,0"), 2, "did you mean '--pose'?"),
                 (("ik", mechanism("five-bar"), "--pose", "0,0.2,0"), 2, "leaves its frame 2 freedoms"),
                 (("error", "missing.yaml"), 3, "missing.yaml")):

@@ -301,14 +301,5 @@ TEST(PlaySamples, StayWithinTheExactWorstCase) {
   }
 }
 
-TEST(PlaySamples, HaveTheVarianceOfDiscs) {
-  Bench bench(platforms::legs_text(platforms::sizes("3-rrr"), 1, {1e-4, 5e-5, 1e-4}));
-  const VelocityMap map = bench.map(bench.reach(Bench::at(0.02, -0.03, 0.1)));
-  const auto samples = sample_play(bench.mechanism, map, 400'000, 2);
-  const auto exact = least_squares_play(bench.mechanism, map);
-  EXPECT_NEAR(samples->rms_position, exact->rms_position, 3e-3 * exact->rms_position);  // 1 / sqrt(400000), thrice
-  EXPECT_NEAR(samples->rms_dangle, exact->rms_dangle, 3e-3 * exact->rms_dangle);
-}
-
 }  // namespace
 }  // namespace freeplay

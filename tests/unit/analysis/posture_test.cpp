@@ -150,6 +150,51 @@ TEST(Posture, LegOfNewtonsMethodThatDoesNotReachIsNamed) {
   EXPECT_THAT(why.text(bench.mechanism), HasSubstr("'P0'"));
 }
 
+// C at the distance l1 + l2 (or none) from A, all around, in numbers that are rounded: in reach, and singular; a little
+// farther it is not.
+TEST(Posture, LegsReachToTheirLastDigit) {
+  const Json m = platforms::sizes("3-rrr");
+  Bench bench(platforms::legs_text(m));
+  const double l3 = m["l3"], l4 = m["l4"], reach = m["l1"].get<double>() + m["l2"].get<double>();
+  const double a = m["first_angle"];
+  const Limb& leg = bench.mechanism.parts()[0];
+  for (int i = 0; i < 500; ++i) {
+    const double direction = 0.0123 * i, angle = 0.3 * std::sin(i);
+    const auto demand = [&](double distance) {
+      return Bench::at(l4 * std::cos(a) + distance * std::cos(direction) - l3 * std::cos(a + angle),
+                       l4 * std::sin(a) + distance * std::sin(direction) - l3 * std::sin(a + angle), angle);
+    };
+    Posture posture = bench.solver.blank();
+    EXPECT_TRUE(bench.solver.place(leg, 1, demand(reach), posture)) << i;
+    EXPECT_FALSE(bench.solver.place(leg, 1, demand(reach + 1e-13), posture)) << i;
+    EXPECT_TRUE(bench.solver.place(leg, 1, demand(reach - 1e-13), posture)) << i;
+  }
+}
+
+TEST(Posture, WaysEndOnAFoldAndNotBehindIt) {
+  Bench bench(test::mechanism("five-bar"));
+  const Posture start = bench.mechanism.start();
+  const Components flat{true, true, false};
+  for (int i = 0; i < 30; ++i) {
+    const double direction = 0.2 + 0.03 * i;  // of the stretched leg on A1
+    const auto demand = [&](double distance) {
+      Demand out = Bench::at(-0.1 + distance * std::cos(direction), distance * std::sin(direction), 0.0);
+      out.given = flat;
+      return out;
+    };
+    Posture posture;
+    Unreachable why;
+    ASSERT_TRUE(bench.solver.reach(demand(0.35), start, posture, why)) << i;
+    EXPECT_TRUE(bench.solver.folded());
+    EXPECT_EQ(singularity_of(bench.map(posture, flat), flat, 1.0).kind, SingularityKind::inverse);
+    const double crank = std::remainder(bench.solver.inputs(posture)[0] - direction, 2.0 * M_PI);
+    EXPECT_NEAR(crank, 0.0, 1e-6);  // the root of the rounding
+    EXPECT_FALSE(bench.solver.reach(demand(0.35 + 1e-12), start, posture, why)) << i;
+    EXPECT_TRUE(bench.solver.reach(demand(0.3499), start, posture, why)) << i;
+    EXPECT_FALSE(bench.solver.folded());
+  }
+}
+
 TEST(Posture, AllAssembliesOfTheDirectProblem) {
   for (const Json& entry : platforms::numbers()["direct_kinematics"]) {
     Bench bench(platforms::legs_text(platforms::sizes(entry["mechanism"])));

@@ -6,6 +6,7 @@
 
 #include "analysis/inverse_dynamics.h"
 #include "analysis/mobility.h"
+#include "analysis/play_samples.h"
 #include "analysis/station.h"
 #include "unit/analysis/platforms.h"
 
@@ -162,6 +163,74 @@ TEST(Singularity, InverseWhereALegIsStretched) {
   const Singularity s = singularity_of(bench.map(posture), {true, true, true}, bench.mechanism.length());
   EXPECT_LT(s.inverse_min, singular_limit);
   EXPECT_EQ(s.kind, SingularityKind::inverse);
+}
+
+// Cranks of 0.1 m keep a bar parallel: x = 0.2 + 0.1 cos theta, so (dx, 0.1 dtheta, ...) = (-s, 1, ...) and the rows of
+// (A, B) span what is normal to that, however many cranks are driven.
+std::string parallel_cranks(const std::string& inputs) {
+  return "freeplay: 1\nbodies:\n  ground: {frames: {A1: [0, 0], A2: [0.2, 0], A3: [0.4, 0]}}\n"
+         "  crank1: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {angle: 60 deg}}\n"
+         "  crank2: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {position: [0.2, 0], angle: 60 deg}}\n"
+         "  crank3: {mass: 0.3, inertia: 1e-3, frames: {tip: [0.1, 0]}, pose: {position: [0.4, 0], angle: 60 deg}}\n"
+         "  bar: {mass: 0.9, inertia: 6e-3, frames: {B1: [0, 0], B2: [0.2, 0], B3: [0.4, 0]}, "
+         "pose: {position: [0.05, 0.0866025403784]}}\njoints:\n"
+         "  A1: {type: revolute, between: [ground/A1, crank1]}\n  A2: {type: revolute, between: [ground/A2, crank2]}\n"
+         "  A3: {type: revolute, between: [ground/A3, crank3]}\n  B1: {type: revolute, between: [crank1/tip, bar/B1]}\n"
+         "  B2: {type: revolute, between: [crank2/tip, bar/B2]}\n  B3: {type: revolute, between: [crank3/tip, "
+         "bar/B3]}\n"
+         "drivers: {motor: {joint: A1, kind: angle, value: 60 deg}}\nanalysis: {frame: bar/B2, joints: [" +
+         inputs + "], error: {clearance: {B3: 0.1 mm}}}\nsimulation: {end: 1 s, step: 1 ms}\n";
+}
+
+TEST(Singularity, OfOneOutputDoesNotDependOnTheChoiceOfRows) {
+  for (const auto& [inputs, count] : {std::pair{"A1", 1}, {"A1, A3", 2}, {"A1, A2, A3", 3}}) {
+    Bench bench(parallel_cranks(inputs));
+    for (const double x : {0.21, 0.25, 0.2999}) {
+      Demand demand = Bench::at(x, 0.0, 0.0);
+      demand.given = {true, false, false};
+      const VelocityMap map = bench.map(bench.reach(demand), {true, false, false});
+      const Singularity s = singularity_of(map, {true, false, false}, bench.mechanism.length());
+      const double c = (x - 0.2) / 0.1, sine = 1.0 - c * c;
+      EXPECT_NEAR(s.sigma_min, std::sqrt(count / (count + sine)), 1e-9) << inputs;
+      EXPECT_NEAR(s.inverse_min, std::sqrt(sine / (count + sine)), 1e-9) << inputs;
+      EXPECT_EQ(s.sigma_max, s.sigma_min);
+    }
+  }
+}
+
+TEST(Singularity, OfAnAngleAndAPositionHasRowsOfLengthOne) {
+  Bench bench(test::mechanism("five-bar"));
+  const Components kept{true, false, true};
+  const VelocityMap map = bench.map(bench.mechanism.start(), kept);
+  ASSERT_EQ(map.a.rows(), 2);
+  for (Eigen::Index r = 0; r < 2; ++r) {
+    EXPECT_NEAR(std::hypot(map.a(r, 0), map.a(r, 1) / bench.mechanism.length()), 1.0, 1e-12);
+  }
+}
+
+TEST(Singularity, JointsThatAddNothingChangeNothing) {
+  const std::string plain = platforms::legs_text(platforms::sizes("3-rrr"));
+  const std::string joint = "  B0: {type: revolute, between: [crank0/tip, coupler0]}\n";
+  Bench bench(plain), doubled(test::replaced(plain, joint, joint + "  B0again" + joint.substr(4)));
+  const Posture posture = bench.reach(Bench::at(0.05, 0.02, 0.1));
+  const Components all{true, true, true};
+  const VelocityMap map = bench.map(posture), twice = doubled.map(posture);
+  EXPECT_EQ(map.a.rows() + 2, twice.a.rows());
+  const Singularity s = singularity_of(map, all, bench.mechanism.length());
+  const Singularity t = singularity_of(twice, all, doubled.mechanism.length());
+  EXPECT_NEAR(s.sigma_min, t.sigma_min, 1e-12);
+  EXPECT_NEAR(s.sigma_max, t.sigma_max, 1e-12);
+  EXPECT_NEAR(s.inverse_min, t.inverse_min, 1e-12);
+}
+
+TEST(PlaySamples, AreNoneWhereEveryRimCannotBeTouched) {
+  // Two driven cranks hold the bar, and the loose pin in the middle of its play.
+  Bench bench(parallel_cranks("A1, A3"));
+  Demand demand = Bench::at(0.23, 0.0, 0.0);
+  demand.given = {true, false, false};
+  const VelocityMap map = bench.map(bench.reach(demand));
+  EXPECT_TRUE(sample_play(bench.mechanism, map, 10, 1));
+  EXPECT_FALSE(sample_play(bench.mechanism, map, 10, 1, {PlayLaw::Kind::rim}));
 }
 
 TEST(Mobility, CountsFreedomsAndRedundantDrivers) {
