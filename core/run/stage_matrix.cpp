@@ -190,6 +190,7 @@ void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const d
 }
 
 void StageMatrix::solve(std::span<double> right, std::span<double> update) const {
+  const Profile::Timer timer(system_.profile(), Phase::solution);
   using Vector = Eigen::Vector3d;
   const int nv = system_.layout().nv();
   for (const Prescribed& body : prescribed_) {

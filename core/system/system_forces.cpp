@@ -12,6 +12,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const {
+  const Profile::Timer timer(profile_, Phase::joints);
   std::ranges::copy(weight_, e.force.begin());
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];
