@@ -12,6 +12,7 @@ import platform
 import subprocess
 import sys
 
+import page
 import pareto
 import parts
 import versus
@@ -59,6 +60,7 @@ def parser():
                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("names", nargs="*", metavar="NAME", help="parts to measure (default: all)")
     words.add_argument("--quick", action="store_true", help="fewer runs, nothing large: to see that all of it works")
+    words.add_argument("--page", action="store_true", help="write the tables into docs/performance.md, too")
     words.add_argument("--vs", metavar="REV", help="time this tree and the revision REV of git in turn")
     words.add_argument("--program", default=os.path.join(ROOT, "build", "release", "freeplay"), help=argparse.SUPPRESS)
     words.add_argument("--kernels", default=os.path.join(ROOT, "build", "release", "tests", "kernel_bench"), help=argparse.SUPPRESS)
@@ -75,7 +77,9 @@ def parse(arguments):
     reader = parser()
     options, unknown = reader.parse_known_args(arguments)
     for word in unknown:
-        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--vs", "--help"])))
+        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--page", "--vs", "--help"])))
+    if options.page and (options.quick or options.vs):
+        reader.exit(2, "bench: --page takes neither --quick nor --vs: the page tells what was measured in full\n")
     for name in options.names:
         if name not in PARTS:
             reader.exit(2, "bench: there is no part '%s'%s\n%s\n" % (name, meant(name, PARTS) or ";", help_of_parts()))
@@ -108,6 +112,8 @@ def main(arguments):
     with open(path, "w", encoding="utf-8") as file:
         json.dump(results, file, indent=1)
         file.write("\n")
+    if options.page:
+        page.rewrite(results)
     bench.print("\nall numbers are in " + os.path.relpath(path))
     return 0
 

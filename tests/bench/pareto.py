@@ -69,7 +69,7 @@ def measure(bench, problem):
     bench.print(table(["integrator", "", "[s] or [m]", "error [m]", "wall s/s", "steps"], [
         [r["integrator"], r["kind"], "%g" % r["value"]] + (
             ["failed", "", ""] if "failure" in r else ["%.2e" % r["error"], "%.4g" % r["rate"], r["steps"]]) for r in records]))
-    result = {"reference": source, "own_from_stored": apart, "runs": records}
+    result = {"target": problem.target, "reference": source, "own_from_stored": apart, "runs": records}
     best = cheapest(records, problem.target, "integrator")
     if bench.hand and problem.hand:
         theirs = bench.hand.all(problem, bench.quick)
@@ -116,7 +116,8 @@ def compare(bench, problem, best, hand_best, records, theirs):
         run = lambda: min(bench.program.run(problem.file(), a["options"]).rate for _ in range(BEST))
         left, right = alternate(bench.passes, run, lambda: bench.hand.again(problem, b))
         factor = ratio(left, right)
-        found.append({"what": what, "ours": a, "theirs": b, "rates": left, "their_rates": right, "ratio": factor})
+        found.append({"what": what, "ours": a, "theirs": b, "rate": median(left), "their_rate": median(right), "ratio": factor,
+                      "rates": left, "their_rates": right})
         rows.append([what, "%s %s %g" % (a["integrator"], a["kind"], a["value"]), "%.2e" % a["error"], "%.4g" % median(left),
                      "%s %g" % (b["method"], b["value"]), "%.2e" % b["error"], "%.4g" % median(right), "%.2f" % factor])
     bench.print("ratios, median of %d, taken in turn:" % bench.passes)
