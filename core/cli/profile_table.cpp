@@ -15,10 +15,15 @@ struct Row {
   const char* unit;  // what its count counts
 };
 constexpr Row rows[] = {
-    {Phase::assembly, "assembly", "evaluations"},     {Phase::joints, "joints and contact", "times"},
-    {Phase::factorization, "factorization", "times"}, {Phase::solution, "solution", "times"},
-    {Phase::integrator, "integrator", "attempts"},    {Phase::events, "events", "looks"},
-    {Phase::statistics, "statistics", "states"},      {Phase::output, "output", "rows"},
+    {Phase::start, "start", "times"},
+    {Phase::assembly, "assembly", "evaluations"},
+    {Phase::joints, "joints and contact", "times"},
+    {Phase::factorization, "factorization", "times"},
+    {Phase::solution, "solution", "times"},
+    {Phase::integrator, "integrator", "attempts"},
+    {Phase::events, "events", "looks"},
+    {Phase::statistics, "statistics", "states"},
+    {Phase::output, "output", "rows"},
 };
 
 }  // namespace

@@ -8,10 +8,11 @@
 
 namespace freeplay {
 
-/// What a run may be doing. Each moment belongs to one phase: that of the innermost timer, but for output and events,
-/// to which everything belongs that is done for them.
+/// What a run may be doing. Each moment belongs to one phase: that of the innermost timer, but for start, output
+/// and events, to which everything belongs that is done for them.
 enum class Phase {
   rest,           ///< the loop itself
+  start,          ///< accelerations at the start; orders of unknowns and dependent rows are found there
   integrator,     ///< formulas of the method, norms and vectors of the iteration
   assembly,       ///< kinematics, motions of drivers, rows of constraints
   joints,         ///< forces of joints and contacts with their derivatives, what joints keep
@@ -25,7 +26,7 @@ enum class Phase {
 /// Not for several threads.
 class Profile {
  public:
-  static constexpr std::size_t phases = 9;
+  static constexpr std::size_t phases = 10;
 
   class Timer {
    public:
@@ -63,7 +64,7 @@ class Profile {
 
   Phase enter(Phase phase) {
     ++counts_[index(phase)];
-    const bool keeps_all = phase_ == Phase::output || phase_ == Phase::events;
+    const bool keeps_all = phase_ == Phase::start || phase_ == Phase::output || phase_ == Phase::events;
     return keeps_all ? phase_ : change(phase);
   }
   Phase change(Phase phase) {

@@ -72,7 +72,8 @@ class HandWritten:
             cells = line.split()
             value, error, rate = (chain[1], chain[2], chain[3]) if chain else (cells[2], cells[5], cells[6])
             records.append({"method": " ".join([method, *options[1:2]]), "call": [method, list(options)],
-                            "value": float(value), "error": float(error), "rate": float(rate)})
+                            "value": float(value), "error": float(error), "rate": float(rate),
+                            "steps": round(1.0 / float(value)) if chain else int(cells[9])})
         return records
 
     def all(self, problem, quick):

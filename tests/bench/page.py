@@ -20,18 +20,24 @@ def how(record):
 
 
 def of_problem(found):
-    rows = [["%s, error at most %g m" % (how(r), found["target"]), "%.1e" % r["error"], "%.3g" % r["rate"], "", "", "", ""]
-            for r in sorted(found["best"], key=lambda r: r["rate"])]
-    for pair in found.get("comparisons", []):
-        rows.append([how(pair["ours"]), "%.1e" % pair["ours"]["error"], "%.3g" % pair["rate"], how(pair["theirs"]),
-                     "%.1e" % pair["theirs"]["error"], "%.3g" % pair["their_rate"], "**%.3g**" % pair["ratio"]])
-    return markdown(["run", "error [m]", "wall s/s", "by hand", "error [m]", "wall s/s", "ratio"], rows)
+    text = markdown(["cheapest with at most %g m" % found["target"], "error [m]", "steps", "wall s/s"], [
+        [how(r), "%.1e" % r["error"], r["steps"], "%.3g" % r["rate"]] for r in sorted(found["best"], key=lambda r: r["rate"])])
+    pairs = found.get("comparisons", [])
+    if not pairs:
+        return text
+    return text + "\n" + markdown(["ours", "error [m]", "steps", "wall s/s", "by hand", "error [m]", "steps", "wall s/s", "ratio"], [
+        [*side(pair["ours"], pair["rate"]), *side(pair["theirs"], pair["their_rate"]), "**%.3g**" % pair["ratio"]]
+        for pair in pairs])
+
+
+def side(record, rate):
+    return [how(record), "%.1e" % record["error"], record["steps"], "%.3g" % rate]
 
 
 def of_growth(found):
-    rows = [[run["windows"], "%.3g" % run["seconds_per_step"], "%.3g" % run["seconds_of_two_steps"],
+    rows = [[run["windows"], "%.3g" % run["seconds_per_step"], "%.3g" % run["seconds_of_start"],
              "%.3g" % run["process_seconds"], "%.0f" % (run["peak_bytes"] / 1e6)] for run in found["runs"]]
-    return markdown(["N", "seconds per step", "first two steps [s]", "their process [s]", "peak memory [MB]"], rows) + \
+    return markdown(["N", "seconds per step", "start of the run [s]", "process of two steps [s]", "peak memory [MB]"], rows) + \
         "\nTime per step grows as N^%.2f, between neighbours at most as N^%.2f.\n" % (found["exponent"], found["steepest"])
 
 

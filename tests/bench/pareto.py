@@ -118,8 +118,9 @@ def compare(bench, problem, best, hand_best, records, theirs):
         factor = ratio(left, right)
         found.append({"what": what, "ours": a, "theirs": b, "rate": median(left), "their_rate": median(right), "ratio": factor,
                       "rates": left, "their_rates": right})
-        rows.append([what, "%s %s %g" % (a["integrator"], a["kind"], a["value"]), "%.2e" % a["error"], "%.4g" % median(left),
-                     "%s %g" % (b["method"], b["value"]), "%.2e" % b["error"], "%.4g" % median(right), "%.2f" % factor])
+        rows.append([what, "%s %s %g" % (a["integrator"], a["kind"], a["value"]), "%.2e" % a["error"], a["steps"],
+                     "%.4g" % median(left), "%s %g" % (b["method"], b["value"]), "%.2e" % b["error"], b["steps"],
+                     "%.4g" % median(right), "%.2f" % factor])
     bench.print("ratios, median of %d, taken in turn:" % bench.passes)
-    bench.print(table(["", "ours", "error [m]", "wall s/s", "by hand", "error [m]", "wall s/s", "ratio"], rows))
+    bench.print(table(["", "ours", "error [m]", "steps", "wall s/s", "by hand", "error [m]", "steps", "wall s/s", "ratio"], rows))
     return found

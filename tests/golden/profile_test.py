@@ -6,7 +6,7 @@ import unittest
 
 from program import ProgramTest, mechanism
 
-PHASES = ["assembly", "joints and contact", "factorization", "solution", "integrator", "events", "statistics", "output",
+PHASES = ["start", "assembly", "joints and contact", "factorization", "solution", "integrator", "events", "statistics", "output",
           "rest", "all"]
 
 

@@ -35,8 +35,8 @@ TEST(Profile, TimeBelongsToTheInnermostTimer) {
   EXPECT_EQ(profile.count(Phase::joints), 1);
 }
 
-TEST(Profile, WhatIsDoneForRowsAndEventsIsTheirs) {
-  for (const Phase whole : {Phase::output, Phase::events}) {
+TEST(Profile, WhatIsDoneForTheStartForRowsAndEventsIsTheirs) {
+  for (const Phase whole : {Phase::start, Phase::output, Phase::events}) {
     Profile profile;
     profile.start();
     {
