@@ -134,7 +134,10 @@ bool NewtonStageSolver::keep_independent_rows() {
 }
 
 double NewtonStageSolver::factor_once(Factor& factor) {
-  if (!factor.has_pattern) factor.matrix.set_pattern(dependent_);
+  if (!factor.has_pattern) {
+    const Profile::Timer start(system_.profile(), Phase::start);
+    factor.matrix.set_pattern(dependent_);
+  }
   factor.has_pattern = true;
   ++factorizations_;
   return factor.matrix.factor(e_, factor.beta_q, factor.beta_v, factor.beta_z);
@@ -142,7 +145,10 @@ double NewtonStageSolver::factor_once(Factor& factor) {
 
 bool NewtonStageSolver::refactor(Factor& factor) {
   const Profile::Timer timer(system_.profile(), Phase::factorization);
-  if (rank_ < 0) find_dependent_rows();
+  if (rank_ < 0) {
+    const Profile::Timer start(system_.profile(), Phase::start);
+    find_dependent_rows();
+  }
   double pivot = factor_once(factor);
   if (&factor == &index_one_) {
     largest_pivot_ = std::max(largest_pivot_, pivot);
