@@ -13,6 +13,7 @@
 #include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/load_model.h"
+#include "cli/profile_table.h"
 #include "cli/progress_line.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
@@ -41,7 +42,6 @@ struct RunOptions {
 };
 
 void refuse_later_options(const RunOptions& options) {
-  if (options.profile) not_in_this_release("--profile");
   if (options.resume) not_in_this_release("--resume");
   if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
   if (options.format.empty() || options.format == "csv") return;
@@ -91,6 +91,8 @@ class Recording {
   std::vector<Sink*> sinks() { return {&rows_, &events_, &advice_}; }
   RunLog& log() { return log_; }
   const ContactAdvice& advice() const { return advice_; }
+  /// Processor time of the thread that makes rows into text [s], after close().
+  double text_seconds() const { return rows_.thread_seconds(); }
 
   void flush_if_due() {
     rows_.flush_if_due();
@@ -210,6 +212,7 @@ class RunJob {
     ProgressLine progress(settings().start, settings().end, stderr_is_terminal() && !common_.quiet);
     RunHooks hooks;
     hooks.interrupt = &watch_interrupts();
+    if (options_.profile) hooks.profile = &profile_;
     hooks.progress = [&](double t, long steps) {
       progress.update(t, steps);
       recording_.flush_if_due();
@@ -239,6 +242,10 @@ class RunJob {
       print(run_table(record) + (verification ? verify_table(*verification) : "") +
             fmt::format("  results in {}\n", path_.string()));
     }
+    if (options_.profile) {
+      const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
+      common_.json ? print_messages(table, common_.no_color) : print(table);
+    }
     return outcome.exit_code;
   }
 
@@ -252,6 +259,7 @@ class RunJob {
   RowMemory rows_;
   std::vector<Sink*> sinks_;
   Simulation simulation_;
+  Profile profile_;
 };
 
 int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const CommonOptions& common) {
@@ -296,7 +304,8 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   app->add_option("--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um")->type_name("L");
   app->add_option("--integrator", options->integrator, "Integrator, with its default parameters")->type_name("NAME");
   app->add_flag("--verify", options->verify, "Run again finer, and tell the observed error of each channel");
-  app->add_flag("--profile", options->profile, "Tell where the time went (not in this release)");
+  app->add_flag("--profile", options->profile,
+                "Tell where the time went: assembly, factorization, joints, events, output");
   app->add_option("--out", options->out, "Result directory (results/NAME)")->type_name("DIR")->check(not_empty());
   app->add_flag("--force", options->force, "Write into a directory that holds other files");
   app->add_option("--format", options->format, "csv; hdf5 and both are not in this release")->type_name("FORMAT");

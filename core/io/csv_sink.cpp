@@ -1,5 +1,7 @@
 #include "io/csv_sink.h"
 
+#include <ctime>
+
 #include "io/number_text.h"
 
 namespace freeplay {
@@ -19,7 +21,7 @@ CsvSink::CsvSink(const std::filesystem::path& path, const Channels& channels, st
   }
   file_.end_line();
   for (auto* rows : {&waiting_, &writing_}) rows->reserve(2 * many + columns_.size());
-  writer_ = std::thread([this] { write_rows(); });
+  writer_ = std::thread([this] { serve(); });
 }
 
 CsvSink::~CsvSink() { stop(); }
@@ -47,6 +49,14 @@ void CsvSink::hand_over(bool wait) {
   busy_ = true;
   handed_over_ = std::chrono::steady_clock::now();
   changed_.notify_all();
+}
+
+void CsvSink::serve() {
+  write_rows();
+  timespec used{};
+  if (::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) == 0) {
+    thread_seconds_ = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+  }
 }
 
 void CsvSink::write_rows() {

@@ -29,10 +29,13 @@ class CsvSink : public Sink {
   void flush_if_due();
   /// Throws Error{file} if anything could not be written.
   void close();
+  /// Processor time that the thread took [s], after close().
+  double thread_seconds() const { return thread_seconds_; }
 
  private:
   void hand_over(bool wait);
   void write_rows();
+  void serve();
   void stop();
 
   std::vector<std::size_t> columns_;
@@ -43,6 +46,7 @@ class CsvSink : public Sink {
   std::condition_variable changed_;
   bool busy_ = false, ending_ = false;
   std::atomic<bool> good_ = true;
+  double thread_seconds_ = 0.0;  // written by the thread as it ends
   std::thread writer_;
 };
 

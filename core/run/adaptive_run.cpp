@@ -131,6 +131,7 @@ bool Simulation::Impl::take_detour(bool passed, std::size_t& detours, double& as
 // Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
 // is where to try next.
 bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done) {
+  const Profile::Timer timer(system.profile(), Phase::events);
   Fault fault;
   StepEvents::Passage found;
   if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
@@ -197,6 +198,7 @@ bool Simulation::Impl::look_inside(double t) {
 }
 
 bool Simulation::Impl::write_row_at(double t) {
+  const Profile::Timer timer(system.profile(), Phase::output);
   if (!look_inside(t)) return false;
   Fault fault;
   if (!observer.observe(point(between), e_between, between.lambda(), row_between, fault)) return fail_with(fault, t);

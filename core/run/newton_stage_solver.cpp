@@ -137,14 +137,21 @@ bool NewtonStageSolver::keep_independent_rows() {
 }
 
 double NewtonStageSolver::factor_once(Factor& factor) {
-  if (!factor.has_pattern) factor.matrix.set_pattern(dependent_);
+  if (!factor.has_pattern) {
+    const Profile::Timer start(system_.profile(), Phase::start);
+    factor.matrix.set_pattern(dependent_);
+  }
   factor.has_pattern = true;
   ++factorizations_;
   return factor.matrix.factor(e_, factor.beta_q, factor.beta_v, factor.beta_z);
 }
 
 bool NewtonStageSolver::refactor(Factor& factor) {
-  if (rank_ < 0) find_dependent_rows();
+  const Profile::Timer timer(system_.profile(), Phase::factorization);
+  if (rank_ < 0) {
+    const Profile::Timer start(system_.profile(), Phase::start);
+    find_dependent_rows();
+  }
   double pivot = factor_once(factor);
   if (&factor == &index_one_) {
     largest_pivot_ = std::max(largest_pivot_, pivot);
@@ -439,6 +446,7 @@ bool NewtonStageSolver::project_position(StateView& state) {
 bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!e_.is_at({*state.t, state.q, state.v, state.z, h_}, index_one) && !evaluate(state, index_one)) return false;
   if (any_dependent_) {
+    const Profile::Timer timer(system_.profile(), Phase::factorization);
     system_.jacobian_entries(e_, entries_);
     // Rows that were left out in a singular position count again.
     if (rows_.analyse(entries_) > rank_) keep_independent_rows();
@@ -456,6 +464,7 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
   std::ranges::copy(e_.internal_rate, z_rate.begin());
   if (any_dependent_) {
+    const Profile::Timer timer(system_.profile(), Phase::solution);
     rows_.least_norm(state.lambda, system_.layout().first_driver_row());
   }
   if (flows_ != nullptr) flows_->flow(e_, state.lambda, z_rate.part(e_.internal_rate.size(), at(flows_->flows())));

@@ -202,6 +202,7 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
 }
 
 bool Simulation::Impl::begin() {
+  const Profile::Timer timer(system.profile(), Phase::start);
   e_accepted.motion_time = std::numeric_limits<double>::quiet_NaN();
   if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
   StateView view = accepted.view();
@@ -222,6 +223,7 @@ bool Simulation::Impl::begin() {
 }
 
 bool Simulation::Impl::prepare_trial(double dt) {
+  const Profile::Timer timer(system.profile(), Phase::joints);
   trial.assign(accepted);
   const Point here{accepted.t(), accepted.q(), accepted.v(), accepted.z(), accepted.h()};
   for (const int j : with_history) {
@@ -247,6 +249,7 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   if (!prepare_trial(dt)) return false;
   solver.use_history(trial.h());
   if (adaptive) solver.use_velocity(accepted.v());
+  const Profile::Timer timer(system.profile(), Phase::integrator);
   StateView view = trial.view();
   Attempt attempt{};
   Message message;
@@ -314,9 +317,12 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
     auto& run = *static_cast<Impl*>(self);
     return run.solver.mobility(run.trial, joint, {out, 9});
   };
-  if (!events.apply(accepted, e_accepted, trial, e_trial, fault) ||
-      !events.tell_at_end(located, trial, e_trial, mobility, this, fault)) {
-    return fail_with(fault, trial.t());
+  {
+    const Profile::Timer timer(system.profile(), Phase::events);
+    if (!events.apply(accepted, e_accepted, trial, e_trial, fault) ||
+        !events.tell_at_end(located, trial, e_trial, mobility, this, fault)) {
+      return fail_with(fault, trial.t());
+    }
   }
   for (const int j : with_history) {
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
@@ -363,6 +369,7 @@ bool Simulation::Impl::refresh() {
 }
 
 bool Simulation::Impl::record_row() {
+  const Profile::Timer timer(system.profile(), Phase::statistics);
   Fault fault;
   if (!observer.observe(point(accepted), e_accepted, accepted.lambda(), row, fault)) {
     return fail_with(fault, accepted.t());
@@ -416,6 +423,8 @@ void Simulation::Impl::format_warnings() {
 }
 
 bool Simulation::Impl::tell_sinks() {
+  outcome.events += static_cast<long>(events.happenings().size());
+  const Profile::Timer timer(system.profile(), Phase::events);
   for (const StepEvents::Happening& happening : events.happenings()) {
     const char* name = system.joint_layout(happening.joint).events[at(happening.event)].name;
     if (std::strcmp(name, "contact_begin") == 0) statistics.add_contact(happening.joint, happening.time);
@@ -499,6 +508,7 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
 }
 
 void Simulation::Impl::write_row() {
+  const Profile::Timer timer(system.profile(), Phase::output);
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row);
 }
@@ -521,12 +531,16 @@ bool Simulation::Impl::run_fixed(const RunHooks& hooks) {
 
 Outcome Simulation::Impl::run(const RunHooks& hooks) {
   started = Clock::now();
+  system.set_profile(hooks.profile);
+  if (hooks.profile != nullptr) hooks.profile->start();
   outcome.time = accepted.t();
   if (begin()) {
     write_row();
     adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   }
   outcome.wall_seconds = seconds_since(started);
+  if (hooks.profile != nullptr) hooks.profile->stop();
+  system.set_profile(nullptr);
   outcome.iterations = solver.iterations();
   outcome.factorizations = solver.factorizations();
   format_warnings();

@@ -25,13 +25,14 @@ struct Outcome {
   std::string reason;         ///< which condition stopped it, or what failed, where, and what to try; else empty
   double time = 0.0;          ///< reached [s]
   double wall_seconds = 0.0;  ///< from the assembled start to the last accepted step
-  long steps = 0, rejected = 0, iterations = 0, factorizations = 0, rows = 0;
+  long steps = 0, rejected = 0, iterations = 0, factorizations = 0, rows = 0, events = 0;
 };
 
 struct RunHooks {
   const std::atomic<int>* interrupt = nullptr;  ///< nonzero: end after the present step
   /// Called at most ten times a second: time reached, steps so far.
   std::function<void(double, long)> progress;
+  Profile* profile = nullptr;  ///< told where the time goes
 };
 
 /// Advances a model from its start to Settings::end and feeds sinks and statistics.

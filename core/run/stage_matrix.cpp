@@ -216,6 +216,7 @@ void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const d
 }
 
 void StageMatrix::solve(std::span<double> right, std::span<double> update) const {
+  const Profile::Timer timer(system_.profile(), Phase::solution);
   system_.body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
 }
 

@@ -17,6 +17,7 @@
 #include "system/layout.h"
 #include "system/motion.h"
 #include "system/planar_kinematics.h"
+#include "system/profile.h"
 #include "system/spatial_kinematics.h"
 #include "system/state.h"
 
@@ -135,6 +136,9 @@ class System {
   std::span<const double> mass() const { return mass_; }
   /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
   void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
+  /// Who is told where the time goes; null: nobody.
+  void set_profile(Profile* profile) { profile_ = profile; }
+  Profile* profile() const { return profile_; }
   /// Largest distance that matters: unit of position tolerances [m].
   double size() const { return size_; }
 
@@ -235,6 +239,7 @@ class System {
   std::vector<double> gear_offsets_;
   std::vector<ForceBlock> force_blocks_;
   double size_ = 1.0, per_contact_ = 0.0;
+  Profile* profile_ = nullptr;
   friend struct Evaluation;
 };
 

@@ -48,6 +48,7 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& known, Eva
 }
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
+  const Profile::Timer timer(profile_, Phase::assembly);
   e.filled = 0;
   if (!fill(point, terms, e)) return false;
   e.filled = terms;

@@ -19,6 +19,7 @@ void add_to_force(const double* wrench, const Arm& arm, double* force) {
 
 template <class Bodies>
 bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const {
+  const Profile::Timer timer(profile_, Phase::joints);
   std::ranges::copy(weight_, e.force.begin());
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];

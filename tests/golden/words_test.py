@@ -70,8 +70,7 @@ class Words(ProgramTest):
 
     def test_later_options(self):
         model = mechanism("pendulum")
-        for option in (["--profile"], ["--resume"], ["--format", "hdf5"],
-                       ["--format", "both"]):
+        for option in (["--resume"], ["--format", "hdf5"], ["--format", "both"]):
             _, err = self.freeplay("run", model, *option, code=2)
             self.assertIn("not in this release", err)
         self.assertEqual([], os.listdir(self.folder))

@@ -40,7 +40,6 @@ LIBRARIES = {
     "hdf5.h": {"io"},
     "klu.h": {"linear"},
     "SuiteSparseQR.hpp": {"linear"},
-    "openssl": {"io"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"io", "report", "cli"},

@@ -1,0 +1,122 @@
+"""How fast the program is: `./dev bench`.
+
+Without NAME everything is measured, in less than ten minutes on two cores; the tables are printed, and everything goes as
+JSON to the build folder. What is compared in one line is measured in turn, so that a busy machine disturbs both alike.
+"""
+import argparse
+import datetime
+import difflib
+import json
+import os
+import platform
+import subprocess
+import sys
+
+import page
+import pareto
+import parts
+import versus
+from hand_written import HandWritten, source_folder, trajectories
+from problems import PROBLEMS, ROOT
+from timing import Failed, Program
+
+PARTS = {
+    "kernels": ("evaluations, factors, steps, laws, rows and loading, each by itself", parts.kernels),
+    **{name: ("error against time of every integrator; beside hand-written programs, where there are any",
+              lambda bench, problem=problem: pareto.measure(bench, problem)) for name, problem in PROBLEMS.items()},
+    "growth": ("time per step and peak memory of N-four-bar", parts.grow),
+    "startup": ("the whole process with one step", parts.start),
+    "load": ("reading and checking models", parts.load),
+    "output": ("what rows at 1 kHz of all channels cost", parts.output),
+}
+
+
+class Bench:
+    """What the parts share: the program, folders, and where tables go."""
+
+    def __init__(self, options):
+        self.build, self.quick, self.kernels = os.path.abspath(options.build), options.quick, options.kernels
+        self.passes = 1 if options.quick else 5
+        self.program = Program(options.program, os.path.join(self.build, "runs"))
+        source = source_folder()
+        self.trajectories = trajectories(source)
+        self.hand = HandWritten(source, self.build) if source and not options.vs else None
+
+    def ask(self, *words):
+        return subprocess.run([self.program.path, *words], capture_output=True, text=True, check=True).stdout
+
+    @staticmethod
+    def print(text):
+        print(text, flush=True)
+
+
+def help_of_parts():
+    width = max(map(len, PARTS))
+    return "parts:\n" + "\n".join("  %-*s  %s" % (width, name, words) for name, (words, _) in PARTS.items())
+
+
+def parser():
+    words = argparse.ArgumentParser(prog="./dev bench", description=__doc__, epilog=help_of_parts(), allow_abbrev=False,
+                                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("names", nargs="*", metavar="NAME", help="parts to measure (default: all)")
+    words.add_argument("--quick", action="store_true", help="fewer runs, nothing large: to see that all of it works")
+    words.add_argument("--page", action="store_true", help="write the tables into docs/performance.md, too")
+    words.add_argument("--vs", metavar="REV", help="time this tree and the revision REV of git in turn")
+    words.add_argument("--program", default=os.path.join(ROOT, "build", "release", "freeplay"), help=argparse.SUPPRESS)
+    words.add_argument("--kernels", default=os.path.join(ROOT, "build", "release", "tests", "kernel_bench"), help=argparse.SUPPRESS)
+    words.add_argument("--build", default=os.path.join(ROOT, "build", "bench"), help=argparse.SUPPRESS)
+    return words
+
+
+def meant(word, words):
+    near = difflib.get_close_matches(word, words, 1)
+    return "; did you mean '%s'?" % near[0] if near else ""
+
+
+def parse(arguments):
+    reader = parser()
+    options, unknown = reader.parse_known_args(arguments)
+    for word in unknown:
+        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--page", "--vs", "--help"])))
+    if options.page and (options.quick or options.vs):
+        reader.exit(2, "bench: --page takes neither --quick nor --vs: the page tells what was measured in full\n")
+    for name in options.names:
+        if name not in PARTS:
+            reader.exit(2, "bench: there is no part '%s'%s\n%s\n" % (name, meant(name, PARTS) or ";", help_of_parts()))
+        if options.vs and name not in PROBLEMS:
+            reader.exit(2, "bench: --vs compares %s, not '%s'\n" % (", ".join(PROBLEMS), name))
+    return options
+
+
+def facts(bench, options):
+    return {"program": bench.ask("--version").strip(), "date": datetime.date.today().isoformat(), "quick": bench.quick,
+            "machine": {"cores": os.cpu_count(), "processor": platform.machine(), "system": platform.system()},
+            "hand_written": bench.hand is not None}
+
+
+def main(arguments):
+    options = parse(arguments)
+    try:
+        bench = Bench(options)
+        results = facts(bench, options)
+        if options.vs:
+            results["vs"] = versus.compare(bench, options.vs, options.names or list(PROBLEMS))
+        else:
+            for name in options.names or PARTS:
+                bench.print("\n== %s: %s ==" % (name, PARTS[name][0]))
+                results[name] = PARTS[name][1](bench)
+    except Failed as failure:
+        sys.stderr.write("bench: %s\n" % failure)
+        return 1
+    path = os.path.join(bench.build, "versus.json" if options.vs else "results.json")
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(results, file, indent=1)
+        file.write("\n")
+    if options.page:
+        page.rewrite(results)
+    bench.print("\nall numbers are in " + os.path.relpath(path))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,131 @@
+"""What is timed besides error against time: kernels, growth with the number of bodies, start, loading, output."""
+import json
+import os
+import re
+import subprocess
+
+from problems import PROBLEMS, ROOT, WINDOWS
+from tables import table
+from timing import Failed, alternate, growth, measured, median
+
+CHAIN = os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml")
+
+
+def windows(n):
+    return ["--set", "windows=%d" % n]
+
+
+def kernels(bench):
+    if not os.path.exists(bench.kernels):
+        raise Failed("'%s' is not built: it needs Google Benchmark (libbenchmark-dev)" % bench.kernels)
+    done = subprocess.run([bench.kernels, "--benchmark_format=json", "--benchmark_min_time=%g" % (0.01 if bench.quick else 0.1)],
+                          capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Failed("kernel_bench: " + done.stderr)
+    found = json.loads(done.stdout)["benchmarks"]
+    rows, numbers = [], []
+    for one in found:
+        if "error_message" in one:
+            raise Failed("%s: %s" % (one["name"], one["error_message"]))
+        name = re.sub("/(process_time|real_time|manual_time)", "", one["name"])
+        nanoseconds = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}[one["time_unit"]]
+        # A step is a part of a run of many.
+        time = 1e9 * one["per_step"] if "per_step" in one else nanoseconds * one["cpu_time"]
+        per = next(("%.4g ns %s" % (1e9 * one[key], key.replace("_", " ")) for key in ("per_body", "per_number") if key in one), "")
+        numbers.append({"name": name, "ns": time, "all": one})
+        rows.append([name, "%.5g" % time, per])
+    bench.print(table(["kernel", "ns", ""], rows))
+    return {"kernels": numbers}
+
+
+def grow(bench):
+    """Time per step of N-four-bar, without the start and the first two steps, in which matrices find their patterns."""
+    rows, points, found, step = [], [], [], 5e-3
+    for n in [n for n in WINDOWS if n <= 320] if bench.quick else WINDOWS:
+        few, many = 2, 2 + min(100, max(10, 10000 // n))
+        best, seconds = {}, {}
+        for steps in (few, many):
+            options = ["--integrator", "bathe", "--step", repr(step), "--end", repr(steps * step), *windows(n)]
+            tries = [bench.program.profiled(CHAIN, options) for _ in range(3 if n <= 320 else 1)]
+            best[steps], seconds[steps] = min(tries, key=lambda one: one[1])
+            if best[steps].steps != steps:
+                raise Failed("N = %d took %d steps for %d" % (n, best[steps].steps, steps))
+        per_step = (seconds[many] - seconds[few]) / (many - few)
+        if not per_step > 0.0:
+            raise Failed("N = %d: %d steps took no longer than %d" % (n, many, few))
+        record = {"windows": n, "seconds_per_step": per_step, "seconds_of_start": best[few].wall - seconds[few],
+                  "process_seconds": best[few].seconds, "peak_bytes": max(run.peak_bytes for run in best.values())}
+        found.append(record)
+        points.append((n, per_step))
+        rows.append([n, "%.4g" % per_step, "%.3g" % (1e6 * per_step / n), "%.3g" % record["seconds_of_start"],
+                     "%.3g" % best[few].seconds, "%.0f" % (record["peak_bytes"] / 1e6)])
+    slope, steepest = growth(points)
+    bench.print(table(["N", "s per step", "us per step, N", "start [s]", "process [s]", "peak [MB]"], rows))
+    bench.print("time per step grows as N^%.2f (between neighbours at most N^%.2f)" % (slope, steepest))
+    return {"exponent": slope, "steepest": steepest, "runs": found}
+
+
+def start(bench):
+    """The whole process, with one step, its files written."""
+    rows, found = [], {}
+    for name in ("slider-crank", "3-rrr", "4-rrr"):
+        model = PROBLEMS[name].file()
+        end = {"slider-crank": "1e-6"}.get(name, "2e-6")
+        runs = [bench.program.run(model, ["--end", end]) for _ in range(3 if bench.quick else 21)]
+        found[name] = {"seconds": [run.seconds for run in runs], "processor": [run.processor for run in runs],
+                       "median": median([run.seconds for run in runs])}
+        rows.append([name, *("%.2f" % (1e3 * number) for number in (
+            found[name]["median"], min(found[name]["seconds"]), median(found[name]["processor"])))])
+    bench.print(table(["process with one step", "median [ms]", "least [ms]", "processor [ms]"], rows))
+    return found
+
+
+def load(bench):
+    rows, found = [], {}
+    cases = [("3-rrr", PROBLEMS["3-rrr"].file(), [])]
+    cases += [("four-bar-%d" % n, CHAIN, windows(n)) for n in ((40, 320) if bench.quick else (40, 320, 3200, 10000))]
+    for name, model, options in cases:
+        words = [bench.program.path, "validate", "--no-assemble", "--quiet", model, *options]
+        times = [measured(words)[0] for _ in range(3)]
+        found[name] = min(times)
+        rows.append([name, "%.4g" % min(times)])
+    bench.print(table(["read and checked", "s"], rows))
+    return found
+
+
+OUTPUTS = (  # name, model, text of its rows, options
+    ("3-rrr, bathe", "3-rrr", "interval: 0.1 ms", ["--end", "0.2 s", "--step", "2us", "--integrator", "bathe"]),
+    ("3-rrr, accuracy 1 um", "3-rrr", "interval: 0.1 ms", ["--end", "1 s", "--accuracy", "1um"]),
+    ("four-bar-320, bathe", "validation/a02-chain", "interval: 1 s", ["--end", "1 s", "--step", "1ms", "--integrator", "bathe", *windows(320)]),
+    ("four-bar-320, accuracy 1 um", "validation/a02-chain", "interval: 1 s", ["--end", "1 s", "--accuracy", "1um", *windows(320)]))
+
+
+def with_interval(bench, model, old, new):
+    with open(os.path.join(ROOT, "mechanisms", model + ".yaml"), encoding="utf-8") as file:
+        text = file.read()
+    if text.count(old) != 1:
+        raise Failed("mechanisms/%s.yaml does not hold '%s' once" % (model, old))
+    path = os.path.join(bench.build, "models", "%s-%s.yaml" % (os.path.basename(model), new.replace(" ", "")))
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace(old, "interval: " + new))
+    return path
+
+
+def output(bench):
+    """All channels 1000 times a second against first and last row alone, in turn."""
+    rows, found = [], {}
+    for name, model, old, options in OUTPUTS:
+        if bench.quick:
+            options = ["--end", "20 ms"] + options[2:]
+        full, none = (with_interval(bench, model, old, interval) for interval in ("1 ms", "10 s"))
+        a, b = alternate(bench.passes, lambda: bench.program.run(full, options, "full"),
+                         lambda: bench.program.run(none, options, "none"))
+        numbers = {}
+        for what in ("wall", "seconds", "processor"):
+            numbers[what] = median([getattr(x, what) / getattr(y, what) for x, y in zip(a, b)]) - 1.0
+        found[name] = {**numbers, "rows": a[0].summary["counts"]["rows"], "wall_without": median([y.wall for y in b])}
+        rows.append([name, found[name]["rows"], "%.4g" % found[name]["wall_without"],
+                     *("%+.1f %%" % (100.0 * numbers[what]) for what in ("wall", "seconds", "processor"))])
+    bench.print(table(["all channels at 1 kHz", "rows", "wall without [s]", "wall", "process", "processor"], rows))
+    return found

@@ -1,0 +1,78 @@
+"""The mechanisms that are timed: model, window of time, what is compared, steps and accuracies that are tried."""
+import dataclasses
+import os
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+FIXED = ("bathe", "newmark", "hht", "generalized-alpha")  # take steps of one size, or steps that the error chooses
+ADAPTIVE = ("dopri5", "arkode")                           # always choose them
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    name: str
+    model: str             # below mechanisms/
+    end: float             # [s]
+    interval: float        # of the rows that are compared [s]
+    points: tuple          # channels whose distance from the reference is the error [m]
+    target: float          # error at which times are compared [m]
+    steps: tuple           # [s]
+    accuracies: tuple      # [m]
+    set: tuple = ()
+    best: float = 1e-12    # accuracy of the program's own reference [m]
+    trajectory: str = ""   # file of stored trajectories, where a folder with them is given
+    columns: tuple = ()    # of it, for `points`
+    hand: str = ""         # name at the hand-written programs
+    hand_options: tuple = ()
+    scale: float = 1.0     # by which distances of `points` are multiplied
+
+    def file(self):
+        return os.path.join(ROOT, "mechanisms", self.model + ".yaml")
+
+    def options(self, *more):
+        words = ["--end", repr(self.end)]
+        for value in self.set:
+            words += ["--set", value]
+        return words + list(more)
+
+    def candidates(self, integrators, quick):
+        """(integrator, kind, value, options) of every run of the comparison."""
+        for name in integrators:
+            if name not in ADAPTIVE:
+                for step in self.steps[:2] if quick else self.steps:
+                    yield name, "step", step, self.options("--integrator", name, "--step", repr(step))
+            # What is of second order does not go as far.
+            accuracies = self.accuracies if name in ADAPTIVE else self.accuracies[:5]
+            for accuracy in accuracies[:2] if quick else accuracies:
+                yield name, "accuracy", accuracy, self.options("--integrator", name, "--accuracy", repr(accuracy))
+
+
+PLATFORM = ("body.platform.x", "body.platform.y")
+CONTACT = ("platform_x", "platform_y")
+
+
+def four_bar(n):
+    return Problem("four-bar-%d" % n, "validation/a02-chain", 1.0, 1.0, ("frame.column1.link/top.x", "frame.column1.link/top.y"),
+                   1e-4, (2e-2, 1e-2, 5e-3, 2e-3, 1e-3), (1e-2, 1e-3, 1e-4), ("windows=%d" % n,), best=1e-11,
+                   trajectory="p2_fourbar_n%d.csv" % n, columns=("B0_x", "B0_y"), hand="p2", hand_options=("--n", str(n)))
+
+
+PROBLEMS = {
+    "slider-crank": Problem(
+        "slider-crank", "slider-crank", 8e-3, 20e-6, ("body.slider.x", "body.slider.y"), 1e-6,
+        (2e-6, 1e-6, 5e-7, 2e-7, 1e-7, 5e-8), (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9), best=1e-13,
+        trajectory="p1_slider_crank_c500_mu000.csv", columns=("slider_x", "slider_y"), hand="p1",
+        hand_options=("--window", "0.008", "--horizon", "0.008", "--sample", "2e-5")),
+    "3-rrr": Problem(
+        "3-rrr", "3-rrr", 20e-3, 1e-4, PLATFORM, 1e-6, (1e-5, 5e-6, 4e-6, 2e-6, 1e-6),
+        (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9), trajectory="p3_3rrr_c100_mu100.csv", columns=CONTACT, hand="p3",
+        hand_options=("--window", "0.02", "--horizon", "0.02", "--sample", "1e-4")),
+    "4-rrr": Problem(
+        "4-rrr", "4-rrr", 20e-3, 1e-4, PLATFORM, 1e-6, (1e-5, 5e-6, 4e-6, 2e-6, 1e-6),
+        (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9), hand="p4",
+        hand_options=("--window", "0.02", "--horizon", "0.02", "--sample", "1e-4")),
+    "squeezer": Problem(
+        "squeezer", "validation/squeezer", 0.03, 0.01, ("body.K3.x", "body.K3.y"), 1e-6, (1e-4, 5e-5, 2e-5, 1e-5, 5e-6),
+        (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), best=1e-13),
+    **{"four-bar-%d" % n: four_bar(n) for n in (5, 40, 320)},
+}
+WINDOWS = (5, 10, 40, 100, 320, 1000, 3200, 10000)

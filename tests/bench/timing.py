@@ -1,0 +1,104 @@
+"""Runs the program under a clock."""
+import csv
+import json
+import math
+import os
+import subprocess
+import tempfile
+import time
+
+
+class Failed(Exception):
+    """The program could not do what was asked of it."""
+
+
+class Run:
+    """What a run left: its summary, its folder, and what the kernel says of the process."""
+
+    def __init__(self, folder, seconds, processor, peak_bytes):
+        with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+            self.summary = json.load(file)
+        self.folder, self.seconds, self.processor, self.peak_bytes = folder, seconds, processor, peak_bytes
+        self.wall = self.summary["performance"]["wall_seconds"]
+        self.steps = self.summary["counts"]["steps"]
+        self.rate = self.wall / (self.summary["time"]["reached"] - self.summary["settings"]["start"])
+
+    def columns(self, names):
+        """Rows of results.csv as lists of the named channels."""
+        with open(os.path.join(self.folder, "results.csv"), encoding="utf-8", newline="") as file:
+            rows = csv.reader(file)
+            header = next(rows)
+            places = [header.index(name) for name in names]
+            return [[float(row[place]) for place in places] for row in rows]
+
+
+def measured(words, told=subprocess.DEVNULL):
+    """Wall seconds, processor seconds and peak memory [bytes] of a command that must succeed."""
+    with tempfile.TemporaryFile() as errors:
+        begin = time.perf_counter()
+        child = subprocess.Popen(words, stdout=told, stderr=errors)
+        _, status, usage = os.wait4(child.pid, 0)
+        seconds = time.perf_counter() - begin
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode != 0:
+            errors.seek(0)
+            raise Failed("%s: exit code %d: %s" % (" ".join(words), child.returncode,
+                                                   errors.read().decode(errors="replace").strip()[-400:]))
+        return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+
+
+class Program:
+    """One build of freeplay."""
+
+    def __init__(self, path, results):
+        self.path, self.results = os.path.abspath(path), results
+
+    def run(self, model, options, name="run"):
+        folder = os.path.join(self.results, name)
+        return Run(folder, *measured([self.path, "run", model, *options, "--quiet", "--force", "--out", folder]))
+
+    def profiled(self, model, options, name="run"):
+        """The run, and its seconds without those of the start: orders of unknowns and dependent rows are found there."""
+        folder = os.path.join(self.results, name)
+        words = [self.path, "run", model, *options, "--quiet", "--profile", "--force", "--out", folder]
+        with tempfile.TemporaryFile("w+") as told:
+            run = Run(folder, *measured(words, told))
+            told.seek(0)
+            seconds = {line.split()[0]: float(line.split()[1]) for line in told if line.split()[0] in ("start", "all")}
+        return run, seconds["all"] - seconds["start"]
+
+
+
+def median(values):
+    values = sorted(values)
+    middle = len(values) // 2
+    return values[middle] if len(values) % 2 else 0.5 * (values[middle - 1] + values[middle])
+
+
+def alternate(times, *measure):
+    """Calls the functions in turn, `times` times: a list of results for each."""
+    results = [[] for _ in measure]
+    for _ in range(times):
+        for result, call in zip(results, measure):
+            result.append(call())
+    return results
+
+
+def ratio(ours, theirs):
+    """Median of the ratios of measurements that were taken pair by pair."""
+    return median([a / b for a, b in zip(ours, theirs, strict=True)])
+
+
+def largest_distance(rows, reference):
+    """Largest distance of two lists of points, of the same instants."""
+    if len(rows) != len(reference):
+        raise Failed("%d rows, and the reference has %d" % (len(rows), len(reference)))
+    return max(math.dist(a, b) for a, b in zip(rows, reference))
+
+
+def growth(points):
+    """Exponent p of y = c x^p, least squares in logarithms, and the largest between neighbours."""
+    logs = [(math.log(x), math.log(y)) for x, y in points]
+    mx, my = (sum(column) / len(logs) for column in zip(*logs))
+    slope = sum((x - mx) * (y - my) for x, y in logs) / sum((x - mx) ** 2 for x, _ in logs)
+    return slope, max((b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(logs, logs[1:]))

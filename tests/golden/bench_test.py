@@ -1,0 +1,83 @@
+"""./dev bench: its parts run, mistyped words are told, the page has a table for each part. No time is judged."""
+import json
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+from program import PROGRAM, ROOT, ProgramTest
+
+FOLDER = os.path.join(ROOT, "tests", "bench")
+sys.path.insert(0, FOLDER)
+
+
+class Bench(ProgramTest):
+    def bench(self, *words, code=0, lower_bound=None):
+        environment = {name: value for name, value in os.environ.items() if name != "FREEPLAY_LOWER_BOUND"}
+        if lower_bound:
+            environment["FREEPLAY_LOWER_BOUND"] = lower_bound
+        done = subprocess.run([sys.executable, "-B", os.path.join(FOLDER, "bench.py"), *words, "--program", PROGRAM,
+                               "--build", self.path("bench")], capture_output=True, text=True, env=environment)
+        self.assertEqual(code, done.returncode, done.stdout + done.stderr)
+        return done.stdout, done.stderr
+
+    def test_small_parts_leave_numbers(self):
+        out, _ = self.bench("--quick", "four-bar-5", "startup")
+        for heading in ("error [m]", "cheapest runs with an error of at most 0.0001 m", "process with one step"):
+            self.assertIn(heading, out)
+        found = json.loads(self.read("bench", "results.json"))
+        runs = found["four-bar-5"]["runs"]
+        integrators = json.loads(self.freeplay("list", "integrators", "--json")[0])
+        self.assertEqual({entry["name"] for entry in integrators}, {run["integrator"] for run in runs})
+        for run in runs:
+            self.assertNotIn("failure", run)
+            # A step of half the size errs by less; a chain of one degree of freedom is no surprise.
+            self.assertLess(run["error"], 2e-2)
+            self.assertGreater(run["rate"], 0.0)
+        for integrator in ("bathe", "newmark", "hht", "generalized-alpha"):
+            coarse, fine = [run["error"] for run in runs if run["integrator"] == integrator and run["kind"] == "step"]
+            self.assertAlmostEqual(4.0, coarse / fine, delta=0.6)  # second order
+        self.assertLess(0.0, found["startup"]["3-rrr"]["median"])
+
+    def test_mistyped_words_get_the_nearest(self):
+        for words, answer in ((["slider-crnk"], "did you mean 'slider-crank'?"), (["--quik"], "did you mean '--quick'?"),
+                              (["--vs", "HEAD", "growth"], "--vs compares"), (["--page", "--quick"], "neither --quick")):
+            out, err = self.bench(*words, code=2)
+            self.assertEqual("", out)
+            self.assertIn(answer, err)
+        _, err = self.bench("startup", "--quick", code=1, lower_bound=self.folder)
+        self.assertIn("FREEPLAY_LOWER_BOUND: no Makefile", err)
+        _, err = self.bench("--vs", "no-such-revision", "squeezer", code=1)
+        self.assertIn("no-such-revision", err)
+
+    def test_help_lists_the_parts_and_the_page_has_a_table_of_each(self):
+        out, _ = self.bench("--help")
+        parts = re.findall(r"^  ([a-z0-9-]+)  +\S", out[out.index("\nparts:\n"):], re.M)
+        with open(os.path.join(ROOT, "docs", "performance.md"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertEqual(sorted(parts), sorted(re.findall(r"^<!-- bench (\S+) -->$", text, re.M)))
+        for part in re.findall(r"`\./dev bench ([a-z0-9][a-z0-9-]*)`", text):
+            self.assertIn(part, parts)
+
+    def test_tables_of_the_page_are_replaced_and_the_rest_stays(self):
+        import page
+        text = "# a\n<!-- bench load -->\nold\n<!-- end -->\nb\n<!-- bench growth -->\nkept\n<!-- end -->\n"
+        results = {"machine": {"cores": 2, "processor": "x"}, "date": "2026-01-02", "load": {"3-rrr": 0.25}}
+        new = page.rewritten(text, results)
+        self.assertIn("| 3-rrr | 0.25 |", new)
+        self.assertNotIn("old", new)
+        self.assertTrue(new.endswith("\nb\n<!-- bench growth -->\nkept\n<!-- end -->\n"))
+
+    def test_numbers_of_the_tables(self):
+        import timing
+        self.assertEqual((2.0, 2.5), (timing.median([3.0, 1.0, 2.0]), timing.median([1.0, 2.0, 3.0, 4.0])))
+        self.assertEqual(2.0, timing.ratio([2.0, 8.0, 3.0], [1.0, 2.0, 3.0]))
+        slope, steepest = timing.growth([(1.0, 3.0), (10.0, 30.0), (100.0, 3000.0)])
+        self.assertAlmostEqual(1.5, slope)
+        self.assertAlmostEqual(2.0, steepest)
+        self.assertEqual(5.0, timing.largest_distance([[0.0, 0.0], [3.0, 4.0]], [[0.0, 1.0], [0.0, 0.0]]))
+
+
+if __name__ == "__main__":
+    unittest.main()
