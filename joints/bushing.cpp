@@ -6,11 +6,11 @@
 namespace freeplay {
 namespace {
 
-using spatial::Dual;
-using spatial::PairInFirstAxes;
-using spatial::RelativeForce;
-using spatial::RelativeMotion;
-using spatial::Vec;
+using space::Dual;
+using space::PairInFirstAxes;
+using space::RelativeForce;
+using space::RelativeMotion;
+using space::Vec;
 
 /// Elastic bed of one frame in another: three springs and dampers along the axes of marker a and three about them, with
 /// diagonal matrices K, C (translation) and K_r, C_r (rotation). All in the axes of a, w = w_b - w_a:
@@ -49,9 +49,9 @@ class Bushing final : public Joint {
   static Vec<T> scaled(const Vec<double>& k, const Vec<T>& x) {
     return {k.x * x.x, k.y * x.y, k.z * x.z};
   }
-  static double kappa(const Vec<double>& r) { return spatial::Kappa(std::sqrt(dot(r, r))).value; }
+  static double kappa(const Vec<double>& r) { return space::Kappa(std::sqrt(dot(r, r))).value; }
   static Dual kappa(const Vec<Dual>& r) {
-    const spatial::Kappa k(std::sqrt(dot(r, r).value));
+    const space::Kappa k(std::sqrt(dot(r, r).value));
     return {k.value, 0.5 * k.slope * dot(r, r).gradient};
   }
   /// L x for `side` 1, L^T x for `side` -1: x - side rho x x/2 + kappa rho x (rho x x).

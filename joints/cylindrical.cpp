@@ -14,10 +14,10 @@ class Cylindrical final : public Joint {
 
   void declare(JointLayout& layout) const override { layout.constraint_rows = 4; }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    const spatial::Separation separation(in);
-    separation.close(spatial::axis(*in.a, 0), 0, rows);
-    separation.close(spatial::axis(*in.a, 1), 1, rows);
-    spatial::align_z_axes(in, 2, rows);
+    const space::Separation separation(in);
+    separation.close(space::axis(*in.a, 0), 0, rows);
+    separation.close(space::axis(*in.a, 1), 1, rows);
+    space::align_z_axes(in, 2, rows);
   }
   bool place(double, Pose& b_in_a) const override {
     b_in_a = planar::pose(0.0, 0.0);

@@ -43,14 +43,14 @@ class SpatialDistance final : public Joint {
 
   void declare(JointLayout& layout) const override { layout.constraint_rows = 1; }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    const Eigen::Vector3d d = spatial::position(*in.b) - spatial::position(*in.a);
+    const Eigen::Vector3d d = space::position(*in.b) - space::position(*in.a);
     const double distance = d.norm();
     const bool apart = distance > 0.0;
-    const Eigen::Vector3d u = apart ? Eigen::Vector3d(d / distance) : spatial::axis(*in.a, 0);
+    const Eigen::Vector3d u = apart ? Eigen::Vector3d(d / distance) : space::axis(*in.a, 0);
     rows.phi[0] = distance - length_;
-    spatial::write(rows.jacobian.data, spatial::velocity_a, -u);
-    spatial::write(rows.jacobian.data, spatial::velocity_b, u);
-    const double across = u.cross(spatial::velocity(*in.b) - spatial::velocity(*in.a)).squaredNorm();
+    space::write(rows.jacobian.data, space::velocity_a, -u);
+    space::write(rows.jacobian.data, space::velocity_b, u);
+    const double across = u.cross(space::velocity(*in.b) - space::velocity(*in.a)).squaredNorm();
     rows.gamma[0] = apart ? -across / distance : 0.0;
   }
 

@@ -5,7 +5,7 @@
 
 #include "freeplay/eigen.h"
 
-namespace freeplay::spatial {
+namespace freeplay::space {
 
 /// x and dx; the rules of differentiation are those of the operators. Clifford 1873; forward mode.
 struct Dual {
@@ -77,4 +77,4 @@ Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-}  // namespace freeplay::spatial
+}  // namespace freeplay::space

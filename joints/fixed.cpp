@@ -38,8 +38,8 @@ class SpatialFixed final : public Joint {
 
   void declare(JointLayout& layout) const override { layout.constraint_rows = 6; }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    spatial::join_origins(in, 0, rows);
-    spatial::RotationVector(in).close(in, 3, rows);
+    space::join_origins(in, 0, rows);
+    space::RotationVector(in).close(in, 3, rows);
   }
   bool place(double, Pose& b_in_a) const override {
     b_in_a = pose(0.0, 0.0);

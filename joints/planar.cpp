@@ -12,8 +12,8 @@ class Planar final : public Joint {
 
   void declare(JointLayout& layout) const override { layout.constraint_rows = 3; }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    spatial::Separation(in).close(spatial::axis(*in.a, 2), 0, rows);
-    spatial::align_z_axes(in, 1, rows);
+    space::Separation(in).close(space::axis(*in.a, 2), 0, rows);
+    space::align_z_axes(in, 1, rows);
   }
 };
 

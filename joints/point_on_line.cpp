@@ -37,12 +37,12 @@ class SpatialPointOnLine final : public Joint {
     layout.constraint_rows = 2;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
-    spatial::Separation(in).write_coordinate(spatial::axis(*in.a, 0), row);
+    space::Separation(in).write_coordinate(space::axis(*in.a, 0), row);
   }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    const spatial::Separation separation(in);
-    separation.close(spatial::axis(*in.a, 1), 0, rows);
-    separation.close(spatial::axis(*in.a, 2), 1, rows);
+    const space::Separation separation(in);
+    separation.close(space::axis(*in.a, 1), 0, rows);
+    separation.close(space::axis(*in.a, 2), 1, rows);
   }
 };
 

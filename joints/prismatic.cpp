@@ -47,13 +47,13 @@ class SpatialPrismatic final : public Joint {
     layout.constraint_rows = 5;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
-    spatial::Separation(in).write_coordinate(spatial::axis(*in.a, 0), row);
+    space::Separation(in).write_coordinate(space::axis(*in.a, 0), row);
   }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    const spatial::Separation separation(in);
-    separation.close(spatial::axis(*in.a, 1), 0, rows);
-    separation.close(spatial::axis(*in.a, 2), 1, rows);
-    spatial::RotationVector(in).close(in, 2, rows);
+    const space::Separation separation(in);
+    separation.close(space::axis(*in.a, 1), 0, rows);
+    separation.close(space::axis(*in.a, 2), 1, rows);
+    space::RotationVector(in).close(in, 2, rows);
   }
   bool place(double position, Pose& b_in_a) const override {
     b_in_a = pose(position, 0.0);

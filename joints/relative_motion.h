@@ -4,7 +4,7 @@
 #include "dual.h"
 #include "rotation_vector.h"
 
-namespace freeplay::spatial {
+namespace freeplay::space {
 
 /// All in the axes of marker a.
 template <class T>
@@ -143,4 +143,4 @@ class PairInFirstAxes {
   Eigen::Matrix<double, Dual::inputs, 1> numbers_;
 };
 
-}  // namespace freeplay::spatial
+}  // namespace freeplay::space

@@ -51,10 +51,10 @@ class SpatialRevolute final : public Joint {
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 5;
   }
-  void coordinate(const JointInput& in, CoordinateRow& row) const override { spatial::AngleAboutZ(in).write(row); }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { space::AngleAboutZ(in).write(row); }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    spatial::join_origins(in, 0, rows);
-    spatial::align_z_axes(in, 3, rows);
+    space::join_origins(in, 0, rows);
+    space::align_z_axes(in, 3, rows);
   }
   bool place(double angle, Pose& b_in_a) const override {
     b_in_a = pose(0.0, angle);

@@ -11,7 +11,7 @@ namespace freeplay {
 namespace {
 
 using namespace play;
-using spatial::PairInFirstAxes;
+using space::PairInFirstAxes;
 
 constexpr Event contact_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
                                     {"upper_contact_end", Crossing::falling, 1, event_fields},
@@ -57,7 +57,7 @@ class RevoluteClearanceInSpace final : public Joint {
     layout.events = contact_events;
     layout.channels = gap_channels;
   }
-  void coordinate(const JointInput& in, CoordinateRow& row) const override { spatial::AngleAboutZ(in).write(row); }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { space::AngleAboutZ(in).write(row); }
   bool place(double angle, Pose& b_in_a) const override {
     b_in_a = planar::pose(0.0, angle);
     return true;
@@ -229,12 +229,12 @@ class RevoluteClearanceInSpace final : public Joint {
       const ContactForce& f = normals.force[i];
       if (!is_end(i)) {
         const ShoulderGap<T> gap = bearing_.shoulder(motion, i);
-        const T normal = spatial::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
+        const T normal = space::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
         total.add({T(0.0), T(0.0), -(T(side(i)) * normal)}, {}, motion.d);
         continue;
       }
       const EndGap<T> gap = bearing_.end(motion, i, play_);
-      const T normal = spatial::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
+      const T normal = space::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
       total.add(T(-share(i)) * (normal * gap.m), gap.q, motion.d);
       if (!play_.slides) continue;
       const Vec<T> arm = gap.q + (T(play_.radius_b()) - T(0.5) * gap.penetration) * gap.n;

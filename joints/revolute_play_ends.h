@@ -5,8 +5,8 @@
 
 namespace freeplay::play {
 
-using spatial::RelativeForce;
-using spatial::RelativeMotion;
+using space::RelativeForce;
+using space::RelativeMotion;
 
 /// In this order the joint keeps its contacts. The upper ones are those on the side of +z of marker a.
 enum Place : std::size_t { upper_end, lower_end, upper_shoulder, lower_shoulder, places };
@@ -32,12 +32,12 @@ struct EndGap {
     using std::sqrt;
     const double height = end_side * half_length;
     // A journal that lies across its bearing is none; numbers stay finite.
-    const T along = spatial::value_of(x.r.z) > 1e-3 ? x.r.z : T(1e-3);
+    const T along = space::value_of(x.r.z) > 1e-3 ? x.r.z : T(1e-3);
     q = ((T(height) - x.d.z) / along) * x.r;
     e = {x.d.x + q.x, x.d.y + q.y, T(0.0)};
     const T squared = dot(e, e), distance = sqrt(squared);
     penetration = depth(squared, distance, play.radii.clearance);
-    if (spatial::value_of(distance) >= 1e-12 * play.radii.clearance) n = (T(1.0) / distance) * e;
+    if (space::value_of(distance) >= 1e-12 * play.radii.clearance) n = (T(1.0) / distance) * e;
     m = {n.x, n.y, -(dot(n, x.r) / along)};
     h = x.u + cross(x.w_b, q) - cross(x.w_a, Vec<T>{T(0.0), T(0.0), T(height)});
     rate = dot(m, h - cross(x.w_a, e));

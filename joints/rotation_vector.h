@@ -5,7 +5,7 @@
 
 #include "spatial_marker.h"
 
-namespace freeplay::spatial {
+namespace freeplay::space {
 
 inline Eigen::Matrix3d cross_matrix(const Vector3d& x) {
   Eigen::Matrix3d m;
@@ -80,4 +80,4 @@ class RotationVector {
   Vector3d value;
 };
 
-}  // namespace freeplay::spatial
+}  // namespace freeplay::space

@@ -6,7 +6,7 @@
 
 #include "freeplay/eigen.h"
 
-namespace freeplay::spatial {
+namespace freeplay::space {
 
 using Eigen::Vector3d;
 
@@ -148,4 +148,4 @@ class AngleAboutZ {
   Vector3d row;
 };
 
-}  // namespace freeplay::spatial
+}  // namespace freeplay::space

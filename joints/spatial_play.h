@@ -8,8 +8,8 @@
 
 namespace freeplay::play {
 
-using spatial::Dual;
-using spatial::Vec;
+using space::Dual;
+using space::Vec;
 
 /// Radii, laws and start. Throws BadParameter. A friction law with internal variables is refused: its bristles have no
 /// direction in the tangential plane.
@@ -35,12 +35,12 @@ struct SpatialPlay {
   template <class T>
   Vec<T> friction_force(const T& normal, const Vec<T>& slip) const {
     const T squared = dot(slip, slip);
-    if (spatial::value_of(squared) < 1e-24)
-      return T(friction.evaluate({spatial::value_of(normal), 0.0, {}}, {}).d_slip) * slip;
+    if (space::value_of(squared) < 1e-24)
+      return T(friction.evaluate({space::value_of(normal), 0.0, {}}, {}).d_slip) * slip;
     using std::sqrt;
     const T speed = sqrt(squared);
-    const FrictionForce f = friction.evaluate({spatial::value_of(normal), spatial::value_of(speed), {}}, {});
-    return (spatial::chained(f.tangential, f.d_normal, normal, f.d_slip, speed) / speed) * slip;
+    const FrictionForce f = friction.evaluate({space::value_of(normal), space::value_of(speed), {}}, {});
+    return (space::chained(f.tangential, f.d_normal, normal, f.d_slip, speed) / speed) * slip;
   }
 
   Radii radii;

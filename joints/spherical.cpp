@@ -11,7 +11,7 @@ class Spherical final : public Joint {
   explicit Spherical(const Parameters&) {}
 
   void declare(JointLayout& layout) const override { layout.constraint_rows = 3; }
-  void constrain(const JointInput& in, ConstraintRows& rows) const override { spatial::join_origins(in, 0, rows); }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override { space::join_origins(in, 0, rows); }
   bool place(double, Pose& b_in_a) const override {
     b_in_a = planar::pose(0.0, 0.0);
     return true;

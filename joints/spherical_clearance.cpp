@@ -8,9 +8,9 @@ namespace freeplay {
 namespace {
 
 using namespace play;
-using spatial::PairInFirstAxes;
-using spatial::RelativeForce;
-using spatial::RelativeMotion;
+using space::PairInFirstAxes;
+using space::RelativeForce;
+using space::RelativeMotion;
 
 constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
                                     {"contact_end", Crossing::falling, 1, event_fields}};
@@ -59,8 +59,8 @@ class SphericalClearance final : public Joint {
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
                   Span<double> history) const override {
     if (!play::begin_step(in, dt, history)) return;
-    const Eigen::Vector3d e = spatial::position(*in.b) - spatial::position(*in.a),
-                          rate = spatial::velocity(*in.b) - spatial::velocity(*in.a),
+    const Eigen::Vector3d e = space::position(*in.b) - space::position(*in.a),
+                          rate = space::velocity(*in.b) - space::velocity(*in.a),
                           second(acc.b[0] - acc.a[0], acc.b[1] - acc.a[1], acc.b[2] - acc.a[2]);
     const Approach gap = approach(in);
     const double distance = e.norm();
@@ -112,7 +112,7 @@ class SphericalClearance final : public Joint {
   /// In flight the ball moves by no more than the clearance.
   double step_limit(const JointInput& in) const override {
     if (in.history[phase] != flight) return impact_step(in);
-    const double speed = (spatial::velocity(*in.b) - spatial::velocity(*in.a)).norm();
+    const double speed = (space::velocity(*in.b) - space::velocity(*in.a)).norm();
     return speed > 0.0 ? play_.radii.clearance / speed : unbounded;
   }
   const char* warning(const JointInput& in) const override {
@@ -144,11 +144,11 @@ class SphericalClearance final : public Joint {
       using std::sqrt;
       const T squared = dot(motion.d, motion.d), distance = sqrt(squared);
       penetration = depth(squared, distance, play.radii.clearance);
-      if (spatial::value_of(distance) >= 1e-12 * play.radii.clearance) n = (T(1.0) / distance) * motion.d;
+      if (space::value_of(distance) >= 1e-12 * play.radii.clearance) n = (T(1.0) / distance) * motion.d;
       rate = dot(n, motion.u);
       slip = across(motion.u, n) + cross(T(play.radius_b()) * motion.w_b - T(play.radius_a()) * motion.w_a, n);
     }
-    Approach approach() const { return {spatial::value_of(penetration), spatial::value_of(rate)}; }
+    Approach approach() const { return {space::value_of(penetration), space::value_of(rate)}; }
     Vec<T> n{T(1.0), T(0.0), T(0.0)}, slip;
     T penetration, rate;
   };
@@ -166,7 +166,7 @@ class SphericalClearance final : public Joint {
 
   template <class T>
   Forces<T> force(const Gap<T>& gap, const ContactForce& f) const {
-    const T normal = spatial::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
+    const T normal = space::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
     Forces<T> forces{{-(normal * gap.n), {}, {}}, {}};
     if (!play_.slides) return forces;
     forces.friction = play_.friction_force(normal, gap.slip);

@@ -138,10 +138,10 @@ class SpatialSpringDamper final : public Joint {
 
   void declare(JointLayout& layout) const override { spring_.declare(layout); }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
-    if (spring_.kind == rotational) spatial::AngleAboutZ(in).write(row);
+    if (spring_.kind == rotational) space::AngleAboutZ(in).write(row);
   }
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
-    if (spring_.kind == linear) channels[0] = (spatial::position(*in.b) - spatial::position(*in.a)).norm();
+    if (spring_.kind == linear) channels[0] = (space::position(*in.b) - space::position(*in.a)).norm();
   }
   void apply(const JointInput& in, JointForces& out) const override {
     const bool along = spring_.kind == linear;
@@ -156,12 +156,12 @@ class SpatialSpringDamper final : public Joint {
   }
 
  private:
-  using Pair = spatial::PairInFirstAxes;
-  using Dual = spatial::Dual;
+  using Pair = space::PairInFirstAxes;
+  using Dual = space::Dual;
   template <class T>
-  using Motion = spatial::RelativeMotion<T>;
+  using Motion = space::RelativeMotion<T>;
   template <class T>
-  using Vec = spatial::Vec<T>;
+  using Vec = space::Vec<T>;
   /// Stretch, its rate, and the direction u of the force or torque; axes of marker a.
   template <class T>
   struct State {
@@ -174,7 +174,7 @@ class SpatialSpringDamper final : public Joint {
     using std::sqrt;
     if (spring_.kind == linear) {
       const T length = sqrt(dot(x.d, x.d));
-      const Vec<T> u = (T(1.0) / (spatial::value_of(length) > 0.0 ? length : T(1.0))) * x.d;
+      const Vec<T> u = (T(1.0) / (space::value_of(length) > 0.0 ? length : T(1.0))) * x.d;
       return {length - T(spring_.free), dot(u, x.u), u};
     }
     // The host counts the turns; the derivatives are those of the angle without them.
@@ -186,7 +186,7 @@ class SpatialSpringDamper final : public Joint {
   static Dual counted(const Vec<Dual>& r, double angle) { return {angle, atan2(r.y, r.x).gradient}; }
 
   template <class T>
-  spatial::RelativeForce<T> force(const State<T>& now) const {
+  space::RelativeForce<T> force(const State<T>& now) const {
     const T effort = T(spring_.stiffness) * now.stretch + T(spring_.preload) + T(spring_.damping) * now.rate;
     const Vec<T> pull = -(effort * now.u);
     if (spring_.kind == linear) return {pull, {}, {}};

@@ -13,8 +13,8 @@ class Universal final : public Joint {
 
   void declare(JointLayout& layout) const override { layout.constraint_rows = 4; }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
-    spatial::join_origins(in, 0, rows);
-    spatial::keep_perpendicular(in, spatial::axis(*in.a, 0), spatial::axis(*in.b, 1), 3, rows);
+    space::join_origins(in, 0, rows);
+    space::keep_perpendicular(in, space::axis(*in.a, 0), space::axis(*in.b, 1), 3, rows);
   }
   bool place(double, Pose& b_in_a) const override {
     b_in_a = planar::pose(0.0, 0.0);
