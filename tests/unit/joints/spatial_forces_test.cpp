@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Element{"bushing", bushing},
                     Element{"linear_spring", [](double damping) { return spring(false, damping); }},
                     Element{"rotational_spring", [](double damping) { return spring(true, damping); }}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& element) { return element.param.name; });
 
 // Shifted by (1, 2, 3) mm and turned about z by 0.5 rad: each axis has its own stiffness.
 TEST(Bushing, HasAStiffnessForEachAxisOfTheFirstFrame) {
