@@ -28,7 +28,9 @@ Component spherical() {
        .formula = "P_b - P_a = 0.",
        .references =
            "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, Computer Aided Kinematics "
-           "and Dynamics of Mechanical Systems"});
+           "and Dynamics of Mechanical Systems",
+       .first_end = "socket",
+       .second_end = "ball"});
 }
 
 }  // namespace freeplay
