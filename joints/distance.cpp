@@ -1,5 +1,6 @@
 #include "freeplay/plugin.h"
 #include "planar_marker.h"
+#include "spatial_marker.h"
 
 namespace freeplay {
 namespace {
@@ -35,6 +36,28 @@ class Distance final : public Joint {
   double length_;
 };
 
+/// The same in space; there d' - (u.d') u is what lies across the rod.
+class SpatialDistance final : public Joint {
+ public:
+  explicit SpatialDistance(const Parameters& parameters) : length_(parameters.number("length")) {}
+
+  void declare(JointLayout& layout) const override { layout.constraint_rows = 1; }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    const Eigen::Vector3d d = space::position(*in.b) - space::position(*in.a);
+    const double distance = d.norm();
+    const bool apart = distance > 0.0;
+    const Eigen::Vector3d u = apart ? Eigen::Vector3d(d / distance) : space::axis(*in.a, 0);
+    rows.phi[0] = distance - length_;
+    space::write(rows.jacobian.data, space::velocity_a, -u);
+    space::write(rows.jacobian.data, space::velocity_b, u);
+    const double across = u.cross(space::velocity(*in.b) - space::velocity(*in.a)).squaredNorm();
+    rows.gamma[0] = apart ? -across / distance : 0.0;
+  }
+
+ private:
+  double length_;
+};
+
 constexpr Parameter parameters[] = {
     {.name = "length", .unit = "m", .minimum = 0.0, .open = Open::minimum, .summary = "Distance of the origins."}};
 
@@ -42,12 +65,13 @@ constexpr Parameter parameters[] = {
 
 Component distance() {
   return joint<Distance>({.name = "distance",
-                          .space = Space::planar,
+                          .space = Space::both,
                           .summary = "Massless rod: the origins of both frames stay a length apart.",
                           .formula = "|P_b - P_a| = length.",
                           .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, "
                                         "Computer Aided Kinematics and Dynamics of Mechanical Systems",
-                          .parameters = parameters});
+                          .parameters = parameters,
+                          .in_space = joint_face<SpatialDistance>()});
 }
 
 }  // namespace freeplay

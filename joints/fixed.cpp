@@ -1,5 +1,6 @@
 #include "freeplay/plugin.h"
 #include "planar_marker.h"
+#include "rotation_vector.h"
 
 namespace freeplay {
 namespace {
@@ -30,13 +31,31 @@ class Fixed final : public Joint {
   }
 };
 
+/// Two markers that coincide, in space: P_b - P_a = 0, and the rotation vector of b in a is zero.
+class SpatialFixed final : public Joint {
+ public:
+  explicit SpatialFixed(const Parameters&) {}
+
+  void declare(JointLayout& layout) const override { layout.constraint_rows = 6; }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    space::join_origins(in, 0, rows);
+    space::RotationVector(in).close(in, 3, rows);
+  }
+  bool place(double, Pose& b_in_a) const override {
+    b_in_a = pose(0.0, 0.0);
+    return true;
+  }
+};
+
 }  // namespace
 
 Component fixed() {
   return joint<Fixed>({.name = "fixed",
-                       .space = Space::planar,
+                       .space = Space::both,
                        .summary = "Weld: both frames coincide.",
-                       .formula = "P_b - P_a = 0, theta_b - theta_a = 0 up to whole turns."});
+                       .formula = "P_b - P_a = 0, theta_b - theta_a = 0 up to whole turns; in space the "
+                                  "rotation vector of the second frame in the first is zero.",
+                       .in_space = joint_face<SpatialFixed>()});
 }
 
 }  // namespace freeplay

@@ -9,11 +9,19 @@ Component point_on_line();
 Component distance();
 Component spring_damper();
 Component revolute_clearance();
+Component spherical();
+Component universal();
+Component cylindrical();
+Component planar_joint();
+Component spherical_clearance();
+Component bushing();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
   using namespace freeplay;
-  static const Component components[] = {revolute(),      prismatic(),         fixed(), point_on_line(), distance(),
-                                         spring_damper(), revolute_clearance()};
+  static const Component components[] = {
+      revolute(),      prismatic(),           fixed(),     point_on_line(), distance(),
+      spring_damper(), revolute_clearance(),  spherical(), universal(),     cylindrical(),
+      planar_joint(),  spherical_clearance(), bushing()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

@@ -1,5 +1,6 @@
 #include "freeplay/plugin.h"
 #include "planar_slide.h"
+#include "spatial_marker.h"
 
 namespace freeplay {
 namespace {
@@ -25,16 +26,39 @@ class PointOnLine final : public Joint {
   }
 };
 
+/// Ball in a straight slot, in space: y_a.d = 0 and z_a.d = 0 with d = P_b - P_a; all turns are free.
+class SpatialPointOnLine final : public Joint {
+ public:
+  explicit SpatialPointOnLine(const Parameters&) {}
+
+  void declare(JointLayout& layout) const override {
+    layout.coordinate = Coordinate::position;
+    layout.rows_without_coordinate = 1;
+    layout.constraint_rows = 2;
+  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override {
+    space::Separation(in).write_coordinate(space::axis(*in.a, 0), row);
+  }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    const space::Separation separation(in);
+    separation.close(space::axis(*in.a, 1), 0, rows);
+    separation.close(space::axis(*in.a, 2), 1, rows);
+  }
+};
+
 }  // namespace
 
 Component point_on_line() {
   return joint<PointOnLine>(
       {.name = "point-on-line",
-       .space = Space::planar,
+       .space = Space::both,
        .summary = "Pin in a slot: the second origin stays on the x axis of the first frame, the turn is free.",
-       .formula = "n.(P_b - P_a) = 0 with n normal to the x axis h of the first frame; coordinate: h.(P_b - P_a).",
+       .formula = "n.(P_b - P_a) = 0 with n normal to the x axis h of the first frame, in space for both normals; "
+                  "coordinate: h.(P_b - P_a).",
        .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, Computer "
-                     "Aided Kinematics and Dynamics of Mechanical Systems"});
+                     "Aided Kinematics and Dynamics of Mechanical Systems",
+       .axis = MarkerAxis::x,
+       .in_space = joint_face<SpatialPointOnLine>()});
 }
 
 }  // namespace freeplay

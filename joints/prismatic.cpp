@@ -1,5 +1,6 @@
 #include "freeplay/plugin.h"
 #include "planar_slide.h"
+#include "rotation_vector.h"
 
 namespace freeplay {
 namespace {
@@ -34,18 +35,47 @@ class Prismatic final : public Joint {
   }
 };
 
+/// Slider in space: the second origin stays on the x axis of marker a, y_a.d = 0 and z_a.d = 0 with d = P_b - P_a, and
+/// the markers stay parallel: the rotation vector of b in a is zero (`rotation_vector.h`). Coordinate: x_a.d.
+class SpatialPrismatic final : public Joint {
+ public:
+  explicit SpatialPrismatic(const Parameters&) {}
+
+  void declare(JointLayout& layout) const override {
+    layout.coordinate = Coordinate::position;
+    layout.rows_without_coordinate = 1;
+    layout.constraint_rows = 5;
+  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override {
+    space::Separation(in).write_coordinate(space::axis(*in.a, 0), row);
+  }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    const space::Separation separation(in);
+    separation.close(space::axis(*in.a, 1), 0, rows);
+    separation.close(space::axis(*in.a, 2), 1, rows);
+    space::RotationVector(in).close(in, 2, rows);
+  }
+  bool place(double position, Pose& b_in_a) const override {
+    b_in_a = pose(position, 0.0);
+    return true;
+  }
+};
+
 }  // namespace
 
 Component prismatic() {
   return joint<Prismatic>(
       {.name = "prismatic",
-       .space = Space::planar,
+       .space = Space::both,
        .summary = "Slider: the second origin stays on the x axis of the first frame, the frames stay parallel.",
        .formula =
            "n.(P_b - P_a) = 0 with n normal to the x axis h of the first frame, theta_b - theta_a = 0 up to whole "
-           "turns; coordinate: h.(P_b - P_a).",
+           "turns; in space for both normals of h, and the rotation vector of the second frame in the first is zero; "
+           "coordinate: h.(P_b - P_a).",
        .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, Computer "
-                     "Aided Kinematics and Dynamics of Mechanical Systems"});
+                     "Aided Kinematics and Dynamics of Mechanical Systems",
+       .axis = MarkerAxis::x,
+       .in_space = joint_face<SpatialPrismatic>()});
 }
 
 }  // namespace freeplay

@@ -1,5 +1,6 @@
 #include "freeplay/plugin.h"
 #include "planar_marker.h"
+#include "spatial_marker.h"
 
 namespace freeplay {
 namespace {
@@ -38,16 +39,43 @@ class Revolute final : public Joint {
   }
 };
 
+/// Ideal hinge in space: the origins coincide (3 rows, world axes) and the z axes agree (2 rows of `align_z_axes`).
+/// Coordinate: the angle of marker b about the z axis of marker a [rad]. With all z axes those of the world, forces
+/// and motions in the plane are those of the joint above.
+class SpatialRevolute final : public Joint {
+ public:
+  explicit SpatialRevolute(const Parameters&) {}
+
+  void declare(JointLayout& layout) const override {
+    layout.coordinate = Coordinate::angle;
+    layout.rows_without_coordinate = 1;
+    layout.constraint_rows = 5;
+  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { space::AngleAboutZ(in).write(row); }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    space::join_origins(in, 0, rows);
+    space::align_z_axes(in, 3, rows);
+  }
+  bool place(double angle, Pose& b_in_a) const override {
+    b_in_a = pose(0.0, angle);
+    return true;
+  }
+};
+
 }  // namespace
 
 Component revolute() {
-  return joint<Revolute>({.name = "revolute",
-                          .space = Space::planar,
-                          .summary = "Pin: the origins of both frames coincide, the turn is free.",
-                          .formula = "P_b - P_a = 0; coordinate: angle of the second frame relative to the first.",
-                          .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems",
-                          .first_end = "bearing",
-                          .second_end = "journal"});
+  return joint<Revolute>(
+      {.name = "revolute",
+       .space = Space::both,
+       .summary = "Pin: the origins of both frames coincide, the turn about z is free.",
+       .formula = "P_b - P_a = 0; in space the z axes agree, too: 2 p.z_b/(1 + z_a.z_b) = 0 for p = x_a, y_a; "
+                  "coordinate: angle of the second frame relative to the first, about z.",
+       .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems",
+       .first_end = "bearing",
+       .second_end = "journal",
+       .axis = MarkerAxis::z,
+       .in_space = joint_face<SpatialRevolute>()});
 }
 
 }  // namespace freeplay

@@ -1,84 +1,28 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
+#include "contact_phase.h"
 #include "freeplay/plugin.h"
 #include "planar_marker.h"
+#include "revolute_clearance_in_space.h"
 
 namespace freeplay {
 namespace {
 
 using namespace planar;
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-/// Radii [m] of the journal and of its bearing. Those that the file leaves open are NaN; the clearance is known.
-struct Radii {
-  double bearing, journal, clearance;
-  bool known() const { return !std::isnan(bearing); }
-};
-
-/// Reads two of three, all three that agree to 1e-9 of the clearance, or the clearance alone. Throws BadParameter.
-Radii read_radii(const Parameters& p) {
-  Radii r{p.number("clearance.bearing_radius"), p.number("clearance.journal_radius"),
-          p.number("clearance.radial_clearance")};
-  const bool bearing = !std::isnan(r.bearing), journal = !std::isnan(r.journal), gap = !std::isnan(r.clearance);
-  if (!gap && !(bearing && journal))
-    throw BadParameter("clearance", "missing-key",
-                       "give two of 'bearing_radius', 'journal_radius' and 'radial_clearance'");
-  if (bearing && journal && !(r.journal < r.bearing))
-    throw BadParameter("clearance.journal_radius", "out-of-range", "'journal_radius' must be below 'bearing_radius'");
-  if (bearing && journal && gap && !(std::abs(r.bearing - r.journal - r.clearance) <= 1e-9 * r.clearance))
-    throw BadParameter("clearance.radial_clearance", "conflicting-keys",
-                       "'radial_clearance' is not 'bearing_radius' minus 'journal_radius'");
-  if (bearing && gap && !(r.clearance < r.bearing))
-    throw BadParameter("clearance.radial_clearance", "out-of-range",
-                       "'radial_clearance' must be below 'bearing_radius'");
-  // All three come from the two that keep the difference exact.
-  if (!gap) r.clearance = r.bearing - r.journal;
-  if (gap && bearing) r.journal = r.bearing - r.clearance;
-  if (gap && !bearing && journal) r.bearing = r.journal + r.clearance;
-  if (!bearing && !journal) r.bearing = r.journal = not_a_number;
-  return r;
-}
-
-/// One block {E, nu}. Throws BadParameter when one of the two is missing.
-Material read_material(const Parameters& p, const char* block, const char* modulus, const char* ratio) {
-  const Material m{p.number(modulus), p.number(ratio)};
-  if (std::isnan(m.youngs_modulus) != std::isnan(m.poisson_ratio))
-    throw BadParameter(block, "missing-key", std::isnan(m.youngs_modulus) ? "'nu' without 'E'" : "'E' without 'nu'");
-  return m;
-}
-
-/// Materials of both sides into `pair`: one for both, or one for each, or none (NaN). Throws BadParameter.
-void read_materials(const Parameters& p, ContactPair& pair) {
-  const Material both = read_material(p, "clearance.material", "clearance.material.E", "clearance.material.nu");
-  pair.bearing =
-      read_material(p, "clearance.material.bearing", "clearance.material.bearing.E", "clearance.material.bearing.nu");
-  pair.journal =
-      read_material(p, "clearance.material.journal", "clearance.material.journal.E", "clearance.material.journal.nu");
-  const bool bearing = !std::isnan(pair.bearing.youngs_modulus), journal = !std::isnan(pair.journal.youngs_modulus);
-  if (!std::isnan(both.youngs_modulus)) {
-    if (bearing || journal)
-      throw BadParameter("clearance.material", "conflicting-keys",
-                         "give 'E' and 'nu' for both sides, or 'bearing' and 'journal'");
-    pair.bearing = pair.journal = both;
-  } else if (bearing != journal) {
-    throw BadParameter("clearance.material", "missing-key", bearing ? "'journal' is missing" : "'bearing' is missing");
-  }
-}
+using namespace play;
 
 /// Where the journal stands in the bearing, and how it moves.
-struct Gap {
+struct Gap : Approach {
   Gap(const JointInput& in, const Radii& r)
       : e(position(*in.b) - position(*in.a)),
         e_rate(velocity(*in.b) - velocity(*in.a)),
         w_a(angular_velocity(*in.a)),
         w_b(angular_velocity(*in.b)),
-        distance(e.norm()),
-        // Loses less than distance - clearance, a difference of nearly equal numbers.
-        penetration((e.squaredNorm() - r.clearance * r.clearance) / (distance + r.clearance)) {
+        distance(e.norm()) {
+    // Loses less than distance - clearance, a difference of nearly equal numbers.
+    penetration = (e.squaredNorm() - r.clearance * r.clearance) / (distance + r.clearance);
     if (distance >= 1e-12 * r.clearance) n = e / distance;
     t = turned(n);
     rate = n.dot(e_rate);
@@ -87,37 +31,13 @@ struct Gap {
   Eigen::Vector2d e, e_rate;  // eccentricity [m] and its rate [m/s]
   double w_a, w_b;            // [rad/s]
   double distance;            // |e| [m]
-  double penetration;         // delta [m]
-  double rate, slip;          // delta', v_T [m/s]
+  double slip;                // v_T [m/s]
   Eigen::Vector2d n{1.0, 0.0}, t;
 };
-
-/// The joint's numbers in `history`.
-enum Slot : std::size_t {
-  phase,            ///< flight, contact or on_from_start
-  approach_speed,   ///< v_0 of the present contact, 0: elastic part only [m/s]
-  predicted,        ///< v_0 of a contact that begins in this step, 0: none [m/s]
-  step_end,         ///< time at which an event counts as located at the end of the step [s]
-  begin_time,       ///< of the present contact [s]
-  max_force,        ///< of the present contact [N]
-  max_penetration,  ///< of the present contact [m]
-  steps,            ///< accepted steps of the present contact
-  impact_time,      ///< how long the present contact lasts if it is an impact, 0: not known [s]
-  slots
-};
-
-/// Values of `phase`. `on_from_start` is a contact that nobody has been told of: its begin event is still armed.
-constexpr double flight = 0.0, contact = 1.0, on_from_start = 2.0;
-
-/// v_0 is at least this [m/s]; laws divide by it.
-constexpr double smallest_approach_speed = 1e-6;
 
 /// Internal variables that a friction law may have here: derivatives are made on the stack.
 constexpr std::size_t most_internal_variables = 8;
 
-constexpr Channel event_fields[] = {
-    {"speed", "m/s"}, {"tangential_speed", "m/s"}, {"direction", "rad"}, {"duration", "s"},
-    {"max_fn", "N"},  {"max_delta", "m"},          {"steps", "1"}};
 constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
                                     {"contact_end", Crossing::falling, 1, event_fields}};
 constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},  {"fn", "N"},
@@ -141,7 +61,7 @@ constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},
 /// Struct 82; Lankarani and Nikravesh 1990.
 class RevoluteClearance final : public Joint {
  public:
-  explicit RevoluteClearance(const Parameters& p) : radii_(read_radii(p)) {
+  explicit RevoluteClearance(const Parameters& p) : radii_(read_radii(p)), start_(p) {
     ContactPair pair{radii_.bearing, radii_.journal, radii_.clearance, p.number("clearance.length"), {}, {}};
     read_materials(p, pair);
     contact_law_ = p.contact_law("clearance.contact", pair);
@@ -150,9 +70,9 @@ class RevoluteClearance final : public Joint {
     if (internal_variables_ > static_cast<int>(most_internal_variables))
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
-    if (!radii_.known() && !friction_is_inert())
-      throw BadParameter("clearance", "missing-key", "friction needs 'bearing_radius' or 'journal_radius'");
-    read_start(p);
+    require_radii(radii_, friction_law_);
+    if (p.given("clearance.axial_clearance"))
+      throw BadParameter("clearance.axial_clearance", "type-space", "only a spatial model has play along the axis");
   }
 
   void declare(JointLayout& layout) const override {
@@ -183,68 +103,40 @@ class RevoluteClearance final : public Joint {
     out.wrench_a[5] = -arm_a(gap) * f.friction.tangential;
     out.wrench_b[5] = arm_b(gap) * f.friction.tangential;
     out.potential = f.normal.potential;
-    const bool told = !std::isnan(f.normal.elastic);
-    out.potential_rate =
-        gap.rate * (told ? f.normal.elastic : contact_law_.evaluate({gap.penetration, 0.0, 0.0}).normal);
+    out.potential_rate = storing_power(contact_law_, gap, f.normal);
     if (!out.derivatives.empty()) differentiate(in, gap, f, out.derivatives);
   }
 
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
     std::fill(internal.begin(), internal.end(), 0.0);
-    reset(history);
-    if (Gap(in, radii_).penetration > 0.0) {
-      history[phase] = on_from_start;
-      history[begin_time] = in.t;
-    }
+    start(in.t, Gap(in, radii_), history);
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
                   Span<double> history) const override {
-    // A little inside, so that rounding of t + dt does not matter.
-    history[step_end] = in.t + dt * (1.0 - 1e-9);
-    const bool foresee = history[phase] == flight && in.per_contact == 0.0;
+    const bool foresee = play::begin_step(in, dt, history);
     history[predicted] = foresee ? predict(Gap(in, radii_), acc, dt) : 0.0;
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
-    const Gap gap(in, radii_);
-    g[0] = in.history[phase] != contact ? gap.penetration : not_a_number;
-    g[1] = in.history[phase] != flight ? gap.penetration : not_a_number;
-    rate[0] = rate[1] = gap.rate;
+    write_events(in, Gap(in, radii_), g, rate);
   }
   void on_event(int index, const JointInput& in, Span<double> internal, Span<double> history,
                 Span<double> fields) const override {
     const Gap gap(in, radii_);
-    std::fill(fields.begin(), fields.end(), not_a_number);
+    if (index == 0) {
+      tell_begin(in, gap, history, fields);
+      if (in.mobility != nullptr) {
+        history[impact_time] =
+            impact_duration(contact_law_, gap, radii_.clearance, inverse_mass(gap, in.mobility), 1.0);
+      }
+    } else {
+      tell_end(in, gap, history, fields);
+      std::fill(internal.begin(), internal.end(), 0.0);
+    }
     fields[1] = gap.slip;
     fields[2] = std::atan2(gap.e.y(), gap.e.x());
-    if (index == 0) {
-      begin(in.t, gap.rate, in.t >= history[step_end], history);
-      // The speed that the law uses: where the crossing lies inside the step, the motion behind it feels the contact.
-      const bool exact = history[approach_speed] == 0.0 || in.per_contact > 0.0;
-      fields[0] = exact ? std::max(gap.rate, 0.0) : history[approach_speed];
-      if (in.mobility != nullptr) history[impact_time] = impact_duration(gap, in.mobility);
-      return;
-    }
-    fields[0] = std::max(-gap.rate, 0.0);
-    fields[3] = in.t - history[begin_time];
-    fields[4] = history[max_force];
-    fields[5] = history[max_penetration];
-    fields[6] = history[steps] + 1.0;  // the step in which it ends
-    std::fill(internal.begin(), internal.end(), 0.0);
-    reset(history);
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
-    const Gap gap(in, radii_);
-    // Crossings that no event told, because delta stood at its zero to rounding when the step began.
-    if (history[phase] == flight && gap.penetration > 0.0 && gap.rate > 0.0) begin(in.t, gap.rate, false, history);
-    if (history[phase] != flight && gap.penetration <= 0.0 && gap.rate <= 0.0) reset(history);
-    history[predicted] = 0.0;
-    if (history[phase] == flight) return;
-    // A contact that began at the very end of the step has not taken it.
-    if (in.t > history[begin_time]) history[steps] += 1.0;
-    if (!touches(in, gap)) return;
-    const double force = contact_law_.evaluate({gap.penetration, gap.rate, history[approach_speed]}).normal;
-    history[max_force] = std::max(history[max_force], force);
-    history[max_penetration] = std::max(history[max_penetration], gap.penetration);
+    play::commit(in, Gap(in, radii_), contact_law_, 1.0, history);
   }
 
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
@@ -263,16 +155,13 @@ class RevoluteClearance final : public Joint {
         gap.e.x(), gap.e.y(), gap.penetration, normal, tangential, power, in.history[phase] == flight ? 0.0 : 1.0};
     std::copy(std::begin(values), std::end(values), channels.begin());
   }
-  /// An impact: its duration over the steps that it should take; after twice its duration it is a lasting contact. In
-  /// flight: the journal moves by no more than the clearance.
+  /// In flight the journal moves by no more than the clearance.
   double step_limit(const JointInput& in) const override {
     if (in.history[phase] == flight) {
       const double speed = Gap(in, radii_).e_rate.norm();
       return speed > 0.0 ? radii_.clearance / speed : unbounded;
     }
-    const double duration = in.history[impact_time];
-    const bool impact = duration > 0.0 && in.t - in.history[begin_time] < 2.0 * duration;
-    return impact ? duration / std::max(in.per_contact, 1.0) : unbounded;
+    return impact_step(in);
   }
   const char* warning(const JointInput& in) const override {
     const Gap gap(in, radii_);
@@ -280,13 +169,13 @@ class RevoluteClearance final : public Joint {
     return contact_law_.outside_range({gap.penetration, gap.rate, in.history[approach_speed]});
   }
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
-    out = start_;
-    if (!loaded_) return;
+    out = start_.offset;
+    if (!start_.loaded) return;
     const Eigen::Vector2d force(reaction[0], reaction[1]);
     const double size = force.norm();
     if (size < 1e-12) return;
     // The bearing pushes the journal along -n.
-    const double distance = radii_.clearance + resting_penetration(size);
+    const double distance = radii_.clearance + resting_penetration(contact_law_, radii_.clearance, size);
     for (int i = 0; i < 2; ++i) out.position[i] = -distance * force[i] / size;
   }
 
@@ -296,56 +185,17 @@ class RevoluteClearance final : public Joint {
     FrictionForce friction;
   };
 
-  /// Forces that do not depend on slip: tried at an ordinary and at a very high speed, with a unit normal force.
-  bool friction_is_inert() const {
-    if (internal_variables_ != 0) return false;
-    for (const double slip : {1.0, 1e6})
-      if (friction_law_.evaluate({1.0, slip, {}}, {}).tangential != 0.0) return false;
-    return true;
-  }
-  void read_start(const Parameters& p) {
-    const int word = p.word("clearance.initial");
-    loaded_ = word == 1;
-    if (word >= 0) return;
-    const auto eccentricity = p.vector("clearance.initial.eccentricity"),
-               velocity = p.vector("clearance.initial.velocity");
-    std::copy(eccentricity.begin(), eccentricity.end(), start_.position);
-    std::copy(velocity.begin(), velocity.end(), start_.velocity);
-  }
-
-  /// Where steps end at events a flight lasts until its event: an attempt that passes it stays smooth.
-  static bool touches(const JointInput& in, const Gap& gap) {
-    return gap.penetration > 0.0 && (in.per_contact == 0.0 || in.history[phase] != flight);
-  }
   double radius_a() const { return radii_.known() ? radii_.bearing : 0.0; }
   double radius_b() const { return radii_.known() ? radii_.journal : 0.0; }
   /// Distances of C from the origins of a and b, along n.
   double arm_a(const Gap& gap) const { return radius_a() + 0.5 * gap.penetration; }
   double arm_b(const Gap& gap) const { return radius_b() - 0.5 * gap.penetration; }
 
-  /// Forces at delta > 0. In flight the contact begins in this very step: v_0 is the predicted one or, without
-  /// prediction, that of the state itself.
+  /// Forces at delta > 0.
   Forces forces(const JointInput& in, const Gap& gap, Span<double> internal_rate) const {
     Forces f{};
-    if (in.history[phase] != flight) {
-      f.normal = contact_law_.evaluate({gap.penetration, gap.rate, in.history[approach_speed]});
-    } else if (in.history[predicted] > 0.0) {
-      f.normal = contact_law_.evaluate({gap.penetration, gap.rate, in.history[predicted]});
-    } else {
-      f.normal = unpredicted(gap);
-    }
+    f.normal = normal_force(contact_law_, gap, in);
     f.friction = friction_law_.evaluate({f.normal.normal, gap.slip, in.internal}, internal_rate);
-    return f;
-  }
-
-  /// v_0 is the rate itself, which adds dF/dv_0 to dF/ddelta'; laws do not give it, so the sum is differenced.
-  ContactForce unpredicted(const Gap& gap) const {
-    const double v0 = std::max(gap.rate, smallest_approach_speed);
-    ContactForce f = contact_law_.evaluate({gap.penetration, gap.rate, v0});
-    if (gap.rate <= smallest_approach_speed) return f;
-    const double step = std::min(1e-6 * gap.rate, gap.rate - smallest_approach_speed);
-    const auto at = [&](double v) { return contact_law_.evaluate({gap.penetration, v, v}).normal; };
-    f.d_rate = (at(gap.rate + step) - at(gap.rate - step)) / (2.0 * step);
     return f;
   }
 
@@ -356,79 +206,19 @@ class RevoluteClearance final : public Joint {
     if (gap.penetration >= 0.0) return gap.rate > 0.0 ? std::max(gap.rate, smallest_approach_speed) : 0.0;
     const Eigen::Vector2d e_second(acc.b[0] - acc.a[0], acc.b[1] - acc.a[1]);
     const double second = gap.n.dot(e_second) + (gap.e_rate.squaredNorm() - gap.rate * gap.rate) / gap.distance;
-    const double discriminant = gap.rate * gap.rate - 2.0 * second * gap.penetration;
-    if (discriminant < 0.0) return 0.0;
-    // From flight, delta < 0, the first root is that of growing delta; each form of it keeps its digits.
-    const double root = std::sqrt(discriminant);
-    double s = unbounded;
-    if (gap.rate >= 0.0) s = -2.0 * gap.penetration / (gap.rate + root);
-    if (gap.rate < 0.0 && second > 0.0) s = (root - gap.rate) / second;
+    const double s = time_to_contact(gap, second);
     if (!(s <= dt)) return 0.0;
     // Near the centre the parabola is poor; the speed of approach never exceeds the speed.
     const double speed = (gap.e_rate + s * e_second).norm();
     return std::max(std::min(gap.rate + second * s, speed), smallest_approach_speed);
   }
 
-  /// A contact begins at time t with the rate `rate`. What is on from the start keeps v_0 = 0 and its time.
-  /// Where the step ends at the crossing (`located`) the rate is exact; else the forces have used the prediction.
-  static void begin(double t, double rate, bool located, Span<double> history) {
-    const bool told_late = history[phase] == on_from_start;
-    history[phase] = contact;
-    if (told_late) return;
-    const bool keep = history[predicted] > 0.0 && !located;
-    history[approach_speed] = keep ? history[predicted] : std::max(rate, smallest_approach_speed);
-    history[begin_time] = t;
-    history[max_force] = history[max_penetration] = history[steps] = 0.0;
-  }
-  /// Flight; the end of the present step stays known.
-  static void reset(Span<double> history) {
-    const double end = history[step_end];
-    std::fill(history.begin(), history.end(), 0.0);
-    history[step_end] = end;
-  }
-
-  /// About 3 d/v_0 for an impact that ends at the greatest penetration d: 2.94 for F ~ delta^1.5, pi for a spring. d
-  /// is where the law stores m v_0^2/2; 1/m = n^T W n with the mobility W.
-  double impact_duration(const Gap& gap, const double* mobility) const {
-    double inverse_mass = 0.0;
+  /// 1/m = n^T W n with the mobility W.
+  static double inverse_mass(const Gap& gap, const double* mobility) {
+    double sum = 0.0;
     for (int i = 0; i < 2; ++i)
-      for (int k = 0; k < 2; ++k) inverse_mass += gap.n[i] * mobility[3 * i + k] * gap.n[k];
-    const double speed = std::max(gap.rate, smallest_approach_speed), energy = 0.5 * speed * speed / inverse_mass;
-    if (!(inverse_mass > 0.0)) return 0.0;
-    // A law may refuse a penetration; the impact has not asked for it yet.
-    const auto stored = [this](double d) {
-      try {
-        return contact_law_.evaluate({d, 0.0, 0.0}).potential;
-      } catch (const std::exception&) {
-        return unbounded;
-      }
-    };
-    double low = 0.0, high = 1e-6 * radii_.clearance;
-    for (int i = 0; i < 60 && stored(high) < energy; ++i) low = high, high *= 2.0;
-    for (int i = 0; i < 10; ++i) (stored(0.5 * (low + high)) < energy ? low : high) = 0.5 * (low + high);
-    return 2.9 * low / speed;
-  }
-
-  /// Penetration at which static contact carries `force` [N]: bisection with Newton steps where they stay inside.
-  double resting_penetration(double force) const {
-    const auto at = [this](double penetration) { return contact_law_.evaluate({penetration, 0.0, 0.0}); };
-    double low = 0.0, high = 1e-6 * radii_.clearance;
-    for (int i = 0; i < 60 && !(at(high).normal >= force); ++i) {
-      low = high;
-      high *= 2.0;
-    }
-    if (!(at(high).normal >= force)) throw std::runtime_error("the contact law cannot carry the load of the start");
-    double x = high;
-    for (int i = 0; i < 200 && high - low > 4e-16 * high; ++i) {
-      const ContactForce f = at(x);
-      if (f.normal == force) break;
-      (f.normal < force ? low : high) = x;
-      const double newton = x - (f.normal - force) / f.d_penetration;
-      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-      if (std::abs(next - x) <= 2e-16 * x) break;
-      x = next;
-    }
-    return x;
+      for (int k = 0; k < 2; ++k) sum += gap.n[i] * mobility[3 * i + k] * gap.n[k];
+    return sum;
   }
 
   /// Derivatives by (e_x, e_y, e'_x, e'_y, w_a, w_b); the origins of the markers are the centres, so that turning a
@@ -516,82 +306,43 @@ class RevoluteClearance final : public Joint {
   ContactLawRef contact_law_;
   FrictionLawRef friction_law_;
   int internal_variables_ = 0;
-  bool loaded_ = false;
-  InitialOffset start_{};
+  Start start_;
 };
 
-constexpr Parameter length(const char* name, const char* summary) {
-  return {
-      .name = name, .unit = "m", .default_value = optional, .minimum = 0.0, .open = Open::minimum, .summary = summary};
-}
-constexpr Parameter modulus(const char* name, const char* summary) {
-  return {
-      .name = name, .unit = "Pa", .default_value = optional, .minimum = 0.0, .open = Open::minimum, .summary = summary};
-}
-constexpr Parameter poisson(const char* name, const char* summary) {
-  return {.name = name,
-          .default_value = optional,
-          .minimum = 0.0,
-          .maximum = 0.5,
-          .open = Open::maximum,
-          .summary = summary};
-}
-
-constexpr Parameter parameters[] = {
-    length("clearance.bearing_radius", "Inner radius of the ring on the first body."),
-    length("clearance.journal_radius", "Radius of the pin on the second body."),
-    length("clearance.radial_clearance", "Bearing minus journal radius."),
-    length("clearance.length", "Axial length of the contact, for laws that need it."),
-    modulus("clearance.material.E", "Young's modulus of both sides."),
-    poisson("clearance.material.nu", "Poisson's ratio of both sides."),
-    modulus("clearance.material.bearing.E", "Young's modulus of the bearing."),
-    poisson("clearance.material.bearing.nu", "Poisson's ratio of the bearing."),
-    modulus("clearance.material.journal.E", "Young's modulus of the journal."),
-    poisson("clearance.material.journal.nu", "Poisson's ratio of the journal."),
-    {.name = "clearance.contact",
-     .kind = ParameterKind::contact_law,
-     .default_value = required,
-     .summary = "Law of the normal force."},
-    {.name = "clearance.friction",
-     .kind = ParameterKind::friction_law,
-     .default_value = optional,
-     .summary = "Law of the tangential force."},
-    {.name = "clearance.initial",
-     .kind = ParameterKind::choice,
-     .default_value = 0,
-     .choices = "centered|loaded",
-     .summary = "Start of the journal: in the middle, resting where static contact carries the load, or a map."},
-    {.name = "clearance.initial.eccentricity",
-     .kind = ParameterKind::vector,
-     .unit = "m",
-     .default_value = optional,
-     .summary = "Journal centre minus bearing centre at the start, global axes."},
-    {.name = "clearance.initial.velocity",
-     .kind = ParameterKind::vector,
-     .unit = "m/s",
-     .default_value = optional,
-     .summary = "Velocity of the journal centre relative to the bearing centre at the start, global axes."},
-};
+constexpr auto parameters = table_with<2>(
+    {length("clearance.length", "Axial length of the contact, for laws that need it; in space that of the bearing."),
+     Parameter{.name = "clearance.axial_clearance",
+               .unit = "m",
+               .default_value = optional,
+               .minimum = 0.0,
+               .summary = "Spatial models: play of the journal's shoulders along the axis, to each side; the radial "
+                          "clearance unless given."}});
 
 }  // namespace
 
 Component revolute_clearance() {
   return joint<RevoluteClearance>(
       {.name = "revolute-clearance",
-       .space = Space::planar,
+       .space = Space::both,
        .summary = "Pin with play: the journal floats in the bearing and touches it by a contact law.",
        .formula =
            "e = P_b - P_a, n = e/|e|, t = n turned by +90 deg; delta = |e| - c, delta' = n.e', v_T = t.e' + R_J w_b "
-           "- R_B w_a; force on the journal -F_N n + F_T t for delta > 0, at the middle of the two surface points.",
+           "- R_B w_a; force on the journal -F_N n + F_T t for delta > 0, at the middle of the two surface points. In "
+           "space "
+           "this at both end planes z_a = +-length/2 of the bearing, with half of the force at each, and shoulders "
+           "that "
+           "touch beyond the axial clearance.",
        .validity = "Clearance small against the radii; one contact point, rigid rings apart from it.",
        .references =
            "Flores and Ambrosio 2004, Comput Struct 82, 1359-1369; Lankarani and Nikravesh 1990, J Mech Des 112, "
            "369-376",
-       .parameters = parameters,
+       .parameters = {parameters.data(), parameters.size()},
        .ideal = "revolute",
        .block = "clearance",
        .first_end = "bearing",
-       .second_end = "journal"});
+       .second_end = "journal",
+       .axis = MarkerAxis::z,
+       .in_space = revolute_clearance_in_space()});
 }
 
 }  // namespace freeplay

@@ -1,5 +1,6 @@
 #include "freeplay/plugin.h"
 #include "planar_marker.h"
+#include "relative_motion.h"
 
 namespace freeplay {
 namespace {
@@ -9,6 +10,39 @@ using namespace planar;
 enum Kind { linear, rotational };
 
 constexpr double smallest_length = 1e-12;  // [m]; below it the direction of the force means nothing
+
+/// What both classes read: stiffness k, damping c, preload p, and the length or angle at which the spring is slack.
+struct Spring {
+  explicit Spring(const Parameters& parameters)
+      : kind(static_cast<Kind>(parameters.word("kind"))),
+        stiffness(parameters.number("stiffness")),
+        damping(parameters.number("damping")),
+        free(parameters.number(kind == linear ? "free_length" : "free_angle")),
+        preload(parameters.number("preload")) {
+    const char* other = kind == linear ? "free_angle" : "free_length";
+    if (!parameters.given(other)) return;
+    throw BadParameter(
+        other, "conflicting-keys",
+        std::string("a ") + (kind == linear ? "linear" : "rotational") + " spring has no '" + other + "'");
+  }
+  double restoring(double stretch) const { return stiffness * stretch + preload; }
+  double effort(double stretch, double rate) const { return restoring(stretch) + damping * rate; }
+  double stored(double stretch) const { return (0.5 * stiffness * stretch + preload) * stretch; }
+
+  void declare(JointLayout& layout) const {
+    static const Channel length[] = {{"length", "m"}};
+    layout.forces = 1;
+    layout.analytic_derivatives = 1;
+    if (kind == linear) {
+      layout.channels = Span<const Channel>(length);
+    } else {
+      layout.coordinate = Coordinate::angle;
+    }
+  }
+
+  Kind kind;
+  double stiffness, damping, free, preload;
+};
 
 /// Spring, damper and constant preload side by side, with stiffness k, damping c and preload p.
 ///
@@ -23,39 +57,19 @@ constexpr double smallest_length = 1e-12;  // [m]; below it the direction of the
 ///   torque on b: -(k (phi - phi_0) + c phi' + p)        stored: k (phi - phi_0)^2/2 + p (phi - phi_0)
 class SpringDamper final : public Joint {
  public:
-  explicit SpringDamper(const Parameters& parameters)
-      : kind_(static_cast<Kind>(parameters.word("kind"))),
-        stiffness_(parameters.number("stiffness")),
-        damping_(parameters.number("damping")),
-        free_(parameters.number(kind_ == linear ? "free_length" : "free_angle")),
-        preload_(parameters.number("preload")) {
-    const char* other = kind_ == linear ? "free_angle" : "free_length";
-    if (!parameters.given(other)) return;
-    throw BadParameter(
-        other, "conflicting-keys",
-        std::string("a ") + (kind_ == linear ? "linear" : "rotational") + " spring has no '" + other + "'");
-  }
+  explicit SpringDamper(const Parameters& parameters) : spring_(parameters) {}
 
-  void declare(JointLayout& layout) const override {
-    static const Channel length[] = {{"length", "m"}};
-    layout.forces = 1;
-    layout.analytic_derivatives = 1;
-    if (kind_ == linear) {
-      layout.channels = Span<const Channel>(length);
-    } else {
-      layout.coordinate = Coordinate::angle;
-    }
-  }
+  void declare(JointLayout& layout) const override { spring_.declare(layout); }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
-    if (kind_ == linear) return;
+    if (spring_.kind == linear) return;
     row.value = relative_angle(*in.a, *in.b);
     write_turn(row.jacobian);
   }
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
-    if (kind_ == linear) channels[0] = (position(*in.b) - position(*in.a)).norm();
+    if (spring_.kind == linear) channels[0] = (position(*in.b) - position(*in.a)).norm();
   }
   void apply(const JointInput& in, JointForces& out) const override {
-    if (kind_ == linear) {
+    if (spring_.kind == linear) {
       pull(in, out);
     } else {
       twist(in, out);
@@ -63,28 +77,24 @@ class SpringDamper final : public Joint {
   }
 
  private:
-  double restoring(double stretch) const { return stiffness_ * stretch + preload_; }
-  double effort(double stretch, double rate) const { return restoring(stretch) + damping_ * rate; }
-  double stored(double stretch) const { return (0.5 * stiffness_ * stretch + preload_) * stretch; }
-
   void pull(const JointInput& in, JointForces& out) const {
     const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
     const double length = d.norm();
-    out.potential = stored(length - free_);
+    out.potential = spring_.stored(length - spring_.free);
     out.potential_rate = 0.0;
     if (length < smallest_length) return;
     const Eigen::Vector2d u = d / length;
-    const double f = effort(length - free_, u.dot(rate));
-    out.potential_rate = restoring(length - free_) * u.dot(rate);
+    const double f = spring_.effort(length - spring_.free, u.dot(rate));
+    out.potential_rate = spring_.restoring(length - spring_.free) * u.dot(rate);
     for (int i = 0; i < 2; ++i) {
       out.wrench_a[i] = f * u[i];
       out.wrench_b[i] = -f * u[i];
     }
     if (out.derivatives.size == 0) return;
-    const Eigen::Vector2d slope = stiffness_ * u + damping_ / length * (rate - u.dot(rate) * u);
+    const Eigen::Vector2d slope = spring_.stiffness * u + spring_.damping / length * (rate - u.dot(rate) * u);
     const Eigen::Matrix2d by_distance =
         u * slope.transpose() + f / length * (Eigen::Matrix2d::Identity() - u * u.transpose());
-    const Eigen::Matrix2d by_rate = damping_ * u * u.transpose();
+    const Eigen::Matrix2d by_rate = spring_.damping * u * u.transpose();
     for (int r = 0; r < 2; ++r) {
       for (int c = 0; c < 2; ++c) {
         set_pair(out, r, c, by_distance(r, c));
@@ -94,15 +104,15 @@ class SpringDamper final : public Joint {
   }
 
   void twist(const JointInput& in, JointForces& out) const {
-    const double stretch = in.coordinate - free_;
-    const double rate = angular_velocity(*in.b) - angular_velocity(*in.a), torque = effort(stretch, rate);
-    out.potential = stored(stretch);
-    out.potential_rate = restoring(stretch) * rate;
+    const double stretch = in.coordinate - spring_.free;
+    const double rate = angular_velocity(*in.b) - angular_velocity(*in.a), torque = spring_.effort(stretch, rate);
+    out.potential = spring_.stored(stretch);
+    out.potential_rate = spring_.restoring(stretch) * rate;
     out.wrench_a[5] = torque;
     out.wrench_b[5] = -torque;
     if (out.derivatives.size == 0) return;
-    set_pair(out, 5, 5, stiffness_);
-    set_pair(out, 5, twists + 5, damping_);
+    set_pair(out, 5, 5, spring_.stiffness);
+    set_pair(out, 5, twists + 5, spring_.damping);
   }
 
   static constexpr int columns = 24, twists = 12;  // of the derivatives; first column of the twists
@@ -116,8 +126,74 @@ class SpringDamper final : public Joint {
     table[(row + 6) * columns + column + 6] = -value;
   }
 
-  Kind kind_;
-  double stiffness_, damping_, free_, preload_;
+  Spring spring_;
+};
+
+/// The same in space. Linear: the formulas above with vectors of three components. Rotational: phi is the angle of b
+/// about z_a, whose rate is u.(w_b - w_a) with u = z_a where the z axes agree (`spatial_marker.h`); the torque on b is
+/// -(k (phi - phi_0) + c phi' + p) u, so that work and stored energy agree exactly.
+class SpatialSpringDamper final : public Joint {
+ public:
+  explicit SpatialSpringDamper(const Parameters& parameters) : spring_(parameters) {}
+
+  void declare(JointLayout& layout) const override { spring_.declare(layout); }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override {
+    if (spring_.kind == rotational) space::AngleAboutZ(in).write(row);
+  }
+  void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
+    if (spring_.kind == linear) channels[0] = (space::position(*in.b) - space::position(*in.a)).norm();
+  }
+  void apply(const JointInput& in, JointForces& out) const override {
+    const bool along = spring_.kind == linear;
+    const Pair pair = along ? Pair(in, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()) : Pair::with_axis(in, 0);
+    const State<double> now = state(pair.numbers(), in.coordinate);
+    out.potential = spring_.stored(now.stretch);
+    out.potential_rate = 0.0;
+    if (along && now.stretch + spring_.free < smallest_length) return;
+    out.potential_rate = spring_.restoring(now.stretch) * now.rate;
+    pair.write(force(now), out);
+    if (!out.derivatives.empty()) pair.write_derivatives(force(state(pair.duals(), in.coordinate)), 24, out);
+  }
+
+ private:
+  using Pair = space::PairInFirstAxes;
+  using Dual = space::Dual;
+  template <class T>
+  using Motion = space::RelativeMotion<T>;
+  template <class T>
+  using Vec = space::Vec<T>;
+  /// Stretch, its rate, and the direction u of the force or torque; axes of marker a.
+  template <class T>
+  struct State {
+    T stretch, rate;
+    Vec<T> u;
+  };
+
+  template <class T>
+  State<T> state(const Motion<T>& x, double angle) const {
+    using std::sqrt;
+    if (spring_.kind == linear) {
+      const T length = sqrt(dot(x.d, x.d));
+      const Vec<T> u = (T(1.0) / (space::value_of(length) > 0.0 ? length : T(1.0))) * x.d;
+      return {length - T(spring_.free), dot(u, x.u), u};
+    }
+    // The host counts the turns; the derivatives are those of the angle without them.
+    const T squared = x.r.x * x.r.x + x.r.y * x.r.y, share = x.r.z / squared;
+    const Vec<T> u{-(share * x.r.x), -(share * x.r.y), T(1.0)};
+    return {counted(x.r, angle) - T(spring_.free), dot(u, x.w_b - x.w_a), u};
+  }
+  static double counted(const Vec<double>&, double angle) { return angle; }
+  static Dual counted(const Vec<Dual>& r, double angle) { return {angle, atan2(r.y, r.x).gradient}; }
+
+  template <class T>
+  space::RelativeForce<T> force(const State<T>& now) const {
+    const T effort = T(spring_.stiffness) * now.stretch + T(spring_.preload) + T(spring_.damping) * now.rate;
+    const Vec<T> pull = -(effort * now.u);
+    if (spring_.kind == linear) return {pull, {}, {}};
+    return {{}, -pull, pull};
+  }
+
+  Spring spring_;
 };
 
 constexpr Parameter parameters[] = {
@@ -154,15 +230,17 @@ constexpr Parameter parameters[] = {
 Component spring_damper() {
   return joint<SpringDamper>(
       {.name = "spring-damper",
-       .space = Space::planar,
+       .space = Space::both,
        .summary =
            "Force element: spring, damper and preload between two frames, along their line or about their angle.",
        .formula =
            "linear: pull = stiffness (L - free_length) + damping dL/dt + preload, L the distance of the origins, "
            "no force below 1e-12 m; rotational: torque on the second body = -(stiffness (angle - free_angle) + "
-           "damping dangle/dt + preload), angle counted over turns; at the start as by a joint "
+           "damping dangle/dt + preload), in space about z of the first frame, angle counted over turns; at the start "
+           "as by a joint "
            "between the same bodies, else from (-pi, pi].",
-       .parameters = parameters});
+       .parameters = parameters,
+       .in_space = joint_face<SpatialSpringDamper>()});
 }
 
 }  // namespace freeplay

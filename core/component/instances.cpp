@@ -192,8 +192,9 @@ void Instances::Server::keep_functions() const {
 }
 
 /// Calls `make(table, &self, &message)`; returns the object, or null and the fault.
-template <class Table, class Make>
-void* Instances::create(const ParameterBlock& parameters, Make make, CreationFault& fault) {
+template <class Make>
+void* Instances::create(const ParameterBlock& parameters, Make make, void (*destroy)(void*) noexcept,
+                        CreationFault& fault) {
   const Component& component = *parameters.component;
   const Server server{*this, parameters};
   const abi::ParameterTable served = server.table();
@@ -204,20 +205,23 @@ void* Instances::create(const ParameterBlock& parameters, Make make, CreationFau
     fault = fault_of(component, status, message);
     return nullptr;
   }
-  objects_.emplace_back(self, table_of<Table>(component).destroy);
+  objects_.emplace_back(self, destroy);
   server.keep_functions();
   return self;
 }
 
-JointRef Instances::create_joint(const ParameterBlock& parameters, CreationFault& fault) {
-  const auto make = reinterpret_cast<CreateJoint>(parameters.component->create);
-  void* self = create<abi::JointTable>(parameters, make, fault);
-  return self == nullptr ? JointRef() : JointRef(table_of<abi::JointTable>(*parameters.component), self);
+JointRef Instances::create_joint(const ParameterBlock& parameters, Space space, CreationFault& fault) {
+  const Component& component = *parameters.component;
+  JointFace face{component.table, component.create};
+  if (space == Space::spatial && component.description.in_space.table != nullptr) face = component.description.in_space;
+  const auto& table = *static_cast<const abi::JointTable*>(face.table);
+  void* self = create(parameters, reinterpret_cast<CreateJoint>(face.create), table.destroy, fault);
+  return self == nullptr ? JointRef() : JointRef(table, self);
 }
 
 IntegratorRef Instances::create_integrator(const ParameterBlock& parameters, CreationFault& fault) {
   const auto make = reinterpret_cast<CreateIntegrator>(parameters.component->create);
-  void* self = create<abi::IntegratorTable>(parameters, make, fault);
+  void* self = create(parameters, make, table_of<abi::IntegratorTable>(*parameters.component).destroy, fault);
   return self == nullptr ? IntegratorRef() : IntegratorRef(table_of<abi::IntegratorTable>(*parameters.component), self);
 }
 
@@ -227,13 +231,13 @@ ContactLawRef Instances::create_contact_law(const ParameterBlock& parameters, co
   const auto make = [&](const abi::ParameterTable* table, void** self, Message* message) {
     return create_law(table, &pair, self, message);
   };
-  void* self = create<abi::ContactLawTable>(parameters, make, fault);
+  void* self = create(parameters, make, table_of<abi::ContactLawTable>(*parameters.component).destroy, fault);
   return self == nullptr ? ContactLawRef() : ContactLawRef(table_of<abi::ContactLawTable>(*parameters.component), self);
 }
 
 FrictionLawRef Instances::create_friction_law(const ParameterBlock& parameters, CreationFault& fault) {
   const auto make = reinterpret_cast<CreateFrictionLaw>(parameters.component->create);
-  void* self = create<abi::FrictionLawTable>(parameters, make, fault);
+  void* self = create(parameters, make, table_of<abi::FrictionLawTable>(*parameters.component).destroy, fault);
   return self == nullptr ? FrictionLawRef()
                          : FrictionLawRef(table_of<abi::FrictionLawTable>(*parameters.component), self);
 }

@@ -34,8 +34,8 @@ class Instances {
     return *this;
   }
 
-  /// Empty handle and a filled `fault` when the component cannot be made.
-  JointRef create_joint(const ParameterBlock& parameters, CreationFault& fault);
+  /// Empty handle and a filled `fault` when the component cannot be made. `space`: planar or spatial, of the model.
+  JointRef create_joint(const ParameterBlock& parameters, Space space, CreationFault& fault);
   IntegratorRef create_integrator(const ParameterBlock& parameters, CreationFault& fault);
   ContactLawRef create_contact_law(const ParameterBlock& parameters, const ContactPair& pair, CreationFault& fault);
   FrictionLawRef create_friction_law(const ParameterBlock& parameters, CreationFault& fault);
@@ -46,8 +46,8 @@ class Instances {
  private:
   struct Server;  // answers a constructor's questions
   using Owned = std::unique_ptr<void, std::function<void(void*)>>;
-  template <class Table, class Make>
-  void* create(const ParameterBlock& parameters, Make make, CreationFault& fault);
+  template <class Make>
+  void* create(const ParameterBlock& parameters, Make make, void (*destroy)(void*) noexcept, CreationFault& fault);
   std::vector<RegisteredLibrary> libraries_;  // their tables outlive the objects below
   std::vector<Owned> objects_;
 };

@@ -129,6 +129,8 @@ void PluginTable::copy_row(const Component& row, const Manifest& manifest) {
   }
   if (row.table == nullptr) refuse(named + "without a function table");
   if (row.create == nullptr) refuse(named + "without a way to create it");
+  const JointFace& in_space = row.description.in_space;
+  if ((in_space.table == nullptr) != (in_space.create == nullptr)) refuse(named + "with half a class for space");
   if (row.description.parameters.size > most_parameters) refuse(named + "with an impossible number of parameters");
 
   Component copy = row;
@@ -145,16 +147,17 @@ void PluginTable::copy_row(const Component& row, const Manifest& manifest) {
   for (Parameter& p : parameters) say_nothing(p.summary);
   switch (row.kind) {
     case ComponentKind::joint:
-      copy.table = copy_table(row, joints_);
+      copy.table = copy_table(row, row.table, joints_);
+      if (d.in_space.table != nullptr) d.in_space.table = copy_table(row, d.in_space.table, joints_);
       break;
     case ComponentKind::contact_law:
-      copy.table = copy_table(row, contact_laws_);
+      copy.table = copy_table(row, row.table, contact_laws_);
       break;
     case ComponentKind::friction_law:
-      copy.table = copy_table(row, friction_laws_);
+      copy.table = copy_table(row, row.table, friction_laws_);
       break;
     case ComponentKind::integrator:
-      copy.table = copy_table(row, integrators_);
+      copy.table = copy_table(row, row.table, integrators_);
       break;
   }
   check_parameters(copy);
@@ -162,15 +165,15 @@ void PluginTable::copy_row(const Component& row, const Manifest& manifest) {
 }
 
 template <class Table>
-const void* PluginTable::copy_table(const Component& row, std::deque<Table>& tables) {
+const void* PluginTable::copy_table(const Component& row, const void* functions, std::deque<Table>& tables) {
   std::uint32_t size = 0;
-  std::memcpy(&size, row.table, sizeof size);
+  std::memcpy(&size, functions, sizeof size);
   const std::string named = "publishes '" + std::string(row.description.name) + "' ";
   if (size < 2 * sizeof(void*) || size > 64 * sizeof(void*))
     refuse(named + "with a function table of an impossible size");
-  if (has_null(row.table, std::min<std::uint32_t>(size, sizeof(Table)))) refuse(named + "with a null function pointer");
+  if (has_null(functions, std::min<std::uint32_t>(size, sizeof(Table)))) refuse(named + "with a null function pointer");
   Table& table = tables.emplace_back(defaults<Table>());
-  std::memcpy(&table, row.table, std::min<std::size_t>(size, sizeof(Table)));
+  std::memcpy(&table, functions, std::min<std::size_t>(size, sizeof(Table)));
   table.size = sizeof(Table);
   if (has_null(&table, sizeof(Table))) refuse(named + "with a function table that is too small");
   return &table;

@@ -31,7 +31,7 @@ class PluginTable {
   void copy_row(const Component& row, const Manifest& manifest);
   void check_parameters(const Component& row) const;
   template <class Table>
-  const void* copy_table(const Component& row, std::deque<Table>& tables);
+  const void* copy_table(const Component& row, const void* functions, std::deque<Table>& tables);
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string library_, name_, version_, compiler_;

@@ -61,32 +61,43 @@ void say(const Conditions& conditions, const std::string& words) {
   if (conditions.note != nullptr) conditions.note->say(words);
 }
 
-Findings check_joint_sample(const ParameterSample& sample, const Conditions& conditions) {
+Findings check_joint_sample(const ParameterSample& sample, Space space, const Conditions& conditions) {
   const ParameterBlock& block = *sample.block;
   Findings findings;
   Subjects subjects(conditions);
-  const auto make = [&](Instances& instances, CreationFault& fault) { return instances.create_joint(block, fault); };
+  const auto make = [&](Instances& instances, CreationFault& fault) {
+    return instances.create_joint(block, space, fault);
+  };
   const JointRef joint = subjects.make(make), twin = subjects.make(make);
-  for (const Space space : {Space::planar, Space::spatial}) {
-    const auto bits = static_cast<std::uint32_t>(block.component->description.space);
-    if ((bits & static_cast<std::uint32_t>(space)) == 0) continue;
-    const char* where = space == Space::planar ? "in the plane" : "in space";
-    say(conditions, fmt::format("{}, {}", sample.name, where));
-    JointLayout layout;
-    layout.space = space;
-    Message message;
-    WatchedCall watched(conditions, "declare");
-    const bool declared = joint.declare(layout, message);
-    watched.end();
-    if (declared) findings.merge(check_joint_names(layout), "");
-    findings.merge(check_joint({joint, twin, space, !has_functions(block)}, conditions), where);
-  }
+  JointLayout layout;
+  layout.space = space;
+  Message message;
+  WatchedCall watched(conditions, "declare");
+  const bool declared = joint.declare(layout, message);
+  watched.end();
+  if (declared) findings.merge(check_joint_names(layout), "");
+  findings.merge(check_joint({joint, twin, space, !has_functions(block)}, conditions), "");
   return findings;
+}
+
+/// A joint is looked at in each space that it works in: it may be of another class there.
+void check_joint_type(const Component& component, const Registry& registry, const Conditions& conditions,
+                      Findings& findings) {
+  for (const Space space : {Space::planar, Space::spatial}) {
+    const auto bits = static_cast<std::uint32_t>(component.description.space);
+    if ((bits & static_cast<std::uint32_t>(space)) == 0) continue;
+    const std::string where = space == Space::planar ? "in the plane" : "in space";
+    const ParameterSamples samples = sample_parameters(component, registry, conditions, space);
+    findings.expect("accepts-parameters", !samples.accepted.empty(), [&] { return where + ": " + samples.refusal; });
+    for (const ParameterSample& sample : samples.accepted) {
+      say(conditions, fmt::format("{}, {}", sample.name, where));
+      findings.merge(check_joint_sample(sample, space, conditions), fmt::format("{}: {}", sample.name, where));
+    }
+  }
 }
 
 Findings check_sample(const ParameterSample& sample, const Conditions& conditions) {
   const ParameterBlock& block = *sample.block;
-  if (block.component->kind == ComponentKind::joint) return check_joint_sample(sample, conditions);
   say(conditions, sample.name);
   Subjects subjects(conditions);
   switch (block.component->kind) {
@@ -123,6 +134,10 @@ Findings check_component(const Component& component, const Registry& registry, c
   findings.merge(check_description(component), "");
   // A table that contradicts itself has no valid parameters.
   if (!findings.held()) return findings;
+  if (component.kind == ComponentKind::joint) {
+    check_joint_type(component, registry, conditions, findings);
+    return findings;
+  }
   const ParameterSamples samples = sample_parameters(component, registry, conditions);
   findings.expect("accepts-parameters", !samples.accepted.empty(), [&] { return samples.refusal; });
   for (const ParameterSample& sample : samples.accepted) {

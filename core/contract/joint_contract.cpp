@@ -35,6 +35,18 @@ bool is_pose(const Pose& pose) {
   return off <= 1e-12 && vector3(pose.position).allFinite();
 }
 
+/// Markers as a joint with play has them, but for the eccentricity: where it places a body, if it does, with a small
+/// tilt in space.
+MarkerPair within_play(const JointProbe& probe, const MarkerPair& base, RandomNumbers& random) {
+  Pose pose{};
+  if (!probe.place(random.between(-M_PI, M_PI), pose) || !is_pose(pose)) return base;
+  Twelve tilt{};
+  if (probe.space() == Space::spatial) {
+    for (const std::size_t i : {9u, 10u, 11u}) tilt[i] = random.between(-0.02, 0.02);
+  }
+  return moved(placed_pair(base, pose), tilt);
+}
+
 /// Moments at which a joint is asked: anywhere, near where it places a body, or around the end of its play; and in each
 /// of the states that its history can be in after a step has begun and after an event.
 std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& random) {
@@ -47,7 +59,8 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
     moments.push_back(fresh);
     // History from elsewhere, with a step begun from there.
     const JointMoment other = probe.start(
-        play > 0.0 ? distant_pair(random_pair(space, random), space, 0.99 * play, random) : random_pair(space, random),
+        play > 0.0 ? distant_pair(within_play(probe, random_pair(space, random), random), space, 0.99 * play, random)
+                   : random_pair(space, random),
         t);
     JointMoment begun = fresh;
     begun.h = other.h;
@@ -72,7 +85,8 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
   for (int i = 0; i < 4; ++i) {
     const Extent extent = extent_of(i);
     const double coordinate = random.between(-1.0, 1.0) * (i % 2 == 1 ? 3.0 : 1.0);
-    if (!probe.place(coordinate, pose) || !is_pose(pose)) continue;
+    // In the middle of its play a joint's eccentricity has no direction.
+    if (play > 0.0 || !probe.place(coordinate, pose) || !is_pose(pose)) continue;
     add(placed_pair(turned_pair(space, extent.size, 0.0, random), pose), extent.latest);
   }
   if (play > 0.0) {
@@ -81,7 +95,7 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
       for (int k = 0; k < 3; ++k) {
         const Extent extent = extent_of(i++);
         const MarkerPair base = turned_pair(space, extent.size, random.between(-M_PI, M_PI), random);
-        add(distant_pair(base, space, play * (1.0 + beyond), random), extent.latest);
+        add(distant_pair(within_play(probe, base, random), space, play * (1.0 + beyond), random), extent.latest);
       }
     }
   }

@@ -5,13 +5,14 @@
 namespace freeplay {
 
 std::optional<SampleJoint> sample_joint(const Component& type, const Registry& registry) {
-  const ParameterSamples samples = sample_parameters(type, registry);
+  const Space space = type.description.space == Space::spatial ? Space::spatial : Space::planar;
+  const ParameterSamples samples = sample_parameters(type, registry, {}, space);
   if (samples.accepted.empty()) return std::nullopt;
   SampleJoint sample;
   CreationFault fault;
   Message message;
-  sample.joint = sample.instances.create_joint(*samples.accepted.front().block, fault);
-  sample.layout.space = type.description.space == Space::spatial ? Space::spatial : Space::planar;
+  sample.joint = sample.instances.create_joint(*samples.accepted.front().block, space, fault);
+  sample.layout.space = space;
   if (!sample.joint || !sample.joint.declare(sample.layout, message)) return std::nullopt;
   return sample;
 }

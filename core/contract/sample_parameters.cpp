@@ -79,9 +79,9 @@ double within(const Parameter& p, double factor, double wish) {
 class Sampler {
  public:
   /// `within`: the components that ask for this one as a law, outermost first.
-  Sampler(const Component& component, const Registry& registry, const Conditions& conditions,
+  Sampler(const Component& component, const Registry& registry, const Conditions& conditions, Space space,
           std::vector<const Component*> within = {})
-      : component_(component), registry_(registry), conditions_(conditions), chain_(std::move(within)) {
+      : component_(component), registry_(registry), conditions_(conditions), space_(space), chain_(std::move(within)) {
     chain_.push_back(&component);
   }
 
@@ -190,7 +190,7 @@ class Sampler {
     WatchedCall watched(conditions_, "its constructor");
     switch (component_.kind) {
       case ComponentKind::joint:
-        instances.create_joint(*block, fault);
+        instances.create_joint(*block, space_, fault);
         break;
       case ComponentKind::integrator:
         instances.create_integrator(*block, fault);
@@ -251,7 +251,7 @@ class Sampler {
     const auto add_samples = [&](const Component& law) {
       if (std::ranges::find(chain_, &law) != chain_.end()) return;
       if (chain_.size() + 1 >= deepest && std::ranges::any_of(law.description.parameters, is_law)) return;
-      const ParameterSamples samples = Sampler(law, registry_, conditions_, chain_).run();
+      const ParameterSamples samples = Sampler(law, registry_, conditions_, space_, chain_).run();
       // The one with as many keys as possible asks least of the joint.
       if (!samples.accepted.empty()) blocks.push_back(samples.accepted[samples.accepted.size() > 1 ? 1 : 0].block);
     };
@@ -393,6 +393,7 @@ class Sampler {
   const Component& component_;
   const Registry& registry_;
   const Conditions& conditions_;
+  Space space_;
   std::vector<const Component*> chain_;
   ParameterSamples found_;
 };
@@ -404,8 +405,9 @@ ContactPair sample_contact_pair() {
   return {0.01, 0.0099, 0.0001, 0.02, steel, steel};
 }
 
-ParameterSamples sample_parameters(const Component& component, const Registry& registry, const Conditions& conditions) {
-  return Sampler(component, registry, conditions).run();
+ParameterSamples sample_parameters(const Component& component, const Registry& registry, const Conditions& conditions,
+                                   Space space) {
+  return Sampler(component, registry, conditions, space).run();
 }
 
 }  // namespace freeplay

@@ -28,8 +28,9 @@ ContactPair sample_contact_pair();
 /// ends of the ranges, and each law of the registry where a law is asked for. Numbers are of a size usual for their
 /// unit and stay within their bounds; optional ones are added one by one and in pairs until the constructor is content.
 /// With as many as possible, numbers that have a default take another value, and in one more block choices, too. A law
-/// may ask for a law, but never for itself, and the third within each other asks for none.
+/// may ask for a law, but never for itself, and the third within each other asks for none. `space`: of joints, planar
+/// or spatial.
 ParameterSamples sample_parameters(const Component& component, const Registry& registry,
-                                   const Conditions& conditions = {});
+                                   const Conditions& conditions = {}, Space space = Space::planar);
 
 }  // namespace freeplay

@@ -180,7 +180,7 @@ class JointEntry {
     layout.space = draft_.model.space;
     if (!parameters.block) return false;
     CreationFault fault;
-    joint = draft_.model.instances.create_joint(*parameters.block, fault);
+    joint = draft_.model.instances.create_joint(*parameters.block, draft_.model.space, fault);
     if (!joint) {
       report_fault(fault, parameters, entry_);
       return false;

@@ -127,7 +127,7 @@ MISTAKES = [
     (PIN, '  B: {type: gear, of: [A], ratio: 2}', 'wrong-length', 8, 23),
     (PIN, '  B: {type: distance, between: [rod/tip, bob]}', 'missing-key', 8, 3),
     (PIN, '  B: {type: distance, between: [rod/tip, bob], length: 0}', 'out-of-range', 8, 56),
-    (PIN, '  B: {type: spherical, between: [rod/tip, bob]}', 'unknown-type', 8, 13),
+    (PIN, '  B: {type: spherical, between: [rod/tip, bob]}', 'type-space', 8, 13),
     (PIN, '  B: {type: revolute, between: [rod/tip, bob], bearing: rod}', 'conflicting-keys', 8, 48),
     (PIN, '  B: {type: revolute, bearing: rod/tip}', 'missing-key', 8, 3),
     (PIN, '  B: {type: revolute, between: [rod/tip, bob], axis: [0, 0, 1]}', 'unknown-key', 8, 48),

@@ -169,8 +169,9 @@ class Layering(unittest.TestCase):
                 self.assertEqual([], faults(path, line))
 
 
-# Types of the model file that are the core's own: what ties or loads other elements and needs no plugin.
-CORE_TYPES = {"gear", "force", "torque", "gravity"}
+# Types of the model file that are the core's own: what ties or loads other elements and needs no plugin. And a joint
+# whose name is a word of the format, too (`space: planar`).
+CORE_TYPES = {"gear", "force", "torque", "gravity", "planar"}
 
 
 # Names of components that are also plain words: they count only as a quoted word.

@@ -122,6 +122,9 @@ struct JointForces {
 struct InitialOffset {
   double position[3];  ///< [m]
   double velocity[3];  ///< [m/s]
+  // Appended.
+  /// In, spatial models: world-from-marker of the first marker, 9 numbers; null: its axes are those of the world.
+  const double* rotation = nullptr;
 };
 
 /// Marker accelerations [a; alpha] in world axes, 6 numbers each [m/s^2, rad/s^2].

@@ -18,6 +18,19 @@ static_assert(sizeof(void*) == 8 && sizeof(Span<double>) == 16 && std::numeric_l
 
 enum class ComponentKind : std::uint32_t { joint, contact_law, friction_law, integrator };
 
+/// A joint type in models of one space: an abi::JointTable, and the abi::create_joint<T> that belongs to it.
+struct JointFace {
+  const void* table = nullptr;
+  void (*create)() = nullptr;
+};
+template <class T>
+JointFace joint_face() {
+  return {&abi::joint_table<T>, reinterpret_cast<void (*)()>(&abi::create_joint<T>)};
+}
+
+/// An axis of a joint's markers.
+enum class MarkerAxis : std::uint32_t { none = 0, x = 1, z = 3 };
+
 /// What the host knows of a type before it creates an instance; texts are for `freeplay list` and `describe`.
 struct Description {
   const char* name;             ///< the word in a model file, kebab-case
@@ -39,6 +52,11 @@ struct Description {
   /// Of a type that the library could bring but does not, as what it stands on was not there when it was built: what it
   /// needs and how to get that. Such a row has neither table nor `create`, and is told to those who ask for the type.
   const char* missing = nullptr;
+  /// Joints in spatial models: the marker axis that the key `axis` of the model file stands for. The host turns both
+  /// markers so that this axis of theirs is the given one.
+  MarkerAxis axis = MarkerAxis::none;
+  /// Joints with `space` both: the class for spatial models where it is not the component's own.
+  JointFace in_space = {};
 };
 
 /// One row of a plugin's table.

@@ -62,7 +62,7 @@ TEST(Instances, ServeParametersAndCreateLawsForAJoint) {
   {
     Instances instances;
     CreationFault fault;
-    const JointRef joint = instances.create_joint(block(0), fault);
+    const JointRef joint = instances.create_joint(block(0), Space::planar, fault);
     ASSERT_TRUE(joint) << fault.text;
     JointLayout layout;
     Message message;
@@ -78,7 +78,7 @@ TEST(Instances, ServeParametersAndCreateLawsForAJoint) {
 TEST(Instances, ComposeThePathOfALawsFault) {
   Instances instances;
   CreationFault fault;
-  EXPECT_FALSE(instances.create_joint(block(1), fault));
+  EXPECT_FALSE(instances.create_joint(block(1), Space::planar, fault));
   EXPECT_TRUE(fault.bad_parameter);
   EXPECT_EQ(fault.path, "block.law.K");
   EXPECT_EQ(fault.id, "out-of-range");
@@ -88,7 +88,7 @@ TEST(Instances, ComposeThePathOfALawsFault) {
 TEST(Instances, TellAPluginsOwnFailureApart) {
   Instances instances;
   CreationFault fault;
-  EXPECT_FALSE(instances.create_joint(block(0, true), fault));
+  EXPECT_FALSE(instances.create_joint(block(0, true), Space::planar, fault));
   EXPECT_FALSE(fault.bad_parameter);
   EXPECT_EQ(fault.id, "plugin-failed");
   EXPECT_NE(fault.text.find("nonsense"), std::string::npos);
@@ -101,7 +101,7 @@ TEST(Instances, KeepTheFunctionsOfTimeAlive) {
   {
     Instances instances;
     CreationFault fault;
-    instances.create_joint(host, fault);
+    instances.create_joint(host, Space::planar, fault);
     host = {};
     EXPECT_EQ(owner.use_count(), 2);
   }
