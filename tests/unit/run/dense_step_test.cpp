@@ -26,7 +26,8 @@ TEST(DenseStep, GivesBackAQuinticWithItsDerivatives) {
   State start(layout, 0), end(layout, 0), between(layout, 0), known(layout, 0);
   fill(start, 0.3);
   fill(end, 1.1);
-  const DenseStep step(start, {}, end, {});
+  const System system(*model);
+  const DenseStep step(system, start, {}, end, {});
   for (const double s : {0.0, 0.2, 0.5, 0.9, 1.0}) {
     step.at(s, between);
     fill(known, 0.3 + 0.8 * s);
