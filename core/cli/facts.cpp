@@ -1,6 +1,10 @@
 #include "cli/facts.h"
 
+#include <array>
+
 #include <fmt/format.h>
+
+#include "system/system.h"
 
 namespace freeplay {
 namespace {
@@ -66,7 +70,15 @@ Json facts_json(const Model& model, const ModelFacts& facts) {
 
 Json start_json(const Model& model, const Start& start) {
   Json json = Json::object();
+  const System system(model);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (model.space == Space::spatial) {
+      const std::span<const double> pose = start.state.q().subspan(7 * i, 7);
+      const std::array<double, 4> turn = system.frame_quaternion(static_cast<BodyId>(i), start.state.q());
+      json[model.bodies[i].name] = {{"x", pose[0]},  {"y", pose[1]},  {"z", pose[2]}, {"qw", turn[0]},
+                                    {"qx", turn[1]}, {"qy", turn[2]}, {"qz", turn[3]}};
+      continue;
+    }
     const std::span<const double> pose = start.state.q().subspan(3 * i, 3);
     json[model.bodies[i].name] = {{"x", pose[0]}, {"y", pose[1]}, {"angle", pose[2]}};
   }

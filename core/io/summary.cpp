@@ -122,12 +122,14 @@ Json residuals_part(const RunRecord& record) {
 Json bodies_part(const RunRecord& record) {
   Json part = Json::object();
   for (std::size_t i = 0; i < record.model.bodies.size(); ++i) {
-    const auto pose = record.last_row.subspan(static_cast<std::size_t>(record.channels.bodies[i]), 3);
-    part[record.model.bodies[i].name] = {
-        {"x", json_number(pose[0])},
-        {"y", json_number(pose[1])},
-        {"angle", json_number(pose[2])},
-        {"max_speed", json_number(record.statistics.body_max_speed(static_cast<int>(i)))}};
+    constexpr const char* in_plane[] = {"x", "y", "angle"};
+    constexpr const char* in_space[] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
+    const bool planar = record.model.space == Space::planar;
+    const auto names = planar ? std::span<const char* const>(in_plane) : std::span<const char* const>(in_space);
+    const std::size_t first = static_cast<std::size_t>(record.channels.bodies[i]);
+    Json& body = part[record.model.bodies[i].name];
+    for (std::size_t k = 0; k < names.size(); ++k) body[names[k]] = json_number(record.last_row[first + k]);
+    body["max_speed"] = json_number(record.statistics.body_max_speed(static_cast<int>(i)));
   }
   return part;
 }

@@ -1,15 +1,25 @@
 #include "model/body_section.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "model/rotation.h"
+
 namespace freeplay {
 namespace {
 
 void read_pose(const CheckedValue& value, Body& body) {
   MapReader map(value, "pose");
   const auto position = map.find("position");
-  const auto angle = map.find("angle");
   if (position) body.position = position->vector(dimension::length);
-  if (angle) body.angle = angle->quantity(dimension::angle);
-  for (const char* spatial : {"rpy", "quaternion"}) map.refuse(spatial, "only in spatial models");
+  body.rotation = read_rotation(map);
+  if (value.in_space()) {
+    map.refuse("angle", "only in planar models; use 'rpy' or 'quaternion'");
+  } else if (const auto angle = map.find("angle")) {
+    body.angle = angle->quantity(dimension::angle);
+  }
   map.finish();
 }
 
@@ -18,8 +28,72 @@ void read_velocity(const CheckedValue& value, Body& body) {
   const auto linear = map.find("linear");
   const auto angular = map.find("angular");
   if (linear) body.velocity = linear->vector(dimension::velocity).value_or(Vector3{});
-  if (angular) body.angular_velocity[2] = angular->quantity(dimension::angular_velocity).value_or(0.0);
+  if (angular && value.in_space()) {
+    body.angular_velocity = angular->vector(dimension::angular_velocity).value_or(Vector3{});
+  } else if (angular) {
+    body.angular_velocity[2] = angular->quantity(dimension::angular_velocity).value_or(0.0);
+  }
   map.finish();
+}
+
+// [Ixx, Iyy, Izz], [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] (elements of the tensor) or its three rows.
+std::optional<Rotation> read_tensor(const CheckedValue& value) {
+  const auto items = value.list();
+  if (!items) return std::nullopt;
+  const auto rows_of = [&]() -> std::optional<Rotation> {
+    Rotation tensor{};
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto row = (*items)[r].quantities(3, dimension::moment_of_inertia);
+      if (!row) return std::nullopt;
+      std::ranges::copy(*row, tensor.begin() + static_cast<std::ptrdiff_t>(3 * r));
+    }
+    return tensor;
+  };
+  if (items->size() == 3 && (*items)[0].node().is_list()) {
+    const std::optional<Rotation> tensor = rows_of();
+    if (!tensor) return std::nullopt;
+    for (const auto& [r, c] : {std::pair(1, 3), std::pair(2, 6), std::pair(5, 7)}) {
+      const double upper = (*tensor)[static_cast<std::size_t>(r)], lower = (*tensor)[static_cast<std::size_t>(c)];
+      if (std::abs(upper - lower) <= 1e-9 * std::max(std::abs(upper), std::abs(lower))) continue;
+      value.fail("out-of-range",
+                 fmt::format("a tensor of inertia is symmetric, but {:.6g} faces {:.6g}", upper, lower));
+      return std::nullopt;
+    }
+    return tensor;
+  }
+  if (items->size() != 3 && items->size() != 6) {
+    value.wrong_type("3 moments of inertia, 6 numbers or 3 rows of 3");
+    return std::nullopt;
+  }
+  const auto n = value.quantities(items->size(), dimension::moment_of_inertia);
+  if (!n) return std::nullopt;
+  if (n->size() == 3) return Rotation{(*n)[0], 0.0, 0.0, 0.0, (*n)[1], 0.0, 0.0, 0.0, (*n)[2]};
+  return Rotation{(*n)[0], (*n)[3], (*n)[4], (*n)[3], (*n)[1], (*n)[5], (*n)[4], (*n)[5], (*n)[2]};
+}
+
+void read_inertia(const CheckedValue& value, Body& body) {
+  if (!value.in_space()) {
+    body.inertia[8] = value.quantity(dimension::moment_of_inertia, not_negative).value_or(1.0);
+    if (body.inertia[8] != 0.0) return;
+    return value.warn("zero-inertia", "the body '" + body.name + "' has no moment of inertia: it is a point mass");
+  }
+  body.inertia = no_rotation;
+  const std::optional<Rotation> tensor = read_tensor(value);
+  if (!tensor) return;
+  const Vector3 p = principal_moments(*tensor);
+  const double slack = 1e-6 * p[2];
+  if (p[0] < -slack || p[2] > p[0] + p[1] + slack) {
+    const std::string moments = fmt::format("{:.6g}, {:.6g}, {:.6g}", p[0], p[1], p[2]);
+    return value.fail("out-of-range",
+                      p[0] < -slack
+                          ? "no body has this inertia: a principal moment is negative (" + moments + ")"
+                          : "no body has this inertia: its largest principal moment is above the sum of the others (" +
+                                moments + ")");
+  }
+  body.inertia = *tensor;
+  if (p[2] == 0.0) {
+    value.warn("zero-inertia", "the body '" + body.name + "' has no moment of inertia: it is a point mass");
+  }
 }
 
 void read_body(const CheckedValue& entry, Body& body) {
@@ -27,10 +101,7 @@ void read_body(const CheckedValue& entry, Body& body) {
   const auto mass = map.require("mass");
   const auto inertia = map.require("inertia");
   if (mass) body.mass = mass->quantity(dimension::mass, positive).value_or(1.0);
-  if (inertia) body.inertia[8] = inertia->quantity(dimension::moment_of_inertia, not_negative).value_or(1.0);
-  if (inertia && body.inertia[8] == 0.0) {
-    inertia->warn("zero-inertia", "the body '" + body.name + "' has no moment of inertia: it is a point mass");
-  }
+  if (inertia) read_inertia(*inertia, body);
   if (const auto com = map.find("com")) body.com = com->vector(dimension::length).value_or(Vector3{});
   if (const auto pose = map.find("pose")) read_pose(*pose, body);
   if (const auto velocity = map.find("velocity")) read_velocity(*velocity, body);

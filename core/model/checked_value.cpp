@@ -13,8 +13,6 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t planar_length = 2;
-
 /// End of the group that opens at `open`, or npos; `${name}` may stand inside.
 std::size_t closing_brace(const std::string& text, std::size_t open) {
   int depth = 0;
@@ -269,7 +267,7 @@ std::optional<std::vector<CheckedValue>> CheckedValue::one_or_list() const {
 }
 
 std::optional<Vector3> CheckedValue::vector(const Dimension& dimension) const {
-  const auto items = list(planar_length);
+  const auto items = list(reading_->dimensions);
   if (!items) return std::nullopt;
   Vector3 vector{};
   bool good = true;
@@ -280,6 +278,17 @@ std::optional<Vector3> CheckedValue::vector(const Dimension& dimension) const {
   }
   if (!good) return std::nullopt;
   return vector;
+}
+
+std::optional<std::vector<double>> CheckedValue::quantities(std::size_t length, const Dimension& dimension) const {
+  const auto items = list(length);
+  if (!items) return std::nullopt;
+  std::vector<double> numbers;
+  for (const CheckedValue& item : *items) {
+    if (const std::optional<double> number = item.quantity(dimension)) numbers.push_back(*number);
+  }
+  if (numbers.size() < length) return std::nullopt;
+  return numbers;
 }
 
 std::optional<std::string> CheckedValue::expand(const Node& text_node) const {

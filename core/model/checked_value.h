@@ -48,8 +48,11 @@ class CheckedValue {
   std::optional<std::string> string() const;
   /// Index of the word in `words`.
   std::optional<int> word(const std::vector<std::string>& words) const;
+  bool in_space() const { return reading_->dimensions == 3; }
   /// As many quantities as the space has dimensions; the rest is zero.
   std::optional<Vector3> vector(const Dimension& dimension) const;
+  /// Exactly `length` quantities.
+  std::optional<std::vector<double>> quantities(std::size_t length, const Dimension& dimension) const;
   std::optional<std::vector<CheckedValue>> list() const;
   /// A list of exactly `length` items.
   std::optional<std::vector<CheckedValue>> list(std::size_t length) const;

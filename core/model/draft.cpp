@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/name_rule.h"
+#include "model/rotation.h"
 
 namespace freeplay {
 namespace {
@@ -174,9 +175,16 @@ int Draft::marker(const std::string& full_name) {
   if (known != markers.end()) return known->second;
   const Frame& frame = frames.at(full_name);
   const int index = static_cast<int>(model.markers.size());
-  model.markers.push_back({frame.body, full_name, frame.position, frame.angle});
+  model.markers.push_back(marker_of(frame, full_name));
   markers.emplace(full_name, index);
   return index;
+}
+
+int Draft::turned_marker(int marker, const Rotation& turn) {
+  Marker turned = model.markers[static_cast<std::size_t>(marker)];
+  turned.rotation = product(turned.rotation, turn);
+  model.markers.push_back(std::move(turned));
+  return static_cast<int>(model.markers.size()) - 1;
 }
 
 }  // namespace freeplay

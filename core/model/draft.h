@@ -57,6 +57,7 @@ struct Draft {
     BodyId body = ground;
     Vector3 position{};
     double angle = 0.0;
+    Rotation rotation = no_rotation;
   };
   std::unordered_map<std::string, Frame> frames;  ///< by BODY/FRAME
   std::unordered_map<std::string, int> markers;   ///< index into model.markers by BODY/FRAME
@@ -75,6 +76,8 @@ struct Draft {
 
   const std::string& body_name(BodyId body) const;
   int marker(const std::string& full_name);
+  /// A marker that stands where another does, its axes turned by `turn` in that one's axes. Always a new one.
+  int turned_marker(int marker, const Rotation& turn);
   /// May the name belong to an instance that was in error, so that it need not be reported?
   bool excused(const std::string& name) const;
 
@@ -87,6 +90,10 @@ struct Draft {
   std::optional<std::string> frame_name(const CheckedValue& value, const std::string& reference,
                                         const Part& part) const;
 };
+
+inline Marker marker_of(const Draft::Frame& frame, const std::string& name) {
+  return {frame.body, name, frame.position, frame.angle, frame.rotation};
+}
 
 /// Numbers of the `names` that match the pattern at `value`, looked up among the part's own first. Throws Error{input}
 /// `too-large` there when all patterns of the file together have been compared with too many names.

@@ -40,7 +40,7 @@ class ForceEntry {
     AppliedForce force = named(ForceKind::force);
     const auto word = axes ? axes->word({"global", "frame"}) : std::optional<int>(0);
     const auto marker = at ? draft_.marker(*at, part_) : std::nullopt;
-    const auto items = value ? value->list(2) : std::nullopt;
+    const auto items = value ? value->list(value->in_space() ? 3 : 2) : std::nullopt;
     bool good = marker && word && items;
     if (items) {
       for (const CheckedValue& item : *items) good = append(item, dimension::force, force) && good;
@@ -57,7 +57,14 @@ class ForceEntry {
     const auto value = map_.require("value");
     AppliedForce torque = named(ForceKind::torque);
     const std::optional<BodyId> body = on ? draft_.body(*on, part_) : std::nullopt;
-    const bool good = value && append(*value, dimension::torque, torque);
+    bool good = value.has_value();
+    if (value && value->in_space()) {
+      const auto items = value->list(3);
+      good = items.has_value();
+      for (std::size_t i = 0; items && i < 3; ++i) good = append((*items)[i], dimension::torque, torque) && good;
+    } else if (value) {
+      good = append(*value, dimension::torque, torque);
+    }
     if (!good || !body) return;
     if (*body == ground) warn_of_ground(*on, "a torque");
     torque.marker = draft_.marker(draft_.body_name(*body) + (*body == ground ? "/origin" : "/com"));

@@ -59,7 +59,11 @@ constexpr FormatKey ground[] = {
     {"frames", "entries of frame value", "", "", "Points with axes that joints hold.", "{anchor: [0.5, 0]}"}};
 
 constexpr FormatKey pose[] = {{"position", "vector", "m", "follows from the joints", "Of the body frame.", "[0, 0.1]"},
-                              {"angle", "quantity", "rad", "follows from the joints", "Counter-clockwise.", "30 deg"}};
+                              {"angle", "quantity", "rad", "follows from the joints", "Counter-clockwise.", "30 deg"},
+                              {"rpy", "list of quantity", "rad", "follows from the joints",
+                               "In space: roll, pitch, yaw about fixed x, y, z.", "[0, 0, 90 deg]"},
+                              {"quaternion", "list of quantity", "", "follows from the joints",
+                               "In space: w, x, y, z; made a unit one.", "[1, 0, 0, 0]"}};
 
 constexpr FormatKey velocity[] = {
     {"linear", "vector", "m/s", "zero", "Of the body frame's origin, global axes.", "[1, 0]"},
@@ -68,7 +72,9 @@ constexpr FormatKey velocity[] = {
 constexpr FormatKey frame[] = {
     {"position", "vector", "m", "zero", "In the body frame.", "[0.1, 0]"},
     {"polar", "list of quantity", "", "", "Instead of `position`: radius and angle.", "[0.1, 120 deg]"},
-    {"angle", "quantity", "rad", "0", "Of the frame's x axis in the body frame.", "90 deg"}};
+    {"angle", "quantity", "rad", "0", "Of the frame's x axis in the body frame.", "90 deg"},
+    {"rpy", "list of quantity", "rad", "0", "In space: roll, pitch, yaw about the body's x, y, z.", "[0, 0, 90 deg]"},
+    {"quaternion", "list of quantity", "", "[1, 0, 0, 0]", "In space: w, x, y, z; made a unit one.", "[1, 0, 0, 0]"}};
 
 constexpr FormatKey joint[] = {
     {"type", "name", "", "required", "A type that `freeplay list joints` shows, or gear.", "TYPE"},

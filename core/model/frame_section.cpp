@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/name_rule.h"
+#include "model/rotation.h"
 
 namespace freeplay {
 namespace {
@@ -28,13 +29,18 @@ Draft::Frame read_frame(const CheckedValue& entry, BodyId body) {
   }
   MapReader map(entry, "frame");
   const auto position = map.find("position");
-  const auto polar = map.find("polar");
-  const auto angle = map.find("angle");
-  map.conflict("position", "polar");
   if (position) frame.position = position->vector(dimension::length).value_or(Vector3{});
-  if (polar) frame.position = read_polar(*polar).value_or(Vector3{});
-  if (angle) frame.angle = angle->quantity(dimension::angle).value_or(0.0);
-  for (const char* spatial : {"rpy", "quaternion"}) map.refuse(spatial, "only in spatial models");
+  frame.rotation = read_rotation(map).value_or(no_rotation);
+  if (entry.in_space()) {
+    map.refuse("polar", "only in planar models");
+    map.refuse("angle", "only in planar models; use 'rpy' or 'quaternion'");
+  } else {
+    const auto polar = map.find("polar");
+    const auto angle = map.find("angle");
+    map.conflict("position", "polar");
+    if (polar) frame.position = read_polar(*polar).value_or(Vector3{});
+    if (angle) frame.angle = angle->quantity(dimension::angle).value_or(0.0);
+  }
   map.finish();
   return frame;
 }

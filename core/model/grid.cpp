@@ -18,8 +18,8 @@ std::optional<double> read_point(const CheckedValue& value, std::optional<Dimens
 }
 
 /// `[from, to, count]`; end points of a logarithmic grid are positive.
-std::optional<GridValues> read_space(const CheckedValue& value, std::optional<Dimension> dimension,
-                                     const Range& range, bool logarithmic) {
+std::optional<GridValues> read_space(const CheckedValue& value, std::optional<Dimension> dimension, const Range& range,
+                                     bool logarithmic) {
   const auto items = value.list(3);
   if (!items) return std::nullopt;
   const std::optional<double> from = read_point((*items)[0], dimension, range);

@@ -4,6 +4,7 @@
 #include "model/gear.h"
 #include "model/name_rule.h"
 #include "model/parameter_check.h"
+#include "model/rotation.h"
 
 namespace freeplay {
 namespace {
@@ -39,6 +40,7 @@ class JointEntry {
     // Without a type nobody knows which keys are allowed.
     if (named == nullptr || !serves_space(*named, *type)) return;
     choose_twins(*named);
+    read_turn(named->description.axis);
     create();
     map_.finish();
     if (known_ && element().is_force) require_force(*type);
@@ -76,6 +78,21 @@ class JointEntry {
               std::string("the type '") + named.description.name + "' does not work in " + word + " models", {},
               "types that do: " + either(others));
     return false;
+  }
+
+  // In space the joint's axis is an axis of its frames: both markers are turned until it is the given one, by the same
+  // turn, so that the coordinate keeps its zero.
+  void read_turn(MarkerAxis axis) {
+    if (draft_.model.space == Space::planar) return map_.refuse("axis", "only in spatial models");
+    if (axis == MarkerAxis::none) return map_.refuse("axis", "this type has none");
+    const auto value = map_.find("axis");
+    const std::optional<Vector3> direction = value ? read_axis(*value) : std::nullopt;
+    if (!direction || element().marker_a == element().marker_b) return;
+    const Vector3 own = axis == MarkerAxis::x ? Vector3{1.0, 0.0, 0.0} : Vector3{0.0, 0.0, 1.0};
+    if (*direction == own) return;
+    const Rotation turn = least_rotation(own, *direction);
+    element().marker_a = draft_.turned_marker(element().marker_a, turn);
+    element().marker_b = draft_.turned_marker(element().marker_b, turn);
   }
 
   /// A type with the block of its twin is that twin; a type with play names its ideal twin itself.

@@ -71,7 +71,7 @@ class ModelBuilder {
  private:
   void keep_frames() {
     std::vector<Marker>& frames = draft_.model.frames;
-    for (const auto& [name, frame] : draft_.frames) frames.push_back({frame.body, name, frame.position, frame.angle});
+    for (const auto& [name, frame] : draft_.frames) frames.push_back(marker_of(frame, name));
     std::ranges::sort(frames, {}, &Marker::name);
   }
 
@@ -108,8 +108,8 @@ class ModelBuilder {
     if (space) {
       const std::optional<int> word = space->word({"planar", "spatial"});
       if (word == std::optional<int>(1)) {
-        space->fail("type-space", "spatial bodies are not in this release");
-        return false;
+        model.space = Space::spatial;
+        reading_.dimensions = 3;
       }
     }
     if (const auto gravity = top.find("gravity")) {

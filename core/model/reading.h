@@ -19,6 +19,7 @@ struct Reading {
   Readout* readout = nullptr;  ///< keeps what is read, when somebody wants it
   std::string instance{};      ///< full name of the instance; empty at top level
   double start_time = 0.0;     ///< time functions are tried here [s]
+  std::size_t dimensions = 2;  ///< of vectors: 2 in planar, 3 in spatial models
 };
 
 }  // namespace freeplay

@@ -18,6 +18,7 @@ constexpr double event_time = 1e-11;      // a located event is as sharp as this
 constexpr double event_rounding = 1e-15;  // [unit of the function]
 constexpr double event_share = 1e-5;      // or as this part of what a position may err by in a step
 constexpr int most_tries = 40;            // to end a step at an event
+constexpr int early_tries = 4;            // of these, that trust the interpolated motion
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
 // too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth
@@ -69,7 +70,9 @@ bool Simulation::Impl::adaptive_step() {
   double dt = 0.0;
   int limiting = -1;
   if (!bounded_step(dt, limiting)) return false;
-  if (!(dt >= smallest)) return fail(4, why_so_small(dt, limiting));
+  if (!(dt >= smallest)) {
+    return fail(4, solver.regularity() < stuck_there ? why_singular() : why_so_small(dt, limiting));
+  }
   const double kink = next_kink();
   const bool to_kink = kink <= settings.end;
   const double goal = to_kink ? before(kink) : settings.end;
@@ -135,7 +138,10 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   Fault fault;
   StepEvents::Passage found;
   if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
-  if (!events.first_crossing(accepted, e_accepted, trial, e_trial, found, fault)) return fail_with(fault, trial.t());
+  const bool early = tries < early_tries;
+  if (!events.first_crossing(accepted, e_accepted, trial, e_trial, early, found, fault)) {
+    return fail_with(fault, trial.t());
+  }
   const bool same = found.joint == hunted.joint && found.event == hunted.event;
   if (found.joint < 0 && hunted.joint < 0) {
     done = true;
@@ -164,7 +170,8 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   const double aim = std::min(std::max(0.1 * event_time * hunted.rate, 0.5 * event_share * allowed), 0.5 * tolerance);
   const double newton = dt - (hunted.value - aim) / hunted.rate;
   const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
-  const double root = found.fraction * dt + (hunted.rate > 0.0 ? aim / hunted.rate : 0.0);
+  const double beyond = early && hunted.rate > 0.0 ? std::min(aim / hunted.rate, 1e-3 * dt) : 0.0;
+  const double root = found.fraction * dt + beyond;
   double next = near ? newton : (found.joint >= 0 ? root : dt);
   if (next == dt) next = past < 0.0 ? dt * (1.0 + 4.0 * rounding) : dt * (1.0 - 4.0 * rounding);
   if (!(next > 0.0)) next = 0.5 * dt;

@@ -175,10 +175,12 @@ class Assembler {
       std::array<double, 3> force = reactions.empty() ? std::array<double, 3>{} : reactions[at(j)];
       InitialOffset offset{};
       Message message;
+      if (!reactions.empty()) offset.rotation = e_.markers[at(joint.marker_a)].rotation;
       if (!joint.joint.initial_offset({force.data(), force.size()}, offset, message)) {
         throw Error(Error::Category::input, "assembly-failed",
                     fmt::format("joint '{}' has no start: {}", joint.name, message.text), joint.location);
       }
+      offset.rotation = nullptr;
       moved = moved || !reactions.empty();
       closed_.set_offset(j, offset);
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string_view>
 
@@ -427,7 +426,7 @@ bool Simulation::Impl::tell_sinks() {
   const Profile::Timer timer(system.profile(), Phase::events);
   for (const StepEvents::Happening& happening : events.happenings()) {
     const char* name = system.joint_layout(happening.joint).events[at(happening.event)].name;
-    if (std::strcmp(name, "contact_begin") == 0) statistics.add_contact(happening.joint, happening.time);
+    if (std::string_view(name).ends_with("contact_begin")) statistics.add_contact(happening.joint, happening.time);
     for (Sink* sink : sinks) {
       sink->event({happening.time, happening.joint, happening.event, events.fields(happening)});
     }

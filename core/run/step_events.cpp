@@ -146,7 +146,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
 }
 
 bool StepEvents::first_crossing(const State& before, const Evaluation& e_before, const State& after,
-                                const Evaluation& e_after, Passage& found, Fault& fault) {
+                                const Evaluation& e_after, bool sharp, Passage& found, Fault& fault) {
   found = {};
   if (watched_.empty()) return true;
   DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
@@ -191,7 +191,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       }
     }
   }
-  return found.joint < 0 || found.fraction == 1.0 || sharpen(before, e_before, after, e_after, found, fault);
+  return !sharp || found.joint < 0 || found.fraction == 1.0 || sharpen(before, e_before, after, e_after, found, fault);
 }
 
 // Newton's steps on the interpolated motion, which knows more than the cubics of the function.

@@ -28,9 +28,10 @@ class StepEvents {
     double rate = 0.0;      ///< its time derivative
   };
   /// The earliest crossing of a located event within the step; joint -1 without one. Looks at both ends and the middle,
-  /// and between them at the cubics of (g, g'). Events that stand at their zero when the step begins count as passed.
+  /// and between them at the cubics of (g, g'), then, if `sharp`, along the interpolated motion. Events that stand at
+  /// their zero when the step begins count as passed.
   bool first_crossing(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
-                      Passage& found, Fault& fault);
+                      bool sharp, Passage& found, Fault& fault);
   /// Value and rate of one event at the end of a step, growing through zero.
   bool at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault);
   /// After apply(): tells `hunted` and every other located event that is within `tolerance` of its zero and growing at

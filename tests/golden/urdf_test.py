@@ -123,7 +123,7 @@ class UrdfTest(ProgramTest):
             turn = name.endswith(".angle")
             for x, y in zip(values, actual[name], strict=True):
                 gap = math.remainder(x - y, 2 * math.pi) if turn else x - y
-                self.assertLess(abs(gap), 1e-9 * max(1.0, abs(x)), name)
+                self.assertLess(abs(gap), 1e-10 * max(1.0, abs(x)), name)
 
 
 class Loops(UrdfTest):
