@@ -459,6 +459,7 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   require_word("kind of analysis", options.kind, {"ik", "workspace", "singularity", "error", "inverse-dynamics"});
   LoadedModel loaded = load_model(options.model, build_options(options.build), common);
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  require_planar(loaded, "analyze");
   refuse_idle_options(options);
   AnalysisTable table;
   std::vector<std::string> warnings;

@@ -148,6 +148,7 @@ int convert(const ConvertOptions& options, const CommonOptions& common) {
   BuildOptions build = build_options(options.build);
   build.readout = &readout;
   LoadedModel loaded = load_model(options.in, build, common);
+  if (!is_yaml(options.out)) require_planar(loaded, "conversion to URDF");
   if (loaded.exit_code == 0) write_overrides(build, *loaded.document);
   const auto assembled = loaded.exit_code == 0 ? assemble_model(loaded) : nullptr;
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);

@@ -169,6 +169,12 @@ LoadedModel load_text(std::string text, const std::string& file, const BuildOpti
   return load([&](Diagnostics& diagnostics) { return parse_yaml(std::move(text), file, diagnostics); }, build, common);
 }
 
+void require_planar(const LoadedModel& loaded, const std::string& what) {
+  if (!loaded.model || loaded.model->space == Space::planar) return;
+  throw Error(Error::Category::input, "type-space",
+              what + " works on planar models only, but '" + loaded.model->file + "' is spatial");
+}
+
 std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
   try {
     System system(*loaded.model);

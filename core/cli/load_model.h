@@ -29,6 +29,9 @@ LoadedModel load_model(const std::string& file, const BuildOptions& build, const
 LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build,
                       const CommonOptions& common);
 
+/// Refuses a spatial model. Throws Error{input} "type-space" with what only works in the plane.
+void require_planar(const LoadedModel& loaded, const std::string& what);
+
 /// A model that is ready to move. The system refers to the model.
 struct AssembledModel {
   System system;

@@ -28,6 +28,7 @@ int show(ShowOptions options, const CommonOptions& common) {
     throw Error(Error::Category::usage, "bad-value", "--json and --format " + options.format + " exclude each other");
   }
   LoadedModel loaded = load_model(options.model, build_options(options.build), common);
+  if (options.format == "svg") require_planar(loaded, "a drawing");
   std::unique_ptr<AssembledModel> assembled;
   if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
   if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);

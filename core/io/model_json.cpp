@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "base/token.h"
@@ -88,10 +90,29 @@ class ModelWriter {
     return number_text(value) + " " + unit;
   }
 
+  bool in_space() const { return model_.space == Space::spatial; }
+  Json list(std::span<const double> numbers, const std::string& unit) const {
+    if (quantities_ == Quantities::numbers) return std::vector<double>(numbers.begin(), numbers.end());
+    std::string text;
+    for (const double x : numbers) text += (text.empty() ? "(" : ", ") + number_text(x);
+    return unit.empty() ? text + ")" : text + ") " + unit;
+  }
   /// Vectors of planar models are two numbers long.
   Json vector(const Vector3& v, const std::string& unit) const {
-    if (quantities_ == Quantities::numbers) return Json::array({v[0], v[1]});
-    return fmt::format("({}, {}) {}", number_text(v[0]), number_text(v[1]), unit);
+    return list(std::span(v).first(in_space() ? 3 : 2), unit);
+  }
+  /// w, x, y, z.
+  Json quaternion(const Rotation& rotation) const {
+    const Eigen::Quaterniond q(
+        Eigen::Matrix3d(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data())));
+    const double numbers[] = {q.w(), q.x(), q.y(), q.z()};
+    return list(numbers, "");
+  }
+  Json inertia(const Body& one) const {
+    const auto& i = one.inertia;
+    if (!in_space()) return number(i[8], "kg*m^2");
+    const double all[] = {i[0], i[4], i[8], i[1], i[2], i[5]};
+    return list(std::span(all).first(i[1] == 0.0 && i[2] == 0.0 && i[5] == 0.0 ? 3 : 6), "kg*m^2");
   }
 
   std::string unit(const Parameter& parameter, const ParameterBlock& block) const {
@@ -143,6 +164,9 @@ class ModelWriter {
   // --- sections --------------------------------------------------------------------------------------------------
 
   Json frame(const Marker& one) const {
+    if (in_space() && one.rotation != no_rotation) {
+      return {{"position", vector(one.position, "m")}, {"quaternion", quaternion(one.rotation)}};
+    }
     if (one.angle == 0.0) return vector(one.position, "m");
     return {{"position", vector(one.position, "m")}, {"angle", number(one.angle, "rad")}};
   }
@@ -160,16 +184,17 @@ class ModelWriter {
   }
 
   Json body(const Body& one) const {
-    Json json = {
-        {"mass", number(one.mass, "kg")}, {"inertia", number(one.inertia[8], "kg*m^2")}, {"com", vector(one.com, "m")}};
-    if (one.position || one.angle) {
+    Json json = {{"mass", number(one.mass, "kg")}, {"inertia", inertia(one)}, {"com", vector(one.com, "m")}};
+    if (one.position || one.angle || one.rotation) {
       json["pose"] = Json::object();
       if (one.position) json["pose"]["position"] = vector(*one.position, "m");
       if (one.angle) json["pose"]["angle"] = number(*one.angle, "rad");
+      if (one.rotation) json["pose"]["quaternion"] = quaternion(*one.rotation);
     }
-    if (one.velocity != Vector3{} || one.angular_velocity[2] != 0.0) {
+    if (one.velocity != Vector3{} || one.angular_velocity != Vector3{}) {
+      const Vector3& w = one.angular_velocity;
       json["velocity"] = {{"linear", vector(one.velocity, "m/s")},
-                          {"angular", number(one.angular_velocity[2], "rad/s")}};
+                          {"angular", in_space() ? vector(w, "rad/s") : number(w[2], "rad/s")}};
     }
     json["frames"] = frames(one.name);
     return json;
@@ -187,6 +212,7 @@ class ModelWriter {
       return json;
     }
     json["between"] = {marker(one.marker_a), marker(one.marker_b)};
+    if (one.axis) json["axis"] = vector(*one.axis, "");
     if (one.parameters) json.update(parameters(*one.parameters));
     return json;
   }
@@ -250,7 +276,9 @@ class ModelWriter {
     const AppliedForce& force = model_.forces[at(element.applied)];
     const std::string& place = marker(force.marker);
     if (force.kind == ForceKind::torque) {
-      return {{"type", "torque"}, {"on", place.substr(0, place.find('/'))}, {"value", force.text.at(0)}};
+      return {{"type", "torque"},
+              {"on", place.substr(0, place.find('/'))},
+              {"value", in_space() ? Json(force.text) : Json(force.text.at(0))}};
     }
     return {{"type", "force"}, {"at", place}, {"value", force.text}, {"axes", force.frame_axes ? "frame" : "global"}};
   }

@@ -64,7 +64,9 @@ class DriverEntry {
       if (!map_.has("joint")) {
         for (const char* key : {"value", "table"}) map_.conflict("inverse_kinematics", key);
       }
-      read_kinematics(*map_.find("inverse_kinematics"));
+      const auto kinematics = map_.find("inverse_kinematics");
+      if (kinematics->in_space()) return kinematics->fail_at_key("type-space", "paths work in planar models only");
+      read_kinematics(*kinematics);
     } else {
       map_.refuse("inverse_kinematics", "");
       read_driver();

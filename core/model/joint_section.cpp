@@ -87,6 +87,7 @@ class JointEntry {
     if (axis == MarkerAxis::none) return map_.refuse("axis", "this type has none");
     const auto value = map_.find("axis");
     const std::optional<Vector3> direction = value ? read_axis(*value) : std::nullopt;
+    element().axis = direction;
     if (!direction || element().marker_a == element().marker_b) return;
     const Vector3 own = axis == MarkerAxis::x ? Vector3{1.0, 0.0, 0.0} : Vector3{0.0, 0.0, 1.0};
     if (*direction == own) return;

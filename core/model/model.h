@@ -70,6 +70,7 @@ struct JointElement {
   bool has_play = false;
   bool is_force = false;  ///< an entry of `forces`
   int gear = -1;          ///< index into Model::gears
+  std::optional<Vector3> axis;  ///< as given, made a unit vector; the markers are turned already
   std::optional<StartValue> start_coordinate, start_speed;
 };
 

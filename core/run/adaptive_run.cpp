@@ -167,13 +167,17 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
                                model.joints[at(hunted.joint)].name));
   }
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
-  const double aim = std::min(std::max(0.1 * event_time * hunted.rate, 0.5 * event_share * allowed), 0.5 * tolerance);
+  const double wanted = std::max(0.1 * event_time * hunted.rate, 0.5 * event_share * allowed);
+  // No farther than a small part of the step: from there Newton's step is still one from close by.
+  const double aim = std::min({wanted, 0.5 * tolerance, 0.05 * dt * std::abs(hunted.rate)});
   const double newton = dt - (hunted.value - aim) / hunted.rate;
   const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
-  const double beyond = early && hunted.rate > 0.0 ? std::min(aim / hunted.rate, 1e-3 * dt) : 0.0;
+  const double beyond = early && hunted.rate > 0.0 ? aim / hunted.rate : 0.0;
   const double root = found.fraction * dt + beyond;
   double next = near ? newton : (found.joint >= 0 ? root : dt);
-  if (next == dt) next = past < 0.0 ? dt * (1.0 + 4.0 * rounding) : dt * (1.0 - 4.0 * rounding);
+  // Rounding may hold Newton's step where it is: then by more each time.
+  const double nudge = std::ldexp(4.0 * rounding, tries);
+  if (std::abs(next - dt) <= nudge * dt) next = past < 0.0 ? dt * (1.0 + nudge) : dt * (1.0 - nudge);
   if (!(next > 0.0)) next = 0.5 * dt;
   dt = std::max(next, least);
   return true;

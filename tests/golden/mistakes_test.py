@@ -92,7 +92,7 @@ MISTAKES = [
     ('mass: $a', 'use: pp, mass: $a', 'unknown-name', 4, 14),
     ('freeplay: 1', 'freeplay: 2', 'bad-version', 1, 11),
     ('freeplay: 1', 'freeplay: 1\nspace: plan', 'wrong-type', 2, 8),
-    ('freeplay: 1', 'freeplay: 1\nspace: spatial', 'type-space', 2, 8),
+    ('freeplay: 1', 'freeplay: 1\nspace: spatial', 'wrong-type', 5, 28),
     ('freeplay: 1', 'freeplay: 1\ngravity: -9.81', 'wrong-type', 2, 10),
     ('freeplay: 1', 'freeplay: 1\ngravity: [0, -9.81 m/s]', 'dimension-mismatch', 2, 14),
     ('freeplay: 1', 'freeplay: 1\nplugins: [./no.so]', 'plugin-not-found', 2, 11),

@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Mistake{"unknown section", "simulaton: {}\n", "4:1 unknown-key "},
                     Mistake{"section is no map", "joints: 5\n", "4:9 wrong-type "},
                     Mistake{"wrong space", "space: plannar\n", "4:8 wrong-type "},
-                    Mistake{"spatial", "space: spatial\nxx: 1\n", "4:8 type-space "},
+                    Mistake{"spatial", "space: spatial\nxx: 1\n", "3:27 wrong-type 3:44 wrong-length 5:1 unknown-key "},
                     Mistake{"urdf", "urdf: a.urdf\n", "4:1 unknown-key "},
                     Mistake{"bad frame key", "frames: {rod: [0, 0]}\n", "4:10 bad-name "},
                     Mistake{"frame twice", "frames: {rod/tip: [0, 0]}\n", "4:10 duplicate-name "},

@@ -1,0 +1,270 @@
+"""Mechanisms in space: what bodies and joints do there agrees with formulas, with the plane, and with a program of its
+own kind written here."""
+import math
+import unittest
+
+from model_cases import EXACT, ModelTest, rk4
+
+G = 9.81
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def rotation(w, x, y, z):
+    return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+
+
+def product(matrix, vector):
+    return [sum(m * v for m, v in zip(row, vector)) for row in matrix]
+
+
+def transposed(matrix):
+    return [list(column) for column in zip(*matrix)]
+
+
+class SpatialTest(ModelTest):
+    def rows(self, columns, body, *names):
+        return list(zip(*(columns["body.%s.%s" % (body, name)] for name in names)))
+
+    def spins(self, columns, body, inertia):
+        """Angular momentum about the centre of mass at each row, world axes; `inertia` in body axes."""
+        out = []
+        for turn, w in zip(self.rows(columns, body, "qw", "qx", "qy", "qz"), self.rows(columns, body, "wx", "wy", "wz")):
+            r = rotation(*turn)
+            out.append(product(r, product(inertia, product(transposed(r), w))))
+        return out
+
+
+class FreeBody(SpatialTest):
+    TENSOR = [[1.0, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 2.5]]
+    MODEL = """
+space: spatial
+bodies:
+  stone: {mass: 2, inertia: [1.0, 2.0, 2.5, 0.2, -0.1, 0.3], velocity: {linear: [1, 2, 3], angular: [0.1, 6, 0.2]}}
+"""
+
+    def test_a_free_asymmetric_body_keeps_energy_and_momentum_over_a_hundred_turns(self):
+        columns = self.run_model(self.MODEL + "simulation: {end: 100 s, output: {interval: 1 s}, integrator: dopri5, "
+                                 "step: {size: 1 ms, adaptive: true, tolerance: 1e-13}}")
+        energy = columns["energy.kinetic"]
+        self.assertLess(max(abs(e - energy[0]) for e in energy), 1e-10 * energy[0])
+        spins = self.spins(columns, "stone", self.TENSOR)
+        size = math.hypot(*spins[0])
+        for spin in spins:
+            self.assertLess(math.dist(spin, spins[0]), 1e-10 * size)
+        for turn in self.rows(columns, "stone", "qw", "qx", "qy", "qz"):
+            self.assertLess(abs(math.hypot(*turn) - 1.0), 1e-14)
+        self.assert_column(columns, "body.stone.z", lambda t: 3 * t)
+
+    def test_a_body_that_turns_about_its_middle_axis_tips_over_as_eulers_equations_say(self):
+        text = """
+space: spatial
+bodies: {tee: {mass: 1, inertia: [1, 2, 3], velocity: {angular: [0.01, 5, 0.01]}}}
+simulation: {end: 6 s, output: {interval: 0.5 s}, %s}
+""" % EXACT
+        columns = self.run_model(text)
+        rates = lambda t, w: [(2 - 3) / 1 * w[1] * w[2], (3 - 1) / 2 * w[2] * w[0], (1 - 2) / 3 * w[0] * w[1]]
+        w, t = [0.01, 5.0, 0.01], 0.0
+        rows = zip(columns["time"], self.rows(columns, "tee", "qw", "qx", "qy", "qz"),
+                   self.rows(columns, "tee", "wx", "wy", "wz"))
+        tipped = False
+        for time, turn, world in rows:
+            if time > t:
+                w, t = rk4(rates, w, time - t, 4000), time
+            for x, y in zip(w, product(transposed(rotation(*turn)), world)):
+                self.assertLess(abs(x - y), 1e-7)
+            tipped = tipped or w[1] < -4.9
+        self.assertTrue(tipped)
+
+
+class Tops(SpatialTest):
+    MODEL = """
+space: spatial
+gravity: [0, 0, -9.81]
+bodies:
+  top: {mass: 0.5, inertia: [6e-4, 6e-4, 2e-4], com: [0, 0, 0.04], pose: {rpy: [0, 30 deg, 0]},
+        velocity: {linear: [%r, %r, %r], angular: [%r, %r, %r]}}
+joints: {tip: {type: spherical, between: [ground, top]}}
+simulation: {end: %s, output: {interval: 20 ms}, %s}
+"""
+    TILT, SPIN = math.radians(30), 250.0
+    ACROSS, ALONG, REACH = 6e-4 + 0.5 * 0.04 ** 2, 2e-4, 0.04
+
+    def steady(self):
+        """Rate of steady precession: A W^2 cos + m g l = C s W with the whole spin s about the axis."""
+        a, b, c = self.ACROSS * math.cos(self.TILT), -self.ALONG * self.SPIN, 0.5 * G * self.REACH
+        return (-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)
+
+    def text(self, end, steps):
+        rate, axis = self.steady(), [math.sin(self.TILT), 0.0, math.cos(self.TILT)]
+        # W about z, the rest of the spin about the axis.
+        own = self.SPIN - rate * axis[2]
+        w = [own * axis[0], 0.0, own * axis[2] + rate]
+        return self.MODEL % (*[0.0, 0.0, 0.0], *w, end, steps)
+
+    def test_a_heavy_top_precesses_steadily(self):
+        columns = self.run_model(self.text("0.5 s", EXACT))
+        rate = self.steady()
+        sideways = self.REACH * math.sin(self.TILT)
+        self.assert_column(columns, "body.top.x", lambda t: sideways * math.cos(rate * t), 1e-8)
+        self.assert_column(columns, "body.top.y", lambda t: sideways * math.sin(rate * t), 1e-8)
+        self.assert_column(columns, "body.top.z", lambda t: self.REACH * math.cos(self.TILT), 1e-8)
+
+    def test_bathe_has_order_two_on_the_heavy_top(self):
+        rate, sideways = self.steady(), self.REACH * math.sin(self.TILT)
+        errors = []
+        for step in ("0.4 ms", "0.2 ms", "0.1 ms"):
+            columns = self.run_model(self.text("0.2 s", "integrator: bathe, step: " + step))
+            end = columns["time"][-1]
+            errors.append(math.hypot(columns["body.top.x"][-1] - sideways * math.cos(rate * end),
+                                     columns["body.top.y"][-1] - sideways * math.sin(rate * end)))
+        for coarse, fine in zip(errors, errors[1:]):
+            self.assertTrue(1.8 < math.log2(coarse / fine) < 2.3, errors)
+
+
+def slider_crank(space, clearance, steps):
+    """One mechanism in the plane and in space."""
+    planar = space == "planar"
+    v = lambda x, y: "[%s, %s]" % (x, y) if planar else "[%s, %s, 0]" % (x, y)
+    inertia = lambda i: "%s" % i if planar else "[%s, %s, %s]" % (i, i, i)
+    return """
+space: %s
+gravity: %s
+bodies:
+  crank: {mass: 0.3, inertia: %s, com: %s, frames: {tip: %s}}
+  rod: {mass: 0.21, inertia: %s, com: %s, frames: {tip: %s}}
+  slider: {mass: 0.14, inertia: %s}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, rod]}
+  C: {type: revolute, between: [rod/tip, slider]%s}
+  D: {type: prismatic, between: [ground, slider]}
+drivers: {motor: {joint: A, kind: angle, value: 60*t}}
+simulation: {end: 20 ms, %s, output: {interval: 0.1 ms}}
+""" % (space, v(0, -9.81), inertia(1e-4), v(0.025, 0), v(0.05, 0), inertia(2.5e-5), v(0.06, 0), v(0.12, 0),
+       inertia(1e-5), ", clearance: " + clearance if clearance else "", steps)
+
+
+CLEARANCE = ("{bearing_radius: 10 mm, radial_clearance: 0.2 mm, length: 20 mm, "
+             "contact: {law: lankarani-nikravesh, K: 1e9, restitution: 0.9}, friction: {law: coulomb-tanh, mu: 0.05}}")
+
+
+class PlanarInSpace(SpatialTest):
+    def assert_same(self, clearance, steps, tolerance):
+        plane = self.run_model(slider_crank("planar", clearance, steps))
+        space = self.run_model(slider_crank("spatial", clearance, steps))
+        for name in ("body.slider.x", "body.rod.x", "body.rod.y", "joint.A.angle", "joint.B.angle"):
+            for x, y in zip(plane[name], space[name], strict=True):
+                self.assertLess(abs(x - y), tolerance, name)
+        self.assertLess(max(map(abs, space["body.rod.z"])), 1e-15)
+
+    def test_an_ideal_mechanism_moves_as_in_the_plane(self):
+        facts = self.facts(slider_crank("spatial", "", "step: 10 us"), coordinates=21, velocities=18, constraints=20,
+                           rank=17, redundant=3, dof=1, dof_driven=0)
+        self.assertAlmostEqual(facts["start"]["slider"]["x"], 0.17, delta=1e-15)
+        self.assert_same("", "accuracy: 1e-7", 1e-13)
+        self.assert_same("", "integrator: bathe, step: 10 us", 1e-13)
+
+    def test_a_mechanism_with_clearance_moves_as_in_the_plane(self):
+        self.assert_same(CLEARANCE, "integrator: bathe, step: 2 us", 1e-9)
+        self.assert_same(CLEARANCE, "accuracy: 1e-10", 1e-9)
+
+
+class Axes(SpatialTest):
+    def test_a_pendulum_swings_about_the_axis_that_is_given(self):
+        plane = self.run_model("""
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1, inertia: 0.02, com: [0.5, 0]}}
+joints: {A: {type: revolute, between: [ground, rod]}}
+simulation: {end: 1 s, output: {interval: 20 ms}, %s}
+""" % EXACT)
+        # The same in the plane of y and z: x is the axis, the rod lies along y.
+        space = self.run_model("""
+space: spatial
+gravity: [0, 0, -9.81]
+bodies: {rod: {mass: 1, inertia: [0.02, 0.3, 0.3], com: [0, 0.5, 0]}}
+joints: {A: {type: revolute, between: [ground, rod], axis: [2, 0, 0]}}
+simulation: {end: 1 s, output: {interval: 20 ms}, %s}
+""" % EXACT)
+        for flat, deep in (("body.rod.x", "body.rod.y"), ("body.rod.y", "body.rod.z"), ("joint.A.angle", "joint.A.angle"),
+                           ("joint.A.fx", "joint.A.fy"), ("joint.A.fy", "joint.A.fz")):
+            for x, y in zip(plane[flat], space[deep], strict=True):
+                self.assertLess(abs(x - y), 1e-9, (flat, deep))
+
+    def test_forces_and_torques_have_three_components(self):
+        columns = self.run_model("""
+space: spatial
+bodies: {cube: {mass: 2, inertia: [1, 1, 1]}}
+forces:
+  push: {type: force, at: cube, value: [2, 4*t, -6]}
+  turn: {type: torque, on: cube, value: [0, 0, 3]}
+simulation: {end: 1 s, output: {interval: 0.1 s}, %s}
+""" % EXACT)
+        self.assert_column(columns, "body.cube.x", lambda t: t * t / 2)
+        self.assert_column(columns, "body.cube.y", lambda t: t ** 3 / 3)
+        self.assert_column(columns, "body.cube.z", lambda t: -1.5 * t * t)
+        self.assert_column(columns, "body.cube.wz", lambda t: 3 * t)
+        self.assert_column(columns, "force.turn.tz", lambda t: 3.0)
+        self.assert_column(columns, "force.push.power", lambda t: 2 * t + 4 * t * t * t + 18 * t)
+
+
+class Bricard(SpatialTest):
+    """A closed loop of six revolutes whose axes turn by a right angle from one to the next: movable against the count."""
+    MODEL = """
+space: spatial
+gravity: [0, 0, -9.81]
+bodies:
+  b1: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [1, 0, 0]}}
+  b2: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [1, -1, 0]}}
+  b3: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [1, -1, 1]}}
+  b4: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [0, -1, 1]}}
+  b5: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [0, 0, 1]}}
+frames: {ground/p: [1, 0, 0], b1/q: [0, -1, 0], b2/q: [0, 0, 1], b3/q: [-1, 0, 0], b4/q: [0, 1, 0], b5/q: [0, 0, -1]}
+joints:
+  A: {type: revolute, between: [ground/p, b1], axis: [0, 0, 1]}
+  B: {type: revolute, between: [b1/q, b2], axis: [1, 0, 0]}
+  C: {type: revolute, between: [b2/q, b3], axis: [0, 1, 0]}
+  D: {type: revolute, between: [b3/q, b4], axis: [0, 0, 1]}
+  E: {type: revolute, between: [b4/q, b5], axis: [1, 0, 0]}
+  F: {type: revolute, between: [b5/q, ground], axis: [0, 1, 0]}
+simulation: {end: 1 s, output: {interval: 50 ms}, accuracy: 1e-8}
+"""
+
+    def test_it_has_one_row_too_many_and_one_freedom(self):
+        self.facts(self.MODEL, bodies=5, joints=6, constraints=30, rank=29, redundant=1, dof=1)
+
+
+class Mistakes(SpatialTest):
+    BODY = "space: spatial\nbodies: {rod: {mass: 1, inertia: %s}}\n"
+
+    def test_impossible_inertias_are_refused_with_their_numbers(self):
+        errors = self.refusal(self.BODY % "[1, 1, 3]", id="out-of-range", line=3)
+        self.assertIn("1, 1, 3", errors[0]["message"])
+        self.refusal(self.BODY % "[1, 1, 1, 2, 0, 0]", id="out-of-range", line=3)
+        self.refusal(self.BODY % "[[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]", id="out-of-range", line=3)
+        self.refusal(self.BODY % "0.1", id="wrong-type", line=3)
+        self.refusal(self.BODY % "[1, 2]", id="wrong-type", line=3)
+
+    def test_axes_and_types_are_judged_by_the_space(self):
+        joint = self.BODY % "[1, 1, 1]" + "joints: {A: {type: %s, between: [ground, rod]%s}}\n"
+        self.refusal(joint % ("revolute", ", axis: [0, 0, 0]"), id="out-of-range", line=4)
+        self.refusal(joint % ("revolute", ", axis: [0, 1]"), id="wrong-length", line=4)
+        self.refusal(joint % ("spherical", ", axis: [0, 0, 1]"), id="unknown-key", line=4)
+        flat = "bodies: {rod: {mass: 1, inertia: 1}}\njoints: {A: {type: %s, between: [ground, rod]%s}}\n"
+        self.refusal(flat % ("spherical", ""), id="type-space", line=3)
+        self.refusal(flat % ("revolute", ", axis: [0, 0, 1]"), id="unknown-key", line=3)
+
+    def test_rotations_need_the_keys_of_the_space(self):
+        self.refusal("space: spatial\nbodies: {rod: {mass: 1, inertia: [1, 1, 1], pose: {angle: 1}}}\n",
+                     id="unknown-key", line=3)
+        self.refusal("space: spatial\nbodies: {rod: {mass: 1, inertia: [1, 1, 1], pose: {quaternion: [0, 0, 0, 0]}}}\n",
+                     id="out-of-range", line=3)
+        self.refusal("bodies: {rod: {mass: 1, inertia: 1, pose: {rpy: [0, 0, 1]}}}\n", id="unknown-key", line=2)
+
+
+if __name__ == "__main__":
+    unittest.main()
