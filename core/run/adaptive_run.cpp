@@ -151,8 +151,8 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   if (found.joint >= 0 && !same) hunted = found;
   // The step ends just past the zero, so that what begins there acts from the first on.
   const double past = hunted.value;
-  const double tolerance = std::max(StepEvents::tolerance, event_share * allowed);
-  const double late = std::max(event_time * hunted.rate, event_share * allowed);
+  const double tolerance = std::max(StepEvents::tolerance, event_lateness());
+  const double late = std::max(event_time * hunted.rate, event_lateness());
   const bool sharp = past <= event_rounding || past <= late || tries > most_tries / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
   // An event may lie so close to the start of the step that the time cannot tell them apart.
@@ -167,7 +167,7 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
                                model.joints[at(hunted.joint)].name));
   }
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
-  const double wanted = std::max(0.1 * event_time * hunted.rate, 0.5 * event_share * allowed);
+  const double wanted = std::max(0.1 * event_time * hunted.rate, 0.5 * event_lateness());
   // No farther than a small part of the step: from there Newton's step is still one from close by.
   const double aim = std::min({wanted, 0.5 * tolerance, 0.05 * dt * std::abs(hunted.rate)});
   const double newton = dt - (hunted.value - aim) / hunted.rate;
@@ -182,6 +182,9 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   dt = std::max(next, least);
   return true;
 }
+
+// How far past its zero an event function may be at the end of the step that ends there, whatever its rate.
+double Simulation::Impl::event_lateness() const { return event_share * allowed; }
 
 bool Simulation::Impl::write_rows_inside() {
   while (row_time(next_row) < trial.t()) {

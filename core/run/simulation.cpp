@@ -319,7 +319,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   {
     const Profile::Timer timer(system.profile(), Phase::events);
     if (!events.apply(accepted, e_accepted, trial, e_trial, fault) ||
-        !events.tell_at_end(located, trial, e_trial, mobility, this, fault)) {
+        !events.tell_at_end(located, adaptive ? event_lateness() : 0.0, trial, e_trial, mobility, this, fault)) {
       return fail_with(fault, trial.t());
     }
   }

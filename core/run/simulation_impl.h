@@ -48,6 +48,7 @@ struct Simulation::Impl {
   bool bounded_step(double& dt, int& limiting_joint);
   bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
   bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
+  double event_lateness() const;
   bool write_rows_inside();
   bool write_row_at(double t);
   bool look_inside(double t);

@@ -226,8 +226,8 @@ bool StepEvents::at_end(const State& after, const Evaluation& e_after, Passage& 
   return true;
 }
 
-bool StepEvents::tell_at_end(const Passage& hunted, State& after, const Evaluation& e_after, Mobility mobility,
-                             void* self, Fault& fault) {
+bool StepEvents::tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after,
+                             Mobility mobility, void* self, Fault& fault) {
   if (hunted.joint < 0) return true;
   for (const int joint : watched_) {
     const Span<const Event> events = system_.joint_layout(joint).events;
@@ -236,7 +236,8 @@ bool StepEvents::tell_at_end(const Passage& hunted, State& after, const Evaluati
       if (events[at(i)].locate == 0) continue;
       if (!functions(joint, point(after), e_after, g, r, fault)) return false;
       const double sign = events[at(i)].crossing == Crossing::rising ? 1.0 : -1.0;
-      const bool grows = std::abs(g[at(i)]) <= tolerance && sign * r[at(i)] > 0.0;
+      const double past = sign * g[at(i)];
+      const bool grows = past >= -tolerance && past <= std::max(tolerance, late) && sign * r[at(i)] > 0.0;
       if (!grows && !(joint == hunted.joint && i == hunted.event && !std::isnan(g[at(i)]))) continue;
       double numbers[9];
       if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers))

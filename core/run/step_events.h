@@ -34,10 +34,11 @@ class StepEvents {
                       bool sharp, Passage& found, Fault& fault);
   /// Value and rate of one event at the end of a step, growing through zero.
   bool at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault);
-  /// After apply(): tells `hunted` and every other located event that is within `tolerance` of its zero and growing at
-  /// the end of the step. Nothing when hunted.joint is -1.
-  bool tell_at_end(const Passage& hunted, State& after, const Evaluation& e_after, Mobility mobility, void* self,
-                   Fault& fault);
+  /// After apply(): tells `hunted` and every other located event that grows at the end of the step, within `tolerance`
+  /// of its zero or past it by no more than `late`, by which the step may have gone past `hunted`. Nothing when
+  /// hunted.joint is -1.
+  bool tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
+                   void* self, Fault& fault);
   static constexpr double tolerance = 1e-12;  ///< of a located event function, in its unit
 
   /// Advances z and h of `after` over the events between `before` and `after`; `e_before` and `e_after` are evaluated

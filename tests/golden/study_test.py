@@ -15,7 +15,7 @@ series: {c: [0.0001], T: [0.5], mu: [0.1]}
 turns: 1.3
 accuracy: 0.0001
 map: {from: -0.2, to: 0.2, count: 9}
-path: 12
+path: 120
 """
 
 
