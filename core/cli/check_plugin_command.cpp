@@ -169,7 +169,7 @@ Command add_check_plugin_command(CLI::App& program, CommonOptions& common) {
                   "Library: a path, a name in FREEPLAY_PLUGIN_PATH, or 'built-in' for the types of the program itself")
       ->type_name("");
   app->add_option("--seed", options->seed, "Seed of the random states (1)")->type_name("N");
-  app->add_option("--time-limit", options->time_limit, "Time for all types together (30 s)")->type_name("TIME");
+  app->add_option("--time-limit", options->time_limit, "Time for all types together (60 s)")->type_name("TIME");
   add_common_options(*app, common);
   return {app, [options, &common] { return check_plugin(*options, common); }};
 }

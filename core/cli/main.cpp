@@ -45,7 +45,7 @@ int print_version(const CommonOptions& common) {
 }
 
 int execute(int argc, char** argv, CommonOptions& common) {
-  CLI::App program("Freeplay simulates planar mechanisms whose joints have clearance.", "freeplay");
+  CLI::App program("Freeplay simulates mechanisms whose joints have clearance.", "freeplay");
   bool version = false;
   program.add_flag("--version", version, "Print the version");
   add_common_options(program, common);

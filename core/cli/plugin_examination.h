@@ -14,7 +14,7 @@ namespace freeplay {
 struct ExaminationOptions {
   std::vector<std::filesystem::path> companions;  ///< libraries that are loaded first
   std::uint64_t seed = 1;
-  double time_limit = 30.0;  ///< of all together [s]
+  double time_limit = 60.0;  ///< of all together [s]
 };
 
 /// One type of the library. It keeps its contract if all rules are held and nothing failed.

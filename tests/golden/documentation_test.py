@@ -85,6 +85,9 @@ class Documentation(ProgramTest):
     def test_getting_started(self):
         self.run_page(os.path.join("docs", "getting-started.md"))
 
+    def test_spatial(self):
+        self.run_page(os.path.join("docs", "spatial.md"))
+
     def test_first_mechanism(self):
         printed = shown = None
         for piece in Tutorial("first-mechanism.md").pieces():
