@@ -18,13 +18,14 @@ RowRank::RowRank(int rows, int columns)
   qr_ = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns, rows);
 }
 
-int RowRank::analyse(const std::vector<SparseEntry>& jacobian) {
+int RowRank::analyse(const std::vector<SparseEntry>& jacobian, double error) {
+  const double zero = std::max(tolerance, error);
   std::ranges::fill(dependent_, char{0});
   rank_ = 0;
   if (rows_ == 0) return 0;
   if (is_large()) {
     sparse_ = sparse_matrix(rows_, columns_, jacobian);
-    const SparseRows decomposed(sparse_, tolerance);
+    const SparseRows decomposed(sparse_, zero);
     std::ranges::copy(decomposed.dependent(), dependent_.begin());
     return rank_ = decomposed.rank();
   }
@@ -33,7 +34,7 @@ int RowRank::analyse(const std::vector<SparseEntry>& jacobian) {
   qr_.compute(transposed_);
   const auto diagonal = qr_.matrixR().diagonal();
   const double largest = diagonal.size() > 0 ? std::abs(diagonal[0]) : 0.0;
-  while (rank_ < diagonal.size() && std::abs(diagonal[rank_]) > tolerance * largest) ++rank_;
+  while (rank_ < diagonal.size() && std::abs(diagonal[rank_]) > zero * largest) ++rank_;
   const auto& order = qr_.colsPermutation().indices();
   for (int i = rank_; i < rows_; ++i) dependent_[static_cast<std::size_t>(order[i])] = 1;
 

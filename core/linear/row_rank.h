@@ -20,8 +20,9 @@ class RowRank {
   /// pivot).
   static constexpr double tolerance = 1e-10;
 
-  /// Decomposes J. Returns the rank.
-  int analyse(const std::vector<SparseEntry>& jacobian);
+  /// Decomposes J. Returns the rank. `error` says how far off, relative to its largest, the entries may be: smaller
+  /// pivots count as zero, too.
+  int analyse(const std::vector<SparseEntry>& jacobian, double error = 0.0);
   int rank() const { return rank_; }
   /// Nonzero for rows that the others determine. Valid after analyse().
   std::span<const char> dependent() const { return dependent_; }

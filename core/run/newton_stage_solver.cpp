@@ -13,6 +13,7 @@ constexpr double singular_pivot = 1e-13;     // smallest pivot over the largest
 constexpr double near_singular = 1e-2;       // regularity below which errors across the motion count less
 constexpr double slow_contraction = 0.1;     // a stale factor that contracts less is renewed
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
+constexpr double off_constraints = 10.0;     // relative change of Phi_q by relative size of Phi, about
 constexpr int refinement_limit = 30;
 constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
@@ -448,8 +449,9 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (any_dependent_) {
     const Profile::Timer timer(system_.profile(), Phase::factorization);
     system_.jacobian_entries(e_, entries_);
-    // Rows that were left out in a singular position count again.
-    if (rows_.analyse(entries_) > rank_) keep_independent_rows();
+    // Rows that were left out in a singular position count again; not those that seem to say something new only because
+    // a stage is a little off the constraints.
+    if (rows_.analyse(entries_, off_constraints * largest(e_.phi) / system_.size()) > rank_) keep_independent_rows();
   }
   if (!refactor(index_one_)) return false;
   std::ranges::copy(e_.force, right_a_.begin());

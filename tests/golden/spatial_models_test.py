@@ -240,6 +240,13 @@ simulation: {end: 1 s, output: {interval: 50 ms}, accuracy: 1e-8}
     def test_it_has_one_row_too_many_and_one_freedom(self):
         self.facts(self.MODEL, bodies=5, joints=6, constraints=30, rank=29, redundant=1, dof=1)
 
+    def test_it_moves_without_losing_energy(self):
+        columns = self.run_model(self.MODEL)
+        total = [k + p for k, p in zip(columns["energy.kinetic"], columns["energy.potential"])]
+        self.assertGreater(max(columns["energy.kinetic"]), 1.0)
+        for energy in total:
+            self.assertLess(abs(energy - total[0]), 1e-6)
+
 
 class Mechanisms(SpatialTest):
     """The files of mechanisms/spatial."""
