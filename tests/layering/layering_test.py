@@ -40,6 +40,7 @@ LIBRARIES = {
     "hdf5.h": {"io"},
     "klu.h": {"linear"},
     "SuiteSparseQR.hpp": {"linear"},
+    "openssl": {"io"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"io", "report", "cli"},
