@@ -410,22 +410,7 @@ class Assembler {
 
   // Least change of the given velocities in kinetic energy; in m and rad where the mass says nothing.
   void solve_velocities() {
-    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
-      const Body& body = model_.bodies[at(b)];
-      const Pose frame = closed_.frame_pose(b, state_.q());
-      const Vector3& w = body.angular_velocity;
-      double arm[3] = {};
-      for (std::size_t r = 0; r < 3; ++r) {
-        for (std::size_t c = 0; c < 3; ++c) arm[r] += frame.rotation[3 * r + c] * body.com[c];
-      }
-      const double twist[6] = {body.velocity[0] + (w[1] * arm[2] - w[2] * arm[1]),
-                               body.velocity[1] + (w[2] * arm[0] - w[0] * arm[2]),
-                               body.velocity[2] + (w[0] * arm[1] - w[1] * arm[0]),
-                               w[0],
-                               w[1],
-                               w[2]};
-      closed_.set_body_twist(b, state_.q(), twist, state_.v());
-    }
+    start_velocities(closed_, state_.q(), state_.v());
     const int nv = closed_.layout().nv();
     const Eigen::Map<const VectorXd> mass(system_.mass().data(), nv);
     // Repeated because the rate of a coordinate is linear in v only to rounding.

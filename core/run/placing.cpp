@@ -207,6 +207,26 @@ void place_bodies(const System& closed, std::span<const double> coordinates, std
   }
 }
 
+void start_velocities(const System& closed, std::span<const double> q, std::span<double> v) {
+  const Model& model = closed.model();
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const Body& body = model.bodies[at(b)];
+    const Pose frame = closed.frame_pose(b, q);
+    const Vector3& w = body.angular_velocity;
+    double arm[3] = {};
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) arm[r] += frame.rotation[3 * r + c] * body.com[c];
+    }
+    const double twist[6] = {body.velocity[0] + (w[1] * arm[2] - w[2] * arm[1]),
+                             body.velocity[1] + (w[2] * arm[0] - w[0] * arm[2]),
+                             body.velocity[2] + (w[0] * arm[1] - w[1] * arm[0]),
+                             w[0],
+                             w[1],
+                             w[2]};
+    closed.set_body_twist(b, q, twist, v);
+  }
+}
+
 void throw_motion_fault(const Model& model, const MotionFault& fault, Error::Category category) {
   Location location;
   if (fault.kinematics >= 0) {

@@ -11,6 +11,9 @@ namespace freeplay {
 /// joints lead or are driven to at the start; NaN where there is none. Throws Error{input} "ik-unreachable".
 void place_bodies(const System& closed, std::span<const double> coordinates, std::span<double> q);
 
+/// Fills v from the velocities that the file gives the bodies' frames, where they stand by q.
+void start_velocities(const System& closed, std::span<const double> q, std::span<double> v);
+
 /// Turns a motion that has no value into an Error; `category` numerical once the run has begun.
 [[noreturn]] void throw_motion_fault(const Model& model, const MotionFault& fault, Error::Category category);
 
