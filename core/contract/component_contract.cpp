@@ -76,7 +76,7 @@ Findings check_joint_sample(const ParameterSample& sample, Space space, const Co
   const bool declared = joint.declare(layout, message);
   watched.end();
   if (declared) findings.merge(check_joint_names(layout), "");
-  findings.merge(check_joint({joint, twin, space, !has_functions(block)}, conditions), "");
+  findings.merge(check_joint({joint, twin, space, !has_functions(block), !sample.other_laws}, conditions), "");
   return findings;
 }
 

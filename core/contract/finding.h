@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,7 +27,7 @@ class Findings {
 
   /// Notes one case of a rule; `detail` is called where the rule is broken for the first time, and returns text.
   template <class Detail>
-  bool expect(const char* rule, bool held, Detail&& detail) {
+  bool expect(std::string_view rule, bool held, Detail&& detail) {
     Finding& finding = of(rule);
     if (!held && finding.held) {
       finding.held = false;
@@ -39,7 +40,7 @@ class Findings {
   /// Takes over what another suite found; `where` is put before its details.
   void merge(const Findings& other, const std::string& where) {
     for (const Finding& theirs : other.all_) {
-      expect(theirs.rule.c_str(), theirs.held,
+      expect(theirs.rule, theirs.held,
              [&] { return where.empty() ? theirs.detail : where + ": " + theirs.detail; });
     }
   }
@@ -54,11 +55,11 @@ class Findings {
   }
 
  private:
-  Finding& of(const char* rule) {
+  Finding& of(std::string_view rule) {
     for (Finding& finding : all_) {
       if (finding.rule == rule) return finding;
     }
-    Finding& fresh = all_.emplace_back(Finding{rule, true, {}});
+    Finding& fresh = all_.emplace_back(Finding{std::string(rule), true, {}});
     if (sink_) sink_(fresh);
     return fresh;
   }

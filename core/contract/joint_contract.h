@@ -10,6 +10,7 @@ struct JointSubject {
   JointRef joint, twin;
   Space space = Space::planar;  ///< planar or spatial
   bool passive = true;          ///< false: a parameter is a function of time, which may bring energy
+  bool thorough = true;         ///< false: fewer moments, for one that differs by a law from another
 };
 
 /// All rules for one joint. At random moments up to 50 s, in the plane or in space, turned by any angle, with distances

@@ -89,8 +89,9 @@ class Sampler {
     for (const Plan& laws : law_plans()) {
       const std::optional<Plan> few = fewest(laws);
       if (!few) continue;
-      add(name_of_laws(laws), *few);
-      if (found_.accepted.size() > 1) continue;  // the rest does not depend on the laws
+      const bool other_laws = !found_.accepted.empty();
+      add(name_of_laws(laws), *few, other_laws);
+      if (other_laws) continue;  // the rest does not depend on the laws
       const Plan many = with_other_numbers(most(*few)), all = with_other_words(many);
       add("as many as possible", many);
       if (all.words != many.words) add("everything given", all);
@@ -211,9 +212,9 @@ class Sampler {
   }
   bool accepts(const Plan& plan) { return accepts(make(plan)); }
 
-  void add(const std::string& name, const Plan& plan) {
+  void add(const std::string& name, const Plan& plan, bool other_laws = false) {
     const std::shared_ptr<const ParameterBlock> block = make(plan);
-    if (accepts(block)) found_.accepted.push_back({name, block});
+    if (accepts(block)) found_.accepted.push_back({name, block, other_laws});
   }
 
   std::vector<std::string> left_open(const Plan& plan) const {

@@ -14,6 +14,7 @@ namespace freeplay {
 struct ParameterSample {
   std::string name;  ///< what is special about it: "as few as possible", "choice of 'split'"
   std::shared_ptr<const ParameterBlock> block;
+  bool other_laws = false;  ///< differs from an earlier sample by a law alone, which has a contract of its own
 };
 
 struct ParameterSamples {
