@@ -13,12 +13,7 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-constexpr double largest_turn = 1.0;      // of a joint in one step [rad]: angles are continued over turns
-constexpr double event_time = 1e-11;      // a located event is as sharp as this [s], or as its function can be
-constexpr double event_rounding = 1e-15;  // [unit of the function]
-constexpr double event_share = 1e-5;      // or as this part of what a position may err by in a step
-constexpr int most_tries = 40;            // to end a step at an event
-constexpr int early_tries = 4;            // of these, that trust the interpolated motion
+constexpr double largest_turn = 1.0;  // of a joint in one step [rad]: angles are continued over turns
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
 // too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth
@@ -109,7 +104,7 @@ bool Simulation::Impl::adaptive_step() {
     }
     bool done = false;
     if (!pursue(hunted, dt, tries, done)) return false;
-    if (done) break;
+    if (done || end_inside(hunted, dt, tries)) break;
   }
   const bool at_kink = to_kink && trial.t() == goal;
   if (hunted.joint >= 0 || at_kink) {
@@ -131,61 +126,6 @@ bool Simulation::Impl::take_detour(bool passed, std::size_t& detours, double& as
   return true;
 }
 
-// Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
-// is where to try next.
-bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done) {
-  const Profile::Timer timer(system.profile(), Phase::events);
-  Fault fault;
-  StepEvents::Passage found;
-  if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
-  const bool early = tries < early_tries;
-  if (!events.first_crossing(accepted, e_accepted, trial, e_trial, early, found, fault)) {
-    return fail_with(fault, trial.t());
-  }
-  const bool same = found.joint == hunted.joint && found.event == hunted.event;
-  if (found.joint < 0 && hunted.joint < 0) {
-    done = true;
-    return true;
-  }
-  // Another event comes first, or this is the first sight of one.
-  if (found.joint >= 0 && !same) hunted = found;
-  // The step ends just past the zero, so that what begins there acts from the first on.
-  const double past = hunted.value;
-  const double tolerance = std::max(StepEvents::tolerance, event_lateness());
-  const double late = std::max(event_time * hunted.rate, event_lateness());
-  const bool sharp = past <= event_rounding || past <= late || tries > most_tries / 2;
-  const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
-  // An event may lie so close to the start of the step that the time cannot tell them apart.
-  const double least = std::nextafter(accepted.t(), unbounded) - accepted.t();
-  if (ends_there && past >= 0.0 && ((past <= tolerance && sharp) || dt <= least)) {
-    done = true;
-    return true;
-  }
-  if (tries > most_tries) {
-    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located", accepted.t(),
-                               system.joint_layout(hunted.joint).events[at(hunted.event)].name,
-                               model.joints[at(hunted.joint)].name));
-  }
-  // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
-  const double wanted = std::max(0.1 * event_time * hunted.rate, 0.5 * event_lateness());
-  // No farther than a small part of the step: from there Newton's step is still one from close by.
-  const double aim = std::min({wanted, 0.5 * tolerance, 0.05 * dt * std::abs(hunted.rate)});
-  const double newton = dt - (hunted.value - aim) / hunted.rate;
-  const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
-  const double beyond = early && hunted.rate > 0.0 ? aim / hunted.rate : 0.0;
-  const double root = found.fraction * dt + beyond;
-  double next = near ? newton : (found.joint >= 0 ? root : dt);
-  // Rounding may hold Newton's step where it is: then by more each time.
-  const double nudge = std::ldexp(4.0 * rounding, tries);
-  if (std::abs(next - dt) <= nudge * dt) next = past < 0.0 ? dt * (1.0 + nudge) : dt * (1.0 - nudge);
-  if (!(next > 0.0)) next = 0.5 * dt;
-  dt = std::max(next, least);
-  return true;
-}
-
-// How far past its zero an event function may be at the end of the step that ends there, whatever its rate.
-double Simulation::Impl::event_lateness() const { return event_share * allowed; }
-
 bool Simulation::Impl::write_rows_inside() {
   while (row_time(next_row) < trial.t()) {
     if (!write_row_at(row_time(next_row))) return false;
@@ -194,16 +134,20 @@ bool Simulation::Impl::write_rows_inside() {
   return true;
 }
 
+// The state in `between` with its constraints, accelerations and multipliers.
+bool Simulation::Impl::settle_between() {
+  StateView view = between.view();
+  solver.use_history(between.h());
+  return solver.project_position(view) && solver.project_velocity(view) &&
+         solver.accelerate(view, {z_rate.data(), z_rate.size()});
+}
+
 // A consistent state inside the step that was just made, in `between` and e_between.
 bool Simulation::Impl::look_inside(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
   DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(s, between);
   between.t() = t;
-  StateView view = between.view();
-  solver.use_history(between.h());
-  const bool good = solver.project_position(view) && solver.project_velocity(view) &&
-                    solver.accelerate(view, {z_rate.data(), z_rate.size()});
-  if (!good) {
+  if (!settle_between()) {
     if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), t);
     return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
   }

@@ -5,6 +5,7 @@
 
 namespace freeplay {
 namespace {
+constexpr double nearly_straight = 1e-3;  // what is left of a smooth power is then a small part of that
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
@@ -81,14 +82,31 @@ void EnergyAccount::add(double dt, std::span<const double> half_way, const Evalu
   }
 }
 
+// Integral from 0 to s of the parabola with these values at 0, s and 1.
+double EnergyAccount::up_to(double s, double begin, double here, double end) {
+  const double slope = end - begin, room = s * (1.0 - s), bend = room > 1e-9 ? (here - begin - s * slope) / room : 0.0;
+  return s * (begin + s * (0.5 * slope + bend * (0.5 - s / 3.0)));
+}
+
+bool EnergyAccount::integrate_to(double s, double dt, const Evaluation& here, std::span<const double> lambda_here,
+                                 const Evaluation& end, std::span<const double> lambda_end, std::span<double> out) {
+  flow(here, lambda_here, integral_inside_);
+  flow(end, lambda_end, power_before_);
+  double off = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double begins = power_[i], is = integral_inside_[i], ends = power_before_[i];
+    off += std::abs(is - begins - s * (ends - begins));
+    size += std::abs(begins) + std::abs(is) + std::abs(ends);
+    out[i] = integral_[i] + dt * up_to(s, begins, is, ends);
+  }
+  return off <= nearly_straight * size;
+}
+
 void EnergyAccount::fill_inside(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
                                 std::span<double> row) {
   flow(e, lambda, integral_inside_);
   for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
-    // The power as the parabola through its values at both ends and here.
-    const double begin = power_before_[i], slope = power_[i] - begin;
-    const double room = s * (1.0 - s), bend = room > 1e-9 ? (integral_inside_[i] - begin - s * slope) / room : 0.0;
-    integral_inside_[i] = integral_before_[i] + dt_ * s * (begin + s * (0.5 * slope + bend * (0.5 - s / 3.0)));
+    integral_inside_[i] = integral_before_[i] + dt_ * up_to(s, power_before_[i], integral_inside_[i], power_[i]);
   }
   fill(e, channels, row, integral_inside_,
        row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda)));

@@ -54,6 +54,7 @@ class NewtonStageSolver {
     allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * norm(v);
   }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
+  double velocity_error(std::span<const double> velocity) { return part_of_allowed(velocity, allowed_rate_); }
   double internal_error_norm(double dt, const StateView& end, std::span<const double> error);
   /// Index into v of the largest part of the last error_norm().
   int worst_component() const { return worst_component_; }

@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double smallest_step = 1e-3;     // of the step asked for
-constexpr double accuracy_per_step = 0.3;  // part of the accuracy per second that one step may cost
+constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
   return "the integrator of " + model.instances.words_of(*model.settings.integrator_parameters.component);
@@ -92,6 +92,7 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
       residual(at(owner.layout().nc())),
       z_rate(at(owner.layout().nz() + flows)),
       flow_half_way(at(energy.flows())),
+      defect(at(owner.layout().nv())),
       joint_warnings(model.joints.size()),
       speed_jumps(model.drivers.size()),
       motion_before(model.drivers.size()),
@@ -221,15 +222,16 @@ bool Simulation::Impl::begin() {
   return record_row() && tell_sinks();
 }
 
-bool Simulation::Impl::prepare_trial(double dt) {
+// The joints' history in `state` at the begin of a step of the length dt from the accepted state.
+bool Simulation::Impl::begin_steps(double dt, State& state) {
   const Profile::Timer timer(system.profile(), Phase::joints);
-  trial.assign(accepted);
+  std::ranges::copy(accepted.h(), state.h().begin());
   const Point here{accepted.t(), accepted.q(), accepted.v(), accepted.z(), accepted.h()};
   for (const int j : with_history) {
     const Slice h = system.layout().history(j);
     MarkerAccelerations accelerations;
     system.marker_accelerations(j, e_accepted, accepted.a(), accelerations);
-    const Span<double> history = Span<double>(trial.h()).part(at(h.offset), at(h.size));
+    const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
     if (!system.joint(j).begin_step(system.input(j, here, e_accepted), accelerations, dt, history,
                                     e_trial.fault.message) ||
         !keeps_finite({}, history, "begin_step", e_trial.fault.message)) {
@@ -237,7 +239,7 @@ bool Simulation::Impl::prepare_trial(double dt) {
       e_trial.fault.joint = j;
       return fail_with(e_trial.fault, accepted.t());
     }
-    if (!trial.intact()) return fail_beside(j);
+    if (!state.intact()) return fail_beside(j);
   }
   return true;
 }
@@ -245,7 +247,8 @@ bool Simulation::Impl::prepare_trial(double dt) {
 bool Simulation::Impl::step(double dt, bool& converged) {
   converged = false;
   plugin_fault.kind = Fault::Kind::none;
-  if (!prepare_trial(dt)) return false;
+  trial.assign(accepted);
+  if (!begin_steps(dt, trial)) return false;
   solver.use_history(trial.h());
   if (adaptive) solver.use_velocity(accepted.v());
   const Profile::Timer timer(system.profile(), Phase::integrator);
@@ -341,7 +344,8 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   std::swap(accepted, trial);
   std::swap(e_accepted, e_trial);
   outcome.time = accepted.t();
-  if (!events.happenings().empty() && !refresh()) return false;
+  if ((!events.happenings().empty() || ended_inside) && !refresh()) return false;
+  ended_inside = false;
   if (kink < unbounded && !pass_kink(kink)) return false;
   if (!record_row()) return false;
   ++outcome.steps;  // from now on its row may be written

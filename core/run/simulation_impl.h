@@ -25,7 +25,7 @@ struct Simulation::Impl {
   bool check_step(double dt);
   /// The numbers that an attempt may use as it likes; behind them stand marks.
   Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
-  bool prepare_trial(double dt);
+  bool begin_steps(double dt, State& state);
   bool accept(const StepEvents::Passage& located, double kink = unbounded);
   void add_energy();
   bool refresh();
@@ -47,11 +47,17 @@ struct Simulation::Impl {
   bool adaptive_step();
   bool bounded_step(double& dt, int& limiting_joint);
   bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
-  bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
-  double event_lateness() const;
   bool write_rows_inside();
   bool write_row_at(double t);
   bool look_inside(double t);
+  bool settle_between();
+  // and their ends at events (event_pursuit.cpp).
+  bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
+  bool end_inside(const StepEvents::Passage& hunted, double dt, int tries);
+  double defect_inside(double dt);
+  bool is_sharp(const StepEvents::Passage& end) const;
+  double aim_past(const StepEvents::Passage& end, double dt) const;
+  double event_lateness() const;
   std::string why_so_small(double dt, int limiting_joint) const;
   std::string why_singular();
   double row_time(long index) const;
@@ -81,7 +87,7 @@ struct Simulation::Impl {
   Observer observer;
   StepEvents events;
   Statistics statistics;
-  std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way;
+  std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
   std::vector<int> stop_columns, with_history;
   struct Warning {
     const char* text = nullptr;
@@ -98,9 +104,10 @@ struct Simulation::Impl {
   std::vector<TimeValue> motion_before, motion_behind;
   std::vector<std::string> warnings;
   Outcome outcome;
-  Fault plugin_fault;    // of the last attempt
-  double error = 0.0;    // of the last attempt
-  double allowed = 0.0;  // by which positions may err in one step, with error control [m]
+  Fault plugin_fault;         // of the last attempt
+  double error = 0.0;         // of the last attempt
+  bool ended_inside = false;  // the step that is being accepted was cut short: the integrator has no memory of its end
+  double allowed = 0.0;       // by which positions may err in one step, with error control [m]
   long next_row = 1;
   std::chrono::steady_clock::time_point started;
   double last_progress = 0.0;

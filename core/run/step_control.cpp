@@ -10,7 +10,7 @@ constexpr double smallest_error = 1e-8;  // below, the largest growth is reached
 
 void StepControl::accept(double dt, double error) {
   const double e = std::max(error, smallest_error);
-  double factor = std::clamp(0.9 * std::pow(e, -0.7 / power_) * std::pow(last_error_, 0.4 / power_), 0.2, 5.0);
+  double factor = std::clamp(0.9 * std::pow(e, -0.85 / power_) * std::pow(last_error_, 0.2 / power_), 0.2, 5.0);
   if (rejected_) factor = std::min(factor, 1.0);
   next_ = std::min(dt * factor, limits_.largest);
   last_error_ = e;

@@ -8,8 +8,9 @@ struct StepLimits {
 };
 
 /// Proportional-integral control: after an accepted step with the error E (1 is allowed) the next is
-///   h 0.9 E^(-0.7/p) E_old^(0.4/p), within [0.2, 5] h, p the power of h with which the error falls;
-/// after a rejected one h 0.9 E^(-1/p), within [0.1, 0.9] h, and the next does not grow. Gustafsson 1991.
+///   h 0.9 E^(-0.85/p) E_old^(0.2/p), within [0.2, 5] h, p the power of h with which the error falls;
+/// after a rejected one h 0.9 E^(-1/p), within [0.1, 0.9] h, and the next does not grow. Gustafsson 1991; the exponents
+/// are those of Hairer and Wanner 1996, Solving Ordinary Differential Equations II, IV.2, for p = 5.
 class StepControl {
  public:
   StepControl(const StepLimits& limits, int error_order) : limits_(limits), power_(error_order), next_(limits.first) {}

@@ -1,0 +1,135 @@
+// Where an adaptive step meets an event: it ends there.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "run/dense_step.h"
+#include "run/simulation_impl.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double near_singular = 1e-2;    // regularity below which no motion is interpolated
+constexpr double event_time = 1e-11;      // a located event is as sharp as this [s], or as its function can be
+constexpr double event_rounding = 1e-15;  // [unit of the function]
+constexpr double event_share = 1e-5;      // or as this part of what a position may err by in a step
+constexpr double largest_defect = 0.5;    // of the motion interpolated there, as a part of what a step may err
+constexpr int most_tries = 40;            // to end a step at an event
+constexpr int early_tries = 4;            // of these, that trust the interpolated motion
+
+}  // namespace
+
+// Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
+// is where to try next.
+bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done) {
+  const Profile::Timer timer(system.profile(), Phase::events);
+  Fault fault;
+  StepEvents::Passage found;
+  if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
+  const bool early = tries < early_tries;
+  if (!events.first_crossing(accepted, e_accepted, trial, e_trial, early, found, fault)) {
+    return fail_with(fault, trial.t());
+  }
+  const bool same = found.joint == hunted.joint && found.event == hunted.event;
+  if (found.joint < 0 && hunted.joint < 0) {
+    done = true;
+    return true;
+  }
+  // Another event comes first, or this is the first sight of one.
+  if (found.joint >= 0 && !same) hunted = found;
+  // The step ends just past the zero, so that what begins there acts from the first on.
+  const double past = hunted.value;
+  const double tolerance = std::max(StepEvents::tolerance, event_lateness());
+  const bool sharp = is_sharp(hunted) || tries > most_tries / 2;
+  const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
+  // An event may lie so close to the start of the step that the time cannot tell them apart.
+  const double least = std::nextafter(accepted.t(), unbounded) - accepted.t();
+  if (ends_there && past >= 0.0 && ((past <= tolerance && sharp) || dt <= least)) {
+    done = true;
+    return true;
+  }
+  if (tries > most_tries) {
+    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located", accepted.t(),
+                               system.joint_layout(hunted.joint).events[at(hunted.event)].name,
+                               model.joints[at(hunted.joint)].name));
+  }
+  // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
+  const double aim = aim_past(hunted, dt);
+  const double newton = dt - (hunted.value - aim) / hunted.rate;
+  const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
+  const double beyond = early && hunted.rate > 0.0 ? aim / hunted.rate : 0.0;
+  const double root = found.fraction * dt + beyond;
+  double next = near ? newton : (found.joint >= 0 ? root : dt);
+  // Rounding may hold Newton's step where it is: then by more each time.
+  const double nudge = std::ldexp(4.0 * rounding, tries);
+  if (std::abs(next - dt) <= nudge * dt) next = past < 0.0 ? dt * (1.0 + nudge) : dt * (1.0 - nudge);
+  if (!(next > 0.0)) next = 0.5 * dt;
+  dt = std::max(next, least);
+  return true;
+}
+
+// How far past its zero an event function may be at the end of the step that ends there, whatever its rate.
+double Simulation::Impl::event_lateness() const { return event_share * allowed; }
+
+bool Simulation::Impl::is_sharp(const StepEvents::Passage& end) const {
+  return end.value <= event_rounding || end.value <= std::max(event_time * end.rate, event_lateness());
+}
+
+// How far past its zero a step of the length dt should end.
+double Simulation::Impl::aim_past(const StepEvents::Passage& end, double dt) const {
+  const double wanted = std::max(0.1 * event_time * end.rate, 0.5 * event_lateness());
+  // No farther than a small part of the step: from there Newton's step is still one from close by.
+  return std::min({wanted, 0.5 * std::max(StepEvents::tolerance, event_lateness()), 0.05 * dt * std::abs(end.rate)});
+}
+
+// By how much the interpolated motion misses the equations of motion, as a part of what a step may err: the speed that
+// the missing acceleration would make.
+double Simulation::Impl::defect_inside(double dt) {
+  for (std::size_t i = 0; i < defect.size(); ++i) defect[i] = dt * (defect[i] - between.a()[i]);
+  return solver.velocity_error(defect);
+}
+
+// Ends the step that was just made at the event inside it, about `dt` after its start, and not by another step up to
+// there: the interpolated motion errs by less than the step may, and its constraints are made to hold. Not where joints
+// have variables of their own, which are known less well inside. False where the event must be hunted by steps.
+bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, int tries) {
+  const double whole = trial.t() - accepted.t();
+  if (hunted.joint < 0 || tries >= early_tries || !(dt < whole) || system.layout().nz() > 0) return false;
+  if (solver.regularity() < near_singular) return false;
+  const Profile::Timer timer(system.profile(), Phase::events);
+  const DenseStep motion(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate);
+  const double tolerance = std::max(StepEvents::tolerance, event_lateness());
+  StepEvents::Passage end = hunted;
+  double at_event = dt;
+  for (int look = 0; look < early_tries; ++look) {
+    motion.at(at_event / whole, between);
+    std::ranges::copy(between.a(), defect.begin());
+    if (!begin_steps(at_event, between) || !settle_between()) return false;
+    if (!(defect_inside(at_event) <= largest_defect)) return false;
+    Fault fault;
+    if (!system.evaluate(point(between), all_terms, solver.evaluation(), e_between) ||
+        !events.at_end(between, e_between, end, fault)) {
+      return false;
+    }
+    if (end.value >= 0.0 && end.value <= tolerance && is_sharp(end)) {
+      if (flows > 0 && !energy.integrate_to(at_event / whole, whole, e_between, between.lambda(), e_trial,
+                                            trial.lambda(), std::span(between.z()).last(at(flows)))) {
+        return false;
+      }
+      std::swap(trial, between);
+      std::swap(e_trial, e_between);
+      return ended_inside = true;
+    }
+    const double change = (end.value - aim_past(end, at_event)) / end.rate;
+    if (!(end.rate > 0.0) || !(std::abs(change) < 0.1 * at_event) || !(at_event - change < whole)) return false;
+    if (at_event - change == at_event) return false;
+    at_event -= change;
+  }
+  return false;
+}
+
+}  // namespace freeplay
