@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-constexpr double smallest_step = 1e-3;     // of the step asked for
+constexpr double smallest_step = 1e-3;      // of the step asked for
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {

@@ -6,11 +6,15 @@
 namespace freeplay {
 namespace {
 constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway
-}
+constexpr double largest_growth = 5.0;
+constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step, which nobody chose well
+}  // namespace
 
 void StepControl::accept(double dt, double error) {
-  const double e = std::max(error, smallest_error);
-  double factor = std::clamp(0.9 * std::pow(e, -0.85 / power_) * std::pow(last_error_, 0.2 / power_), 0.2, 5.0);
+  const double e = std::max(error, smallest_error), judged = first_ ? std::max(error, first_error) : e;
+  double factor = std::clamp(0.9 * std::pow(judged, -0.85 / power_) * std::pow(last_error_, 0.2 / power_), 0.2,
+                             first_ ? first_growth : largest_growth);
+  first_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
   next_ = std::min(dt * factor, limits_.largest);
   last_error_ = e;
@@ -21,10 +25,12 @@ void StepControl::reject(double dt, double error) {
   const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -1.0 / power_), 0.1, 0.9) : 0.1;
   next_ = dt * factor;
   rejected_ = true;
+  first_ = false;
 }
 
 void StepControl::halve(double dt) {
   next_ = 0.5 * dt;
+  first_ = false;
   rejected_ = true;
 }
 

@@ -15,10 +15,29 @@ TEST(StepControl, SteadyErrorOfOneShrinksTheStepByTheSafetyFactor) {
 
 TEST(StepControl, GrowsByFiveAtMostAndNotBeyondTheLargest) {
   StepControl control({1.0, 1e-6, 30.0}, 5);
+  control.accept(1.0, 0.5);
   control.accept(1.0, 0.0);
   EXPECT_EQ(control.next(), 5.0);
   control.accept(20.0, 0.0);
   EXPECT_EQ(control.next(), 30.0);
+}
+
+TEST(StepControl, FirstStepMayGrowFar) {
+  StepControl control({1e-5, 1e-9, 1.0}, 5);
+  control.accept(1e-5, 1e-12);
+  EXPECT_GT(control.next(), 50e-5);
+  const double grown = control.next();
+  control.accept(grown, 1e-12);
+  EXPECT_NEAR(control.next() / grown, 5.0, 1e-12);
+}
+
+TEST(StepControl, FirstStepThatIsRejectedGrowsNoMore) {
+  StepControl control({1.0, 1e-6, 1e3}, 5);
+  control.reject(1.0, 2.0);
+  const double cut = control.next();
+  control.accept(cut, 0.0);
+  control.accept(cut, 0.0);
+  EXPECT_LE(control.next(), 5.0 * cut);
 }
 
 TEST(StepControl, RejectedStepIsMadeShorterAndTheNextDoesNotGrow) {
