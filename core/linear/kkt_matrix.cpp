@@ -22,7 +22,11 @@ struct KktMatrix::Impl {
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
 
-  Impl() { klu_defaults(&common); }
+  Impl() {
+    klu_defaults(&common);
+    common.maxwork =
+        10;  // in passes over the matrix: without a limit the search for a diagonal takes the square of the size
+  }
   ~Impl() { forget(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -76,7 +80,6 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
   std::partial_sum(m.starts.begin(), m.starts.end(), m.starts.begin());
   m.values.assign(m.rows.size(), 0.0);
   m.factored.assign(m.rows.size(), 0.0);
-  if (size > 0) m.symbolic = klu_analyze(size, m.starts.data(), m.rows.data(), &m.common);
   return slots;
 }
 
@@ -87,7 +90,8 @@ double KktMatrix::factor() {
   if (m.size == 0) return 1.0;
   // What does not change, as the masses of bodies without rows, costs a look.
   if (m.numeric != nullptr && m.values == m.factored) return m.pivots;
-  if (m.symbolic == nullptr || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
+  if (!m.symbolic) m.symbolic = klu_analyze(m.size, m.starts.data(), m.rows.data(), &m.common);
+  if (!m.symbolic || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
   std::ranges::copy(m.values, m.factored.begin());
   m.pivots = klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
   return m.pivots;

@@ -117,6 +117,13 @@ bool NewtonStageSolver::evaluate(const StateView& s, unsigned terms) {
   return false;
 }
 
+// Much cheaper than to look which ones depend on others, and mostly enough.
+bool NewtonStageSolver::rows_are_independent() {
+  if (!(factor_once(index_one_) > singular_pivot) || !index_one_.matrix.has_independent_rows()) return false;
+  rank_ = system_.layout().nc();
+  return true;
+}
+
 bool NewtonStageSolver::find_dependent_rows() {
   system_.jacobian_entries(e_, entries_);
   rows_.analyse(entries_);
@@ -151,7 +158,7 @@ bool NewtonStageSolver::refactor(Factor& factor) {
   const Profile::Timer timer(system_.profile(), Phase::factorization);
   if (rank_ < 0) {
     const Profile::Timer start(system_.profile(), Phase::start);
-    find_dependent_rows();
+    if (!rows_are_independent()) find_dependent_rows();
   }
   double pivot = factor_once(factor);
   if (&factor == &index_one_) {

@@ -92,6 +92,7 @@ class NewtonStageSolver {
   bool refactor(Factor& factor);
   double factor_once(Factor& factor);
   /// Both return whether others than before are left out.
+  bool rows_are_independent();
   bool find_dependent_rows();
   bool keep_independent_rows();
   /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the

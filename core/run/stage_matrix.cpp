@@ -169,7 +169,7 @@ void StageMatrix::set_normal_pattern(std::span<const MatrixEntry> factored, std:
   const bool regular = std::ranges::all_of(mass, [](double m) { return m > 0.0; });
   normal_.reset();
   by_normal_ = false;
-  normal_unit_ = 0.0;
+  unit_ = 0.0;
   if (forces_ || !regular || size == bodies) return;
   std::vector<NormalMatrix::Entry> entries;
   std::vector<char> known(rest_.values().size(), 0);
@@ -183,16 +183,16 @@ void StageMatrix::set_normal_pattern(std::span<const MatrixEntry> factored, std:
   if (!normal_->set_pattern(mass, size - bodies, std::move(entries))) normal_.reset();
 }
 
-// The pivots fall alike towards a singular position: with the square of the distance.
+// Towards a singular position the pivots of both fall alike, with the square of the distance.
 double StageMatrix::factor_rest() {
   const double normal = normal_ ? normal_->factor(std::span(values_).subspan(first_rest_)) : 0.0;
   by_normal_ = normal > regular_enough;
-  if (by_normal_ && normal_unit_ > 0.0) return normal * normal_unit_;
+  if (by_normal_) return normal;
   std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
               rest_.values().begin());
   const double whole = rest_.factor();
-  if (by_normal_) normal_unit_ = whole / normal;
-  return whole;
+  if (!(unit_ > 0.0) && normal > regular_enough * regular_enough) unit_ = whole / normal;
+  return unit_ > 0.0 ? whole / unit_ : whole;
 }
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {

@@ -35,6 +35,8 @@ class StageMatrix {
   double factor(Evaluation& e, double beta_q, double beta_v, double beta_z);
   /// The update (da, dlambda) for a right side, which is used up.
   void solve(std::span<double> right, std::span<double> update) const;
+  /// After factor() of an index-1 matrix: its rows are far from depending on each other. False says nothing.
+  bool has_independent_rows() const { return by_normal_; }
   InternalElimination& internal() { return internal_; }
 
  private:
@@ -71,7 +73,7 @@ class StageMatrix {
   KktMatrix rest_;
   std::unique_ptr<NormalMatrix> normal_;  // of rest_, where that is the index-1 matrix; else null
   bool by_normal_ = false;
-  double normal_unit_ = 0.0;  // pivot of rest_ over that of normal_, where both were asked first; 0: not yet
+  double unit_ = 0.0;  // pivot of rest_ over that of normal_, where both were asked first; 0: not yet
   std::vector<Prescribed> prescribed_;
   std::vector<Coupling> couplings_;
   std::size_t first_free_part_ = 0;  // couplings of what is factored with prescribed bodies stand from here to the end
