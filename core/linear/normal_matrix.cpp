@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/OrderingMethods>
 
@@ -25,27 +27,35 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int rows, std::vect
   }
   if (count > densest * entries.size()) return false;
 
-  std::vector<Eigen::Triplet<double>> pattern;
+  // Column and row of the upper part, each once, in order; smaller than triplets.
   const auto fill = [&] {
-    pattern.clear();
+    std::vector<std::pair<int, int>> places;
+    places.reserve(count);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       for (std::size_t k = i + 1; k-- > 0 && same_column(entries[k], entries[i]);) {
-        pattern.emplace_back(entries[k].row, entries[i].row, 1.0);
+        places.emplace_back(entries[i].row, entries[k].row);
       }
     }
+    std::ranges::sort(places);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
     s_.resize(rows, rows);
-    s_.setFromTriplets(pattern.begin(), pattern.end());
+    s_.resizeNonZeros(static_cast<Eigen::Index>(places.size()));
+    std::fill_n(s_.outerIndexPtr(), rows + 1, 0);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      ++s_.outerIndexPtr()[places[i].first + 1];
+      s_.innerIndexPtr()[i] = places[i].second;
+      s_.valuePtr()[i] = 1.0;
+    }
+    std::partial_sum(s_.outerIndexPtr(), s_.outerIndexPtr() + rows + 1, s_.outerIndexPtr());
   };
   fill();
   Eigen::PermutationMatrix<Eigen::Dynamic> order;
-  const Sparse whole = s_.selfadjointView<Eigen::Upper>();
-  Eigen::AMDOrdering<int>()(whole, order);
+  Eigen::AMDOrdering<int>()(Sparse(s_.selfadjointView<Eigen::Upper>()), order);
   order_.assign(at(rows), 0);
   for (int place = 0; place < rows; ++place) order_[at(order.indices()[place])] = place;
   for (Entry& entry : entries) entry.row = order_[at(entry.row)];
   sort();
   fill();
-  s_.makeCompressed();
 
   inverse_mass_.clear();
   for (const double m : mass) inverse_mass_.push_back(1.0 / m);
