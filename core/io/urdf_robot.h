@@ -17,7 +17,9 @@ struct Spot {
 
 /// How the file is to be read: the keys of section 13 of the model format.
 struct Options {
+  enum class Space { planar, spatial, by_robot };  ///< by_robot: planar where it is, else spatial
   enum class Plane { xy, xz, yz };
+  Space space = Space::planar;
   std::optional<Plane> plane = Plane::xy;  ///< empty: the first in which the robot is planar
   bool floating_base = false;
   bool two_parents = false;     ///< a later joint to a link that has a parent closes a loop
@@ -79,6 +81,8 @@ struct Joint {
 
   bool moves() const { return type != JointType::fixed; }
   bool turns() const { return type == JointType::revolute; }
+  bool has_coordinate() const { return type == JointType::revolute || type == JointType::prismatic; }
+  bool has_axis() const { return has_coordinate() || type == JointType::planar; }
 };
 
 /// What hangs where: filled by build_tree().

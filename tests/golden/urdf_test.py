@@ -294,9 +294,12 @@ class Messages(UrdfTest):
         second = ARM.replace("</robot>", """<link name="fore"><inertial><mass value="1"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
   <joint name="elbow" type="continuous"><parent link="upper"/><child link="fore"/><axis xyz="0 0.1 1"/></joint></robot>""")
-        message = [m for m in self.verdict(second) if m["severity"] == "error"][0]
-        self.assertEqual("urdf-not-planar", message["id"])
-        self.assertIn("0.0997 rad", message["message"])  # atan(0.1)
+        self.write("arm.urdf", second)
+        for said in ("urdf: {file: arm.urdf, plane: xy}", "urdf: arm.urdf\nspace: planar"):
+            out, _ = self.freeplay("validate", self.write("arm.yaml", "freeplay: 1\n" + said + "\n"), "--json", code=3)
+            message = [m for m in json.loads(out)["messages"] if m["severity"] == "error"][0]
+            self.assertEqual("urdf-not-planar", message["id"])
+            self.assertIn("0.0997 rad", message["message"])  # atan(0.1)
         near = self.verdict(second.replace("0 0.1 1", "0 0.000008 1"), code=0)
         self.assertTrue(any("8e-06 rad, of joint 'elbow'" in m["message"] for m in near), near)
 
