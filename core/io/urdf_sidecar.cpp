@@ -22,18 +22,15 @@ using Words = std::vector<std::string>;
 /// Reads the section `urdf`.
 class UrdfSection {
  public:
-  /// `space`: what the model says of it, or null.
-  UrdfSection(const CheckedValue& section, const std::string& model_file, const Node* space)
+  UrdfSection(const CheckedValue& section, const Node& model, const std::string& model_file)
       : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section, "urdf")) {
     const auto file = section.node().is_scalar() ? std::optional<CheckedValue>(section) : map_.require("file");
     readable_ = file && read_file(*file, model_file);
     // A key that is wrong has the value with which the robot shows no mistakes that are not there.
     using Plane = urdf::Options::Plane;
     constexpr std::optional<Plane> planes[] = {Plane::xy, Plane::xz, Plane::yz, std::nullopt};
-    const bool said = space != nullptr ? space->text == "planar" : map_.has("plane");
-    if (!said) options.space = urdf::Options::Space::by_robot;
-    if (space != nullptr && space->text == "spatial") {
-      options.space = urdf::Options::Space::spatial;
+    options.space = space_of(model);
+    if (options.space == urdf::Options::Space::spatial) {
       map_.refuse("plane", "only in planar models");
     } else {
       options.plane = planes[word("plane", {"xy", "xz", "yz"}, 3)];
@@ -58,6 +55,17 @@ class UrdfSection {
   std::string path, text;
 
  private:
+  /// What the model says, or what else it says only of one space; else the robot decides.
+  urdf::Options::Space space_of(const Node& model) const {
+    using Space = urdf::Options::Space;
+    if (const Node* space = model.find("space")) {
+      return space->text == "planar" ? Space::planar : space->text == "spatial" ? Space::spatial : Space::by_robot;
+    }
+    const Node* gravity = model.find("gravity");
+    if (map_.has("plane") || (gravity != nullptr && gravity->items.size() == 2)) return Space::planar;
+    return Space::by_robot;
+  }
+
   bool read_file(const CheckedValue& file, const std::string& model_file) {
     const auto name = file.string();
     if (!name) return false;
@@ -187,7 +195,7 @@ bool add_robot(Document& document, Diagnostics& diagnostics) {
   const Node& root = document.root();
   const auto entry = std::ranges::find_if(root.entries, [](const auto& e) { return e.key->text == "urdf"; });
   const CheckedValue value(reading, *entry->value, entry->key, "urdf");
-  UrdfSection section(value, document.file_name(), root.find("space"));
+  UrdfSection section(value, root, document.file_name());
   if (!section.readable()) return false;
   diagnostics.add_source(section.path, section.text);
   const std::string* file = document.add_file(section.path, section.text);
