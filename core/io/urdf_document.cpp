@@ -1,6 +1,7 @@
 #include "io/urdf_document.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -133,6 +134,8 @@ class Writer {
     if (const Node* axis = view_.axis(number)) nodes_.put(entry, "axis", *axis, joint.axis_spot);
     nodes_.put(*joint_section_, name, entry, joint.spot);
     if (joint.damping > 0.0 && joint.has_coordinate()) write_damper(number);
+    if (joint.friction > 0.0 && joint.has_coordinate()) write_friction(number);
+    if (joint.limits && options_.stops) write_stop(number);
   }
 
   static const char* type_word(JointType type) {
@@ -166,16 +169,48 @@ class Writer {
     nodes_.put(*force_section_, damper, entry, spot);
   }
 
-  /// Frames whose own axis is that of the joint: the joint's, or a pair of its own.
+  void write_friction(int index) {
+    const Joint& joint = robot_.joints[at(index)];
+    Node& entry = axis_force(index, "joint-friction", "-friction", joint.friction_spot);
+    nodes_.put(entry, "friction", nodes_.number(joint.friction, joint.friction_spot), joint.friction_spot);
+  }
+
+  /// URDF knows no stiffness: under the largest effort of the joint its stops give way by 1 mm or 0.01 rad.
+  void write_stop(int index) {
+    const Joint& joint = robot_.joints[at(index)];
+    const Limits& limits = *joint.limits;
+    const Spot& spot = limits.spot;
+    const double give = joint.turns() ? 0.01 : 1e-3, effort = limits.effort > 0.0 ? limits.effort : 10.0;
+    const bool turned = view_.sign(index) < 0.0;
+    Node& entry = axis_force(index, "joint-stop", "-stop", spot);
+    nodes_.put(entry, "lower", nodes_.number(turned ? -limits.upper + 0.0 : limits.lower, spot), spot);
+    nodes_.put(entry, "upper", nodes_.number(turned ? -limits.lower + 0.0 : limits.upper, spot), spot);
+    nodes_.put(entry, "stiffness", nodes_.number(effort / give, spot), spot);
+  }
+
+  /// An entry of `forces` that acts on the coordinate of a joint.
+  Node& axis_force(int index, const char* type, const char* suffix, const Spot& spot) {
+    Node& entry = nodes_.map(spot);
+    nodes_.put(entry, "type", nodes_.scalar(type, spot), spot);
+    nodes_.put(entry, "kind", nodes_.scalar(robot_.joints[at(index)].turns() ? "rotational" : "linear", spot), spot);
+    nodes_.put(entry, "between", axis_ends(index), spot);
+    nodes_.put(*force_section_, names_.joints[at(index)] + suffix, entry, spot);
+    return entry;
+  }
+
+  /// Frames whose own axis is that of the joint: the joint's, or a pair that all its forces share.
   const Node& axis_ends(int index) {
     const Joint& joint = robot_.joints[at(index)];
-    const std::string& name = names_.joints[at(index)];
+    std::string& frame = axis_frames_.try_emplace(index).first->second;
+    if (!frame.empty()) return ends(joint, frame, frame);
+    frame = names_.joints[at(index)];
     const Node* first = view_.axis_frame(index, Side::parent);
     const Node* second = view_.axis_frame(index, Side::child);
-    if (first == nullptr || second == nullptr) return ends(joint, name, name);
-    const std::string frame = names_.fresh_frame(name + "-axis");
-    add_frame(body(joint.parent.link), frame, *first, joint.axis_spot);
-    add_frame(body(joint.child.link), frame, *second, joint.axis_spot);
+    if (first != nullptr && second != nullptr) {
+      frame = names_.fresh_frame(frame + "-axis");
+      add_frame(body(joint.parent.link), frame, *first, joint.axis_spot);
+      add_frame(body(joint.child.link), frame, *second, joint.axis_spot);
+    }
     return ends(joint, frame, frame);
   }
 
@@ -216,6 +251,7 @@ class Writer {
   Node* joint_section_ = nullptr;
   Node* force_section_ = nullptr;
   std::vector<Node*> body_nodes_, frame_nodes_;  ///< of each link; frames of ground last
+  std::map<int, std::string> axis_frames_;       ///< of joints: frames whose own axis is the joint's
 };
 
 /// The plane that was asked for, or the first in which the robot is planar, or the one that comes nearest.
@@ -286,6 +322,9 @@ std::optional<Sections> read_sections(const XmlElement& root, const Options& opt
   Robot robot = read_robot(root, messages);
   if (root.name != "robot") return std::nullopt;
   build_tree(robot, options, messages);
+  for (const Joint& joint : robot.joints) {
+    if (joint.limits && !options.stops) messages.ignore("limits of joint", joint.name);
+  }
   Names names(robot, messages);
   if (!messages.failed()) ask_referee(root, messages);
   if (robot.mounts.empty()) return std::nullopt;

@@ -39,10 +39,7 @@ class UrdfSection {
     options.two_parents = word("loops", {"elements", "two-parents"}, 1) == 1;
     options.repair_inertia = map_.find("repair").has_value();
     word("repair", {"inertia"}, 0);
-    if (word("limits", {"ignore", "stop"}, 0) == 1) {
-      map_.find("limits")->fail("wrong-type", "stops at the limits of joints are not in this release", {},
-                                "'limits: ignore' is the default");
-    }
+    options.stops = word("limits", {"ignore", "stop"}, 0) == 1;
     if (const auto merge = map_.find("merge_fixed")) {
       options.merge_fixed = merge->boolean().value_or(false);
     }

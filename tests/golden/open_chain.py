@@ -106,6 +106,10 @@ class Joint:
         self.slides, self.turns = self.type == "prismatic", self.type in ("revolute", "continuous")
         self.moves = self.slides or self.turns
 
+    def loss(self, speed):
+        """Effort of damping and of Coulomb friction, whose change of sign is smoothed by 1e-3 m/s or rad/s."""
+        return -self.damping * speed - self.friction * math.tanh(speed / 1e-3)
+
 
 class Motion:
     """Pose, twist and acceleration of a link's frame."""
@@ -190,9 +194,8 @@ class Robot:
                 out.append(dot((moment if joint.turns else force)[joint.child], axis))
         return out
 
-    def accelerate(self, q, speeds, gravity, effort=lambda joint, speed: -joint.damping * speed, floats=False,
-                   base=None):
-        """The motions of all links with the accelerations that gravity and the efforts of the joints cause."""
+    def accelerate(self, q, speeds, gravity, floats=False, base=None):
+        """The motions of all links with the accelerations that gravity, damping and friction of the joints cause."""
         still, start = Motion(), base or Motion()
         still.turn, still.place = start.turn, start.place
 
@@ -214,6 +217,6 @@ class Robot:
             unit = [float(i == k) for i in range(size)]
             columns.append(self.efforts(self.motions(q, {}, named(unit), with_base(still, unit)), [0, 0, 0], floats))
         bias = self.efforts(self.motions(q, speeds, {}, with_base(start, [0.0] * size)), gravity, floats)
-        given = [0.0] * first + [effort(joint, speeds.get(joint.name, 0.0)) for joint in self.joints if joint.moves]
+        given = [0.0] * first + [joint.loss(speeds.get(joint.name, 0.0)) for joint in self.joints if joint.moves]
         rise = solve(transposed(columns), sub(given, bias)) if size else []
         return self.motions(q, speeds, named(rise), with_base(start, rise))

@@ -62,16 +62,15 @@ simulation: {end: 1 us, step: 1 us}
         base.v = sub([columns[stem + ".v" + k] for k in "xyz"], cross(base.w, robot.links[robot.root].com))
         return base
 
-    def assert_accelerates(self, file, text, seed, floats=False, effort=None):
+    def assert_accelerates(self, file, text, seed, floats=False):
         """The robot of `text`, which stands in `file`, at some place and speed: places, accelerations and joint
         reactions are those of the recursive Newton-Euler method to 1e-10 of the largest."""
         robot = Robot(text)
         model, q, speeds = self.sidecar(file, robot, seed, floats)
         columns = self.start(model)
-        options = {} if effort is None else {"effort": effort}
         # The velocity of a floating root follows from the speeds by the least kinetic energy: it is taken as found.
         base = self.found_base(robot, columns) if floats else Motion()
-        motions = robot.accelerate(q, speeds, self.GRAVITY, floats=floats, base=base, **options)
+        motions = robot.accelerate(q, speeds, self.GRAVITY, floats=floats, base=base)
         force, moment = robot.wrenches(motions, self.GRAVITY)
         body_of = carriers(robot, floats)
         bodies = [name for name in robot.order if body_of[name] == name]
