@@ -34,7 +34,7 @@ AxisMotion<T> slide_along_x(const RelativeMotion<T>& x) {
 /// The first parameter of a force along an axis: does it slide or turn?
 inline constexpr Parameter axis_kind_parameter{.name = "kind",
                                                .kind = ParameterKind::choice,
-                                               .default_value = 1,
+                                               .default_value = 0,
                                                .choices = "linear|rotational",
                                                .summary =
                                                    "Acts along the x axis of the first frame, or about its z "
