@@ -128,6 +128,11 @@ class Space(SpaceTest):
             self.assertEqual({"urdf-not-planar"}, {m["id"] for m in self.errors(TWIST, said)}, said)
         self.assertEqual("unknown-key", self.errors(TWIST, "urdf: {file: r.urdf, plane: xy}\nspace: spatial")[0]["id"])
 
+    def test_show_prints_how_frames_are_turned(self):
+        self.write("r.urdf", TWIST)
+        text, _ = self.freeplay("show", "r.urdf")
+        self.assertRegex(text, r"frame B +\(0\.3, 0, 0\.1\) m  quaternion \(0\.995004165\d*, 0\.0998334166\d*, 0, 0\)")
+
     def test_what_floats_falls(self):
         text = robot(link("a"), joint("A", "floating", "base", "a", origin='xyz="1 2 3" rpy="0.1 0.2 0.3"'))
         for name, model in (("a", text), ("base", robot(root=BOX))):
@@ -181,6 +186,15 @@ simulation: {end: 5 ms, step: 10 us}
 <parent_origin xyz="0 0 0"/><child_origin xyz="0.3 0 0.1" rpy="0.2 0 0"/><axis xyz="1 0 0"/></constraint></robot>""")
         facts = self.verdict(loop)["facts"]
         self.assertEqual((3, 1, 15), (facts["joints"], facts["dof"], facts["constraints"]))
+
+    def test_a_torque_on_a_joint_turns_its_child_about_the_axis(self):
+        ball = BOX.replace("0.02", "0.03").replace("0.04", "0.03")
+        text = robot(link("a", ball), joint("A", "continuous", "base", "a", "1 2 2", origin='rpy="0.4 0.5 0.6"'))
+        side = "urdf: r.urdf\nspace: spatial\ndrivers: {d: {joint: A, kind: torque, value: 0.06*t}}\nsimulation: {end: 0.5 s}\n"
+        columns = self.run_robot(text, side)
+        for t, speed, x, y, z in zip(*(columns[k] for k in ("time", "joint.A.speed", "body.a.wx", "body.a.wy", "body.a.wz"))):
+            self.assertAlmostEqual(t * t, speed, places=7)
+            self.assertAlmostEqual(speed, math.sqrt(x * x + y * y + z * z), places=9)
 
     def test_a_gazebo_joint_stands_where_its_links_stand(self):
         text = TWIST.replace("</robot>", """<gazebo><joint name="C" type="revolute"><parent>base</parent><child>b</child>
