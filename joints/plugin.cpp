@@ -15,13 +15,15 @@ Component cylindrical();
 Component planar_joint();
 Component spherical_clearance();
 Component bushing();
+Component joint_friction();
+Component joint_stop();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
   using namespace freeplay;
   static const Component components[] = {
-      revolute(),      prismatic(),           fixed(),     point_on_line(), distance(),
-      spring_damper(), revolute_clearance(),  spherical(), universal(),     cylindrical(),
-      planar_joint(),  spherical_clearance(), bushing()};
+      revolute(),      prismatic(),           fixed(),     point_on_line(),  distance(),
+      spring_damper(), revolute_clearance(),  spherical(), universal(),      cylindrical(),
+      planar_joint(),  spherical_clearance(), bushing(),   joint_friction(), joint_stop()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

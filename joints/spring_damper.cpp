@@ -1,6 +1,5 @@
-#include "freeplay/plugin.h"
+#include "axis_force.h"
 #include "planar_marker.h"
-#include "relative_motion.h"
 
 namespace freeplay {
 namespace {
@@ -157,7 +156,6 @@ class SpatialSpringDamper final : public Joint {
 
  private:
   using Pair = space::PairInFirstAxes;
-  using Dual = space::Dual;
   template <class T>
   using Motion = space::RelativeMotion<T>;
   template <class T>
@@ -177,13 +175,9 @@ class SpatialSpringDamper final : public Joint {
       const Vec<T> u = (T(1.0) / (space::value_of(length) > 0.0 ? length : T(1.0))) * x.d;
       return {length - T(spring_.free), dot(u, x.u), u};
     }
-    // The host counts the turns; the derivatives are those of the angle without them.
-    const T squared = x.r.x * x.r.x + x.r.y * x.r.y, share = x.r.z / squared;
-    const Vec<T> u{-(share * x.r.x), -(share * x.r.y), T(1.0)};
-    return {counted(x.r, angle) - T(spring_.free), dot(u, x.w_b - x.w_a), u};
+    const space::AxisMotion<T> turn = space::turn_about_z(x, angle);
+    return {turn.value - T(spring_.free), turn.rate, turn.u};
   }
-  static double counted(const Vec<double>&, double angle) { return angle; }
-  static Dual counted(const Vec<Dual>& r, double angle) { return {angle, atan2(r.y, r.x).gradient}; }
 
   template <class T>
   space::RelativeForce<T> force(const State<T>& now) const {

@@ -1,5 +1,6 @@
 #include "cli/convert_command.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -57,6 +58,22 @@ std::string new_name(const Model& written, const Renaming& renamed, const std::s
   return "_" + flat;
 }
 
+/// Where a body's centre of mass starts [m], and the world axes of its frame: 12 numbers. The place of the frame itself
+/// is a matter of writing.
+std::array<double, 12> start_of(const AssembledModel& assembled, std::size_t body) {
+  const Pose frame = assembled.system.frame_pose(static_cast<BodyId>(body), assembled.start.state.q());
+  const Vector3& com = assembled.system.model().bodies[body].com;
+  std::array<double, 12> out{};
+  for (std::size_t r = 0; r < 3; ++r) {
+    out[r] = frame.position[r];
+    for (std::size_t c = 0; c < 3; ++c) {
+      out[r] += frame.rotation[3 * r + c] * com[c];
+      out[3 + 3 * r + c] = frame.rotation[3 * r + c];
+    }
+  }
+  return out;
+}
+
 /// Reads what was written and compares: a conversion that changes the mechanism must not pass for one.
 void verify(const LoadedModel& loaded, const AssembledModel& source, const Renaming& renamed, const std::string& file,
             const CommonOptions& common) {
@@ -77,8 +94,9 @@ void verify(const LoadedModel& loaded, const AssembledModel& source, const Renam
     const auto found = std::ranges::find(again.model->bodies, name, &Body::name);
     if (found == again.model->bodies.end()) return differs("a body is missing");
     const std::size_t other = static_cast<std::size_t>(found - again.model->bodies.begin());
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double gap = std::abs(source.start.state.q()[3 * b + i] - assembled->start.state.q()[3 * other + i]);
+    const std::array<double, 12> was = start_of(source, b), is = start_of(*assembled, other);
+    for (std::size_t i = 0; i < was.size(); ++i) {
+      const double gap = std::abs(was[i] - is[i]);
       if (!(gap <= 1e-8)) differs(fmt::format("body '{}' starts elsewhere, by {:.3g}", name, gap));
     }
   }

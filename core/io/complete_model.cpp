@@ -1,8 +1,11 @@
 #include "io/complete_model.h"
 
+#include <algorithm>
+#include <charconv>
 #include <set>
 
 #include "io/yaml_text.h"
+#include "model/format_table.h"
 #include "model/name_rule.h"
 
 namespace freeplay {
@@ -13,16 +16,39 @@ class Copy {
  public:
   Copy(Document& target, const std::set<std::string>& renamed) : target_(target), renamed_(renamed) {}
 
-  const Node& copy(const Node& node) {
+  /// `names`: scalars are references, else they are so only where nothing else can be meant.
+  const Node& copy(const Node& node, bool names = false) {
     Node& made = target_.add(node.kind, 1, 1);
     made.quoted = node.quoted;
-    made.text = node.is_scalar() ? rename(node.text) : node.text;
-    for (const Node* item : node.items) made.items.push_back(&copy(*item));
-    for (const Node::Entry& entry : node.entries) made.entries.push_back({&copy(*entry.key), &copy(*entry.value)});
+    made.text = node.is_scalar() && (names || !is_number(node.text)) ? rename(node.text) : node.text;
+    for (const Node* item : node.items) made.items.push_back(&copy(*item, names));
+    for (const Node::Entry& entry : node.entries) {
+      const bool refers = std::ranges::find(reference_keys_, entry.key->text) != reference_keys_.end();
+      made.entries.push_back({&copy(*entry.key, true), &copy(*entry.value, refers)});
+    }
     return made;
   }
 
  private:
+  /// A name such as 1 or 2e3 that a value may have, too.
+  static bool is_number(const std::string& text) {
+    double value = 0.0;
+    return std::from_chars(text.data(), text.data() + text.size(), value).ptr == text.data() + text.size();
+  }
+
+  /// Keys under which a model file names frames, bodies and joints.
+  static std::vector<std::string_view> reference_keys() {
+    std::vector<std::string_view> keys;
+    for (const FormatMap& map : format_maps()) {
+      for (const FormatKey& key : map.keys) {
+        for (const std::string_view sort : {"frame", "name", "list of frame", "list of name"}) {
+          if (key.value == sort || key.value.starts_with(std::string(sort) + " |")) keys.push_back(key.name);
+        }
+      }
+    }
+    return keys;
+  }
+
   /// NAME, or one or both sides of BODY/FRAME.
   std::string rename(const std::string& text) const {
     const std::size_t slash = text.find('/');
@@ -32,6 +58,7 @@ class Copy {
 
   Document& target_;
   const std::set<std::string>& renamed_;
+  const std::vector<std::string_view> reference_keys_ = reference_keys();
 };
 
 void collect_foreign(const Node& node, std::set<std::string>& names) {

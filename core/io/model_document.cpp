@@ -23,10 +23,12 @@ void set_root_of_robot(Document& document, const urdf::Sections& sections) {
   };
   const auto put = [&](const char* key, const Node& value) { root.entries.push_back({&scalar(key), &value}); };
   put("freeplay", scalar("1"));
+  if (!sections.plane) put("space", scalar("spatial"));
   // Down is -z in URDF; in the plane xy nothing of it is left.
   if (sections.plane != urdf::Options::Plane::xy) {
     Node& gravity = document.add(Node::Kind::list, 1, 1);
     gravity.items = {&scalar("0"), &scalar("-9.81")};
+    if (!sections.plane) gravity.items.insert(gravity.items.begin(), &scalar("0"));
     put("gravity", gravity);
   }
   put("bodies", *sections.bodies);
@@ -41,6 +43,15 @@ void leave_robot_out(Document& document) {
   for (const Node::Entry& entry : document.root().entries) {
     if (entry.key->text != "urdf") root.entries.push_back(entry);
   }
+  // What space the robot would have had is told by the length of vectors alone.
+  const Node* gravity = root.find("gravity");
+  if (root.find("space") == nullptr && gravity != nullptr && gravity->items.size() == 3) {
+    Node& key = document.add(Node::Kind::scalar, 1, 1);
+    Node& value = document.add(Node::Kind::scalar, 1, 1);
+    key.text = "space";
+    value.text = "spatial";
+    root.entries.push_back({&key, &value});
+  }
   document.set_root(root);
   document.set_incomplete();
 }
@@ -53,6 +64,7 @@ std::optional<Document> parse_robot(std::string text, const std::string& file_na
   diagnostics.add_source(file_name, text);
   Document document(file_name, std::move(text));
   urdf::Options options;
+  options.space = urdf::Options::Space::by_robot;
   options.plane.reset();
   const auto sections = urdf::add_sections(document.text(), &document.file_name(), options, document, diagnostics);
   if (!sections) return std::nullopt;

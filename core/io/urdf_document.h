@@ -15,7 +15,7 @@ struct Sections {
   const Node* bodies;
   const Node* joints;
   const Node* forces;
-  Options::Plane plane;
+  std::optional<Options::Plane> plane;  ///< empty: the robot is spatial
 };
 
 /// Reads `file_name`, at most 16 MiB, and adds its sections to `document`. Reports everything that is wrong, not used

@@ -39,6 +39,13 @@ std::string NameGiver::give(const std::string& name, const Spot& spot) {
   return given;
 }
 
+std::string NameGiver::give_other(std::string name, const Spot& spot) {
+  while (lines_.contains(name)) name += '_';
+  lines_.emplace(name, spot.line);
+  messages_.warning(spot, "urdf-renamed", fmt::format("a {} that is not ground is called '{}' here", kind_, name));
+  return name;
+}
+
 Names::Names(const Robot& robot, Messages& messages)
     : links_("link", messages), joints_("joint", messages), messages_(messages) {
   std::unordered_set<std::string> known;
@@ -49,9 +56,7 @@ Names::Names(const Robot& robot, Messages& messages)
     // Without mounts the robot has errors already; what is a body and what a mere frame is then not known.
     if (robot.mounts.empty()) continue;
     if (robot.mounts[i].body == static_cast<int>(i)) {
-      if (links.back() == "ground") {
-        messages.error(link.spot, "reserved-name", "only the root link or a mere frame may be called 'ground'");
-      }
+      if (links.back() == "ground") links.back() = links_.give_other("ground_", link.spot);
     } else {
       refuse_own_frame("link", links.back(), link.spot);
     }
@@ -69,6 +74,11 @@ Names::Names(const Robot& robot, Messages& messages)
 }
 
 std::string Names::add_joint(const std::string& name, const Spot& spot) { return joints_.give(name, spot); }
+
+std::string Names::fresh_frame(std::string name) const {
+  while (std::ranges::find(links, name) != links.end() || std::ranges::find(joints, name) != joints.end()) name += '_';
+  return name;
+}
 
 void Names::refuse_own_frame(const char* kind, const std::string& name, const Spot& spot) {
   if (name != "origin" && name != "com") return;

@@ -18,6 +18,8 @@ class NameGiver {
  public:
   NameGiver(std::string kind, Messages& messages) : kind_(std::move(kind)), messages_(messages) {}
   std::string give(const std::string& name, const Spot& spot);
+  /// For one whose own name has a meaning here that it does not have: `name`, with '_' behind it while it is taken.
+  std::string give_other(std::string name, const Spot& spot);
 
  private:
   std::string kind_;
@@ -32,6 +34,9 @@ class Names {
   Names(const Robot& robot, Messages& messages);
   /// For a joint that is not in the file.
   std::string add_joint(const std::string& name, const Spot& spot);
+
+  /// For a frame that is not in the file: the name, with '_' behind it as long as a link or joint has it.
+  std::string fresh_frame(std::string name) const;
 
   std::vector<std::string> links, joints;  ///< of each in the robot
 

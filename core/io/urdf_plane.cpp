@@ -228,44 +228,6 @@ bool PlanarRobot::planar() const {
 
 PlanarRobot project(const Robot& robot, Options::Plane plane) { return Projector(robot, plane).project(); }
 
-std::vector<PlanarBody> planar_bodies(const Robot& robot, Options::Plane plane) {
-  struct Part {
-    double mass;
-    Eigen::Vector3d com;
-    Eigen::Matrix3d inertia;
-  };
-  std::vector<std::vector<Part>> parts(robot.links.size());
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    const Link& link = robot.links[i];
-    const Mount& mount = robot.mounts[i];
-    if (mount.body == world_link || !link.has_mass()) continue;
-    const Eigen::Isometry3d frame = mount.pose * link.inertial;
-    parts[at(mount.body)].push_back(
-        {link.mass, frame.translation(), frame.linear() * link.inertia * frame.linear().transpose()});
-  }
-  const Eigen::Matrix3d axes = plane_axes(plane);
-  const Eigen::Vector3d normal = axes.row(2);
-  std::vector<PlanarBody> bodies(robot.links.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    PlanarBody& body = bodies[i];
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    for (const Part& part : parts[i]) {
-      body.mass += part.mass;
-      moment += part.mass * part.com;
-    }
-    if (parts[i].empty()) continue;
-    const Eigen::Vector3d com = parts[i].size() == 1 ? parts[i][0].com : Eigen::Vector3d(moment / body.mass);
-    body.com_x = clean((axes * com)[0]);
-    body.com_y = clean((axes * com)[1]);
-    for (const Part& part : parts[i]) {
-      const Eigen::Vector3d arm = axes * (part.com - com);
-      body.inertia += normal.dot(part.inertia * normal) + part.mass * (arm[0] * arm[0] + arm[1] * arm[1]);
-    }
-    body.inertia = std::max(0.0, body.inertia);
-  }
-  return bodies;
-}
-
 void report_not_planar(const Robot& robot, const PlanarRobot& seen, Messages& messages) {
   for (std::size_t i = 0; i < seen.joints.size(); ++i) {
     const PlanarJoint& joint = seen.joints[i];
@@ -278,7 +240,8 @@ void report_not_planar(const Robot& robot, const PlanarRobot& seen, Messages& me
                    {},
                    by_default
                        ? "no axis is given; URDF then takes 1 0 0"
-                       : fmt::format("{:g} rad are allowed; spatial models are not in this release", planar_tolerance));
+                       : fmt::format("{:g} rad are allowed; 'space: spatial' in a side-car reads the robot in space",
+                                     planar_tolerance));
   }
 }
 

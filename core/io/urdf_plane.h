@@ -25,11 +25,6 @@ struct PlanarJoint {
   Spot spot;              ///< of that direction
 };
 
-struct PlanarBody {
-  double mass = 0.0, inertia = 0.0;  ///< [kg], about the centre of mass [kg m^2]
-  double com_x = 0.0, com_y = 0.0;   ///< in the body frame [m]
-};
-
 /// The plane: rows are its x axis, its y axis and its normal, in the axes of the root link. xy: x y z; xz: x z -y;
 /// yz: y z x.
 Eigen::Matrix3d plane_axes(Options::Plane plane);
@@ -49,9 +44,6 @@ struct PlanarRobot {
 /// the same origin, x along the first axis of the link, in the order of the plane's, that lies in the plane. Each joint
 /// is snapped by itself, so that rounded angles do not add up along a chain.
 PlanarRobot project(const Robot& robot, Options::Plane plane);
-
-/// Mass of each link that is a body, together with what is part of it, in the plane.
-std::vector<PlanarBody> planar_bodies(const Robot& robot, Options::Plane plane);
 
 /// Reports each joint that does not move in the plane with its residual: `urdf-not-planar`.
 void report_not_planar(const Robot& robot, const PlanarRobot& seen, Messages& messages);

@@ -185,7 +185,8 @@ class RobotReader {
     }
     Element limit(*xml, "the limit of " + element.owner(), messages_, false);
     const double lower = limit.number("lower", 0.0), upper = limit.number("upper", 0.0);
-    for (const char* key : {"effort", "velocity"}) limit.required_number(key);
+    const auto effort = limit.required_number("effort");
+    limit.required_number("velocity");
     if (lower > upper) {
       const XmlAttribute* at = xml->attribute("lower") != nullptr ? xml->attribute("lower") : xml->attribute("upper");
       messages_.error(spot_of(*at), "bad-urdf",
@@ -193,7 +194,7 @@ class RobotReader {
     }
     limit.finish();
     joint.reach = std::max(std::abs(lower), std::abs(upper));
-    if (needed) messages_.ignore("limits of joint", joint.name);
+    if (needed) joint.limits = Limits{lower, upper, effort.value_or(0.0), limit.name_spot()};
   }
 
   void read_dynamics(Element& element, Joint& joint) {
@@ -201,17 +202,17 @@ class RobotReader {
     if (xml == nullptr) return;
     Element dynamics(*xml, "the dynamics of " + element.owner(), messages_, false);
     joint.damping = not_negative(dynamics, "damping");
-    const double friction = not_negative(dynamics, "friction");
+    joint.friction = not_negative(dynamics, "friction");
     dynamics.finish();
     if (xml->attribute("damping") != nullptr) joint.damping_spot = spot_of(*xml->attribute("damping"));
-    if (friction > 0.0) messages_.ignore("friction of joint", joint.name);
+    if (xml->attribute("friction") != nullptr) joint.friction_spot = spot_of(*xml->attribute("friction"));
     if (xml->attribute("damping") == nullptr && xml->attribute("friction") == nullptr) {
       messages_.error(dynamics.name_spot(), "bad-urdf",
                       fmt::format("{} say neither damping nor friction", dynamics.owner()));
     }
-    if (joint.damping > 0.0 && joint.type != JointType::revolute && joint.type != JointType::prismatic) {
-      messages_.ignore("damping of joint", joint.name);
-    }
+    if (joint.has_coordinate()) return;
+    if (joint.damping > 0.0) messages_.ignore("damping of joint", joint.name);
+    if (joint.friction > 0.0) messages_.ignore("friction of joint", joint.name);
   }
 
   void check_calibration(Element& joint) {

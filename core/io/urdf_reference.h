@@ -1,6 +1,7 @@
 // UrdfReference: links by name, and axes: what joints and loops read alike.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -35,11 +36,18 @@ class LinkNames {
   std::vector<std::string> names_;
 };
 
-/// Makes `axis` a unit vector; reports a zero one.
+/// Makes `axis` a unit vector; reports a zero one, and notes one that nobody rounded to this length.
 inline Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const Spot& spot, const std::string& owner,
                                  Messages& messages) {
   const double length = axis.stableNorm();
-  if (length > 1e-12) return axis / length;
+  if (length > 1e-12) {
+    constexpr double rounding = 1e-3;
+    if (std::abs(length - 1.0) > rounding) {
+      messages.warning(spot, "urdf-ignored",
+                       fmt::format("{} has length {:.6g}: only its direction counts", owner, length));
+    }
+    return axis / length;
+  }
   messages.error(spot, "bad-urdf", fmt::format("{} has zero length: it gives no direction", owner));
   return Eigen::Vector3d::UnitX();
 }

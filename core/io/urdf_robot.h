@@ -17,12 +17,15 @@ struct Spot {
 
 /// How the file is to be read: the keys of section 13 of the model format.
 struct Options {
+  enum class Space { planar, spatial, by_robot };  ///< by_robot: planar where it is, else spatial
   enum class Plane { xy, xz, yz };
+  Space space = Space::planar;
   std::optional<Plane> plane = Plane::xy;  ///< empty: the first in which the robot is planar
   bool floating_base = false;
   bool two_parents = false;     ///< a later joint to a link that has a parent closes a loop
   bool repair_inertia = false;  ///< mend impossible inertia
   bool merge_fixed = false;     ///< bodies on fixed joints become part of what carries them
+  bool stops = false;           ///< joint limits become stops
 };
 
 struct Link {
@@ -58,6 +61,12 @@ struct Mimic {
   Spot spot, multiplier_spot, offset_spot;
 };
 
+struct Limits {
+  double lower = 0.0, upper = 0.0;  ///< [rad or m]
+  double effort = 0.0;              ///< the largest that drives the joint [N m or N]
+  Spot spot;
+};
+
 /// A joint of the tree or one that closes a loop. Both frames coincide at coordinate zero, but for what the joint
 /// frees.
 struct Joint {
@@ -71,6 +80,9 @@ struct Joint {
   bool axis_given = false;
   double damping = 0.0;  ///< [N m s/rad or N s/m]
   Spot damping_spot;
+  double friction = 0.0;  ///< [N m or N]
+  Spot friction_spot;
+  std::optional<Limits> limits;
   double reach = 0.0;  ///< of a slide: the larger limit [m]
   std::optional<Mimic> mimic;
   bool closes_loop = false;
@@ -79,6 +91,8 @@ struct Joint {
 
   bool moves() const { return type != JointType::fixed; }
   bool turns() const { return type == JointType::revolute; }
+  bool has_coordinate() const { return type == JointType::revolute || type == JointType::prismatic; }
+  bool has_axis() const { return has_coordinate() || type == JointType::planar; }
 };
 
 /// What hangs where: filled by build_tree().

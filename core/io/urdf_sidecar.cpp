@@ -22,22 +22,24 @@ using Words = std::vector<std::string>;
 /// Reads the section `urdf`.
 class UrdfSection {
  public:
-  UrdfSection(const CheckedValue& section, const std::string& model_file)
+  UrdfSection(const CheckedValue& section, const Node& model, const std::string& model_file)
       : map_(section.node().is_scalar() ? MapReader::empty(section) : MapReader(section, "urdf")) {
     const auto file = section.node().is_scalar() ? std::optional<CheckedValue>(section) : map_.require("file");
     readable_ = file && read_file(*file, model_file);
     // A key that is wrong has the value with which the robot shows no mistakes that are not there.
     using Plane = urdf::Options::Plane;
     constexpr std::optional<Plane> planes[] = {Plane::xy, Plane::xz, Plane::yz, std::nullopt};
-    options.plane = planes[word("plane", {"xy", "xz", "yz"}, 3)];
+    options.space = space_of(model);
+    if (options.space == urdf::Options::Space::spatial) {
+      map_.refuse("plane", "only in planar models");
+    } else {
+      options.plane = planes[word("plane", {"xy", "xz", "yz"}, 3)];
+    }
     options.floating_base = word("base", {"fixed", "floating"}, 0) == 1;
     options.two_parents = word("loops", {"elements", "two-parents"}, 1) == 1;
     options.repair_inertia = map_.find("repair").has_value();
     word("repair", {"inertia"}, 0);
-    if (word("limits", {"ignore", "stop"}, 0) == 1) {
-      map_.find("limits")->fail("wrong-type", "stops at the limits of joints are not in this release", {},
-                                "'limits: ignore' is the default");
-    }
+    options.stops = word("limits", {"ignore", "stop"}, 0) == 1;
     if (const auto merge = map_.find("merge_fixed")) {
       options.merge_fixed = merge->boolean().value_or(false);
     }
@@ -50,6 +52,17 @@ class UrdfSection {
   std::string path, text;
 
  private:
+  /// What the model says, or what else it says only of one space; else the robot decides.
+  urdf::Options::Space space_of(const Node& model) const {
+    using Space = urdf::Options::Space;
+    if (const Node* space = model.find("space")) {
+      return space->text == "planar" ? Space::planar : space->text == "spatial" ? Space::spatial : Space::by_robot;
+    }
+    const Node* gravity = model.find("gravity");
+    if (map_.has("plane") || (gravity != nullptr && gravity->items.size() == 2)) return Space::planar;
+    return Space::by_robot;
+  }
+
   bool read_file(const CheckedValue& file, const std::string& model_file) {
     const auto name = file.string();
     if (!name) return false;
@@ -79,6 +92,9 @@ class Merger {
     for (const Node::Entry& entry : document_.root().entries) {
       if (entry.key->text != "urdf") root.entries.push_back(entry);
     }
+    if (!sections.plane && root.find("space") == nullptr) {
+      root.entries.push_back({&word("space"), &word("spatial")});
+    }
     merge_section(root, "bodies", *sections.bodies, {"frames", "pose", "velocity"});
     merge_section(root, "joints", *sections.joints, {"clearance"});
     merge_section(root, "forces", *sections.forces, {});
@@ -86,13 +102,17 @@ class Merger {
   }
 
  private:
+  Node& word(const char* text) {
+    Node& made = document_.add(Node::Kind::scalar, 1, 1);
+    made.text = text;
+    return made;
+  }
+
   /// `allowed`: keys that the model may add to an entry of the robot.
   void merge_section(Node& root, const char* name, const Node& robot, const Words& allowed) {
     const auto own = std::ranges::find_if(root.entries, [&](const auto& entry) { return entry.key->text == name; });
     if (own == root.entries.end()) {
-      Node& key = document_.add(Node::Kind::scalar, 1, 1);
-      key.text = name;
-      root.entries.push_back({&key, &robot});
+      root.entries.push_back({&word(name), &robot});
       return;
     }
     if (own->value->is_null()) {
@@ -172,11 +192,7 @@ bool add_robot(Document& document, Diagnostics& diagnostics) {
   const Node& root = document.root();
   const auto entry = std::ranges::find_if(root.entries, [](const auto& e) { return e.key->text == "urdf"; });
   const CheckedValue value(reading, *entry->value, entry->key, "urdf");
-  if (const Node* space = root.find("space"); space != nullptr && space->text == "spatial") {
-    diagnostics.error(space->location(), space->length, "type-space", "spatial bodies are not in this release");
-    return false;
-  }
-  UrdfSection section(value, document.file_name());
+  UrdfSection section(value, root, document.file_name());
   if (!section.readable()) return false;
   diagnostics.add_source(section.path, section.text);
   const std::string* file = document.add_file(section.path, section.text);

@@ -260,7 +260,10 @@ class UrdfWriter {
     if (!joints.entries.empty()) put(content, "joints", joints);
     keep_presets(root, content);
     keep_parameters(root, content);
-    const bool needed = !bodies.entries.empty() || !joints.entries.empty() || !rest.empty();
+    // A URDF with a joint of the type floating is read in space where nobody says otherwise.
+    const bool floats = std::ranges::any_of(tree_joint_, [](int joint) { return joint < 0; });
+    if (floats && source_->find("space") == nullptr) put(root, "space", scalar("planar"));
+    const bool needed = floats || !bodies.entries.empty() || !joints.entries.empty() || !rest.empty();
     if (!needed) return false;
     root.entries.insert(root.entries.end(), rest.begin(), rest.end());
     if (!bodies.entries.empty()) put(root, "bodies", bodies);

@@ -39,12 +39,12 @@ constexpr FormatKey model[] = {
 
 constexpr FormatKey urdf[] = {
     {"file", "text", "", "required", "Path from the model's folder.", "robot.urdf"},
-    {"plane", "'xy' | 'xz' | 'yz'", "", "xy", "Plane of the mechanism, in axes of the root link.", "xz"},
+    {"plane", "'xy' | 'xz' | 'yz'", "", "xy", "Plane of a planar mechanism, in axes of the root link.", "xz"},
     {"base", "'fixed' | 'floating'", "", "fixed", "How a root link with mass meets ground.", "floating"},
     {"loops", "'elements' | 'two-parents'", "", "elements", "Whether a second parent closes a loop.", "two-parents"},
     {"repair", "'inertia'", "", "", "Mend impossible inertia instead of refusing it.", "inertia"},
     {"merge_fixed", "boolean", "", "false", "Bodies on fixed joints become part of what carries them.", "true"},
-    {"limits", "'ignore' | 'stop'", "", "ignore", "Joint limits.", "ignore"}};
+    {"limits", "'ignore' | 'stop'", "", "ignore", "Whether joint limits become stops.", "stop"}};
 
 constexpr FormatKey body[] = {
     {"mass", "quantity", "kg", "required", "Greater than 0.", "0.2 kg"},

@@ -35,7 +35,8 @@ std::string words(const Json& value) {
 
 std::string frame_text(const Json& frame) {
   if (frame.is_string()) return words(frame);
-  return fmt::format("{}  angle {}", words(frame["position"]), words(frame["angle"]));
+  const char* turn = frame.contains("angle") ? "angle" : "quaternion";
+  return fmt::format("{}  {} {}", words(frame["position"]), turn, words(frame[turn]));
 }
 
 std::size_t widest(const Json& map) {

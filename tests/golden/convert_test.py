@@ -118,7 +118,7 @@ templates: {t: {bodies: {b: {mass: 2, inertia: 2}}}}
 instances: {a: {template: t}}
 """)
         self.freeplay("convert", "m.yaml", "m.urdf")
-        self.assert_same("m.yaml", "m.urdf", names={"a.b": "a_b_3", "a_b": "a_b", "a_b_2": "a_b_2"}.get)
+        self.assert_same("m.yaml", "m.urdf.sidecar.yaml", names={"a.b": "a_b_3", "a_b": "a_b", "a_b_2": "a_b_2"}.get)
 
     def test_a_robot_becomes_a_complete_model(self):
         for name in ("four_bar_loop.urdf", "four_bar_sidecar.yaml"):

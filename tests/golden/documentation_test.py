@@ -150,8 +150,8 @@ class Documentation(ProgramTest):
         with open(os.path.join(ROOT, page), encoding="utf-8") as file:
             text = file.read()
         self.write("rocker.urdf", re.search(r"^```xml\n(.*?)^```", text, re.M | re.S)[1])
-        self.write("rocker.yaml", re.search(r"^```yaml\n(.*?)^```", text, re.M | re.S)[1])
-        self.freeplay("run", "rocker.yaml")
+        for number, sidecar in enumerate(re.findall(r"^```yaml\n(.*?)^```", text, re.M | re.S)):
+            self.freeplay("run", self.write("rocker%d.yaml" % number, sidecar))
 
     def test_text_is_read_as_the_model_page_says(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:

@@ -281,11 +281,10 @@ class Messages(UrdfTest):
         self.check('<robot name="arm">', '<!DOCTYPE robot [<!ENTITY a "b">]>\n<robot name="arm">', 2, 1, "not allowed")
 
     def test_what_is_not_used_is_named(self):
-        text = ARM.replace("</joint>", '  <dynamics friction="0.2"/>\n  </joint>').replace(
-            "</robot>", '<transmission name="t1"/><coupling name="tie"/><thing/></robot>')
+        text = ARM.replace("</robot>", '<transmission name="t1"/><coupling name="tie"/><thing/></robot>')
         messages = self.verdict(text, code=0)
         words = " ".join(m["message"] for m in messages)
-        for word in ("friction of joint 'shoulder'", "limits of joint 'shoulder'", "transmission 't1'", "coupling 'tie'", "thing"):
+        for word in ("limits of joint 'shoulder'", "transmission 't1'", "coupling 'tie'", "thing"):
             self.assertIn(word, words)
         self.assertEqual({"urdf-ignored"}, {m["id"] for m in messages})
         self.assertEqual({"warning"}, {m["severity"] for m in messages})
@@ -294,9 +293,12 @@ class Messages(UrdfTest):
         second = ARM.replace("</robot>", """<link name="fore"><inertial><mass value="1"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
   <joint name="elbow" type="continuous"><parent link="upper"/><child link="fore"/><axis xyz="0 0.1 1"/></joint></robot>""")
-        message = [m for m in self.verdict(second) if m["severity"] == "error"][0]
-        self.assertEqual("urdf-not-planar", message["id"])
-        self.assertIn("0.0997 rad", message["message"])  # atan(0.1)
+        self.write("arm.urdf", second)
+        for said in ("urdf: {file: arm.urdf, plane: xy}", "urdf: arm.urdf\nspace: planar"):
+            out, _ = self.freeplay("validate", self.write("arm.yaml", "freeplay: 1\n" + said + "\n"), "--json", code=3)
+            message = [m for m in json.loads(out)["messages"] if m["severity"] == "error"][0]
+            self.assertEqual("urdf-not-planar", message["id"])
+            self.assertIn("0.0997 rad", message["message"])  # atan(0.1)
         near = self.verdict(second.replace("0 0.1 1", "0 0.000008 1"), code=0)
         self.assertTrue(any("8e-06 rad, of joint 'elbow'" in m["message"] for m in near), near)
 
@@ -368,7 +370,7 @@ joints: {pin: {type: revolute, between: [upper/tip, extra]}}
 <link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="A" type="continuous"><parent link="world"/><child link="a"/><axis xyz="0 0 1"/></joint></robot>
 """)
-        for bad in ("limits: stop", "plane: xx", "base: loose", "loops: no", "repair: mass", "merge_fixed: 2"):
+        for bad in ("limits: hold", "plane: xx", "base: loose", "loops: no", "repair: mass", "merge_fixed: 2"):
             self.write("m.yaml", "freeplay: 1\nurdf: {file: r.urdf, %s}\nframes: {b/x: [0, 0]}\n"
                        "joints: {A: {type: revolute}}\n" % bad)
             messages = json.loads(self.freeplay("validate", "m.yaml", "--json", code=3)[0])["messages"]
