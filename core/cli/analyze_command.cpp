@@ -52,6 +52,7 @@ class AnalyzeJob {
     if (options_.branches) find_branches();
     check_reach();
     check_inputs();
+    if (wants("singularity")) check_outputs();
     AnalysisTable table = rows();
     add_summary(table);
     return table;
@@ -142,6 +143,22 @@ class AnalyzeJob {
                 fmt::format("fewer drivers than freedoms: with all {} inputs held the mechanism still has {} freedom{}",
                             mechanism_.platform().inputs.size(), left, left == 1 ? "" : "s"),
                 section().joints_location.value_or(mechanism_.platform().location));
+  }
+
+  /// Changes of single angles in space are no changes of a rotation vector.
+  void check_outputs() const {
+    int turns = 0;
+    std::vector<const char*> words;
+    for (std::size_t i = 0; i < form().size(); ++i) {
+      if (given_[i]) words.push_back(form().words[i]);
+      if (given_[i] && form().is_turn(i)) ++turns;
+    }
+    if (turns == 0 || turns == static_cast<int>(form().size() - form().lengths)) return;
+    throw Error(
+        Error::Category::input, "type-space",
+        fmt::format("singularities in space are looked for with all angles as outputs or with none, not with {}",
+                    enumeration(words)),
+        {model().file, 0, 0});
   }
 
   /// Working modes are those of a crank and a coupler on pins below the frame.
