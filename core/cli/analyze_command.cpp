@@ -536,8 +536,10 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
   app->add_option("KIND", options->kind, "ik, workspace, singularity, error or inverse-dynamics")->type_name("");
   app->add_option("MODEL", options->model, "Model file")->type_name("");
   app->add_option("--frame", options->frame, "The platform: BODY or BODY/FRAME")->type_name("FRAME");
-  add_repeatable(*app, "--pose", options->pose, "Pose: x,y,angle or x=5cm,y=0; repeatable")->type_name("POSE");
-  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y, angle); repeatable")
+  add_repeatable(*app, "--pose", options->pose,
+                 "Pose: x,y,angle or x=5cm,y=0 (in space x,y,z,roll,pitch,yaw); repeatable")
+      ->type_name("POSE");
+  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y and so on); repeatable")
       ->type_name("GRID");
   app->add_option("--time", options->time, "Instants on the path: FROM:TO:COUNT")->type_name("TIMES");
   add_repeatable(*app, "--input", options->input, "Coordinates of driven joints: JOINT=VALUE,...; repeatable")

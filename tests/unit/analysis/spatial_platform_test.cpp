@@ -320,6 +320,41 @@ TEST(SpatialPlatform, PlayOfABearingWithLengthShiftsAndTilts) {
   }
 }
 
+// Play goes with the bearing, however that stands in the world.
+TEST(SpatialPlatform, PlayOfABearingIsAlongItsOwnAxes) {
+  const auto model = [](const std::string& turn) {
+    return "freeplay: 1\nspace: spatial\n"
+           "bodies:\n  seat: {mass: 1, inertia: [1, 1, 1], pose: {rpy: " +
+           turn +
+           "}, frames: {rail: {position: [0.2, -0.3, 0], rpy: [0, 0, 90 deg]}}}\n"
+           "  wheel: {mass: 1, inertia: [1, 1, 1], frames: {tip: [0.2, 0, 0], far: [0.1, 0.05, 0.3]}, pose: {rpy: " +
+           turn +
+           "}}\n"
+           "  slide: {mass: 1, inertia: [1, 1, 1]}\n"
+           "frames: {ground/base: {rpy: " +
+           turn +
+           "}}\n"
+           "joints:\n  F: {type: fixed, between: [ground/base, seat]}\n"
+           "  B: {type: revolute, between: [seat, wheel], clearance: {radial_clearance: 0.1 mm, bearing_radius: 10 mm, "
+           "length: 50 mm, "
+           "axial_clearance: 0.7 mm, contact: {law: hertz, K: 1e9}}}\n"
+           "  R: {type: prismatic, between: [seat/rail, slide]}\n"
+           "  D: {type: distance, between: [slide, wheel/tip], length: 0.3}\n"
+           "drivers: {push: {joint: R, kind: position, value: 0}}\n"
+           "initial: {joints: {B: 0}}\n"
+           "analysis: {frame: wheel/far}\n";
+  };
+  Bench straight(model("[0, 0, 0]")), turned_by(model("[0.4, -0.7, 1.1]"));
+  const auto first = clearance_error(straight.mechanism, whole_map(straight, straight.mechanism.start()));
+  const auto second = clearance_error(turned_by.mechanism, whole_map(turned_by, turned_by.mechanism.start()));
+  ASSERT_TRUE(first && second);
+  EXPECT_NEAR(first->exact.position, second->exact.position, 2e-7 * first->exact.position);
+  EXPECT_NEAR(first->exact.dangle, second->exact.dangle, 2e-7 * first->exact.dangle);
+  const Vector3d expected = turned(0.4, -0.7, 1.1) * first->exact.worst.head<3>();
+  EXPECT_NEAR(std::abs(expected.dot(second->exact.worst.head<3>())), expected.squaredNorm(),
+              1e-6 * expected.squaredNorm());
+}
+
 // h is the distance of support of balls and segments; the farthest point of each is known.
 TEST(FeasibleSet, FarthestPointsOfKnownSetsInSpace) {
   const auto set = [](double radius, const Vector3d& half) {
