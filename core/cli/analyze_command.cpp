@@ -268,6 +268,10 @@ class AnalyzeJob {
     }
     Components written{};
     for (std::size_t i = 0; i < form().size(); ++i) written[i] = axes[i].has_value();
+    if (count(written) == 0 && model().space == Space::spatial) {
+      throw Error(Error::Category::usage, "missing-argument", "no poses are known", {},
+                  "--pose, --grid x=FROM:TO:COUNT, --time or --input");
+    }
     if (count(written) == 0) {
       throw Error(Error::Category::input, "missing-key", "no poses are known: 'analysis' needs 'grid'",
                   {model().file, 0, 0}, "or --grid x=FROM:TO:COUNT, --pose, --time or --input");

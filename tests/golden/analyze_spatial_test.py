@@ -135,6 +135,7 @@ class AnalyzeInSpace(ProgramTest):
             self.assertIn("work in planar models only [type-space]", err)
 
     def test_poses_in_space_have_their_own_words(self):
+        self.assertIn("no poses are known [missing-argument]", self.message("error", "stewart.yaml", code=2))
         for pose, answer in (("angle=1", "'angle' is none of x, y, z, roll, pitch and yaw"), ("yow=1", "did you mean 'yaw'?"),
                              ("1,2,3,4,5,6,7", "at most x, y, z, roll, pitch and yaw can be given"),
                              ("x=0,y=0", "it must give x, y and z, and may give roll, pitch and yaw")):
