@@ -9,7 +9,7 @@
 
 namespace freeplay {
 
-/// Worst case at one pose. Each play is a massless link no longer than its radius, each input errs by at most
+/// Worst case at one pose. The plays are bounded as Play says, each input errs by at most
 /// IdealMechanism::input_error(); Innocenti 2002. Which joint causes how much of the worst position error: its
 /// sensitivity times its play; these shares add up to the error.
 struct ClearanceError {
@@ -20,14 +20,15 @@ struct ClearanceError {
   std::vector<double> sensitivity;
 };
 
-/// `map` keeps all three components. Empty where A has not rank 3 (`sigma_limit` of the largest singular value of A
-/// with angles times `length`): the platform moves while its inputs are held, and errors have no bound.
+/// `map` keeps all changes of the pose. Empty where A has not their rank (smallest singular value below
+/// `singular_limit` with turns times L): the platform moves while its inputs are held, and errors have no bound.
 std::optional<ClearanceError> clearance_error(const IdealMechanism& mechanism, const VelocityMap& map);
 
 /// Generators of the right side of A dX = ..., plays first, then inputs; those of size 0 too.
 std::vector<Generator> generators_of(const IdealMechanism& mechanism, const VelocityMap& map);
 
-/// A^+ (3 x rows) with residuals in the rows' own scale; empty where A has not rank 3.
-std::optional<Eigen::MatrixXd> pseudo_inverse(const Eigen::MatrixXd& a, double length);
+/// A^+ (changes x rows) with residuals in the rows' own scale; empty where A has not the rank of its columns. `length`:
+/// L [m].
+std::optional<Eigen::MatrixXd> pseudo_inverse(const VelocityMap& map, double length);
 
 }  // namespace freeplay

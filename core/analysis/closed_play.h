@@ -9,7 +9,7 @@
 
 namespace freeplay {
 
-/// A disc (2 numbers) or an interval (1) of size 1 among the plays.
+/// An interval (1 number), a disc (2) or a ball (3) of size 1 among the plays.
 struct PlayRoom {
   Eigen::Index place, size;
 };
@@ -17,7 +17,7 @@ struct PlayRoom {
 /// Plays y in their rooms with closure y = 0, distributed as independent plays are, given that they close. Both walks
 /// leave that law as it is: over discs a random chord (hit and run; Smith 1984), on which a normal law is drawn by
 /// slices (Neal 2003); on rims a step along the tangent, put back on the manifold, accepted by Metropolis' rule with
-/// its way back (Zappa, Holmes-Cerfon and Goodman 2018).
+/// its way back (Zappa, Holmes-Cerfon and Goodman 2018); on rims of discs only, not of balls.
 class ClosedPlay {
  public:
   /// Columns of `across` and of `along` are orthonormal, one row for each number of the rooms: y closes where

@@ -6,6 +6,7 @@
 #include <queue>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -19,7 +20,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double certainty = 1e-10;       // of the farthest point, relative
+constexpr double certainty = 1e-10;  // of the farthest point in the plane, relative
+constexpr double certainty_in_space = 1e-7;
 constexpr double regular = 1e-12;         // determinant of three rows of length 1
 constexpr double on_boundary = 1e-11;     // of D, relative
 constexpr double smallest_round = 1e-11;  // of corners, when h is minimised
@@ -50,22 +52,33 @@ std::vector<Generator> generators_of(const VectorXd& widths) {
   return out;
 }
 
+/// dX of N numbers, 3 or 6.
+template <int N>
+using Change = Eigen::Matrix<double, N, 1>;
+template <int N>
+constexpr int lengths = N == 3 ? 2 : 3;
+template <int N>
+using Shift = Eigen::Matrix<double, lengths<N>, 1>;
+
 /// h(n) = sum size |columns^T image^T n| and the dX where it is attained.
+template <int N>
 class LinearImage {
+  using Columns = Eigen::Matrix<double, N, lengths<N>>;
+
  public:
   LinearImage(const MatrixXd& image, const std::vector<Generator>& generators) {
     for (const Generator& generator : generators) {
-      Eigen::Matrix<double, 3, 2> columns = Eigen::Matrix<double, 3, 2>::Zero();
+      Columns columns = Columns::Zero();
       columns.leftCols(generator.columns.cols()) = generator.size * (image * generator.columns);
       columns_.push_back(columns);
     }
   }
-  double support(const Vector3d& n, Vector3d& at) const {
+  double support(const Change<N>& n, Change<N>& at) const {
     double value = 0.0;
     at.setZero();
-    for (const auto& columns : columns_) {
-      const Vector2d w = columns.transpose() * n;
-      const double size = std::hypot(w[0], w[1]);
+    for (const Columns& columns : columns_) {
+      const Shift<N> w = columns.transpose() * n;
+      const double size = w.norm();
       value += size;
       if (size > 0.0) at += columns * (w / size);
     }
@@ -73,31 +86,44 @@ class LinearImage {
   }
 
  private:
-  std::vector<Eigen::Matrix<double, 3, 2>> columns_;
+  std::vector<Columns> columns_;
 };
 
-template <class Support>
+/// The direction n in the shifts (`first` 0) or in the turns.
+template <int N>
+Change<N> embedded(const Shift<N>& n, int first) {
+  Change<N> out = Change<N>::Zero();
+  out.template segment<lengths<N>>(first) = n;
+  return out;
+}
+
+template <int N, class Support>
 WorstCase worst_of(const Support& support) {
   WorstCase out;
-  Vector3d at;
-  out.dx = support(Vector3d::UnitX(), at);
-  out.dy = support(Vector3d::UnitY(), at);
-  out.dangle = support(Vector3d::UnitZ(), at);
-  Vector2d direction;
-  out.position = farthest(
-      [&](const Vector2d& n, Vector2d& p) {
-        const double value = support({n[0], n[1], 0.0}, at);
-        p = at.head<2>();
-        return value;
-      },
-      direction);
-  support({direction[0], direction[1], 0.0}, out.worst);
+  Change<N> at;
+  for (int i = 0; i < N; ++i) out.change[static_cast<std::size_t>(i)] = support(Change<N>::Unit(i), at);
+  const auto largest = [&](int first, Shift<N>& direction) {
+    return farthest(
+        [&](const Shift<N>& n, Shift<N>& p) {
+          const double value = support(embedded<N>(n, first), at);
+          p = at.template segment<lengths<N>>(first);
+          return value;
+        },
+        direction);
+  };
+  Shift<N> direction;
+  out.dangle = out.change[2];
+  if constexpr (N == 6) out.dangle = largest(3, direction);
+  out.position = largest(0, direction);
+  support(embedded<N>(direction, 0), at);
+  out.worst = at;
   return out;
 }
 
 /// Vertices of |A_i dX| <= D_i: three rows at their ends, the others within.
 WorstCase worst_vertex(const MatrixXd& a, const VectorXd& widths) {
   WorstCase out;
+  out.worst = Vector3d::Zero();
   const Index rows = a.rows();
   out.multipliers = VectorXd::Zero(rows);
   const double slack = on_boundary * widths.maxCoeff();
@@ -119,9 +145,10 @@ WorstCase worst_vertex(const MatrixXd& a, const VectorXd& widths) {
             inside = r == i || r == j || r == k || std::abs(a.row(r).dot(x)) <= widths[r] + slack;
           }
           if (!inside) continue;
-          out.dx = std::max(out.dx, std::abs(x[0]));
-          out.dy = std::max(out.dy, std::abs(x[1]));
-          out.dangle = std::max(out.dangle, std::abs(x[2]));
+          for (int c = 0; c < 3; ++c) {
+            double& most = out.change[static_cast<std::size_t>(c)];
+            most = std::max(most, std::abs(x[c]));
+          }
           if (const double position = std::hypot(x[0], x[1]); position > out.position) {
             out.position = position;
             out.worst = x;
@@ -131,6 +158,7 @@ WorstCase worst_vertex(const MatrixXd& a, const VectorXd& widths) {
       }
     }
   }
+  out.dangle = out.change[2];
   if (!(out.position > 0.0)) return out;
   Eigen::Matrix3d three;
   three << a.row(active[0]), a.row(active[1]), a.row(active[2]);
@@ -145,12 +173,14 @@ class Dual {
  public:
   Dual(const MatrixXd& a, const std::vector<Generator>& generators) : generators_(generators) {
     const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    image_ = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal() * svd.matrixU().leftCols(3).transpose();
-    null_ = svd.matrixU().rightCols(a.rows() - 3);
+    image_ =
+        svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal() * svd.matrixU().leftCols(a.cols()).transpose();
+    null_ = svd.matrixU().rightCols(a.rows() - a.cols());
     for (const Generator& generator : generators) reduced_.push_back(null_.transpose() * generator.columns);
   }
 
-  double support(const Vector3d& n, Vector3d& at) const {
+  template <int N>
+  double support(const Change<N>& n, Change<N>& at) const {
     const VectorXd start = image_.transpose() * n;
     VectorXd t = VectorXd::Zero(null_.cols());
     double scale = 0.0;
@@ -275,28 +305,123 @@ double farthest(const std::function<double(const Vector2d&, Vector2d&)>& support
   return best;
 }
 
-WorstCase least_squares_worst_case(const MatrixXd& pseudo_inverse, const std::vector<Generator>& generators) {
+namespace {
+
+/// Bound of h over a triangle of directions: of all n in its cone h(n) is at most g.n, the linear function with h's
+/// values at the corners (rows).
+double triangle_bound(const Eigen::Matrix3d& corners, const Vector3d& values) {
+  const Eigen::PartialPivLU<Eigen::Matrix3d> lu(corners);
+  const Vector3d g = lu.solve(values), share = lu.transpose().solve(g);
+  if (share.minCoeff() >= 0.0) return g.norm();
+  // Then g.n is largest on an edge.
+  double most = values.maxCoeff();
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d a = corners.row(i), b = corners.row((i + 1) % 3);
+    const double u = values[i], v = values[(i + 1) % 3], c = a.dot(b), s = a.cross(b).norm();
+    if (u > v * c && v > u * c) most = std::max(most, std::sqrt((u - v) * (u - v) + u * v * (a - b).squaredNorm()) / s);
+  }
+  return most;
+}
+
+}  // namespace
+
+double farthest(const std::function<double(const Vector3d&, Vector3d&)>& support, Vector3d& direction) {
+  constexpr long most = 50'000;
+  struct Triangle {
+    double bound;
+    Eigen::Matrix3d corners;
+    Vector3d values;
+    bool operator<(const Triangle& other) const { return bound < other.bound; }
+  };
+  double best = 0.0;
+  direction = Vector3d::UnitX();
+  const auto look = [&](const Vector3d& n) {
+    Vector3d p, m = n;
+    const double value = support(n, p);
+    if (value > best) best = value, direction = n;
+    for (int i = 0; i < 60 && p.norm() > 0.0; ++i) {
+      const Vector3d next = p.normalized();
+      const double reached = support(next, p);
+      if (!(reached > best)) break;
+      best = reached;
+      direction = next;
+      if ((next - m).squaredNorm() < 1e-30) break;
+      m = next;
+    }
+    return value;
+  };
+  std::priority_queue<Triangle> triangles;
+  const auto push = [&](const Eigen::Matrix3d& corners, const Vector3d& values) {
+    triangles.push({triangle_bound(corners, values), corners, values});
+  };
+  // Half of an octahedron; the set is symmetric.
+  const Vector3d axes(look(Vector3d::UnitX()), look(Vector3d::UnitY()), look(Vector3d::UnitZ()));
+  for (const double x : {1.0, -1.0}) {
+    for (const double y : {1.0, -1.0}) push(Vector3d(x, y, 1.0).asDiagonal(), axes);
+  }
+  for (long cut = 0; triangles.top().bound > best * (1.0 + certainty_in_space); ++cut) {
+    const Triangle top = triangles.top();
+    if (cut == most) return top.bound;
+    triangles.pop();
+    int from = 0;
+    double length = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double side = (top.corners.row(i) - top.corners.row((i + 1) % 3)).squaredNorm();
+      if (side > length) length = side, from = i;
+    }
+    const int to = (from + 1) % 3;
+    const Vector3d middle = (top.corners.row(from) + top.corners.row(to)).transpose().normalized();
+    const double value = look(middle);
+    for (const int replaced : {from, to}) {
+      Eigen::Matrix3d corners = top.corners;
+      Vector3d values = top.values;
+      corners.row(replaced) = middle.transpose();
+      values[replaced] = value;
+      push(corners, values);
+    }
+  }
+  return best;
+}
+
+namespace {
+
+template <int N>
+WorstCase least_squares(const MatrixXd& pseudo_inverse, const std::vector<Generator>& generators) {
   const std::optional<VectorXd> box = box_of(pseudo_inverse.cols(), generators);
-  const LinearImage image(pseudo_inverse, box ? generators_of(*box) : generators);
-  WorstCase out = worst_of([&](const Vector3d& n, Vector3d& at) { return image.support(n, at); });
+  const LinearImage<N> image(pseudo_inverse, box ? generators_of(*box) : generators);
+  WorstCase out = worst_of<N>([&](const Change<N>& n, Change<N>& at) { return image.support(n, at); });
+  out.multipliers = VectorXd::Zero(pseudo_inverse.cols());
   if (out.position > 0.0) {
-    out.multipliers = pseudo_inverse.transpose() * Vector3d(out.worst[0], out.worst[1], 0.0).normalized();
-  } else {
-    out.multipliers = VectorXd::Zero(pseudo_inverse.cols());
+    const Shift<N> shift = out.worst.head<lengths<N>>();
+    out.multipliers = pseudo_inverse.transpose() * embedded<N>(shift.normalized(), 0);
   }
   return out;
 }
 
-WorstCase exact_worst_case(const MatrixXd& a, const std::vector<Generator>& generators) {
-  if (a.rows() == 3) return least_squares_worst_case(a.inverse(), generators);
-  if (const std::optional<VectorXd> box = box_of(a.rows(), generators)) return worst_vertex(a, *box);
+template <int N>
+WorstCase dual_worst_case(const MatrixXd& a, const std::vector<Generator>& generators) {
   const Dual dual(a, generators);
-  WorstCase out = worst_of([&](const Vector3d& n, Vector3d& at) { return dual.support(n, at); });
-  Vector3d at;
-  const Vector2d direction = out.position > 0.0 ? out.worst.head<2>().normalized().eval() : Vector2d::UnitX();
-  dual.support({direction[0], direction[1], 0.0}, at);
+  WorstCase out = worst_of<N>([&](const Change<N>& n, Change<N>& at) { return dual.support<N>(n, at); });
+  Shift<N> direction = Shift<N>::UnitX();
+  if (out.position > 0.0) direction = out.worst.head<lengths<N>>().normalized();
+  Change<N> at;
+  dual.support<N>(embedded<N>(direction, 0), at);
   out.multipliers = dual.multipliers();
   return out;
+}
+
+}  // namespace
+
+WorstCase least_squares_worst_case(const MatrixXd& pseudo_inverse, const std::vector<Generator>& generators) {
+  return pseudo_inverse.rows() == 3 ? least_squares<3>(pseudo_inverse, generators)
+                                    : least_squares<6>(pseudo_inverse, generators);
+}
+
+WorstCase exact_worst_case(const MatrixXd& a, const std::vector<Generator>& generators) {
+  if (a.rows() == a.cols()) return least_squares_worst_case(a.inverse(), generators);
+  if (a.cols() != 3) return dual_worst_case<6>(a, generators);
+  if (const std::optional<VectorXd> box = box_of(a.rows(), generators)) return worst_vertex(a, *box);
+  return dual_worst_case<3>(a, generators);
 }
 
 }  // namespace freeplay

@@ -1,37 +1,41 @@
 // FeasibleSet: where the platform can go while the play of every joint and the error of every input stay in bounds.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "analysis/pose_form.h"
+
 namespace freeplay {
 
-/// One play (a disc, 2 columns) or one input (a segment, 1 column) and how far it goes.
+/// One play (a segment, a disc or a ball: 1 to 3 columns) or one input (a segment) and how far it goes.
 struct Generator {
-  Eigen::MatrixXd columns;  ///< rows x 2 or rows x 1
+  Eigen::MatrixXd columns;  ///< rows x 1, 2 or 3
   double size = 0.0;        ///< radius [m], or half length [rad or m]
 };
 
-/// Largest values over a set of platform displacements dX = (dx, dy [m], dangle [rad]).
+/// Largest values over a set of platform displacements dX (PoseForm).
 struct WorstCase {
-  double position = 0.0;                    ///< of |(dx, dy)|
-  double dx = 0.0, dy = 0.0, dangle = 0.0;  ///< of |dx|, |dy|, |dangle|
-  Eigen::Vector3d worst{0.0, 0.0, 0.0};     ///< dX of the largest position error; minus it is as bad
-  Eigen::VectorXd multipliers;              ///< mu with A^T mu = (worst direction, 0), optimal there
+  double position = 0.0;                         ///< of the length of the shift [m]
+  double dangle = 0.0;                           ///< of the angle that it turns by [rad]
+  std::array<double, most_components> change{};  ///< of |dX_i| [m or rad]
+  Eigen::VectorXd worst;                         ///< dX of the largest position error; minus it is as bad
+  Eigen::VectorXd multipliers;                   ///< mu with A^T mu = (worst direction, 0), optimal there
 };
 
-/// All dX with A dX = sum of columns_k delta_k, |delta_k| <= size_k, for A (rows x 3) of rank 3. Its support function
-/// is, by convex duality,
+/// All dX with A dX = sum of columns_k delta_k, |delta_k| <= size_k, for A with 3 columns (plane) or 6 (space) and
+/// their rank. Its support function is, by convex duality,
 ///   h(n) = max n.dX = min { sum size_k |columns_k^T mu| : A^T mu = n }
-/// The bound is exact: with three rows mu is unique; where every generator acts on one row only the set is the polytope
-/// |A_i dX| <= D_i and its vertices are tried; else h is minimised by Newton's method (to 1e-11 of it, from above) and
-/// its largest value found by branch and bound over directions.
+/// The bound is exact: with as many rows as columns mu is unique; where in the plane every generator acts on one row
+/// only the set is the polytope |A_i dX| <= D_i and its vertices are tried; else h is minimised by Newton's method (to
+/// 1e-11 of it, from above). Its largest value is found by branch and bound over directions.
 WorstCase exact_worst_case(const Eigen::MatrixXd& a, const std::vector<Generator>& generators);
 
 /// The same where every row errs as it likes and A dX = d is solved by least squares, dX = A^+ d: never below the exact
-/// bound, equal to it for three rows. `pseudo_inverse`: A^+, 3 x rows.
+/// bound, equal to it where A is square. `pseudo_inverse`: A^+.
 WorstCase least_squares_worst_case(const Eigen::MatrixXd& pseudo_inverse, const std::vector<Generator>& generators);
 
 /// The farthest point of a centrally symmetric convex set in the plane from its support function; `support(n, p)`
@@ -40,5 +44,10 @@ WorstCase least_squares_worst_case(const Eigen::MatrixXd& pseudo_inverse, const 
 /// distance and sets `direction`.
 double farthest(const std::function<double(const Eigen::Vector2d&, Eigen::Vector2d&)>& support,
                 Eigen::Vector2d& direction);
+
+/// The same in space, certain to 1e-7. Where a set is so round that this takes too many directions, the bound that is
+/// left is returned: too large by 1e-4 at most, never too small.
+double farthest(const std::function<double(const Eigen::Vector3d&, Eigen::Vector3d&)>& support,
+                Eigen::Vector3d& direction);
 
 }  // namespace freeplay

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -68,6 +69,13 @@ std::unique_ptr<Model> without_inputs(const Model& model, const Platform& platfo
   return out;
 }
 
+/// What the file says of a joint; NaN where it does not.
+double parameter(const JointElement& joint, const char* name) {
+  if (!joint.has_play || joint.parameters == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  const auto found = joint.parameters->values.find(name);
+  return found != joint.parameters->values.end() ? found->second.number : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 IdealMechanism::IdealMechanism(const Model& model, Platform platform)
@@ -96,7 +104,27 @@ void IdealMechanism::find_plays() {
     for (const auto& [named, given] : model_->analysis.clearance) {
       if (named == j) radius = given;
     }
-    if (radius > 0.0 && joint.ideal_layout.constraint_rows > 0 && joint.gear < 0) plays_.push_back({j, radius});
+    if (radius > 0.0 && joint.ideal_layout.constraint_rows > 0 && joint.gear < 0) add_play(j, radius);
+  }
+}
+
+void IdealMechanism::add_play(int joint, double radius) {
+  const auto add = [&](double size, std::initializer_list<std::array<double, 6>> twists, const char* part) {
+    Play play{joint, size, static_cast<int>(twists.size()), part[0] != 0, {}, part, play_numbers()};
+    std::ranges::copy(twists, play.twist.begin());
+    if (size > 0.0) plays_.push_back(play);
+  };
+  const double length = parameter(model_->joints[at(joint)], "clearance.length");
+  if (model_->space == Space::planar) {
+    add(radius, {{1.0}, {0.0, 1.0}}, "");
+  } else if (!(length > 0.0)) {
+    add(radius, {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}}, "");
+  } else {
+    // Axis: z of the first marker.
+    const double axial = parameter(model_->joints[at(joint)], "clearance.axial_clearance"), tilt = 1.0 / length;
+    add(radius, {{0.5, 0.0, 0.0, 0.0, tilt, 0.0}, {0.0, 0.5, 0.0, -tilt, 0.0, 0.0}}, ".upper");
+    add(radius, {{0.5, 0.0, 0.0, 0.0, -tilt, 0.0}, {0.0, 0.5, 0.0, tilt, 0.0, 0.0}}, ".lower");
+    add(std::isnan(axial) ? radius : axial, {{0.0, 0.0, 1.0}}, ".axial");
   }
 }
 
@@ -177,7 +205,8 @@ void IdealMechanism::find_parts() {
 void IdealMechanism::find_lengths() {
   const auto marker = [&](int m) -> const Marker& { return model_->markers[at(m)]; };
   const auto distance = [&](int a, int b) {
-    return std::hypot(marker(a).position[0] - marker(b).position[0], marker(a).position[1] - marker(b).position[1]);
+    const Vector3 &p = marker(a).position, &q = marker(b).position;
+    return std::hypot(std::hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
   };
   // Farthest joint of a body from a marker on it; `next_only`: the only other joint, where there is one.
   const auto farthest = [&](int from, int except) {

@@ -13,7 +13,7 @@ namespace freeplay {
 
 /// Where all bodies are.
 struct Posture {
-  std::vector<double> q;  ///< x, y [m] and angle [rad] of each centre of mass
+  std::vector<double> q;  ///< coordinates of all bodies, as System has them
   std::vector<double> h;  ///< history of the closed system: turns that angles are counted in
 };
 
@@ -27,10 +27,18 @@ struct Limb {
   std::optional<Leg> leg;   ///< its closed form: crank and coupler on pins, driven at ground
 };
 
-/// The play of a joint: a massless link of length `radius` between its two markers.
+/// What the play of a joint lets its second marker do: displacements sum of twist_k delta_k with |delta| <= radius. In
+/// the plane a disc: a massless link of length `radius` between the two markers. In space a ball; or, of a bearing that
+/// has a length, two discs and a segment: the eccentricities of the axis at both ends of the bearing (their mean is a
+/// shift, their difference over the length a tilt) and the shift along the axis.
 struct Play {
-  int joint = 0;        ///< index into Model::joints
-  double radius = 0.0;  ///< [m]
+  int joint = 0;          ///< index into Model::joints
+  double radius = 0.0;    ///< [m]
+  int size = 2;           ///< numbers of delta: 1, 2 or 3
+  bool own_axes = false;  ///< twists are along the axes of the first marker, else along those of the world
+  std::array<std::array<double, 6>, 3> twist{};  ///< by number: shift [m/m], rotation vector [rad/m]
+  const char* part = "";                         ///< of several of one joint: ".upper", ".lower" (ends), ".axial"
+  int place = 0;                                 ///< of its first number among those of all plays
 };
 
 class IdealMechanism {
@@ -50,6 +58,9 @@ class IdealMechanism {
   std::span<const Limb> parts() const { return parts_; }
   /// By joint, radius greater than 0: of joints with clearance, or as `analysis: {error: {clearance}}` says.
   std::span<const Play> plays() const { return plays_; }
+  /// Numbers of all plays together.
+  int play_numbers() const { return plays_.empty() ? 0 : plays_.back().place + plays_.back().size; }
+  const PoseForm& form() const { return pose_form(model_->space); }
   /// Error of each input [rad or m].
   double input_error() const { return model_->analysis.input; }
   bool is_angle(int input) const;
@@ -69,6 +80,7 @@ class IdealMechanism {
  private:
   void find_parts();
   void find_plays();
+  void add_play(int joint, double radius);
   void find_lengths();
   void assemble_start();
 

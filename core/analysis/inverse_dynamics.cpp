@@ -21,20 +21,20 @@ constexpr double rank_limit = 1e-10;  // of pivots, and of parts of the null spa
 MatrixXd all_rows(const IdealMechanism& mechanism, const Evaluation& e) {
   const Model& model = mechanism.model();
   const System& system = mechanism.system();
-  const int nc = system.layout().nc();
+  const int nc = system.layout().nc(), width = system.body_velocities();
   const auto& inputs = mechanism.platform().inputs;
   MatrixXd rows = MatrixXd::Zero(nc + static_cast<Index>(inputs.size()), system.layout().nv());
   std::vector<SparseEntry> entries;
   system.jacobian_entries(e, entries);
   for (const SparseEntry& entry : entries) rows(entry.row(), entry.col()) += entry.value();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    double row[6], bias = 0.0;
+    double row[2 * spatial::velocities], bias = 0.0;
     system.coordinate_row(inputs[i], e, row, bias);
     const JointElement& joint = model.joints[at(inputs[i])];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
-      for (int c = 0; c < 3 && bodies[k] != ground; ++c) {
-        rows(nc + static_cast<Index>(i), 3 * bodies[k] + c) += row[3 * k + c];
+      for (int c = 0; c < width && bodies[k] != ground; ++c) {
+        rows(nc + static_cast<Index>(i), width * bodies[k] + c) += row[width * k + c];
       }
     }
   }
@@ -97,11 +97,9 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
 
   out.input.clear();
   for (Index i = 0; i < inputs; ++i) out.input.push_back(-lambda[nc + i]);
-  out.force.clear();
+  out.wrench.clear();
   for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
-    double wrench[6];
-    system.reaction(j, e, {lambda.data(), at(nc)}, wrench);
-    out.force.push_back({wrench[0], wrench[1]});
+    system.reaction(j, e, {lambda.data(), at(nc)}, out.wrench.emplace_back().data());
   }
   return Found::yes;
 }

@@ -8,8 +8,9 @@
 namespace freeplay {
 
 struct Efforts {
-  std::vector<double> input;                 ///< on the driven coordinates, by input [N m or N]
-  std::vector<std::array<double, 2>> force;  ///< by joint, on its second body, world axes [N]
+  std::vector<double> input;  ///< on the driven coordinates, by input [N m or N]
+  /// By joint, on its second body at the joint, world axes: force [N] and moment [N m].
+  std::vector<std::array<double, 6>> wrench;
 };
 
 /// Efforts of drivers in M a + Phi_q^T lambda = f with rows of joints, of drivers that stay and of the inputs. Where

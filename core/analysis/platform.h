@@ -6,16 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/pose_form.h"
 #include "model/model.h"
 
 namespace freeplay {
-
-/// A pose of the platform's frame: x, y [m], angle [rad], world axes.
-using FramePose = std::array<double, 3>;
-/// Which of x, y and angle are meant.
-using Components = std::array<bool, 3>;
-
-inline int count(const Components& components) { return components[0] + components[1] + components[2]; }
 
 /// The platform as the section `analysis` names it. What the section leaves out comes from the only
 /// inverse-kinematics driver; inputs, if there is none, are all joints that a driver prescribes.
@@ -24,7 +18,7 @@ struct Platform {
   std::vector<int> inputs;  ///< joints
   std::vector<int> elbow;   ///< 1 or -1, by input
   bool elbow_given = false;
-  std::array<std::optional<Expression>, 3> path;  ///< all empty: none is known
+  std::array<std::optional<Expression>, 3> path;  ///< x, y, angle; all empty: none is known
   Location location;                              ///< of what names the frame
 
   bool has_path() const { return path[0] || path[1] || path[2]; }

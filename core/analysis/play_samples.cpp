@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 
 #include "analysis/closed_play.h"
+#include "base/error.h"
 
 namespace freeplay {
 namespace {
@@ -34,14 +35,19 @@ class Sampler {
     }
     image_ = inverse * all;
     plays_ = VectorXd::Zero(width);
-    if (width == 0 || a.rows() == 3) return;
+    if (width == 0 || a.rows() == a.cols()) return;
     const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU);
-    const MatrixXd closure = svd.matrixU().rightCols(a.rows() - 3).transpose() * all;
+    const MatrixXd closure = svd.matrixU().rightCols(a.rows() - a.cols()).transpose() * all;
     const Eigen::JacobiSVD<MatrixXd> free(closure, Eigen::ComputeFullV);
     const double limit = 1e-12 * std::max(1e-300, all.cwiseAbs().maxCoeff());
     Index rank = 0;
     while (rank < free.singularValues().size() && free.singularValues()[rank] > limit) ++rank;
     if (rank == 0) return;
+    const bool balls = std::ranges::any_of(rooms_, [](const PlayRoom& one) { return one.size == 3; });
+    if (law_.kind == PlayLaw::Kind::rim && balls) {
+      throw Error(Error::Category::usage, "bad-value",
+                  "play of balls that touch their sockets can be drawn only in mechanisms without redundancy");
+    }
     const MatrixXd& v = free.matrixV();
     closed_.emplace(v.leftCols(rank), v.rightCols(width - rank), rooms_, law_, random_);
   }
@@ -50,7 +56,7 @@ class Sampler {
 
   bool has_samples() const { return !closed_ || closed_->exists(); }
 
-  Eigen::Vector3d draw() {
+  VectorXd draw() {
     if (closed_) return image_ * closed_->next();
     for (const PlayRoom& room : rooms_) {
       freeplay::draw(law_, random_, {&plays_[room.place], static_cast<std::size_t>(room.size)});
@@ -71,38 +77,41 @@ class Sampler {
 
 std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const VelocityMap& map, long count,
                                           std::uint64_t seed, const PlayLaw& law, const Tick& tick) {
-  const std::optional<MatrixXd> inverse = pseudo_inverse(map.a, mechanism.length());
+  const std::optional<MatrixXd> inverse = pseudo_inverse(map, mechanism.length());
   if (!inverse) return std::nullopt;
   Sampler sampler(map.a, *inverse, generators_of(mechanism, map), law, seed);
   if (!sampler.has_samples()) return std::nullopt;
+  const auto lengths = static_cast<Index>(mechanism.form().lengths);
   PlayStatistics out;
   for (long i = 0; i < count; ++i) {
     if (tick && i % 1024 == 0) tick(0);
-    const Eigen::Vector3d x = sampler.draw();
-    const double squared = x.head<2>().squaredNorm();
-    out.rms_position += squared;
-    out.rms_dangle += x[2] * x[2];
-    out.max_position = std::max(out.max_position, squared);
-    out.max_dangle = std::max(out.max_dangle, std::abs(x[2]));
+    const VectorXd x = sampler.draw();
+    const double shift = x.head(lengths).squaredNorm(), turn = x.tail(x.size() - lengths).squaredNorm();
+    out.rms_position += shift;
+    out.rms_dangle += turn;
+    out.max_position = std::max(out.max_position, shift);
+    out.max_dangle = std::max(out.max_dangle, turn);
   }
   out.rms_position = std::sqrt(out.rms_position / static_cast<double>(count));
   out.rms_dangle = std::sqrt(out.rms_dangle / static_cast<double>(count));
   out.max_position = std::sqrt(out.max_position);
+  out.max_dangle = std::sqrt(out.max_dangle);
   return out;
 }
 
 std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map,
                                                  const PlayLaw& law) {
-  const std::optional<MatrixXd> inverse = pseudo_inverse(map.a, mechanism.length());
+  const std::optional<MatrixXd> inverse = pseudo_inverse(map, mechanism.length());
   if (!inverse) return std::nullopt;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  MatrixXd covariance = MatrixXd::Zero(inverse->rows(), inverse->rows());
   for (const Generator& generator : generators_of(mechanism, map)) {
     const MatrixXd image = generator.size * (*inverse * generator.columns);
     covariance += image * image.transpose() * variance(law, static_cast<int>(image.cols()));
   }
   PlayStatistics out;
-  out.rms_position = std::sqrt(covariance(0, 0) + covariance(1, 1));
-  out.rms_dangle = std::sqrt(covariance(2, 2));
+  const auto lengths = static_cast<Index>(mechanism.form().lengths);
+  out.rms_position = std::sqrt(covariance.diagonal().head(lengths).sum());
+  out.rms_dangle = std::sqrt(covariance.diagonal().tail(covariance.rows() - lengths).sum());
   return out;
 }
 

@@ -17,12 +17,13 @@ struct PlayStatistics {
 /// Draws `count` samples of plays and errors of inputs distributed as `law` says, given that rigid bodies close.
 /// Without redundancy the draws are independent; with it a Markov chain walks over the plays that close (ClosedPlay),
 /// so neighbouring samples resemble each other. Every sample is feasible: none exceeds the exact worst case. Same seed,
-/// same numbers. Empty where A has not rank 3, and where no play with every pin on its rim was found to close.
+/// same numbers. Empty where A has not the rank of its columns, and where no play with every pin on its rim was found
+/// to close.
 std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const VelocityMap& map, long count,
                                           std::uint64_t seed, const PlayLaw& law = {}, const Tick& tick = {});
 
 /// Root mean squares of the same plays where every leg errs by itself and A dX = d is solved by least squares, in
-/// closed form from the variances of the law. Largest values are left 0. Empty where A has not rank 3.
+/// closed form from the variances of the law. Largest values are left 0. Empty where A has not the rank of its columns.
 std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map,
                                                  const PlayLaw& law = {});
 

@@ -53,8 +53,10 @@ std::string Unreachable::text(const IdealMechanism& mechanism) const {
 PostureSolver::PostureSolver(const IdealMechanism& mechanism)
     : mechanism_(mechanism),
       system_(mechanism.system()),
+      frame_(system_, mechanism.platform().marker),
       state_(system_.layout(), 0),
       e_(system_),
+      increment_(at(system_.layout().nv())),
       column_(mechanism.model().bodies.size()),
       local_row_(at(system_.layout().nc())) {}
 
@@ -92,16 +94,6 @@ const Evaluation& PostureSolver::look(double t, const Posture& posture, unsigned
   return e_;
 }
 
-FramePose PostureSolver::frame(const Posture& posture) const {
-  const Model& model = mechanism_.model();
-  const Marker& marker = model.markers[at(mechanism_.platform().marker)];
-  const Body& body = model.bodies[at(marker.body)];
-  const double* q = &posture.q[3 * at(marker.body)];
-  const double dx = marker.position[0] - body.com[0], dy = marker.position[1] - body.com[1];
-  const double c = std::cos(q[2]), s = std::sin(q[2]);
-  return {q[0] + c * dx - s * dy, q[1] + s * dx + c * dy, q[2] + marker.angle};
-}
-
 std::vector<double> PostureSolver::inputs(const Posture& posture) {
   if (!load(state_.t(), posture, 0)) throw Error(Error::Category::numerical, "analysis-failed", e_.fault.message.text);
   std::vector<double> out;
@@ -110,11 +102,10 @@ std::vector<double> PostureSolver::inputs(const Posture& posture) {
 }
 
 bool PostureSolver::place_platform(const Demand& demand, Posture& posture) const {
-  if (count(demand.given) < 3) return false;
-  const Model& model = mechanism_.model();
-  const Marker& marker = model.markers[at(mechanism_.platform().marker)];
-  put(model.bodies[at(marker.body)], marker.position[0], marker.position[1], demand.pose[0].value, demand.pose[1].value,
-      demand.pose[2].value - marker.angle, &posture.q[3 * at(marker.body)]);
+  if (!is_whole(demand)) return false;
+  FramePose pose;
+  for (std::size_t i = 0; i < pose.size(); ++i) pose[i] = demand.pose[i].value;
+  frame_.place(pose, posture.q);
   return true;
 }
 
@@ -148,17 +139,20 @@ bool PostureSolver::place_leg(const Limb& part, const Leg& leg, const Demand& de
 }
 
 // Rows and -residual of the task at a posture.
-void PostureSolver::assemble(const Task& task, const Demand& demand, const Posture& posture) {
+void PostureSolver::assemble(const Task& task, const Demand& demand) {
   const Model& model = mechanism_.model();
   const Platform& platform = mechanism_.platform();
+  const int width = system_.body_velocities();
+  pose_rows_.clear();
+  if (task.whole) frame_.rows(demand.given, demand.pose, e_, pose_rows_);
   const auto held = std::ranges::count_if(demand.inputs, [](const Jet& input) { return !std::isnan(input.value); });
-  const int extra = task.whole ? count(demand.given) + static_cast<int>(held) : 0;
+  const auto extra = static_cast<Eigen::Index>(pose_rows_.size()) + (task.whole ? held : 0);
   const int rows = static_cast<int>(task.rows.size());
-  matrix_.setZero(rows + extra, 3 * static_cast<Eigen::Index>(task.bodies.size()));
+  matrix_.setZero(rows + extra, width * static_cast<Eigen::Index>(task.bodies.size()));
   right_.setZero(rows + extra);
   std::ranges::fill(column_, -1);
   std::ranges::fill(local_row_, -1);
-  for (std::size_t i = 0; i < task.bodies.size(); ++i) column_[at(task.bodies[i])] = static_cast<int>(3 * i);
+  for (std::size_t i = 0; i < task.bodies.size(); ++i) column_[at(task.bodies[i])] = width * static_cast<int>(i);
   for (int i = 0; i < rows; ++i) {
     local_row_[at(task.rows[at(i)])] = i;
     right_[i] = -e_.phi[at(task.rows[at(i)])];
@@ -169,35 +163,41 @@ void PostureSolver::assemble(const Task& task, const Demand& demand, const Postu
     for (int r = 0; r < block.rows; ++r) {
       const int row = local_row_[at(block.row + r)];
       if (row < 0) continue;
-      for (int c = 0; c < 3; ++c) matrix_(row, column + c) += e_.jacobian[at(block.offset + 3 * r + c)];
+      for (int c = 0; c < width; ++c) matrix_(row, column + c) += e_.jacobian[at(block.offset + width * r + c)];
     }
   }
   if (!task.whole) return;
   int row = rows;
-  const FramePose here = frame(posture);
-  const planar::Arm& arm = e_.arms[at(platform.marker)];
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!demand.given[i]) continue;
-    double g[6] = {}, entries[3];
-    g[planar::components[i]] = 1.0;
-    planar::body_row(g, arm, entries);
-    for (int c = 0; c < 3; ++c) matrix_(row, column_[at(mechanism_.platform_body())] + c) = entries[c];
-    const double gap = demand.pose[i].value - here[i];
-    right_[row++] = i == 2 ? nearest_turn(gap) : gap;
+  for (const PoseRow& wanted : pose_rows_) {
+    double entries[spatial::velocities];
+    system_.marker_row(platform.marker, wanted.g, e_, entries);
+    for (int c = 0; c < width; ++c) matrix_(row, column_[at(mechanism_.platform_body())] + c) = entries[c];
+    right_[row++] = wanted.gap;
   }
   for (std::size_t i = 0; i < demand.inputs.size(); ++i) {
     if (std::isnan(demand.inputs[i].value)) continue;
     const int j = platform.inputs[i];
-    double entries[6], bias = 0.0;
+    double entries[2 * spatial::velocities], bias = 0.0;
     system_.coordinate_row(j, e_, entries, bias);
     const JointElement& joint = model.joints[at(j)];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
-      for (int c = 0; c < 3 && bodies[k] != ground; ++c) matrix_(row, column_[at(bodies[k])] + c) += entries[3 * k + c];
+      for (int c = 0; c < width && bodies[k] != ground; ++c) {
+        matrix_(row, column_[at(bodies[k])] + c) += entries[width * k + c];
+      }
     }
     const double gap = demand.inputs[i].value - e_.coordinate[at(j)];
     right_[row++] = mechanism_.is_angle(static_cast<int>(i)) ? nearest_turn(gap) : gap;
   }
+}
+
+void PostureSolver::move(const Task& task, const Eigen::VectorXd& step, Posture& posture) {
+  const std::size_t width = at(system_.body_velocities());
+  std::ranges::fill(increment_, 0.0);
+  for (std::size_t b = 0; b < task.bodies.size(); ++b) {
+    std::copy_n(step.data() + width * b, width, &increment_[width * at(task.bodies[b])]);
+  }
+  system_.retract(posture.q, increment_, posture.q);
 }
 
 // Newton's method. The first step follows the tangent; the others together measure how far the way bends from it.
@@ -208,26 +208,22 @@ PostureSolver::Step PostureSolver::correct(const Task& task, const Demand& deman
   for (int i = 0; i < iterations; ++i) {
     std::ranges::fill(state_.v(), 0.0);
     if (!load(demand.t, posture, term_position)) return Step::too_far;
-    assemble(task, demand, posture);
+    assemble(task, demand);
     if (right_.size() == 0) return Step::converged;
     solver_.compute(matrix_);
     const Eigen::VectorXd step = solver_.solve(right_);
     double largest = 0.0;
     for (Eigen::Index k = 0; k < step.size(); ++k) {
-      const double change = std::abs(step[k]) / (k % 3 == 2 ? 1.0 : size);
+      const double change = std::abs(step[k]) / (system_.is_turn(static_cast<int>(k)) ? 1.0 : size);
       if (!(change <= largest)) largest = change;
     }
     if (i == 0 ? !(largest <= longest) : !((bend += largest) <= longest * longest_bend / longest_step)) {
       return Step::too_far;
     }
-    for (std::size_t b = 0; b < task.bodies.size(); ++b) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        posture.q[3 * at(task.bodies[b]) + c] += step[static_cast<Eigen::Index>(3 * b + c)];
-      }
-    }
+    move(task, step, posture);
     if (largest > last_correction) continue;
     if (!load(demand.t, posture, term_position)) return Step::too_far;
-    assemble(task, demand, posture);
+    assemble(task, demand);
     return right_.lpNorm<Eigen::Infinity>() <= residual_limit * std::max(size, 1.0) ? Step::converged
                                                                                     : Step::contradiction;
   }
@@ -273,10 +269,13 @@ bool PostureSolver::settle_on_fold(const Task& task, const Demand& demand, Postu
   if (!task.whole) place_platform(demand, trial);
   std::ranges::fill(state_.v(), 0.0);
   double scale = system_.size(), last = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < trial.q.size(); ++i) scale = std::max(scale, i % 3 == 2 ? 0.0 : std::abs(trial.q[i]));
+  const std::size_t numbers = at(system_.body_coordinates());
+  for (std::size_t i = 0; i < trial.q.size(); ++i) {
+    if (i % numbers < form().lengths) scale = std::max(scale, std::abs(trial.q[i]));
+  }
   for (int i = 0; i < most_halvings; ++i) {
     if (!load(demand.t, trial, term_position)) return false;
-    assemble(task, demand, trial);
+    assemble(task, demand);
     // As far down as rounding lets it fall.
     const double residual = right_.lpNorm<Eigen::Infinity>();
     if (const double before = std::exchange(last, residual); residual <= rounding * scale && residual >= 0.5 * before) {
@@ -288,11 +287,7 @@ bool PostureSolver::settle_on_fold(const Task& task, const Demand& demand, Postu
     solver_.compute(matrix_);
     const Eigen::VectorXd step = solver_.solve(right_);
     if (!(step.lpNorm<Eigen::Infinity>() <= longest_step * std::max(1.0, system_.size()))) return false;
-    for (std::size_t b = 0; b < task.bodies.size(); ++b) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        trial.q[3 * at(task.bodies[b]) + c] += step[static_cast<Eigen::Index>(3 * b + c)];
-      }
-    }
+    move(task, step, trial);
   }
   return false;
 }
@@ -303,7 +298,7 @@ bool PostureSolver::reach(const std::function<Demand(double)>& way, const Postur
   why = {};
   folded_ = false;
   posture = from.q.empty() ? blank() : from;
-  if (count(last.given) < 3 || !last.inputs.empty()) return follow(whole_task(), way, posture, why);
+  if (!is_whole(last) || !last.inputs.empty()) return follow(whole_task(), way, posture, why);
   for (const Limb& part : mechanism_.parts()) {
     if (part.leg) continue;
     why = {};
@@ -331,7 +326,9 @@ bool PostureSolver::reach(const Demand& demand, const Posture& from, Posture& po
   return reach(
       [&](double s) {
         Demand part = demand;
-        for (std::size_t i = 0; i < 3; ++i) part.pose[i] = between(demand.pose[i], here[i], i == 2, s);
+        for (std::size_t i = 0; i < form().size(); ++i) {
+          part.pose[i] = between(demand.pose[i], here[i], form().is_turn(i), s);
+        }
         for (std::size_t i = 0; i < part.inputs.size(); ++i) {
           part.inputs[i] = between(demand.inputs[i], inputs_here[i], mechanism_.is_angle(static_cast<int>(i)), s);
         }
@@ -351,7 +348,7 @@ bool PostureSolver::settle(const Limb& part, const Demand& demand, Posture& post
 
 int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unreachable& why) {
   Posture posture = from.q.empty() ? blank() : from;
-  const bool whole_pose = count(demand.given) == 3;
+  const bool whole_pose = is_whole(demand);
   int legs = 0;
   bool told = false;
   for (const Limb& part : mechanism_.parts()) {
@@ -379,9 +376,9 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
           task,
           [&](double s) {
             Demand share = demand;
-            for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t i = 0; i < form().size(); ++i) {
               const double gap = demand.pose[i].value - here[i];
-              share.pose[i].value = here[i] + s * (i == 2 ? nearest_turn(gap) : gap);
+              share.pose[i].value = here[i] + s * (form().is_turn(i) ? nearest_turn(gap) : gap);
             }
             return share;
           },
@@ -400,12 +397,12 @@ bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vec
                           std::vector<double>& a) {
   const Task task = whole_task();
   const Platform& platform = mechanism_.platform();
-  v.assign(posture.q.size(), 0.0);
-  a.assign(posture.q.size(), 0.0);
+  v.assign(increment_.size(), 0.0);
+  a.assign(increment_.size(), 0.0);
   for (const bool speeds : {true, false}) {
     std::ranges::copy(v, state_.v().begin());
     if (!load(demand.t, posture, term_position | term_velocity | term_acceleration)) return false;
-    assemble(task, demand, posture);
+    assemble(task, demand);
     if (speeds) {
       solver_.compute(matrix_);
       solver_.setThreshold(1e-10);
@@ -413,16 +410,13 @@ bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vec
     }
     for (int r = 0; r < system_.layout().nc(); ++r) right_[r] = speeds ? e_.nu[at(r)] : e_.gamma[at(r)];
     int row = system_.layout().nc();
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!demand.given[i]) continue;
-      double g[6] = {};
-      g[planar::components[i]] = 1.0;
-      right_[row++] = speeds ? demand.pose[i].rate
-                             : demand.pose[i].acceleration - planar::velocity_product(g, e_.arms[at(platform.marker)]);
+    for (const PoseRow& wanted : pose_rows_) {
+      right_[row++] =
+          speeds ? wanted.rate : wanted.acceleration - system_.marker_row_product(platform.marker, wanted.g, e_);
     }
     for (std::size_t i = 0; i < demand.inputs.size(); ++i) {
       if (std::isnan(demand.inputs[i].value)) continue;
-      double entries[6], bias = 0.0;
+      double entries[2 * spatial::velocities], bias = 0.0;
       system_.coordinate_row(platform.inputs[i], e_, entries, bias);
       right_[row++] = speeds ? demand.inputs[i].rate : demand.inputs[i].acceleration - bias;
     }
@@ -445,7 +439,7 @@ Posture regular_start(IdealMechanism& mechanism, const Components& given) {
     demand.t = mechanism.model().settings.start;
     demand.given = given;
     const FramePose here = solver.frame(posture);
-    for (std::size_t i = 0; i < 3; ++i) demand.pose[i] = Jet::constant(here[i]);
+    for (std::size_t i = 0; i < here.size(); ++i) demand.pose[i] = Jet::constant(here[i]);
     return solver.rates(demand, posture, v, a);
   };
   if (is_regular(start)) return start;

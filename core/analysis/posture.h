@@ -9,16 +9,17 @@
 #include <Eigen/QR>
 
 #include "analysis/ideal_mechanism.h"
+#include "analysis/platform_frame.h"
 #include "base/jet.h"
 
 namespace freeplay {
 
 /// What a posture must fulfil besides the joints. Angles count up to whole turns.
 struct Demand {
-  double t = 0.0;             ///< of drivers that stay [s]
-  Components given{};         ///< of the pose
-  std::array<Jet, 3> pose{};  ///< of the frame: x, y [m], angle [rad], with time derivatives
-  std::vector<Jet> inputs;    ///< coordinates [rad or m] by input; NaN: free; empty: all free
+  double t = 0.0;                           ///< of drivers that stay [s]
+  Components given{};                       ///< of the pose
+  std::array<Jet, most_components> pose{};  ///< numbers of the frame's pose with time derivatives
+  std::vector<Jet> inputs;                  ///< coordinates [rad or m] by input; NaN: free; empty: all free
 };
 
 /// Why a pose is out of reach.
@@ -30,7 +31,7 @@ struct Unreachable {
   std::string text(const IdealMechanism& mechanism) const;
 };
 
-/// Finds postures. A pose that gives x, y and angle fixes the platform, and every part by itself follows: a two-link
+/// Finds postures. A pose that is given whole fixes the platform, and every part by itself follows: a two-link
 /// leg in closed form, in the working mode of Platform::elbow; other parts by Newton's method along the straight way
 /// from a posture that is known. Other demands are met by Newton's method on the whole mechanism. Not thread-safe: one
 /// for each thread; it holds work space.
@@ -52,7 +53,7 @@ class PostureSolver {
   bool settle(const Limb& part, const Demand& demand, Posture& posture);
   /// Puts the bodies of a part that has a closed form in the mode `elbow`; false when the pose is out of reach.
   bool place(const Limb& part, int elbow, const Demand& demand, Posture& posture) const;
-  /// Puts the platform at a pose that gives x, y and angle; else returns false.
+  /// Puts the platform at a pose that is given whole; else returns false.
   bool place_platform(const Demand& demand, Posture& posture) const;
   /// All bodies at the origin.
   Posture blank() const;
@@ -65,7 +66,8 @@ class PostureSolver {
   bool rates(const Demand& demand, const Posture& posture, std::vector<double>& v, std::vector<double>& a);
 
   /// Pose of the frame, and coordinates of the inputs.
-  FramePose frame(const Posture& posture) const;
+  FramePose frame(const Posture& posture) const { return frame_.pose(posture.q); }
+  const PoseForm& form() const { return frame_.form(); }
   std::vector<double> inputs(const Posture& posture);
   /// The system evaluated at a posture at rest; valid until the next call.
   const Evaluation& evaluate(double t, const Posture& posture, unsigned terms);
@@ -87,16 +89,22 @@ class PostureSolver {
   bool follow(const Task& task, const std::function<Demand(double)>& way, Posture& posture, Unreachable& why);
   bool settle_on_fold(const Task& task, const Demand& demand, Posture& posture);
   Step correct(const Task& task, const Demand& demand, Posture& posture, double longest, int iterations);
-  void assemble(const Task& task, const Demand& demand, const Posture& posture);
+  void assemble(const Task& task, const Demand& demand);
   const Evaluation& look(double t, const Posture& posture, unsigned terms);
   bool load(double t, const Posture& posture, unsigned terms);
   void count_turns(Posture& posture) const;
 
+  bool is_whole(const Demand& demand) const { return count(demand.given) == form().freedoms(); }
+  void move(const Task& task, const Eigen::VectorXd& step, Posture& posture);
+
   const IdealMechanism& mechanism_;
   const System& system_;
+  PlatformFrame frame_;
   State state_;
   Evaluation e_;
   bool folded_ = false;
+  std::vector<PoseRow> pose_rows_;
+  std::vector<double> increment_;
   std::vector<int> column_;     // by body: its first column in the task at hand, or -1
   std::vector<int> local_row_;  // by row of the system: its row in the task at hand, or -1
   Eigen::MatrixXd matrix_;

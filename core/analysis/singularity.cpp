@@ -9,9 +9,8 @@ const char* word(SingularityKind kind) {
   return words[static_cast<int>(kind)];
 }
 
-Singularity singularity_of(const VelocityMap& map, const Components& kept, double length) {
-  Eigen::MatrixXd a = map.a;
-  if (kept[2]) a.col(a.cols() - 1) /= length;
+Singularity singularity_of(const VelocityMap& map, double length) {
+  const Eigen::MatrixXd a = map.scaled_outputs(length);
   Singularity out;
   out.inverse_min = map.inverse_min;
   if (a.rows() >= a.cols() && a.cols() > 0) {

@@ -13,7 +13,7 @@ inline constexpr double singular_limit = 1e-6;
 enum class SingularityKind { none, direct, inverse, both };
 const char* word(SingularityKind kind);
 
-/// Of A dX = B dtheta with angles of X times L, all numbers without unit.
+/// Of A dX = B dtheta with turns of X times L, all numbers without unit.
 struct Singularity {
   double sigma_min = 0.0, sigma_max = 0.0;  ///< extreme singular values of A
   double condition = 0.0;                   ///< their quotient; infinite where sigma_min is zero
@@ -22,7 +22,7 @@ struct Singularity {
   SingularityKind kind = SingularityKind::none;
 };
 
-/// `kept`: the components of the pose that `map` was made for; `length`: L [m].
-Singularity singularity_of(const VelocityMap& map, const Components& kept, double length);
+/// `length`: L [m].
+Singularity singularity_of(const VelocityMap& map, double length);
 
 }  // namespace freeplay

@@ -36,13 +36,9 @@ Demand path_demand(IdealMechanism& mechanism, double t) {
 /// Reaches points of a grid from their neighbours.
 class GridFlood {
  public:
-  GridFlood(IdealMechanism& mechanism, const Components& given, const std::array<long, 3>& counts,
+  GridFlood(IdealMechanism& mechanism, const Components& given, std::span<const GridValues> axes,
             std::vector<Station>& stations, const Tick& tick)
-      : tick_(tick),
-        solver_(mechanism),
-        start_(regular_start(mechanism, given)),
-        counts_(counts),
-        stations_(stations) {}
+      : tick_(tick), solver_(mechanism), start_(regular_start(mechanism, given)), axes_(axes), stations_(stations) {}
 
   void run() {
     // From the start to the point next to it that can be reached; further points only if all nearer ones fail.
@@ -51,7 +47,7 @@ class GridFlood {
     std::vector<double> distance(stations_.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
       order[i] = i;
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < axes_.size(); ++k) {
         const double gap = stations_[i].demand.given[k] ? stations_[i].demand.pose[k].value - here[k] : 0.0;
         distance[i] += gap * gap;
       }
@@ -79,36 +75,41 @@ class GridFlood {
   template <class Visit>
   void for_each_neighbour(std::size_t index, const Visit& visit) {
     const long i = static_cast<long>(index);
-    const long strides[3] = {counts_[1] * counts_[2], counts_[2], 1};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const long place = i / strides[k] % counts_[k];
-      if (place > 0) visit(static_cast<std::size_t>(i - strides[k]));
-      if (place + 1 < counts_[k]) visit(static_cast<std::size_t>(i + strides[k]));
+    long stride = static_cast<long>(stations_.size());
+    for (const GridValues& axis : axes_) {
+      stride /= axis.count;
+      const long place = i / stride % axis.count;
+      if (place > 0) visit(static_cast<std::size_t>(i - stride));
+      if (place + 1 < axis.count) visit(static_cast<std::size_t>(i + stride));
     }
   }
 
   const Tick& tick_;
   PostureSolver solver_;
   Posture start_;
-  std::array<long, 3> counts_;
+  std::span<const GridValues> axes_;
   std::vector<Station>& stations_;
   std::deque<std::size_t> open_;
 };
 
 }  // namespace
 
-Components components_to_give(int freedoms, const Components& given, const std::string& what, const Location& place) {
+Components components_to_give(const PoseForm& form, int freedoms, const Components& given, const std::string& what,
+                              const Location& place) {
   Components out = given;
-  if (freedoms >= 3) out[2] = true;
-  const int wanted = std::min(freedoms, 3);
+  const int wanted = std::min(freedoms, form.freedoms());
+  for (std::size_t i = form.lengths; i < form.size() && wanted == form.freedoms(); ++i) out[i] = true;
   if (count(out) == wanted) return out;
   const bool in_file = !place.file.empty();
   const std::string needs =
-      wanted == 3 ? "x and y, and may give the angle" : fmt::format("{} of x, y and angle", wanted);
+      wanted == form.freedoms()
+          ? fmt::format("{}, and may give {}", enumeration(form.words.first(form.lengths)),
+                        form.lengths + 1 == form.size() ? "the angle" : enumeration(form.words.subspan(form.lengths)))
+          : fmt::format("{} of {}", wanted, enumeration(form.words));
   throw Error(in_file ? Error::Category::input : Error::Category::usage,
               in_file ? (count(out) < wanted ? "ik-underdetermined" : "ik-unreachable") : "bad-value",
-              fmt::format("{} gives {} of x, y and angle, but the mechanism leaves its frame {} freedom{}", what,
-                          count(given), freedoms, freedoms == 1 ? "" : "s"),
+              fmt::format("{} gives {} of {}, but the mechanism leaves its frame {} freedom{}", what, count(given),
+                          enumeration(form.words), freedoms, freedoms == 1 ? "" : "s"),
               place, fmt::format("it must give {}", needs));
 }
 
@@ -160,24 +161,23 @@ std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& tim
   return stations;
 }
 
-std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridValues, 3>& axes, const Components& given,
+std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValues> axes, const Components& given,
                              int threads, const Tick& tick) {
-  const std::array<long, 3> counts{axes[0].count, axes[1].count, axes[2].count};
-  std::vector<Station> stations(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]));
-  std::size_t next = 0;
-  for (long i = 0; i < counts[0]; ++i) {
-    for (long j = 0; j < counts[1]; ++j) {
-      for (long k = 0; k < counts[2]; ++k) {
-        Demand& demand = stations[next++].demand;
-        demand.t = mechanism.model().settings.start;
-        demand.given = given;
-        const double values[3] = {axes[0].value(i), axes[1].value(j), axes[2].value(k)};
-        for (std::size_t c = 0; c < 3; ++c) demand.pose[c] = Jet::constant(given[c] ? values[c] : 0.0);
-      }
+  long points = 1;
+  for (const GridValues& axis : axes) points *= axis.count;
+  std::vector<Station> stations(static_cast<std::size_t>(points));
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    Demand& demand = stations[i].demand;
+    demand.t = mechanism.model().settings.start;
+    demand.given = given;
+    long stride = points;
+    for (std::size_t c = 0; c < axes.size(); ++c) {
+      stride /= axes[c].count;
+      if (given[c]) demand.pose[c] = Jet::constant(axes[c].value(static_cast<long>(i) / stride % axes[c].count));
     }
   }
   if (!mechanism.closed_form() || count(given) < 3) {
-    GridFlood(mechanism, given, counts, stations, tick).run();
+    GridFlood(mechanism, given, axes, stations, tick).run();
     return stations;
   }
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "analysis/posture.h"
@@ -19,10 +20,11 @@ struct Station {
   Posture posture;  ///< where it is reachable
 };
 
-/// The components of a pose that are to be given: those of `given`, and the angle where the mechanism has three
-/// freedoms (it is 0 then). Throws Error{usage} "bad-value", or Error{input} "ik-underdetermined" at `place` if it
-/// names a file: the mechanism leaves its frame more or fewer freedoms.
-Components components_to_give(int freedoms, const Components& given, const std::string& what, const Location& place);
+/// The components of a pose that are to be given: those of `given`, and all angles where the mechanism leaves its frame
+/// all freedoms (they are 0 then). Throws Error{usage} "bad-value", or Error{input} "ik-underdetermined" at `place` if
+/// it names a file: the mechanism leaves its frame more or fewer freedoms.
+Components components_to_give(const PoseForm& form, int freedoms, const Components& given, const std::string& what,
+                              const Location& place);
 
 /// Called with 1 when a pose is taken up and with 0 now and then inside a long one, by any thread; what it throws ends
 /// the analysis. May be empty.
@@ -35,9 +37,9 @@ std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Dem
 /// start time on. Throws Error{numerical} "bad-expression" where the path has no value.
 std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times, const Tick& tick = {});
 
-/// x slowest, then y, then angle. Where all has a closed form every point stands by itself; else points are reached
-/// from their neighbours, beginning next to the start. The result does not depend on `threads`.
-std::vector<Station> on_grid(IdealMechanism& mechanism, const std::array<GridValues, 3>& axes, const Components& given,
+/// `axes`: of each number of a pose; the first slowest. Where all has a closed form every point stands by itself; else
+/// points are reached from their neighbours, beginning next to the start. The result does not depend on `threads`.
+std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValues> axes, const Components& given,
                              int threads, const Tick& tick = {});
 
 /// Calls work(worker, first, last) for pieces of 0 .. count, `threads` at a time, `worker` being the number of the

@@ -17,9 +17,26 @@ constexpr double regular_inputs = 1e-9;  // pivots of B of a part that can be to
 
 }  // namespace
 
+MatrixXd VelocityMap::scaled_outputs(double length) const {
+  MatrixXd out = a;
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    if (turns[k]) out.col(static_cast<Index>(k)) /= length;
+  }
+  return out;
+}
+
 VelocityMapper::VelocityMapper(const IdealMechanism& mechanism, const Components& kept)
-    : mechanism_(mechanism), system_(mechanism.system()), column_(mechanism.model().bodies.size(), -1) {
-  for (std::size_t i = 0; i < 3; ++i) place_[i] = kept[i] ? kept_++ : -1 - eliminated_++;
+    : mechanism_(mechanism),
+      system_(mechanism.system()),
+      frame_(system_, mechanism.platform().marker),
+      column_(mechanism.model().bodies.size(), -1) {
+  const PoseForm& form = frame_.form();
+  all_shifts_ = true;
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    place_[i] = kept[i] ? kept_++ : -1 - eliminated_++;
+    if (kept[i]) turns_.push_back(form.is_turn(i) ? 1 : 0);
+    all_shifts_ = all_shifts_ && (kept[i] || form.is_turn(i));
+  }
   const int parts = static_cast<int>(mechanism.parts().size());
   std::vector<int> all;
   for (int p = 0; p < parts; ++p) {
@@ -36,7 +53,7 @@ void VelocityMapper::make_group(std::vector<int> parts) {
     const Limb& part = mechanism_.parts()[at(p)];
     for (const BodyId b : part.bodies) {
       column_[at(b)] = group.columns;
-      group.columns += 3;
+      group.columns += system_.body_velocities();
     }
     for (const int row : part.rows) local[at(row)] = group.rows++;
     group.inputs.insert(group.inputs.end(), part.inputs.begin(), part.inputs.end());
@@ -50,25 +67,27 @@ void VelocityMapper::make_group(std::vector<int> parts) {
     }
   }
   for (const int p : group.plays) {
-    group.play_rows.push_back(local[at(system_.layout().rows(mechanism_.plays()[at(p)].joint).offset)]);
+    const Play& play = mechanism_.plays()[at(p)];
+    group.play_rows.push_back(local[at(system_.layout().rows(play.joint).offset)]);
+    group.play_columns.push_back(group.play_numbers);
+    group.play_numbers += play.size;
   }
   group.rows += static_cast<int>(group.inputs.size());
   group.parts = std::move(parts);
   group.passive.resize(group.rows, group.columns);
-  group.right.resize(group.rows, kept_ + static_cast<Index>(group.inputs.size() + 2 * group.plays.size()));
+  group.right.resize(group.rows, kept_ + static_cast<Index>(group.inputs.size()) + group.play_numbers);
   group.work.resize(group.right.cols());
 }
 
-// Three entries of a row in the columns of a body; those of the platform become columns of its frame:
-// r = X - s, so g r' = g X' - (g . E s) angle'.
+// Entries of a row in the columns of a body; those of the platform become columns of its frame.
 void VelocityMapper::put(Group& group, int row, int body, const double* g, const Evaluation& e) {
   if (body != mechanism_.platform_body()) {
-    for (int c = 0; c < 3; ++c) group.passive(row, column_[at(body)] + c) += g[c];
+    for (int c = 0; c < system_.body_velocities(); ++c) group.passive(row, column_[at(body)] + c) += g[c];
     return;
   }
-  const planar::Arm& arm = e.arms[at(mechanism_.platform().marker)];
-  const double frame[3] = {g[0], g[1], g[2] + g[0] * arm.y - g[1] * arm.x};
-  for (std::size_t c = 0; c < 3; ++c) {
+  double frame[most_components];
+  frame_.frame_row(g, e, frame);
+  for (std::size_t c = 0; c < frame_.form().size(); ++c) {
     if (place_[c] >= 0) {
       group.right(row, place_[c]) += frame[c];
     } else {
@@ -79,49 +98,60 @@ void VelocityMapper::put(Group& group, int row, int body, const double* g, const
 
 void VelocityMapper::eliminate(Group& group, const Evaluation& e) {
   const Model& model = mechanism_.model();
+  const int width = system_.body_velocities();
   group.passive.setZero();
   group.right.setZero();
   for (const Fill& fill : group.fills) {
     const double* entries = &e.jacobian[at(system_.jacobian_blocks()[at(fill.block)].offset)];
-    for (int r = 0; r < fill.rows; ++r) put(group, fill.row + r, fill.body, entries + 3 * r, e);
+    for (int r = 0; r < fill.rows; ++r) put(group, fill.row + r, fill.body, entries + width * r, e);
   }
   const int first_input = group.rows - static_cast<int>(group.inputs.size());
   for (int i = 0; i < static_cast<int>(group.inputs.size()); ++i) {
     const int j = mechanism_.platform().inputs[at(group.inputs[at(i)])];
-    double row[6], bias = 0.0;
+    double row[2 * spatial::velocities], bias = 0.0;
     system_.coordinate_row(j, e, row, bias);
     const JointElement& joint = model.joints[at(j)];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
-      if (bodies[k] != ground) put(group, first_input + i, bodies[k], row + 3 * k, e);
+      if (bodies[k] != ground) put(group, first_input + i, bodies[k], row + width * k, e);
     }
     group.right(first_input + i, kept_ + i) = 1.0;
   }
-  // A play moves the second marker against the second body: what its rows feel of a shift of that body, or of the
-  // opposite shift of the first.
-  for (std::size_t p = 0; p < group.plays.size(); ++p) {
-    const int j = mechanism_.plays()[at(group.plays[p])].joint;
-    const Slice rows = system_.layout().rows(j);
-    const BodyId second = model.markers[at(model.joints[at(j)].marker_b)].body;
-    const BodyId moved = second != ground ? second : model.markers[at(model.joints[at(j)].marker_a)].body;
-    const double sign = second != ground ? 1.0 : -1.0;
-    for (const JacobianBlock& block : system_.jacobian_blocks()) {
-      if (block.row != rows.offset || block.body != moved || block.rows != rows.size) continue;
-      for (int r = 0; r < rows.size; ++r) {
-        for (int c = 0; c < 2; ++c) {
-          group.right(group.play_rows[p] + r, kept_ + static_cast<Index>(group.inputs.size() + 2 * p) + c) =
-              sign * e.jacobian[at(block.offset + 3 * r + c)];
-        }
-      }
-    }
-  }
+  for (std::size_t p = 0; p < group.plays.size(); ++p) put_play(group, p, e);
   if (group.columns == 0) return;
   group.qr.setThreshold(rank_limit_);
   group.qr.compute(group.passive);
   group.right.applyOnTheLeft(group.qr.householderQ().adjoint());
 }
 
-double VelocityMapper::towards_platform(const Group& group, const Evaluation& e, double x, double y) const {
+// A play moves the second marker against the second body: what its rows feel of that displacement of the body, or of
+// the opposite one of the first.
+void VelocityMapper::put_play(Group& group, std::size_t p, const Evaluation& e) {
+  const Play& play = mechanism_.plays()[at(group.plays[p])];
+  const Model& model = mechanism_.model();
+  const JointElement& joint = model.joints[at(play.joint)];
+  const Slice rows = system_.layout().rows(play.joint);
+  const bool second = model.markers[at(joint.marker_b)].body != ground;
+  const int marker = second ? joint.marker_b : joint.marker_a;
+  const Index first = kept_ + static_cast<Index>(group.inputs.size()) + group.play_columns[p];
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(e.markers[at(joint.marker_a)].rotation);
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    if (block.row != rows.offset || block.body != model.markers[at(marker)].body || block.rows != rows.size) continue;
+    for (int r = 0; r < rows.size; ++r) {
+      double row[6];
+      twist_row(system_, marker, &e.jacobian[at(block.offset + system_.body_velocities() * r)], e, row);
+      for (int k = 0; k < play.size; ++k) {
+        Eigen::Map<const Eigen::Vector3d> shift(play.twist[at(k)].data()), turn(play.twist[at(k)].data() + 3);
+        const Eigen::Map<const Eigen::Vector3d> force(row), moment(row + 3);
+        const double felt =
+            play.own_axes ? force.dot(axes * shift) + moment.dot(axes * turn) : force.dot(shift) + moment.dot(turn);
+        group.right(group.play_rows[p] + r, first + k) = second ? felt : -felt;
+      }
+    }
+  }
+}
+
+double VelocityMapper::towards_platform(const Group& group, const Evaluation& e, const Eigen::Vector3d& shift) const {
   if (group.inputs.empty()) return 1.0;
   const Model& model = mechanism_.model();
   const JointElement& input = model.joints[at(mechanism_.platform().inputs[at(group.inputs[0])])];
@@ -137,34 +167,54 @@ double VelocityMapper::towards_platform(const Group& group, const Evaluation& e,
       for (const int m : {joint.marker_a, joint.marker_b}) {
         if (model.markers[at(m)].body != mechanism_.platform_body()) continue;
         const double* tip = e.markers[at(m)].position;
-        return x * (tip[0] - base[0]) + y * (tip[1] - base[1]) < 0.0 ? -1.0 : 1.0;
+        return shift.dot(spatial::vector(tip) - spatial::vector(base)) < 0.0 ? -1.0 : 1.0;
       }
     }
   }
   return 1.0;
 }
 
-// Length that a row of several outputs is scaled to 1 in; `turn`: its angle over L.
-double VelocityMapper::output_size(double x, double y, double turn) const {
-  if (place_[0] < 0 || place_[1] < 0) return std::hypot(x, y, turn);
-  const double flat = std::hypot(x, y);
-  return flat > nothing * std::abs(turn) ? flat : std::abs(turn);
+// Part of a row in the shifts; those that are not kept are 0.
+Eigen::Vector3d VelocityMapper::shift_of(const Eigen::Ref<const Eigen::RowVectorXd>& row) const {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < frame_.form().lengths; ++i) {
+    if (place_[i] >= 0) shift[static_cast<Index>(i)] = row[place_[i]];
+  }
+  return shift;
+}
+
+// Divides the columns of turns by L.
+void VelocityMapper::scale_turns(Eigen::Ref<MatrixXd> outputs) const {
+  for (Index k = 0; k < kept_; ++k) {
+    if (turns_[static_cast<std::size_t>(k)]) outputs.col(k) /= mechanism_.length();
+  }
+}
+
+// Length that a row of several outputs is scaled to 1 in.
+double VelocityMapper::output_size(const Eigen::Ref<const Eigen::RowVectorXd>& row) const {
+  const double shift = shift_of(row).norm();
+  double turn = 0.0;
+  for (Index k = 0; k < kept_; ++k) {
+    if (turns_[static_cast<std::size_t>(k)]) turn = std::hypot(turn, row[k] / mechanism_.length());
+  }
+  if (!all_shifts_) return std::hypot(shift, turn);
+  return shift > nothing * turn ? shift : turn;
 }
 
 // One row for the whole group.
 void VelocityMapper::scale_single(const Group& group, const Evaluation& e, Eigen::Ref<MatrixXd> row) const {
-  const double x = place_[0] >= 0 ? row(0, place_[0]) : 0.0, y = place_[1] >= 0 ? row(0, place_[1]) : 0.0;
-  const double turn = place_[2] >= 0 ? row(0, place_[2]) / mechanism_.length() : 0.0;
-  double size = std::hypot(x, y);
+  const Eigen::Vector3d shift = shift_of(row.row(0));
+  double size = 0.0;
   if (kept_ == 1) {
+    size = std::abs(row(0, 0)) / (turns_[0] ? mechanism_.length() : 1.0);
     for (std::size_t i = 0; i < group.inputs.size(); ++i) {
-      size = std::hypot(size, turn, row(0, kept_ + static_cast<Index>(i)) / mechanism_.crank_length(group.inputs[i]));
+      size = std::hypot(size, row(0, kept_ + static_cast<Index>(i)) / mechanism_.crank_length(group.inputs[i]));
     }
   } else {
-    size = output_size(x, y, turn);
+    size = output_size(row.row(0));
   }
   if (size < nothing) return;
-  row *= towards_platform(group, e, x, y) / size;
+  row *= towards_platform(group, e, shift) / size;
 }
 
 void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows) const {
@@ -174,16 +224,14 @@ void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows
     if (b.matrixLU().diagonal().cwiseAbs().minCoeff() > regular_inputs) {
       rows = b.solve(MatrixXd(rows)).eval();
       for (Index r = 0; r < rows.rows(); ++r) {
-        const double x = place_[0] >= 0 ? rows(r, place_[0]) : 0.0, y = place_[1] >= 0 ? rows(r, place_[1]) : 0.0;
-        const double turn = place_[2] >= 0 ? rows(r, place_[2]) / mechanism_.length() : 0.0;
-        const double size = output_size(x, y, turn);
+        const double size = output_size(rows.row(r));
         if (size > 0.0) rows.row(r) /= size;
       }
       return;
     }
   }
   MatrixXd a = rows.leftCols(kept_);
-  if (place_[2] >= 0) a.col(place_[2]) /= mechanism_.length();
+  scale_turns(a);
   const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU);
   rows.applyOnTheLeft(svd.matrixU().transpose());
   for (Index r = 0; r < svd.singularValues().size(); ++r) {
@@ -195,7 +243,7 @@ void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows
 Index VelocityMapper::separate(const Group& group, Eigen::Ref<MatrixXd> rows) const {
   const Index inputs = static_cast<Index>(group.inputs.size());
   MatrixXd scaled = rows.leftCols(kept_ + inputs);
-  if (place_[2] >= 0) scaled.col(place_[2]) /= mechanism_.length();
+  scale_turns(scaled);
   for (Index i = 0; i < inputs; ++i) {
     scaled.col(kept_ + i) /= mechanism_.crank_length(group.inputs[static_cast<std::size_t>(i)]);
   }
@@ -236,7 +284,9 @@ Eigen::Index VelocityMapper::take(Group& group, const Evaluation& e, Index first
     out.b.block(first, group.inputs[static_cast<std::size_t>(i)], count, 1) = rows.col(kept_ + i);
   }
   for (std::size_t p = 0; p < group.plays.size(); ++p) {
-    out.c.block(first, 2 * group.plays[p], count, 2) = rows.middleCols(kept_ + inputs + 2 * static_cast<Index>(p), 2);
+    const Play& play = mechanism_.plays()[static_cast<std::size_t>(group.plays[p])];
+    out.c.block(first, play.place, count, play.size) =
+        rows.middleCols(kept_ + inputs + group.play_columns[p], play.size);
   }
   for (Index r = 0; r < count; ++r) out.part.push_back(group.parts.size() == 1 ? group.parts[0] : -1);
   return count;
@@ -253,8 +303,9 @@ void VelocityMapper::map(const Evaluation& e, VelocityMap& out, bool folded) {
   }
   out.a.setZero(rows, kept_);
   out.b.setZero(rows, static_cast<Index>(mechanism_.platform().inputs.size()));
-  out.c.setZero(rows, 2 * static_cast<Index>(mechanism_.plays().size()));
+  out.c.setZero(rows, mechanism_.play_numbers());
   out.part.clear();
+  out.turns = turns_;
   out.inverse_min = std::numeric_limits<double>::infinity();
   Index first = 0;
   for (Group& group : groups_) first += take(group, e, first, out);

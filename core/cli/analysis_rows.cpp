@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -24,19 +25,6 @@ const std::string& input_name(const IdealMechanism& mechanism, int input) {
 
 int input_count(const IdealMechanism& mechanism) { return static_cast<int>(mechanism.platform().inputs.size()); }
 
-/// x, y, angle: as given, or where the frame is then.
-FramePose shown_pose(const Station& station, const PostureSolver& solver) {
-  FramePose pose{nan, nan, nan};
-  if (station.reachable) {
-    pose = solver.frame(station.posture);
-    pose[2] = std::remainder(pose[2], 2.0 * M_PI);
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (station.demand.given[i]) pose[i] = station.demand.pose[i].value;
-  }
-  return pose;
-}
-
 /// Counts angles on from the row before, where rows follow a path.
 class Turns {
  public:
@@ -54,6 +42,22 @@ class Turns {
 double principal(double angle) {
   const double rest = std::remainder(angle, 2.0 * M_PI);
   return rest <= -M_PI ? rest + 2.0 * M_PI : rest;
+}
+
+/// The numbers of the pose: as given, or where the frame is then.
+FramePose shown_pose(const Station& station, const PostureSolver& solver) {
+  FramePose pose;
+  pose.fill(nan);
+  if (station.reachable) {
+    pose = solver.frame(station.posture);
+    for (std::size_t i = solver.form().lengths; i < solver.form().size(); ++i) {
+      pose[i] = std::remainder(pose[i], 2.0 * M_PI);
+    }
+  }
+  for (std::size_t i = 0; i < solver.form().size(); ++i) {
+    if (station.demand.given[i]) pose[i] = station.demand.pose[i].value;
+  }
+  return pose;
 }
 
 bool follows_path(const Station& station) { return !std::isnan(station.time); }
@@ -78,11 +82,33 @@ void append_all(Row& row, const Values& values) {
   for (const double value : values) row.emplace_back(value + 0.0);
 }
 void append(Row& row, std::initializer_list<double> values) { append_all(row, values); }
+void append_pose(Row& row, const PoseForm& form, const FramePose& pose) {
+  append_all(row, std::span(pose).first(form.size()));
+}
+
+/// Pose of a row that may follow others on a path.
+void append_moving_pose(Row& row, const Station& station, const PostureSolver& solver, Turns& turns) {
+  FramePose pose = shown_pose(station, solver);
+  for (std::size_t i = solver.form().lengths; i < solver.form().size(); ++i) {
+    if (!station.demand.given[i]) pose[i] = turns.next(i, pose[i], follows_path(station));
+  }
+  append_pose(row, solver.form(), pose);
+}
+
+/// "time", then the numbers of a pose; `first` may be empty.
+std::vector<std::string> pose_columns(const PoseForm& form, const char* first) {
+  std::vector<std::string> columns;
+  if (first[0] != 0) columns.emplace_back(first);
+  columns.insert(columns.end(), form.words.begin(), form.words.end());
+  return columns;
+}
 
 /// Coordinate rows of the inputs at a posture: value, speed, acceleration.
 void append_inputs(const IdealMechanism& mechanism, const Station& station, PostureSolver& solver, Turns& turns,
                    Row& row) {
-  std::vector<double> v(station.posture.q.size(), 0.0), a = v;
+  const System& system = mechanism.system();
+  const std::size_t width = at(system.body_velocities());
+  std::vector<double> v(at(system.layout().nv()), 0.0), a = v;
   const bool moves = follows_path(station);
   const bool known = !moves || (!station.folded && solver.rates(station.demand, station.posture, v, a));
   const Evaluation& e = solver.evaluate_moving(station.demand.t, station.posture, v, term_velocity);
@@ -90,14 +116,14 @@ void append_inputs(const IdealMechanism& mechanism, const Station& station, Post
   for (int i = 0; i < input_count(mechanism); ++i) {
     const int j = mechanism.platform().inputs[at(i)];
     const JointElement& joint = model.joints[at(j)];
-    double entries[6], acceleration = 0.0;
-    mechanism.system().coordinate_row(j, e, entries, acceleration);
+    double entries[2 * spatial::velocities], acceleration = 0.0;
+    system.coordinate_row(j, e, entries, acceleration);
     double speed = 0.0;
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (std::size_t k = 0; k < 2; ++k) {
-      for (std::size_t c = 0; c < 3 && bodies[k] != ground; ++c) {
-        speed += entries[3 * k + c] * v[3 * at(bodies[k]) + c];
-        acceleration += entries[3 * k + c] * a[3 * at(bodies[k]) + c];
+      for (std::size_t c = 0; c < width && bodies[k] != ground; ++c) {
+        speed += entries[width * k + c] * v[width * at(bodies[k]) + c];
+        acceleration += entries[width * k + c] * a[width * at(bodies[k]) + c];
       }
     }
     double value = e.coordinate[at(j)];
@@ -108,13 +134,16 @@ void append_inputs(const IdealMechanism& mechanism, const Station& station, Post
 
 }  // namespace
 
-std::string station_words(const Station& station) {
+std::string play_name(const IdealMechanism& mechanism, const Play& play) {
+  return "joint." + mechanism.model().joints[at(play.joint)].name + play.part;
+}
+
+std::string station_words(const PoseForm& form, const Station& station) {
   if (follows_path(station)) return fmt::format("t = {:.9g} s", station.time);
-  constexpr const char* words[] = {"x", "y", "angle"};
   std::string text;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < form.size(); ++i) {
     if (!station.demand.given[i]) continue;
-    text += fmt::format("{}{} = {:.9g}", text.empty() ? "" : ", ", words[i], station.demand.pose[i].value);
+    text += fmt::format("{}{} = {:.9g}", text.empty() ? "" : ", ", form.words[i], station.demand.pose[i].value);
   }
   return text.empty() ? "these inputs" : text;
 }
@@ -122,7 +151,7 @@ std::string station_words(const Station& station) {
 AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                       const std::vector<int>& branch_of, const Tick& tick) {
   AnalysisTable table;
-  table.columns = {"time", "x", "y", "angle"};
+  table.columns = pose_columns(mechanism.form(), "time");
   for (int i = 0; i < input_count(mechanism); ++i) {
     const std::string prefix = "joint." + input_name(mechanism, i);
     table.columns.push_back(prefix + (mechanism.is_angle(i) ? ".angle" : ".position"));
@@ -135,10 +164,9 @@ AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station
   for (std::size_t k = 0; k < stations.size(); ++k) {
     tick(1);
     const Station& station = stations[k];
-    FramePose pose = shown_pose(station, solver);
-    if (!station.demand.given[2]) pose[2] = frame_turns.next(0, pose[2], follows_path(station));
     Row row;
-    append(row, {station.time, pose[0], pose[1], pose[2]});
+    append(row, {station.time});
+    append_moving_pose(row, station, solver, frame_turns);
     append_inputs(mechanism, station, solver, turns, row);
     if (!branch_of.empty()) row.emplace_back(static_cast<double>(branch_of[k]));
     table.rows.push_back(std::move(row));
@@ -149,7 +177,8 @@ AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station
 AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Station>& stations, const Components& given,
                              int threads, const Tick& tick) {
   AnalysisTable table;
-  table.columns = {"x", "y", "angle", "reachable", "legs", "condition"};
+  table.columns = pose_columns(mechanism.form(), "");
+  table.columns.insert(table.columns.end(), {"reachable", "legs", "condition"});
   table.rows.resize(stations.size());
   const Posture start = mechanism.closed_form() ? Posture{} : regular_start(mechanism, given);
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
@@ -160,12 +189,13 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
       const FramePose pose = shown_pose(station, looker.solver);
       double legs = input_count(mechanism), condition = nan;
       if (station.reachable) {
-        condition = singularity_of(looker.look(station), given, mechanism.length()).condition;
+        condition = singularity_of(looker.look(station), mechanism.length()).condition;
       } else {
         Unreachable why;
         legs = looker.solver.legs_in_reach(station.demand, start, why);
       }
-      append(table.rows[i], {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0, legs, condition});
+      append_pose(table.rows[i], mechanism.form(), pose);
+      append(table.rows[i], {station.reachable ? 1.0 : 0.0, legs, condition});
     }
   });
   return table;
@@ -174,7 +204,9 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
 AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                                const Components& given, int threads, const Tick& tick) {
   AnalysisTable table;
-  table.columns = {"x", "y", "angle", "reachable", "sigma_min", "sigma_max", "condition", "inverse_min", "kind"};
+  table.columns = pose_columns(mechanism.form(), "");
+  table.columns.insert(table.columns.end(),
+                       {"reachable", "sigma_min", "sigma_max", "condition", "inverse_min", "kind"});
   table.rows.resize(stations.size());
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
@@ -183,12 +215,13 @@ AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vecto
       const Station& station = stations[i];
       const FramePose pose = shown_pose(station, looker.solver);
       Row& row = table.rows[i];
-      append(row, {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0});
+      append_pose(row, mechanism.form(), pose);
+      append(row, {station.reachable ? 1.0 : 0.0});
       if (!station.reachable) {
         append(row, {nan, nan, nan, nan, nan});
         continue;
       }
-      const Singularity s = singularity_of(looker.look(station), given, mechanism.length());
+      const Singularity s = singularity_of(looker.look(station), mechanism.length());
       append(row, {s.sigma_min, s.sigma_max, s.condition, s.inverse_min});
       row.emplace_back(word(s.kind));
     }
@@ -216,11 +249,19 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
                          const ErrorColumns& columns, int threads, std::vector<std::string>& warnings,
                          const Tick& tick) {
   AnalysisTable table;
-  table.columns = {"x",      "y",        "angle", "reachable", "dx",        "dy",
-                   "dangle", "position", "ls_dx", "ls_dy",     "ls_dangle", "ls_position"};
+  const PoseForm& form = mechanism.form();
+  // In the plane the turn is one of the changes.
+  const bool several_turns = form.size() > form.lengths + 1;
+  table.columns = pose_columns(form, "");
+  table.columns.emplace_back("reachable");
+  for (const std::string prefix : {"", "ls_"}) {
+    for (const char* change : form.changes) table.columns.push_back(prefix + change);
+    table.columns.push_back(prefix + "position");
+    if (several_turns) table.columns.push_back(prefix + "dangle");
+  }
   if (columns.sensitivity) {
     for (const Play& play : mechanism.plays()) {
-      table.columns.push_back("joint." + mechanism.model().joints[at(play.joint)].name + ".sensitivity");
+      table.columns.push_back(play_name(mechanism, play) + ".sensitivity");
     }
     for (int i = 0; i < input_count(mechanism); ++i) {
       table.columns.push_back("driver." + input_name(mechanism, i) + ".sensitivity");
@@ -234,13 +275,14 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
   table.rows.resize(stations.size());
   std::vector<char> singular(stations.size(), 0), unclosed = singular;
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
-    Looker looker(mechanism, {true, true, true});
+    Looker looker(mechanism, form.all());
     for (std::size_t i = first; i < last; ++i) {
       tick(1);
       const Station& station = stations[i];
       const FramePose pose = shown_pose(station, looker.solver);
       Row& row = table.rows[i];
-      append(row, {pose[0], pose[1], pose[2], station.reachable ? 1.0 : 0.0});
+      append_pose(row, mechanism.form(), pose);
+      append(row, {station.reachable ? 1.0 : 0.0});
       std::optional<ClearanceError> error;
       if (station.reachable) error = clearance_error(mechanism, looker.look(station));
       singular[i] = station.reachable && !error;
@@ -249,7 +291,9 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
         continue;
       }
       for (const WorstCase* bound : {&error->exact, &error->least_squares}) {
-        append(row, {bound->dx, bound->dy, bound->dangle, bound->position});
+        append_all(row, std::span(bound->change).first(form.size()));
+        append(row, {bound->position});
+        if (several_turns) append(row, {bound->dangle});
       }
       if (columns.sensitivity) append_all(row, error->sensitivity);
       if (columns.samples > 0) {
@@ -266,7 +310,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
     const auto count = std::ranges::count(marked, 1);
     if (count == 0) return;
     const auto first = static_cast<std::size_t>(std::ranges::find(marked, 1) - marked.begin());
-    warnings.push_back(fmt::format("{}: {}{}", station_words(stations[first]), what,
+    warnings.push_back(fmt::format("{}: {}{}", station_words(mechanism.form(), stations[first]), what,
                                    count > 1 ? fmt::format(" (and {} more)", count - 1) : ""));
   };
   warn(singular, "singular: the platform moves while its inputs are held, its error has no bound");
@@ -277,7 +321,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
 AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                                     double preload, const Tick& tick) {
   AnalysisTable table;
-  table.columns = {"time", "x", "y", "angle"};
+  table.columns = pose_columns(mechanism.form(), "time");
   for (int i = 0; i < input_count(mechanism); ++i) {
     table.columns.push_back("driver." + input_name(mechanism, i) + (mechanism.is_angle(i) ? ".torque" : ".force"));
   }
@@ -286,18 +330,18 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
     const JointElement& joint = mechanism.model().joints[j];
     if (joint.is_force) continue;
     shown.push_back(j);
-    table.columns.push_back("joint." + joint.name + ".fx");
-    table.columns.push_back("joint." + joint.name + ".fy");
+    for (const char* word : mechanism.form().forces) table.columns.push_back("joint." + joint.name + "." + word);
   }
   PostureSolver solver(mechanism);
   InverseDynamics dynamics(solver);
   Turns turns;
   for (const Station& station : stations) {
     tick(1);
-    std::vector<double> v(station.posture.q.size(), 0.0), a = v;
+    std::vector<double> v(at(mechanism.system().layout().nv()), 0.0), a = v;
     if (follows_path(station) && (station.folded || !solver.rates(station.demand, station.posture, v, a))) {
       throw Error(Error::Category::numerical, "singular",
-                  fmt::format("{}: a singular pose, speeds and accelerations have no value", station_words(station)));
+                  fmt::format("{}: a singular pose, speeds and accelerations have no value",
+                              station_words(mechanism.form(), station)));
     }
     Efforts efforts;
     switch (dynamics.solve(station.demand.t, station.posture, v, a, preload, efforts)) {
@@ -305,7 +349,8 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
         break;
       case InverseDynamics::Found::unbalanced:
         throw Error(Error::Category::numerical, "singular",
-                    fmt::format("{}: a singular pose, the inputs cannot hold the platform", station_words(station)));
+                    fmt::format("{}: a singular pose, the inputs cannot hold the platform",
+                                station_words(mechanism.form(), station)));
       case InverseDynamics::Found::no_preload:
         throw Error(Error::Category::usage, "bad-value",
                     "--preload: no driver is redundant, so there is no inner tension to choose");
@@ -313,12 +358,12 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
         throw Error(Error::Category::usage, "bad-value",
                     "--preload: several drivers are redundant, one value does not tell the inner tension");
     }
-    FramePose pose = shown_pose(station, solver);
-    if (!station.demand.given[2]) pose[2] = turns.next(0, pose[2], follows_path(station));
     Row row;
-    append(row, {station.time, pose[0], pose[1], pose[2]});
+    append(row, {station.time});
+    append_moving_pose(row, station, solver, turns);
     append_all(row, efforts.input);
-    for (const std::size_t j : shown) append(row, {efforts.force[j][0], efforts.force[j][1]});
+    for (const std::size_t j : shown)
+      append_all(row, std::span(efforts.wrench[j]).first(mechanism.form().forces.size()));
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -38,6 +38,9 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
                                     double preload, const Tick& tick);
 
 /// "t = 0.1 s" or "x = 0.05, y = 0".
-std::string station_words(const Station& station);
+std::string station_words(const PoseForm& form, const Station& station);
+
+/// "joint.B1"; of several plays of a joint in space "joint.B1.upper", say.
+std::string play_name(const IdealMechanism& mechanism, const Play& play);
 
 }  // namespace freeplay

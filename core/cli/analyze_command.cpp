@@ -52,6 +52,7 @@ class AnalyzeJob {
     if (options_.branches) find_branches();
     check_reach();
     check_inputs();
+    if (wants("singularity")) check_outputs();
     AnalysisTable table = rows();
     add_summary(table);
     return table;
@@ -60,17 +61,22 @@ class AnalyzeJob {
 
   /// The map of a table over a grid of x and y.
   std::string drawing(const AnalysisTable& table) {
-    const bool flat = on_grid_ && axes_[0].count > 1 && axes_[1].count > 1 && axes_[2].count == 1;
+    bool flat = on_grid_ && axes_[0].count > 1 && axes_[1].count > 1;
+    for (std::size_t i = 2; i < form().size(); ++i) flat = flat && axes_[i].count == 1;
     if (!flat || must_reach()) {
-      throw Error(Error::Category::usage, "bad-value",
-                  "--svg draws a map: workspace, singularity or error on a grid of x and y with one angle");
+      throw Error(
+          Error::Category::usage, "bad-value",
+          "--svg draws a map: workspace, singularity or error on a grid of x and y, with one value of all else");
     }
     const std::string column = wants("error") ? "position" : "condition";
     const auto place = static_cast<std::size_t>(std::ranges::find(table.columns, column) - table.columns.begin());
     PositionMap map;
     map.title = fmt::format("{}: {}", model().name,
                             wants("error") ? "largest position error by clearance" : "condition number");
-    if (given_[2] && axes_[2].value(0) != 0.0) map.title += fmt::format(", angle {:.6g} rad", axes_[2].value(0));
+    for (std::size_t i = 2; i < form().size(); ++i) {
+      if (!given_[i] || axes_[i].value(0) == 0.0) continue;
+      map.title += fmt::format(", {} {:.6g} {}", form().words[i], axes_[i].value(0), form().is_turn(i) ? "rad" : "m");
+    }
     map.quantity = wants("error") ? "position error [um]" : "condition number";
     const double unit = wants("error") ? 1e6 : 1.0;
     for (long i = 0; i < axes_[0].count; ++i) map.x.push_back(axes_[0].value(i));
@@ -112,6 +118,7 @@ class AnalyzeJob {
   /// Unreachable poses are errors.
   bool must_reach() const { return wants("ik") || wants("inverse-dynamics"); }
   const Model& model() const { return *loaded_.model; }
+  const PoseForm& form() const { return mechanism_.form(); }
   const AnalysisSection& section() const { return loaded_.model->analysis; }
 
   // Legs in closed form leave the platform all three.
@@ -119,7 +126,7 @@ class AnalyzeJob {
     if (mechanism_.closed_form()) return;
     PostureSolver solver(mechanism_);
     mobility_ = general_mobility(solver, model().settings.start, mechanism_.start());
-    freedoms_ = mobility_->general.freedoms;
+    freedoms_ = mobility_->general.platform;
     check_inputs();
   }
 
@@ -130,12 +137,28 @@ class AnalyzeJob {
       PostureSolver solver(mechanism_);
       mobility_ = general_mobility(solver, model().settings.start, reached->posture);
     }
-    if (mobility_->general.held == 0) return;
+    const int left = mobility_->general.held;
+    if (mobility_->general.platform_held == 0 && (left == 0 || !wants("inverse-dynamics"))) return;
     throw Error(Error::Category::input, "ik-underdetermined",
                 fmt::format("fewer drivers than freedoms: with all {} inputs held the mechanism still has {} freedom{}",
-                            mechanism_.platform().inputs.size(), mobility_->general.held,
-                            mobility_->general.held == 1 ? "" : "s"),
+                            mechanism_.platform().inputs.size(), left, left == 1 ? "" : "s"),
                 section().joints_location.value_or(mechanism_.platform().location));
+  }
+
+  /// Changes of single angles in space are no changes of a rotation vector.
+  void check_outputs() const {
+    int turns = 0;
+    std::vector<const char*> words;
+    for (std::size_t i = 0; i < form().size(); ++i) {
+      if (given_[i]) words.push_back(form().words[i]);
+      if (given_[i] && form().is_turn(i)) ++turns;
+    }
+    if (turns == 0 || turns == static_cast<int>(form().size() - form().lengths)) return;
+    throw Error(
+        Error::Category::input, "type-space",
+        fmt::format("singularities in space are looked for with all angles as outputs or with none, not with {}",
+                    enumeration(words)),
+        {model().file, 0, 0});
   }
 
   /// Working modes are those of a crank and a coupler on pins below the frame.
@@ -178,17 +201,20 @@ class AnalyzeJob {
   void stations_at_poses() {
     std::vector<Demand> demands;
     for (const std::string& text : options_.pose) {
-      const PoseWords words = pose_of(text);
+      const PoseWords words = pose_of(form(), text);
       Demand demand;
       demand.t = model().settings.start;
-      demand.given = components_to_give(freedoms_, words.given, fmt::format("--pose {}", text), {});
-      for (std::size_t i = 0; i < 3; ++i) demand.pose[i] = Jet::constant(words.given[i] ? words.value[i] : 0.0);
+      demand.given = components_to_give(form(), freedoms_, words.given, fmt::format("--pose {}", text), {});
+      for (std::size_t i = 0; i < form().size(); ++i) {
+        demand.pose[i] = Jet::constant(words.given[i] ? words.value[i] : 0.0);
+      }
       demands.push_back(demand);
     }
     given_ = demands.front().given;
     for (const Demand& demand : demands) {
       if (demand.given == given_) continue;
-      throw Error(Error::Category::usage, "bad-value", "every --pose must give the same of x, y and angle");
+      throw Error(Error::Category::usage, "bad-value",
+                  "every --pose must give the same of " + enumeration(form().words));
     }
     stations_ = at_demands(mechanism_, demands, watch_.begin("poses found", demands.size()));
   }
@@ -200,10 +226,10 @@ class AnalyzeJob {
       demand.t = model().settings.start;
       demand.inputs = inputs_of(text, model(), mechanism_.platform().inputs);
       const auto held = std::ranges::count_if(demand.inputs, [](const Jet& jet) { return !std::isnan(jet.value); });
-      if (held < freedoms_) {
-        throw Error(
-            Error::Category::usage, "bad-value",
-            fmt::format("--input {} gives {} inputs, but the mechanism has {} freedoms", text, held, freedoms_));
+      const int needed = mobility_ ? mobility_->general.freedoms - mobility_->general.held : freedoms_;
+      if (held < needed) {
+        throw Error(Error::Category::usage, "bad-value",
+                    fmt::format("--input {} gives {} inputs, but the mechanism has {} freedoms", text, held, needed));
       }
       demands.push_back(demand);
     }
@@ -216,8 +242,8 @@ class AnalyzeJob {
     const Platform& platform = mechanism_.platform();
     if (platform.has_path()) {
       given_ = platform.path_components();
-      const Components needed =
-          components_to_give(freedoms_, given_, "the path", section().path_location.value_or(platform.location));
+      const Components needed = components_to_give(form(), freedoms_, given_, "the path",
+                                                   section().path_location.value_or(platform.location));
       if (needed != given_) {
         throw Error(Error::Category::input, "ik-underdetermined",
                     "the path gives no angle, but the mechanism leaves its frame 3 freedoms",
@@ -230,37 +256,40 @@ class AnalyzeJob {
   }
 
   void stations_on_grid() {
-    std::array<std::optional<GridValues>, 3> axes = section().grid;
-    std::array<bool, 3> set{};
+    std::array<std::optional<GridValues>, most_components> axes;
+    std::ranges::copy(section().grid, axes.begin());
+    Components set{};
     for (const std::string& text : options_.grid) {
-      const auto [axis, values] = grid_axis_of(text);
-      const std::size_t a = static_cast<std::size_t>(axis);
+      const auto [a, values] = grid_axis_of(form(), text);
       if (set[a])
         throw Error(Error::Category::usage, "bad-value", fmt::format("--grid {}: this axis is given twice", text));
       set[a] = true;
       axes[a] = values;
     }
-    if (!axes[0] && !axes[1] && !axes[2]) {
+    Components written{};
+    for (std::size_t i = 0; i < form().size(); ++i) written[i] = axes[i].has_value();
+    if (count(written) == 0 && model().space == Space::spatial) {
+      throw Error(Error::Category::usage, "missing-argument", "no poses are known", {},
+                  "--pose, --grid x=FROM:TO:COUNT, --time or --input");
+    }
+    if (count(written) == 0) {
       throw Error(Error::Category::input, "missing-key", "no poses are known: 'analysis' needs 'grid'",
                   {model().file, 0, 0}, "or --grid x=FROM:TO:COUNT, --pose, --time or --input");
     }
-    const Components written{axes[0].has_value(), axes[1].has_value(), axes[2].has_value()};
     const bool from_options = !options_.grid.empty();
-    given_ =
-        components_to_give(freedoms_, written, "the grid", from_options ? Location{} : Location{model().file, 0, 0});
+    given_ = components_to_give(form(), freedoms_, written, "the grid",
+                                from_options ? Location{} : Location{model().file, 0, 0});
     double points = 1.0;
-    std::array<GridValues, 3> values;
-    for (std::size_t i = 0; i < 3; ++i) {
-      values[i] = axes[i].value_or(GridValues::one(0.0));
-      points *= static_cast<double>(values[i].count);
+    for (std::size_t i = 0; i < form().size(); ++i) {
+      axes_[i] = axes[i].value_or(GridValues::one(0.0));
+      points *= static_cast<double>(axes_[i].count);
     }
     if (points > static_cast<double>(most_points)) {
       throw Error(from_options ? Error::Category::usage : Error::Category::input, "too-large",
                   "the grid of an analysis has at most 10^6 points",
                   from_options ? Location{} : Location{model().file, 0, 0});
     }
-    axes_ = values;
-    stations_ = on_grid(mechanism_, axes_, given_, thread_count(),
+    stations_ = on_grid(mechanism_, std::span(axes_).first(form().size()), given_, thread_count(),
                         watch_.begin("poses found", static_cast<std::size_t>(points)));
     on_grid_ = true;
   }
@@ -269,14 +298,17 @@ class AnalyzeJob {
   /// given, with a word where that matters.
   Components default_components() {
     const Components path = mechanism_.platform().path_components();
-    if (count(path) == std::min(freedoms_, 3)) return path;
+    const int wanted = std::min(freedoms_, form().freedoms());
+    if (count(path) == wanted) return path;
     Components grid{};
-    for (std::size_t i = 0; i < 3; ++i) grid[i] = section().grid[i].has_value();
-    if (count(grid) == std::min(freedoms_, 3)) return grid;
-    const Components first{true, freedoms_ > 1, freedoms_ > 2};
-    if (freedoms_ < 3 && (wants("workspace") || wants("singularity"))) {
-      warnings_.push_back(fmt::format("no path or grid of 'analysis' tells the outputs: {} taken",
-                                      freedoms_ > 1 ? "x and y are" : "x is"));
+    for (std::size_t i = 0; i < section().grid.size(); ++i) grid[i] = section().grid[i].has_value();
+    if (count(grid) == wanted) return grid;
+    Components first{};
+    for (int i = 0; i < wanted; ++i) first[static_cast<std::size_t>(i)] = true;
+    if (wanted < form().freedoms() && (wants("workspace") || wants("singularity"))) {
+      warnings_.push_back(fmt::format("no path or grid of 'analysis' tells the outputs: {} {} taken",
+                                      enumeration(form().words.first(static_cast<std::size_t>(wanted))),
+                                      wanted > 1 ? "are" : "is"));
     }
     return first;
   }
@@ -287,13 +319,13 @@ class AnalyzeJob {
       for (const Station& station : stations_) {
         if (station.reachable) continue;
         throw Error(Error::Category::numerical, "ik-unreachable",
-                    fmt::format("{}: {}", station_words(station), station.why.text(mechanism_)));
+                    fmt::format("{}: {}", station_words(form(), station), station.why.text(mechanism_)));
       }
     }
     if (on_grid_ && reached == 0) warnings_.push_back("no point of the grid can be reached");
     if (on_grid_) return;
     for (const Station& station : stations_) {
-      if (!station.reachable) warnings_.push_back(station_words(station) + ": " + station.why.text(mechanism_));
+      if (!station.reachable) warnings_.push_back(station_words(form(), station) + ": " + station.why.text(mechanism_));
     }
   }
 
@@ -343,8 +375,8 @@ class AnalyzeJob {
   AnalysisTable workspace(int threads, const Tick& tick) {
     AnalysisTable table = workspace_rows(mechanism_, stations_, given_, threads, tick);
     if (!on_grid_ || !given_[0] || !given_[1] || axes_[2].count != 1) return table;
-    const WorkspaceShape shape =
-        workspace_shape(mechanism_, stations_, axes_, watch_.begin("edges searched", stations_.size()));
+    const WorkspaceShape shape = workspace_shape(mechanism_, stations_, {axes_[0], axes_[1], axes_[2]},
+                                                 watch_.begin("edges searched", stations_.size()));
     table.summary["area"] = shape.area;
     table.summary["regions"] = shape.regions;
     table.summary["holes"] = shape.holes;
@@ -355,26 +387,31 @@ class AnalyzeJob {
   /// What stands behind the worst position error, where one pose was asked for.
   Json causes() {
     PostureSolver solver(mechanism_);
-    VelocityMapper mapper(mechanism_, {true, true, true});
+    VelocityMapper mapper(mechanism_, form().all());
     VelocityMap map;
     const Station& station = stations_.front();
     mapper.map(solver.evaluate(station.demand.t, station.posture, term_position), map);
     const auto error = clearance_error(mechanism_, map);
     if (!error) return nullptr;
-    const Eigen::Vector3d& worst = error->exact.worst;
+    const Eigen::VectorXd& worst = error->exact.worst;
     Json shares = Json::object();
     std::size_t k = 0;
     for (const Play& play : mechanism_.plays()) {
-      shares["joint." + model().joints[static_cast<std::size_t>(play.joint)].name] =
-          json_number(play.radius * error->sensitivity[k++]);
+      shares[play_name(mechanism_, play)] = json_number(play.radius * error->sensitivity[k++]);
     }
     for (const int j : mechanism_.platform().inputs) {
       const double share = mechanism_.input_error() * error->sensitivity[k++];
       if (share > 0.0) shares["driver." + model().joints[static_cast<std::size_t>(j)].name] = json_number(share);
     }
-    return {{"displacement", {json_number(worst[0]), json_number(worst[1]), json_number(worst[2])}},
-            {"direction", json_number(std::atan2(worst[1], worst[0]))},
-            {"share", std::move(shares)}};
+    Json displacement = Json::array();
+    for (const double change : worst) displacement.push_back(json_number(change));
+    // An angle in the plane, a unit vector in space.
+    Json direction = json_number(std::atan2(worst[1], worst[0]));
+    if (form().lengths == 3) {
+      direction = Json::array();
+      for (const double part : worst.head<3>().normalized()) direction.push_back(json_number(part));
+    }
+    return {{"displacement", std::move(displacement)}, {"direction", direction}, {"share", std::move(shares)}};
   }
 
   /// A torque where all inputs turn, a force where all slide; either where they differ.
@@ -404,10 +441,9 @@ class AnalyzeJob {
       own["special_configuration"] = mobility_->special();
     }
     if (wants("workspace") || wants("singularity")) {
-      constexpr const char* words[] = {"x", "y", "angle"};
       own["outputs"] = Json::array();
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (given_[i]) own["outputs"].push_back(words[i]);
+      for (std::size_t i = 0; i < form().size(); ++i) {
+        if (given_[i]) own["outputs"].push_back(form().words[i]);
       }
     }
     own["points"] = stations_.size();
@@ -422,11 +458,11 @@ class AnalyzeJob {
   AnalysisWatch& watch_;
   IdealMechanism mechanism_;
   std::optional<GeneralMobility> mobility_;
-  int freedoms_ = 3;
+  int freedoms_ = 3;  // of the platform
   Components given_{true, true, true};
   std::vector<Station> stations_;
   std::vector<int> branch_of_;
-  std::array<GridValues, 3> axes_;
+  std::array<GridValues, most_components> axes_;
   bool on_grid_ = false;
   std::vector<std::string> warnings_;
 };
@@ -459,8 +495,10 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   require_word("kind of analysis", options.kind, {"ik", "workspace", "singularity", "error", "inverse-dynamics"});
   LoadedModel loaded = load_model(options.model, build_options(options.build), common);
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
-  require_planar(loaded, "analyze");
   refuse_idle_options(options);
+  if (options.kind == "workspace") require_planar(loaded, "analyze workspace");
+  if (options.branches) require_planar(loaded, "--branches");
+  if (!options.elbow.empty()) require_planar(loaded, "--elbow");
   AnalysisTable table;
   std::vector<std::string> warnings;
   std::string drawing;
@@ -502,8 +540,10 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
   app->add_option("KIND", options->kind, "ik, workspace, singularity, error or inverse-dynamics")->type_name("");
   app->add_option("MODEL", options->model, "Model file")->type_name("");
   app->add_option("--frame", options->frame, "The platform: BODY or BODY/FRAME")->type_name("FRAME");
-  add_repeatable(*app, "--pose", options->pose, "Pose: x,y,angle or x=5cm,y=0; repeatable")->type_name("POSE");
-  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y, angle); repeatable")
+  add_repeatable(*app, "--pose", options->pose,
+                 "Pose: x,y,angle or x=5cm,y=0 (in space x,y,z,roll,pitch,yaw); repeatable")
+      ->type_name("POSE");
+  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y and so on); repeatable")
       ->type_name("GRID");
   app->add_option("--time", options->time, "Instants on the path: FROM:TO:COUNT")->type_name("TIMES");
   add_repeatable(*app, "--input", options->input, "Coordinates of driven joints: JOINT=VALUE,...; repeatable")

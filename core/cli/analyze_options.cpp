@@ -12,7 +12,6 @@
 namespace freeplay {
 namespace {
 
-constexpr const char* component_words[] = {"x", "y", "angle"};
 constexpr long largest_count = 1'000'000;
 
 [[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
@@ -43,13 +42,16 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return out;
 }
 
-const Dimension& dimension_of(int component) { return component < 2 ? dimension::length : dimension::angle; }
+const Dimension& dimension_of(const PoseForm& form, std::size_t component) {
+  return form.is_turn(component) ? dimension::angle : dimension::length;
+}
 
-int component_of(const std::string& option, const std::string& text, const std::string& word) {
-  const auto* found = std::ranges::find(component_words, word);
-  if (found != std::end(component_words)) return static_cast<int>(found - component_words);
-  const auto nearest = suggestion(word, {"x", "y", "angle"});
-  bad_value(option, text, fmt::format("'{}' is none of x, y and angle", word),
+std::size_t component_of(const PoseForm& form, const std::string& option, const std::string& text,
+                         const std::string& word) {
+  const auto found = std::ranges::find(form.words, word);
+  if (found != form.words.end()) return static_cast<std::size_t>(found - form.words.begin());
+  const auto nearest = suggestion(word, {form.words.begin(), form.words.end()});
+  bad_value(option, text, fmt::format("'{}' is none of {}", word, enumeration(form.words)),
             nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
 }
 
@@ -70,31 +72,34 @@ GridValues space_of(const std::string& option, const std::string& text, const st
 
 }  // namespace
 
-PoseWords pose_of(const std::string& text) {
+PoseWords pose_of(const PoseForm& form, const std::string& text) {
   PoseWords pose;
   const std::vector<std::string> parts = split(text, ',');
   const bool named = text.find('=') != std::string::npos;
-  if (parts.size() > 3) bad_value("--pose", text, "at most x, y and angle can be given");
+  if (parts.size() > form.size()) {
+    bad_value("--pose", text, fmt::format("at most {} can be given", enumeration(form.words)));
+  }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::size_t sign = parts[i].find('=');
     if (named && sign == std::string::npos) {
       bad_value("--pose", text, "either all values have a name or none has, as in x=0.05,y=0");
     }
-    const int component = named ? component_of("--pose", text, trimmed(parts[i].substr(0, sign))) : static_cast<int>(i);
-    const std::size_t c = static_cast<std::size_t>(component);
-    if (pose.given[c]) bad_value("--pose", text, fmt::format("'{}' is given twice", component_words[c]));
+    const std::size_t c = named ? component_of(form, "--pose", text, trimmed(parts[i].substr(0, sign))) : i;
+    if (pose.given[c]) bad_value("--pose", text, fmt::format("'{}' is given twice", form.words[c]));
     pose.given[c] = true;
     pose.value[c] =
-        signed_quantity("--pose", named ? trimmed(parts[i].substr(sign + 1)) : parts[i], dimension_of(component));
+        signed_quantity("--pose", named ? trimmed(parts[i].substr(sign + 1)) : parts[i], dimension_of(form, c));
   }
   return pose;
 }
 
-std::pair<int, GridValues> grid_axis_of(const std::string& text) {
+std::pair<std::size_t, GridValues> grid_axis_of(const PoseForm& form, const std::string& text) {
   const std::size_t sign = text.find('=');
-  if (sign == std::string::npos) bad_value("--grid", text, "x=FROM:TO:COUNT is needed (also y, angle)");
-  const int component = component_of("--grid", text, trimmed(text.substr(0, sign)));
-  return {component, space_of("--grid", text, text.substr(sign + 1), dimension_of(component))};
+  if (sign == std::string::npos) {
+    bad_value("--grid", text, fmt::format("x=FROM:TO:COUNT is needed (also {})", enumeration(form.words.subspan(1))));
+  }
+  const std::size_t component = component_of(form, "--grid", text, trimmed(text.substr(0, sign)));
+  return {component, space_of("--grid", text, text.substr(sign + 1), dimension_of(form, component))};
 }
 
 GridValues times_of(const std::string& text) { return space_of("--time", text, text, dimension::time); }

@@ -26,9 +26,9 @@ struct PoseWords {
 };
 
 /// "0.05,0,0" or "x=5 cm,angle=10 deg". Throws Error{usage} "bad-value".
-PoseWords pose_of(const std::string& text);
+PoseWords pose_of(const PoseForm& form, const std::string& text);
 /// "x=FROM:TO:COUNT": the axis and its values. Throws Error{usage} "bad-value".
-std::pair<int, GridValues> grid_axis_of(const std::string& text);
+std::pair<std::size_t, GridValues> grid_axis_of(const PoseForm& form, const std::string& text);
 /// "FROM:TO:COUNT" [s]. Throws Error{usage} "bad-value".
 GridValues times_of(const std::string& text);
 /// "1,-1,1". Throws Error{usage} "bad-value".

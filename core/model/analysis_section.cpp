@@ -1,6 +1,7 @@
 #include "model/analysis_section.h"
 
 #include <cmath>
+#include <utility>
 
 #include "model/grid.h"
 #include "model/kinematics_keys.h"
@@ -61,9 +62,14 @@ void read_analysis(Draft& draft, const CheckedValue& section) {
   MapReader map(section, "analysis");
   const Part& top = draft.parts.front();
   AnalysisSection& analysis = draft.model.analysis;
-  const auto frame = map.find("frame"), joints = map.find("joints"), elbow = map.find("elbow");
-  const auto path = map.find("path"), time = map.find("time"), grid = map.find("grid"), error = map.find("error");
+  const auto frame = map.find("frame"), joints = map.find("joints"), time = map.find("time"), error = map.find("error");
+  auto elbow = map.find("elbow"), path = map.find("path"), grid = map.find("grid");
   std::optional<std::size_t> count;
+  for (const auto& [value, what] : {std::pair{&path, "paths"}, {&grid, "grids"}, {&elbow, "working modes"}}) {
+    if (!*value || !(*value)->in_space()) continue;
+    (*value)->fail_at_key("type-space", std::string(what) + " work in planar models only");
+    value->reset();
+  }
   if (frame) {
     analysis.frame_location = frame->location();
     analysis.marker = draft.marker(*frame, top).value_or(0);

@@ -111,7 +111,7 @@ void singularity_map(benchmark::State& state, const std::string& name) {
       for (std::size_t i = first; i < last; ++i) {
         if (!stations[i].reachable) continue;
         mapper.map(solver.evaluate(0.0, stations[i].posture, term_position), map);
-        benchmark::DoNotOptimize(singularity_of(map, whole, subject.mechanism.length()));
+        benchmark::DoNotOptimize(singularity_of(map, subject.mechanism.length()));
       }
     });
   }

@@ -35,6 +35,12 @@ def side(record, rate):
 
 
 def of_growth(found):
+    parts = [("", found)] + [("\n%s\n\n" % words, found[key]) for key, words in (
+        ("in_space", "The chain of bodies in space:"), ("on_pins", "On pins, with 3 N redundant constraints:")) if key in found]
+    return "".join(heading + growth_table(part) for heading, part in parts)
+
+
+def growth_table(found):
     rows = [[run["windows"], "%.3g" % run["seconds_per_step"], "%.3g" % run["seconds_of_start"],
              "%.3g" % run["process_seconds"], "%.0f" % (run["peak_bytes"] / 1e6)] for run in found["runs"]]
     return markdown(["N", "seconds per step", "start of the run [s]", "process of two steps [s]", "peak memory [MB]"], rows) + \

@@ -9,6 +9,7 @@ from tables import table
 from timing import Failed, alternate, growth, measured, median
 
 CHAIN = os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml")
+CHAIN_IN_SPACE = os.path.join(ROOT, "tests", "bench", "chain-in-space.yaml")
 
 
 def windows(n):
@@ -39,14 +40,36 @@ def kernels(bench):
 
 
 def grow(bench):
-    """Time per step of N-four-bar, without the start and the first two steps, in which matrices find their patterns."""
+    """N-four-bar in the plane and in space; there with joints that hold no more than needed, and with pins."""
+    most = 40 if bench.quick else 1000
+    bench.print("in the plane")
+    found = growth_of(bench, CHAIN, 320 if bench.quick else max(WINDOWS))
+    bench.print("\nin space")
+    found["in_space"] = growth_of(bench, CHAIN_IN_SPACE, most)
+    bench.print("\nin space, on pins: 3 N redundant constraints")
+    found["on_pins"] = growth_of(bench, with_pins(bench), most)
+    return found
+
+
+def with_pins(bench):
+    with open(CHAIN_IN_SPACE, encoding="utf-8") as file:
+        text = file.read()
+    path = os.path.join(bench.build, "models", "chain-on-pins.yaml")
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(re.sub("type: (spherical|cylindrical)", "type: revolute", text))
+    return path
+
+
+def growth_of(bench, model, most):
+    """Time per step, without the start and the first two steps, in which matrices find their patterns."""
     rows, points, found, step = [], [], [], 5e-3
-    for n in [n for n in WINDOWS if n <= 320] if bench.quick else WINDOWS:
+    for n in [n for n in WINDOWS if n <= most]:
         few, many = 2, 2 + min(100, max(10, 10000 // n))
         best, seconds = {}, {}
         for steps in (few, many):
             options = ["--integrator", "bathe", "--step", repr(step), "--end", repr(steps * step), *windows(n)]
-            tries = [bench.program.profiled(CHAIN, options) for _ in range(3 if n <= 320 else 1)]
+            tries = [bench.program.profiled(model, options) for _ in range(3 if n <= 320 else 1)]
             best[steps], seconds[steps] = min(tries, key=lambda one: one[1])
             if best[steps].steps != steps:
                 raise Failed("N = %d took %d steps for %d" % (n, best[steps].steps, steps))

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 using platforms::Bench;
 
 void expect_bound(const WorstCase& got, const Json& want) {
-  const double values[4] = {got.position, got.dangle, got.dx, got.dy};
+  const double values[4] = {got.position, got.dangle, got.change[0], got.change[1]};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(values[i], want[i], 1e-9 * want[i].get<double>()) << i;
 }
 
@@ -112,8 +112,8 @@ TEST(ClearanceError, HoldsForJointsThatPushInTwoDirections) {
     const auto error = clearance_error(bench.mechanism, bench.map(bench.reach(demand)));
     ASSERT_TRUE(error);
     EXPECT_NEAR(error->exact.position, one.position, 1e-10 * one.position);
-    EXPECT_NEAR(error->exact.dx, one.dx, 1e-9 * one.dx);
-    EXPECT_NEAR(error->exact.dy, one.dy, 1e-9 * one.dy);
+    EXPECT_NEAR(error->exact.change[0], one.dx, 1e-9 * one.dx);
+    EXPECT_NEAR(error->exact.change[1], one.dy, 1e-9 * one.dy);
     EXPECT_NEAR(error->exact.dangle, one.dangle, 1e-9 * one.dangle);
   }
 }
@@ -129,7 +129,8 @@ TEST(ClearanceError, LargestOverAGridIsTheKnownOne) {
                           Case{"4-rrr", 3609, 0.000333977798999676, 0.000335234678063989, 0.00292226153463916}}) {
     Bench bench(platforms::legs_text(platforms::sizes(one.name)));
     const GridValues axis{{}, -0.15, 0.15, 61, false};
-    const auto stations = on_grid(bench.mechanism, {axis, axis, GridValues::one(0.0)}, {true, true, true}, 2);
+    const std::array<GridValues, 3> axes{axis, axis, GridValues::one(0.0)};
+    const auto stations = on_grid(bench.mechanism, axes, {true, true, true}, 2);
     long reachable = 0;
     double exact = 0.0, least_squares = 0.0, orientation = 0.0;
     for (const Station& station : stations) {
@@ -251,8 +252,8 @@ TEST(FeasibleSet, DualAgreesWithVertices) {
       }
       const WorstCase vertices = exact_worst_case(a, plain), dual = exact_worst_case(turn * a, turned);
       EXPECT_NEAR(dual.position, vertices.position, 1e-9 * vertices.position);
-      EXPECT_NEAR(dual.dx, vertices.dx, 1e-9 * vertices.dx);
-      EXPECT_NEAR(dual.dy, vertices.dy, 1e-9 * vertices.dy);
+      EXPECT_NEAR(dual.change[0], vertices.change[0], 1e-9 * vertices.change[0]);
+      EXPECT_NEAR(dual.change[1], vertices.change[1], 1e-9 * vertices.change[1]);
       EXPECT_NEAR(dual.dangle, vertices.dangle, 1e-9 * vertices.dangle);
     }
   }

@@ -107,7 +107,7 @@ TEST(PlaySamples, OfARedundantMechanismAreThoseThatClose) {
   Bench bench(platforms::legs_text(platforms::sizes("4-rrr"), 1, {1e-4, 6e-5, 1e-4}));
   const VelocityMap map = bench.map(bench.reach(Bench::at(0.06, -0.03, 0.1)));
   const auto error = clearance_error(bench.mechanism, map);
-  const Eigen::MatrixXd inverse = *pseudo_inverse(map.a, bench.mechanism.length());
+  const Eigen::MatrixXd inverse = *pseudo_inverse(map, bench.mechanism.length());
   const std::vector<Generator> generators = generators_of(bench.mechanism, map);
   const Eigen::VectorXd closure = Eigen::FullPivLU<Eigen::MatrixXd>(map.a.transpose()).kernel().col(0).normalized();
   // By number of a play: dx, dy, dangle and the gap of the closure. Plain arrays, for tests are not optimised.

@@ -121,7 +121,7 @@ TEST(Posture, SlidesHaveErrorsAlongTheirLinks) {
   const auto error = clearance_error(bench.mechanism, map);
   ASSERT_TRUE(error);
   const Eigen::Matrix3d inverse = a.inverse();
-  EXPECT_NEAR(error->exact.dx, (inverse.row(0).cwiseAbs() * widths)(0), 1e-15);
+  EXPECT_NEAR(error->exact.change[0], (inverse.row(0).cwiseAbs() * widths)(0), 1e-15);
   EXPECT_NEAR(error->exact.dangle, (inverse.row(2).cwiseAbs() * widths)(0), 1e-14);
   double worst = 0.0;
   for (int signs = 0; signs < 8; ++signs) {
@@ -186,7 +186,7 @@ TEST(Posture, WaysEndOnAFoldAndNotBehindIt) {
     Unreachable why;
     ASSERT_TRUE(bench.solver.reach(demand(0.35), start, posture, why)) << i;
     EXPECT_TRUE(bench.solver.folded());
-    EXPECT_EQ(singularity_of(bench.map(posture, flat), flat, 1.0).kind, SingularityKind::inverse);
+    EXPECT_EQ(singularity_of(bench.map(posture, flat), 1.0).kind, SingularityKind::inverse);
     const double crank = std::remainder(bench.solver.inputs(posture)[0] - direction, 2.0 * M_PI);
     EXPECT_NEAR(crank, 0.0, 1e-6);  // the root of the rounding
     EXPECT_FALSE(bench.solver.reach(demand(0.35 + 1e-12), start, posture, why)) << i;

@@ -28,7 +28,7 @@ TEST(VelocityMap, RowsAreThoseOfTheClosedForm) {
         EXPECT_NEAR(map.b(r, c), r == c ? entry["b"][static_cast<std::size_t>(r)].get<double>() : 0.0, 1e-12);
       }
     }
-    const Singularity s = singularity_of(map, {true, true, true}, bench.mechanism.length());
+    const Singularity s = singularity_of(map, bench.mechanism.length());
     EXPECT_NEAR(bench.mechanism.length(), platforms::sizes(entry["mechanism"])["l3"], 1e-15);
     EXPECT_NEAR(s.sigma_max, entry["singular_values_scaled"][0], 1e-12);
     EXPECT_NEAR(s.sigma_min, entry["singular_values_scaled"][2], 1e-12);
@@ -147,7 +147,7 @@ TEST(Singularity, DirectWhereTheCouplersMeetInOnePoint) {
   for (const char* name : {"3-rrr", "4-rrr"}) {
     Bench bench(platforms::legs_text(platforms::sizes(name)));
     const VelocityMap map = bench.map(bench.reach(Bench::at(0.0, 0.0, theta)));
-    const Singularity s = singularity_of(map, {true, true, true}, bench.mechanism.length());
+    const Singularity s = singularity_of(map, bench.mechanism.length());
     EXPECT_LT(s.sigma_min, 1e-14);
     EXPECT_EQ(s.kind, SingularityKind::direct);
     EXPECT_FALSE(clearance_error(bench.mechanism, map));
@@ -160,7 +160,7 @@ TEST(Singularity, InverseWhereALegIsStretched) {
   const double a = 7.0 * M_PI / 6.0, px = -0.29 * std::cos(a), py = -0.29 * std::sin(a);
   const double x = std::sqrt(0.48 * 0.48 - py * py) - px;
   const Posture posture = bench.reach(Bench::at(x - 1e-14, 0.0, 0.0));
-  const Singularity s = singularity_of(bench.map(posture), {true, true, true}, bench.mechanism.length());
+  const Singularity s = singularity_of(bench.map(posture), bench.mechanism.length());
   EXPECT_LT(s.inverse_min, singular_limit);
   EXPECT_EQ(s.kind, SingularityKind::inverse);
 }
@@ -189,7 +189,7 @@ TEST(Singularity, OfOneOutputDoesNotDependOnTheChoiceOfRows) {
       Demand demand = Bench::at(x, 0.0, 0.0);
       demand.given = {true, false, false};
       const VelocityMap map = bench.map(bench.reach(demand), {true, false, false});
-      const Singularity s = singularity_of(map, {true, false, false}, bench.mechanism.length());
+      const Singularity s = singularity_of(map, bench.mechanism.length());
       const double c = (x - 0.2) / 0.1, sine = 1.0 - c * c;
       EXPECT_NEAR(s.sigma_min, std::sqrt(count / (count + sine)), 1e-9) << inputs;
       EXPECT_NEAR(s.inverse_min, std::sqrt(sine / (count + sine)), 1e-9) << inputs;
@@ -213,11 +213,10 @@ TEST(Singularity, JointsThatAddNothingChangeNothing) {
   const std::string joint = "  B0: {type: revolute, between: [crank0/tip, coupler0]}\n";
   Bench bench(plain), doubled(test::replaced(plain, joint, joint + "  B0again" + joint.substr(4)));
   const Posture posture = bench.reach(Bench::at(0.05, 0.02, 0.1));
-  const Components all{true, true, true};
   const VelocityMap map = bench.map(posture), twice = doubled.map(posture);
   EXPECT_EQ(map.a.rows() + 2, twice.a.rows());
-  const Singularity s = singularity_of(map, all, bench.mechanism.length());
-  const Singularity t = singularity_of(twice, all, doubled.mechanism.length());
+  const Singularity s = singularity_of(map, bench.mechanism.length());
+  const Singularity t = singularity_of(twice, doubled.mechanism.length());
   EXPECT_NEAR(s.sigma_min, t.sigma_min, 1e-12);
   EXPECT_NEAR(s.sigma_max, t.sigma_max, 1e-12);
   EXPECT_NEAR(s.inverse_min, t.inverse_min, 1e-12);
@@ -284,7 +283,7 @@ TEST(InverseDynamics, TorquesAreThoseOfVirtualWork) {
     if (entry.contains("force_on_platform_at_C")) {
       for (std::size_t i = 0; i < efforts.input.size(); ++i) {
         for (std::size_t c = 0; c < 2; ++c) {
-          EXPECT_NEAR(efforts.force[3 * i + 2][c], entry["force_on_platform_at_C"][i][c], 1e-8 * 10.0);
+          EXPECT_NEAR(efforts.wrench[3 * i + 2][c], entry["force_on_platform_at_C"][i][c], 1e-8 * 10.0);
         }
       }
     }

@@ -1,0 +1,36 @@
+#include "analysis/pose_form.h"
+
+namespace freeplay {
+namespace {
+
+constexpr const char* planar_words[] = {"x", "y", "angle"};
+constexpr const char* planar_changes[] = {"dx", "dy", "dangle"};
+constexpr const char* planar_forces[] = {"fx", "fy"};
+constexpr int planar_twist[] = {0, 1, 5};
+constexpr const char* spatial_words[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+constexpr const char* spatial_changes[] = {"dx", "dy", "dz", "drx", "dry", "drz"};
+constexpr const char* spatial_forces[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
+constexpr int spatial_twist[] = {0, 1, 2, 3, 4, 5};
+
+constexpr PoseForm planar_form{planar_words, planar_changes, planar_twist, planar_forces, 2};
+constexpr PoseForm spatial_form{spatial_words, spatial_changes, spatial_twist, spatial_forces, 3};
+
+}  // namespace
+
+Components PoseForm::all() const {
+  Components out{};
+  for (std::size_t i = 0; i < size(); ++i) out[i] = true;
+  return out;
+}
+
+std::string enumeration(std::span<const char* const> words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + std::string(words[i]);
+  }
+  return out;
+}
+
+const PoseForm& pose_form(Space space) { return space == Space::spatial ? spatial_form : planar_form; }
+
+}  // namespace freeplay
