@@ -1,12 +1,9 @@
 """Mechanisms in space: what bodies and joints do there agrees with formulas, with the plane, and with a program of its
 own kind written here."""
-import csv
 import math
-import os
 import unittest
 
 from model_cases import EXACT, ModelTest, rk4
-from program import ROOT
 
 G = 9.81
 
@@ -213,75 +210,6 @@ simulation: {end: 1 s, output: {interval: 0.1 s}, %s}
         self.assert_column(columns, "body.cube.wz", lambda t: 3 * t)
         self.assert_column(columns, "force.turn.tz", lambda t: 3.0)
         self.assert_column(columns, "force.push.power", lambda t: 2 * t + 4 * t * t * t + 18 * t)
-
-
-class Bricard(SpatialTest):
-    """A closed loop of six revolutes whose axes turn by a right angle from one to the next: movable against the count."""
-    MODEL = """
-space: spatial
-gravity: [0, 0, -9.81]
-bodies:
-  b1: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [1, 0, 0]}}
-  b2: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [1, -1, 0]}}
-  b3: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [1, -1, 1]}}
-  b4: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [0, -1, 1]}}
-  b5: {mass: 1, inertia: [0.1, 0.1, 0.1], pose: {position: [0, 0, 1]}}
-frames: {ground/p: [1, 0, 0], b1/q: [0, -1, 0], b2/q: [0, 0, 1], b3/q: [-1, 0, 0], b4/q: [0, 1, 0], b5/q: [0, 0, -1]}
-joints:
-  A: {type: revolute, between: [ground/p, b1], axis: [0, 0, 1]}
-  B: {type: revolute, between: [b1/q, b2], axis: [1, 0, 0]}
-  C: {type: revolute, between: [b2/q, b3], axis: [0, 1, 0]}
-  D: {type: revolute, between: [b3/q, b4], axis: [0, 0, 1]}
-  E: {type: revolute, between: [b4/q, b5], axis: [1, 0, 0]}
-  F: {type: revolute, between: [b5/q, ground], axis: [0, 1, 0]}
-simulation: {end: 1 s, output: {interval: 50 ms}, accuracy: 1e-8}
-"""
-
-    def test_it_has_one_row_too_many_and_one_freedom(self):
-        self.facts(self.MODEL, bodies=5, joints=6, constraints=30, rank=29, redundant=1, dof=1)
-
-    def test_it_moves_without_losing_energy(self):
-        columns = self.run_model(self.MODEL)
-        total = [k + p for k, p in zip(columns["energy.kinetic"], columns["energy.potential"])]
-        self.assertGreater(max(columns["energy.kinetic"]), 1.0)
-        for energy in total:
-            self.assertLess(abs(energy - total[0]), 1e-6)
-
-
-class Mechanisms(SpatialTest):
-    """The files of mechanisms/spatial."""
-
-    def run_file(self, name, *options):
-        path = os.path.join(ROOT, "mechanisms", "spatial", name + ".yaml")
-        self.freeplay("run", path, "--out", "out", "--quiet", *options)
-        rows = list(csv.reader(self.read("out", "results.csv").splitlines()))
-        return {column: [float(x) for x in values] for column, *values in zip(*rows)}
-
-    def test_the_top_stays_at_its_height(self):
-        columns = self.run_file("heavy-top")
-        self.assert_column(columns, "body.top.z", lambda t: 0.04 * math.cos(math.radians(30)), 1e-9)
-
-    def test_the_tee_keeps_its_energy(self):
-        columns = self.run_file("spinning-tee")
-        self.assert_column(columns, "energy.kinetic", lambda t: 0.5 * (1e-4 + 50 + 3e-4), 1e-8)
-        self.assertLess(min(columns["body.tee.qw"]), -0.5)
-
-    def slide(self, t):
-        y, z = 0.1 - 0.08 * math.sin(30 * t), 0.12 + 0.08 * math.cos(30 * t)
-        return math.sqrt(0.3 ** 2 - y * y - z * z)
-
-    def test_the_slider_goes_where_the_rod_lets_it(self):
-        self.assert_column(self.run_file("slider-crank", "--ideal", "all"), "body.slider.x", self.slide, 1e-9)
-
-    def test_the_slider_with_play_stays_within_it(self):
-        columns = self.run_file("slider-crank")
-        self.assertGreater(max(columns["joint.socket.contact"]), 0.5)
-        depth = max(columns["joint.socket.delta"])
-        gaps = [abs(x - self.slide(t)) for t, x in zip(columns["time"], columns["body.slider.x"])]
-        # The play along the rod shows along the guide, larger by the slope of the rod.
-        self.assertLess(max(gaps), (1e-4 + depth) * 0.3 / min(columns["body.slider.x"]) * 1.001)
-        self.assertGreater(max(gaps), 0.5e-4)
-        self.assertLess(max(map(abs, columns["energy.residual"])), 1e-6 * max(columns["energy.kinetic"]))
 
 
 class Mistakes(SpatialTest):

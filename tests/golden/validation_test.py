@@ -27,7 +27,7 @@ class Published(ProgramTest):
 
     def test_every_model_is_in_the_table(self):
         with open(os.path.join(MODELS, "published.json"), encoding="utf-8") as file:
-            named = {case["model"] for case in json.load(file)}
+            named = {case["model"] for case in json.load(file) if "/" not in case["model"]}
         self.assertEqual({name for name in os.listdir(MODELS) if name.endswith(".yaml")}, named)
 
     def test_a_wrong_digit_is_told(self):

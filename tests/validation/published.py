@@ -2,7 +2,7 @@
 
 usage: published.py PROGRAM FOLDER [PAGE]
 
-FOLDER holds models and published.json: for each model its source and a list of time [s], channel, published value and
+FOLDER holds published.json: for each model its path from there, its source and a list of time [s], channel, published value and
 tolerance. In place of a channel may stand a quantity with a name, the sum of channels times factors less an offset.
 Prints a table; writes it to PAGE as well. Exit 7 when a number is off by more than its tolerance.
 """
@@ -52,7 +52,7 @@ def table(program, folder):
                 error = abs(ours - value["published"])
                 holds = error <= value["tolerance"]
                 good = good and holds
-                lines.append((case["model"][:-len(".yaml")], "%.6g" % value["time"], name,
+                lines.append((os.path.basename(case["model"])[:-len(".yaml")], "%.6g" % value["time"], name,
                               "%.12g" % value["published"], "%.12g" % ours, "%.1e" % error, "%.0e" % value["tolerance"],
                               "" if holds else "OFF"))
     return lines, good, cases
