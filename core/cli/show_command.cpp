@@ -28,14 +28,13 @@ int show(ShowOptions options, const CommonOptions& common) {
     throw Error(Error::Category::usage, "bad-value", "--json and --format " + options.format + " exclude each other");
   }
   LoadedModel loaded = load_model(options.model, build_options(options.build), common);
-  if (options.format == "svg") require_planar(loaded, "a drawing");
   std::unique_ptr<AssembledModel> assembled;
   if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
   if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
   std::string text;
   if (options.format == "svg") {
-    text = mechanism_svg(*loaded.model, assembled->start.state.q());
+    text = mechanism_svg(assembled->system, assembled->start.state.q());
   } else {
     const Json model = model_json(*loaded.model, options.format == "text" ? Quantities::text : Quantities::numbers);
     text = options.format == "json"  ? json_text(model)

@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "report/spatial_drawing.h"
 #include "report/svg_page.h"
 
 namespace freeplay {
@@ -199,6 +200,9 @@ class Drawing {
 
 }  // namespace
 
-std::string mechanism_svg(const Model& model, std::span<const double> q) { return Drawing(model, q).text(); }
+std::string mechanism_svg(const System& system, std::span<const double> q) {
+  if (system.model().space == Space::spatial) return spatial_svg(system, q);
+  return Drawing(system.model(), q).text();
+}
 
 }  // namespace freeplay

@@ -1,0 +1,23 @@
+// What a joint leaves free where it stands, from its constraint rows alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "component/joint_ref.h"
+
+namespace freeplay {
+
+struct JointFreedom {
+  int slides = 3;                                    ///< free directions of the second origin while nothing turns
+  int turns = 3;                                     ///< free turns
+  Eigen::Vector3d slide = Eigen::Vector3d::UnitX();  ///< one slide: along it; two: the normal of their plane
+  Eigen::Vector3d turn = Eigen::Vector3d::UnitZ();   ///< one turn: its axis; two: the axis about which there is none
+};
+
+/// Freedom of a joint of a spatial model whose markers are where `a` and `b` say; vectors are of length 1, world axes.
+/// A joint that fails there is told as one that leaves nothing free.
+JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
+                           const MarkerKinematics& b);
+
+}  // namespace freeplay
