@@ -50,14 +50,15 @@ std::string parameters_text(const Json& parameters) {
   return "\nparameters\n" + table.text("  ");
 }
 
-/// The result columns of a joint called NAME; none of other types.
-Json channels_json(const Json& entry, const Registry& registry) {
+/// The result columns of a joint called NAME in models of `space`; none of other types.
+Json channels_json(const Json& entry, const Registry& registry, Space space) {
   Json channels = Json::array();
   const Component* type = registry.find(ComponentKind::joint, entry["name"].get<std::string>());
   if (entry["kind"] != "joint" || type == nullptr) return channels;
-  const std::optional<SampleJoint> sample = sample_joint(*type, registry);
+  const std::optional<SampleJoint> sample = sample_joint(*type, registry, space);
   if (!sample) return channels;
   Model model;
+  model.space = space;
   JointElement& joint = model.joints.emplace_back();
   joint.name = "NAME";
   joint.layout = sample->layout;
@@ -69,18 +70,27 @@ Json channels_json(const Json& entry, const Registry& registry) {
   return channels;
 }
 
-std::string channels_text(const Json& channels) {
+/// Adds the columns of a joint: those in the plane, or in space where it works there only, and for a type of both the
+/// others apart.
+void add_channels(Json& entry, const Registry& registry) {
+  const bool spatial = entry["space"] == "spatial", both = entry["space"] == "both" && entry["kind"] == "joint";
+  entry["channels"] = channels_json(entry, registry, spatial ? Space::spatial : Space::planar);
+  if (both) entry["channels_in_space"] = channels_json(entry, registry, Space::spatial);
+}
+
+std::string channels_text(const char* heading, const Json& channels) {
   if (channels.empty()) return "";
   TextTable table;
   for (const Json& channel : channels) table.add_row({channel["name"], channel["unit"]});
-  return "\nchannels\n" + table.text("  ");
+  return fmt::format("\n{}\n", heading) + table.text("  ");
 }
 
 std::string entry_text(const Json& entry) {
   std::string text = fmt::format("{}: {}\n", entry["name"].get<std::string>(), entry["summary"].get<std::string>());
   TextTable facts;
   for (const char* fact : {"kind", "space", "source"}) facts.add_row({fact, entry[fact]});
-  text += facts.text("  ") + parameters_text(entry["parameters"]) + channels_text(entry["channels"]);
+  text += facts.text("  ") + parameters_text(entry["parameters"]) + channels_text("channels", entry["channels"]);
+  if (entry.contains("channels_in_space")) text += channels_text("channels in space", entry["channels_in_space"]);
   for (const char* part : {"formula", "validity", "references"}) text += section(part, entry[part]);
   return text;
 }
@@ -93,7 +103,7 @@ int describe(const std::string& name, const CommonOptions& common) {
   for (const Json& entry : entries) {
     if (entry["name"] != name) continue;
     found.push_back(entry);
-    found.back()["channels"] = channels_json(entry, registry);
+    add_channels(found.back(), registry);
   }
   if (found.empty()) unknown(entries, name, registry);
   if (common.json) {

@@ -5,7 +5,10 @@
 namespace freeplay {
 
 std::optional<SampleJoint> sample_joint(const Component& type, const Registry& registry) {
-  const Space space = type.description.space == Space::spatial ? Space::spatial : Space::planar;
+  return sample_joint(type, registry, type.description.space == Space::spatial ? Space::spatial : Space::planar);
+}
+
+std::optional<SampleJoint> sample_joint(const Component& type, const Registry& registry, Space space) {
   const ParameterSamples samples = sample_parameters(type, registry, {}, space);
   if (samples.accepted.empty()) return std::nullopt;
   SampleJoint sample;

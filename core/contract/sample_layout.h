@@ -18,7 +18,9 @@ struct SampleJoint {
   JointLayout layout;
 };
 
-/// Nothing if the type refuses all samples. `type` is a joint of the registry.
+/// For a space that the type serves; nothing if it refuses all samples. `type` is a joint of the registry.
+std::optional<SampleJoint> sample_joint(const Component& type, const Registry& registry, Space space);
+/// For the plane, or for space where it works there only.
 std::optional<SampleJoint> sample_joint(const Component& type, const Registry& registry);
 
 /// Names of the joint types that may stand under `forces`: those that have neither rows nor an ideal twin.

@@ -123,9 +123,10 @@ def type_section(entry):
         rows = [(code(p["name"]), cell(p["unit"]), cell(fallback(p)), cell(limits(p)), cell(p["summary"]))
                 for p in entry["parameters"]]
         text += table(("key", "unit", "default", "range", "meaning"), rows) + "\n"
-    if entry.get("channels"):
-        text += "*Results.* %s.\n\n" % ", ".join(
-            "%s%s" % (code(c["name"]), "" if c["unit"] == "1" else " [%s]" % c["unit"]) for c in entry["channels"])
+    for key, heading in (("channels", "Results"), ("channels_in_space", "Results in space")):
+        if entry.get(key):
+            text += "*%s.* %s.\n\n" % (heading, ", ".join(
+                "%s%s" % (code(c["name"]), "" if c["unit"] == "1" else " [%s]" % c["unit"]) for c in entry[key]))
     return text
 
 

@@ -5,7 +5,7 @@ import re
 import subprocess
 import unittest
 
-from program import PROGRAM, ProgramTest, mechanism
+from program import PROGRAM, ROOT, ProgramTest, mechanism
 
 LATER_COMMANDS = ["sweep", "report", "export"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
@@ -132,7 +132,7 @@ class Types(ProgramTest):
             if entry["kind"] == "plugin":
                 continue
             described = json.loads(self.freeplay("describe", entry["name"], "--json")[0])
-            channels = described.pop("channels")
+            channels = described.pop("channels") + described.pop("channels_in_space", [])
             self.assertEqual(entry, described)
             self.assertTrue(all(channel["name"].startswith("joint.NAME.") for channel in channels))
             text = self.freeplay("describe", entry["name"])[0]
@@ -150,6 +150,18 @@ class Types(ProgramTest):
             described = json.loads(self.freeplay("describe", facts["type"], "--json")[0])
             self.assertEqual([name for name in columns if name.startswith("joint.%s." % joint)],
                              [channel["name"].replace("NAME", joint) for channel in described["channels"]])
+
+    def test_a_description_names_the_columns_in_space(self):
+        for name in ("slider-crank", "four-bar", "stewart"):
+            self.freeplay("run", os.path.join(ROOT, "mechanisms", "spatial", name + ".yaml"), "--end", "0.1 ms", "--out", name)
+            columns = self.read(name, "results.csv").splitlines()[0].split(",")
+            for joint, facts in json.loads(self.read(name, "summary.json"))["joints"].items():
+                described = json.loads(self.freeplay("describe", facts["type"], "--json")[0])
+                named = described.get("channels_in_space", described["channels"])
+                self.assertEqual([column for column in columns if column.startswith("joint.%s." % joint)],
+                                 [channel["name"].replace("NAME", joint) for channel in named], facts["type"])
+        text, _ = self.freeplay("describe", "revolute")
+        self.assertLess(text.index("\nchannels\n"), text.index("\nchannels in space\n"))
 
     def test_describe_tells_default_and_range(self):
         text = self.freeplay("describe", "lankarani-nikravesh")[0]
