@@ -151,7 +151,7 @@ Json core_entry(const char* name, const char* kind, const FormatMap& map) {
                           {"choices", words_in(key.value)},
                           {"summary", key.meaning}});
   }
-  return {{"name", name},         {"kind", kind},           {"space", "planar"},
+  return {{"name", name},         {"kind", kind},           {"space", "both"},
           {"source", "built-in"}, {"summary", map.meaning}, {"parameters", parameters},
           {"formula", ""},        {"validity", ""},         {"references", ""}};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace freeplay {
 
 Rotation product(const Rotation& a, const Rotation& b) {
@@ -83,6 +85,16 @@ Vector3 principal_moments(const Rotation& tensor) {
   return moments;
 }
 
+namespace {
+
+/// Says that something is made a unit one whose length is off 1 by more than its digits may leave.
+void tell_length(const CheckedValue& value, const std::string& what, double length) {
+  if (std::abs(length - 1.0) <= 1e-6) return;
+  value.warn("not-unit", fmt::format("{} has length {:.6g}: made one of length 1", what, length));
+}
+
+}  // namespace
+
 std::optional<Rotation> read_rotation(MapReader& map) {
   if (!map.owner().in_space()) {
     for (const char* key : {"rpy", "quaternion"}) map.refuse(key, "only in spatial models");
@@ -103,6 +115,7 @@ std::optional<Rotation> read_rotation(MapReader& map) {
     quaternion->fail("out-of-range", "a quaternion of zeros is no rotation");
     return std::nullopt;
   }
+  tell_length(*quaternion, "the quaternion", size);
   const double w = (*numbers)[0] / size, x = (*numbers)[1] / size, y = (*numbers)[2] / size, z = (*numbers)[3] / size;
   return Rotation{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z),       2.0 * (x * z + w * y),
                   2.0 * (x * y + w * z),       1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
@@ -117,6 +130,7 @@ std::optional<Vector3> read_axis(const CheckedValue& value) {
     value.fail("out-of-range", "an axis needs a direction, but this one has no length");
     return std::nullopt;
   }
+  tell_length(value, "the axis", size);
   for (double& component : *axis) component /= size;
   return axis;
 }

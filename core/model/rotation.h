@@ -20,11 +20,12 @@ Rotation least_rotation(const Vector3& from, const Vector3& to);
 /// Eigenvalues of a symmetric tensor, the least first.
 Vector3 principal_moments(const Rotation& tensor);
 
-/// The keys `rpy` and `quaternion` (w, x, y, z; made a unit one) of a pose or frame; refused in planar models. Reports
-/// what is wrong.
+/// The keys `rpy` and `quaternion` (w, x, y, z; made a unit one, with a warning) of a pose or frame; refused in planar
+/// models. Reports what is wrong.
 std::optional<Rotation> read_rotation(MapReader& map);
 
-/// A direction, made a unit vector. Reports `out-of-range` for one without length.
+/// A direction, made a unit vector, with the warning `not-unit` if it was none. Reports `out-of-range` for one without
+/// length.
 std::optional<Vector3> read_axis(const CheckedValue& value);
 
 }  // namespace freeplay

@@ -1,5 +1,6 @@
 """Mechanisms in space: what bodies and joints do there agrees with formulas, with the plane, and with a program of its
 own kind written here."""
+import json
 import math
 import unittest
 
@@ -174,6 +175,61 @@ class PlanarInSpace(SpatialTest):
         self.assert_same(CLEARANCE, "accuracy: 1e-10", 1e-9)
 
 
+def gear_train(space, steps):
+    """A wheel off its centre drives a pinion, and that a rack."""
+    planar = space == "planar"
+    v = lambda x, y: "[%s, %s]" % (x, y) if planar else "[%s, %s, 0]" % (x, y)
+    inertia = lambda i: "%s" % i if planar else "[%s, %s, %s]" % (i, i, i)
+    return """
+space: %s
+gravity: %s
+bodies:
+  wheel: {mass: 1, inertia: %s, com: %s}
+  pinion: {mass: 0.3, inertia: %s, pose: {position: %s}}
+  rack: {mass: 0.5, inertia: %s, pose: {position: %s}}
+joints:
+  A: {type: revolute, between: [ground, wheel]}
+  B: {type: revolute, between: [ground/far, pinion]}
+  C: {type: prismatic, between: [ground/low, rack]}
+  mesh: {type: gear, of: [A, B], ratio: -3}
+  teeth: {type: gear, of: [B, C], ratio: 20 mm/rad}
+frames: {ground/far: %s, ground/low: %s}
+initial: {joints: {A: 0.3}}
+drivers: {motor: {joint: B, kind: torque, value: 0.2*sin(10*t)}}
+simulation: {end: 2 s, %s, output: {interval: 10 ms}}
+""" % (space, v(0, -9.81), inertia(0.02), v(0.05, 0), inertia(1e-3), v(0.2, 0), inertia(1e-3), v(0.2, -0.1),
+       v(0.2, 0), v(0.2, -0.1), steps)
+
+
+class Gears(SpatialTest):
+    def test_a_train_turns_as_in_the_plane(self):
+        for steps in (EXACT, "integrator: bathe, step: 1 ms"):
+            plane, space = (self.run_model(gear_train(word, steps)) for word in ("planar", "spatial"))
+            self.assertGreater(max(plane["joint.A.angle"]) - min(plane["joint.A.angle"]), 3.0)
+            for flat, deep in (("joint.A.angle", "joint.A.angle"), ("joint.B.angle", "joint.B.angle"),
+                               ("joint.C.position", "joint.C.position"), ("body.rack.x", "body.rack.x"),
+                               ("joint.mesh.torque", "joint.mesh.tz"), ("joint.teeth.fx", "joint.teeth.fx")):
+                for x, y in zip(plane[flat], space[deep], strict=True):
+                    self.assertLess(abs(x - y), 1e-9, (steps, flat))
+
+    def test_bevel_gears_turn_about_axes_that_cross(self):
+        # (I + r^2 J) q'' = M of the driven wheel; the gear turns the other about x by r q.
+        columns = self.run_model("""
+space: spatial
+bodies: {one: {mass: 1, inertia: [1, 1, 0.02]}, other: {mass: 1, inertia: [0.005, 1, 1]}}
+joints:
+  A: {type: revolute, between: [ground, one]}
+  B: {type: revolute, between: [ground, other], axis: [1, 0, 0]}
+  bevel: {type: gear, of: [A, B], ratio: 2}
+drivers: {motor: {joint: A, kind: torque, value: 0.08}}
+simulation: {end: 1 s, output: {interval: 0.1 s}, %s}
+""" % EXACT)
+        self.assert_column(columns, "joint.A.angle", lambda t: t * t)
+        self.assert_column(columns, "body.other.wx", lambda t: 4 * t)
+        self.assert_column(columns, "joint.bevel.tx", lambda t: 0.02)
+        self.assert_column(columns, "joint.bevel.ty", lambda t: 0.0)
+
+
 class Axes(SpatialTest):
     def test_a_pendulum_swings_about_the_axis_that_is_given(self):
         plane = self.run_model("""
@@ -231,6 +287,31 @@ class Mistakes(SpatialTest):
         flat = "bodies: {rod: {mass: 1, inertia: 1}}\njoints: {A: {type: %s, between: [ground, rod]%s}}\n"
         self.refusal(flat % ("spherical", ""), id="type-space", line=3)
         self.refusal(flat % ("revolute", ", axis: [0, 0, 1]"), id="unknown-key", line=3)
+
+    def warnings(self, text):
+        verdict = json.loads(self.freeplay("validate", self.model(text), "--json")[0])
+        return [(one["id"], one["line"], one["message"]) for one in verdict["messages"]]
+
+    def test_directions_of_other_lengths_are_made_unit_ones_and_that_is_told(self):
+        joint = self.BODY % "[1, 1, 1]" + "joints: {A: {type: revolute, between: [ground, rod], axis: %s}}\n"
+        self.assertEqual([("not-unit", 4, "the axis has length 2: made one of length 1")],
+                         self.warnings(joint % "[0, 2, 0]"))
+        for unit in ("[0, 1, 0]", "[0.6, 0.8, 0]", "[0.70710678, 0.70710678, 0]"):
+            self.assertEqual([], self.warnings(joint % unit))
+        turned = "space: spatial\nbodies: {rod: {mass: 1, inertia: [1, 1, 1], pose: {quaternion: %s}}}\n"
+        self.assertEqual([("not-unit", 3, "the quaternion has length 5: made one of length 1")],
+                         self.warnings(turned % "[3, 0, 0, 4]"))
+        self.assertEqual([], self.warnings(turned % "[0.6, 0, 0, 0.8]"))
+
+    def test_vectors_and_inertias_of_the_plane_are_refused_where_they_stand(self):
+        for text, line in (("space: spatial\ngravity: [0, -9.81]\n", 3),
+                           ("space: spatial\nbodies:\n  rod: {mass: 1, inertia: [1, 1, 1], com: [0, 0]}\n", 4),
+                           ("bodies:\n  rod: {mass: 1, inertia: 1, com: [0, 0, 0]}\n", 3)):
+            self.refusal(text, id="wrong-length", line=line)
+        self.refusal("bodies:\n  rod: {mass: 1, inertia: [1, 1, 1]}\n", id="wrong-type", line=3)
+        errors = self.refusal(self.BODY % "[1, 1, -0.5]", id="out-of-range", line=3)
+        self.assertIn("(-0.5, 1, 1)", errors[0]["message"])
+        self.refusal(self.BODY % "[0, 0, 0]", id="singular-mass", line=3)
 
     def test_rotations_need_the_keys_of_the_space(self):
         self.refusal("space: spatial\nbodies: {rod: {mass: 1, inertia: [1, 1, 1], pose: {angle: 1}}}\n",
