@@ -80,7 +80,7 @@ def model_page(schema):
                    "[integrators](integrators.md). Keys that begin with `x-` are notes and are ignored everywhere.\n\n"
                    "A *quantity* is a number or an expression, with a unit if it is not SI; a *time function* is one "
                    "that may hold `t`, an *integer* one that comes to a whole number. A *vector* is a list of two "
-                   "quantities.\n\n")
+                   "quantities, of three in space.\n\n")
     text += map_section("", schema)
     for name, definition in schema["$defs"].items():
         if "x-where" in definition and name not in ("joint", "force", "integrator"):

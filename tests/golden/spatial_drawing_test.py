@@ -144,6 +144,10 @@ frames: {ground/away: [0, 1, 1]}
             self.assertNotIn("nan", once)
             self.views(once)
 
+    def test_the_drawing_in_the_page_is_the_program_s(self):
+        with open(os.path.join(ROOT, "docs", "images", "spatial-four-bar.svg"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), self.freeplay("show", os.path.join(FOLDER, "four-bar.yaml"), "--format", "svg")[0])
+
     def test_play_is_a_red_ring_and_a_lone_body_a_block_of_its_moments(self):
         out, _ = self.freeplay("show", os.path.join(FOLDER, "stewart.yaml"), "--format", "svg")
         for group in self.views(out).values():

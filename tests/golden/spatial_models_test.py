@@ -2,9 +2,12 @@
 own kind written here."""
 import json
 import math
+import os
+import re
 import unittest
 
 from model_cases import EXACT, ModelTest, rk4
+from program import ROOT
 
 G = 9.81
 
@@ -266,6 +269,35 @@ simulation: {end: 1 s, output: {interval: 0.1 s}, %s}
         self.assert_column(columns, "body.cube.wz", lambda t: 3 * t)
         self.assert_column(columns, "force.turn.tz", lambda t: 3.0)
         self.assert_column(columns, "force.push.power", lambda t: 2 * t + 4 * t * t * t + 18 * t)
+
+
+class Page(SpatialTest):
+    """The table of joints in docs/model-file.md is what the program does."""
+    MORE = {"distance": ", length: 1", "bushing": ", stiffness: {x: 1}", "spring-damper": ", stiffness: 1",
+            "revolute-clearance": ", clearance: {radial_clearance: 1 mm, length: 1 cm, contact: {law: hertz, K: 1e8}}",
+            "spherical-clearance": ", clearance: {radial_clearance: 1 mm, contact: {law: hertz, K: 1e8}}"}
+    ROW = re.compile(r"^\| `([-a-z]+)` \| (\d|-)?(?:, (\d)|0 in space) \| (angle|position|none) \|", re.M)
+
+    def test_rows_and_coordinates_are_as_said(self):
+        with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
+            rows = self.ROW.findall(file.read())
+        listed = {entry["name"] for entry in json.loads(self.freeplay("list", "joints", "--json")[0])}
+        self.assertEqual(listed, {name for name, *_ in rows})
+        for name, flat, deep, coordinate in rows:
+            if name == "gear":
+                continue
+            joint = "joints: {J: {type: %s, between: [ground, b]%s}}\n" % (name, self.MORE.get(name, ""))
+            for space, count, body in (("planar", flat, "inertia: 1, pose: {position: [1, 0]}"),
+                                       ("spatial", deep or "0", "inertia: [1, 1, 1], pose: {position: [1, 0, 0]}")):
+                flat_only = joint.replace(", length: 1 cm", "") if space == "planar" else joint
+                text = "space: %s\nbodies: {b: {mass: 1, %s}}\n%s" % (space, body, flat_only)
+                if not count.isdigit():
+                    self.refusal(text, id="type-space", line=4)
+                    continue
+                self.facts(text, constraints=int(count))
+                columns = self.freeplay("list", "channels", "m.yaml")[0]
+                self.assertEqual(coordinate == "angle", "joint.J.angle" in columns, name)
+                self.assertEqual(coordinate == "position", "joint.J.position" in columns, name)
 
 
 class Mistakes(SpatialTest):
