@@ -105,6 +105,21 @@ class PairInFirstAxes {
     table.block<3, 24>(6, 0) = by_force;
     table.block<3, 24>(9, 0) = in_world(f.moment_b, inputs);
   }
+  /// Derivatives of the rate of internal variable `index` by the markers; `columns` is the length of a row.
+  void write_rate_derivatives(std::size_t index, const Dual& rate, Eigen::Index columns, JointForces& out) const {
+    Eigen::Map<Eigen::Matrix<double, 1, 24>>(out.derivatives.data + (12 + index) * static_cast<std::size_t>(columns)) =
+        rate.gradient.transpose() * inputs_by_markers();
+  }
+  /// Column of internal variable `index`: derivatives of the wrenches by it.
+  void write_internal_column(std::size_t index, const RelativeForce<double>& f, Eigen::Index columns,
+                             JointForces& out) const {
+    JointForces part{};
+    write(f, part);
+    for (std::size_t i = 0; i < 6; ++i) {
+      out.derivatives[i * static_cast<std::size_t>(columns) + 24 + index] = part.wrench_a[i];
+      out.derivatives[(6 + i) * static_cast<std::size_t>(columns) + 24 + index] = part.wrench_b[i];
+    }
+  }
 
  private:
   using Inputs = Eigen::Matrix<double, Dual::inputs, 24>;

@@ -50,8 +50,9 @@ class RevoluteClearanceInSpace final : public Joint {
   void declare(JointLayout& layout) const override {
     layout.coordinate = Coordinate::angle;
     layout.forces_without_coordinate = 1;
-    layout.history = static_cast<int>(std::size_t{places} * slots);
+    layout.history = static_cast<int>(std::size_t{places} * slots) + ends * play_.memory();
     layout.forces = 1;
+    layout.internal_variables = ends * play_.memory();
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
     layout.events = contact_events;
@@ -69,16 +70,18 @@ class RevoluteClearanceInSpace final : public Joint {
     const RelativeMotion<double> motion = pair.numbers();
     const Normals normals = normal_forces(in, motion);
     if (!normals.any) return;
-    pair.write(force(motion, normals), out);
     for (std::size_t i = 0; i < places; ++i) {
       if (!normals.on[i]) continue;
       out.potential += share(i) * normals.force[i].potential;
       out.potential_rate += share(i) * storing_power(play_.contact, normals.gap[i], normals.force[i]);
     }
-    if (!out.derivatives.empty()) pair.write_derivatives(force(pair.duals(), normals), 24, out);
+    if (play_.memory() > 0) return apply_with_memory(in, pair, normals, out);
+    pair.write(force(motion, normals, NoMemory{play_}), out);
+    if (!out.derivatives.empty()) pair.write_derivatives(force(pair.duals(), normals, NoMemory{play_}), 24, out);
   }
 
-  void initialize(const JointInput& in, Span<double>, Span<double> history) const override {
+  void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
+    std::fill(internal.begin(), internal.end(), 0.0);
     const RelativeMotion<double> motion = motion_of(in);
     for (std::size_t i = 0; i < places; ++i) play::start(in.t, gap(motion, i), history.part(i * slots, slots));
   }
@@ -95,7 +98,7 @@ class RevoluteClearanceInSpace final : public Joint {
     for (std::size_t i = 0; i < places; ++i)
       write_events(contact_input(in, i), gap(motion, i), g.part(2 * i, 2), rate.part(2 * i, 2));
   }
-  void on_event(int index, const JointInput& in, Span<double>, Span<double> history,
+  void on_event(int index, const JointInput& in, Span<double> internal, Span<double> history,
                 Span<double> fields) const override {
     const auto place = static_cast<std::size_t>(index / 2);
     const PairInFirstAxes pair = PairInFirstAxes::with_axis(in, 2);
@@ -110,6 +113,7 @@ class RevoluteClearanceInSpace final : public Joint {
       }
     } else {
       tell_end(one, gap(motion, place), own, fields);
+      forget(place, internal, history);
     }
     if (!is_end(place)) return;
     const EndGap<double> end = bearing_.end(motion, place, play_);
@@ -118,8 +122,12 @@ class RevoluteClearanceInSpace final : public Joint {
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
     const RelativeMotion<double> motion = motion_of(in);
-    for (std::size_t i = 0; i < places; ++i)
-      play::commit(contact_input(in, i), gap(motion, i), play_.contact, share(i), history.part(i * slots, slots));
+    for (std::size_t i = 0; i < places; ++i) {
+      const Span<double> own = history.part(i * slots, slots);
+      const bool touched = own[phase] != flight;
+      play::commit(contact_input(in, i), gap(motion, i), play_.contact, share(i), own);
+      if (touched && own[phase] == flight) forget(i, in.internal, history);
+    }
   }
 
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
@@ -127,6 +135,8 @@ class RevoluteClearanceInSpace final : public Joint {
     const RelativeMotion<double> motion = pair.numbers();
     const Normals normals = normal_forces(in, motion);
     double deepest = -unbounded, normal = 0.0, tangential = 0.0, touching = 0.0;
+    std::array<double, std::size_t{ends} * 3 * most_law_variables> unused;
+    const Span<double> rates{unused.data(), in.internal.size};
     for (std::size_t i = 0; i < places; ++i) {
       if (contact_input(in, i).history[phase] != flight) touching = 1.0;
       if (!is_end(i)) continue;
@@ -134,14 +144,17 @@ class RevoluteClearanceInSpace final : public Joint {
       if (!normals.on[i]) continue;
       const EndGap<double> end = bearing_.end(motion, i, play_);
       normal += share(i) * normals.force[i].normal;
-      if (play_.slides)
-        tangential += share(i) * along_turn(end, play_.friction_force(normals.force[i].normal, end.slip));
+      if (!play_.slides) continue;
+      const double whole = normals.force[i].normal;
+      const Vec<double> friction = play_.memory() == 0 ? NoMemory{play_}(i, whole, end)
+                                                       : WithMemory<double>{*this, in, motion, rates}(i, whole, end);
+      tangential += share(i) * along_turn(end, friction);
     }
     for (std::size_t i = 0; i < 3; ++i) channels[i] = in.b->position[i] - in.a->position[i];
     channels[3] = deepest;
     channels[4] = normal;
     channels[5] = tangential;
-    channels[6] = normals.any ? pair.power(force(motion, normals)) : 0.0;
+    channels[6] = normals.any ? pair.power(force(in, motion, normals, rates)) : 0.0;
     channels[7] = touching;
   }
   /// In flight no part of the journal moves by more than the clearance; beside a contact, not towards the bearing.
@@ -221,8 +234,93 @@ class RevoluteClearanceInSpace final : public Joint {
     return normals;
   }
 
+  /// Only the ends slide and have a memory.
+  static constexpr int ends = 2;
+
+  /// Part of all internal variables, or of their rates, that is of one end.
   template <class T>
-  RelativeForce<T> force(const RelativeMotion<T>& motion, const Normals& normals) const {
+  Span<T> part_of(Span<T> all, std::size_t place) const {
+    const auto count = static_cast<std::size_t>(play_.memory());
+    return all.part(place * count, count);
+  }
+  template <class T>
+  Span<T> forgotten(Span<T> history, std::size_t place) const {
+    const std::size_t first = std::size_t{places} * slots;
+    return part_of(history.part(first, history.size - first), place);
+  }
+  Memory memory(const JointInput& in, std::size_t place) const {
+    return {part_of(in.internal, place), forgotten(in.history, place)};
+  }
+  void forget(std::size_t place, Span<const double> internal, Span<double> history) const {
+    if (!is_end(place)) return;
+    const Span<const double> own = part_of(internal, place);
+    std::copy(own.begin(), own.end(), forgotten(history, place).begin());
+  }
+
+  /// The force of friction at an end by the law alone,
+  struct NoMemory {
+    const SpatialPlay& play;
+    template <class T>
+    Vec<T> operator()(std::size_t, const T& normal, const EndGap<T>& gap) const {
+      return play.friction_force(normal, gap.slip);
+    }
+  };
+  /// and by a law with internal variables, whose rates it writes.
+  template <class T>
+  struct WithMemory {
+    const RevoluteClearanceInSpace& joint;
+    const JointInput& in;
+    const RelativeMotion<T>& motion;
+    Span<T> rates;
+    Vec<T> operator()(std::size_t place, const T& normal, const EndGap<T>& gap) const {
+      const Memory memory = joint.memory(in, place);
+      const auto z = memory.numbers<T>();
+      return joint.play_.friction_force<T>(normal, gap.slip, gap.n, gap.n_rate(motion), {z.data(), memory.size},
+                                           joint.part_of(rates, place));
+    }
+  };
+
+  RelativeForce<double> force(const JointInput& in, const RelativeMotion<double>& motion, const Normals& normals,
+                              Span<double> rates) const {
+    if (play_.memory() == 0) return force(motion, normals, NoMemory{play_});
+    return force(motion, normals, WithMemory<double>{*this, in, motion, rates});
+  }
+  void apply_with_memory(const JointInput& in, const PairInFirstAxes& pair, const Normals& normals,
+                         JointForces& out) const {
+    const RelativeMotion<double> motion = pair.numbers();
+    pair.write(force(motion, normals, WithMemory<double>{*this, in, motion, out.internal_rate}), out);
+    if (out.derivatives.empty() || !play_.slides) return;
+    const std::size_t size = in.internal.size;
+    const auto columns = static_cast<Eigen::Index>(24 + size);
+    const RelativeMotion<Dual> duals = pair.duals();
+    std::array<Dual, std::size_t{ends} * 3 * most_law_variables> rates;
+    pair.write_derivatives(force(duals, normals, WithMemory<Dual>{*this, in, duals, {rates.data(), size}}), columns,
+                           out);
+    for (std::size_t place = 0; place < ends; ++place) {
+      if (!normals.on[place]) continue;
+      const Memory kept = memory(in, place);
+      const std::size_t first = place * kept.size;
+      for (std::size_t i = 0; i < kept.size; ++i)
+        pair.write_rate_derivatives(first + i, rates[first + i], columns, out);
+      const EndGap<double> gap = bearing_.end(motion, place, play_);
+      const Vec<double> arm = friction_arm(gap);
+      differentiate_by_memory(play_, normals.force[place].normal, gap.slip, gap.n, gap.n_rate(motion), kept,
+                              [&](std::size_t j, const Vec<double>& by, Span<const double> rate_by) {
+                                RelativeForce<double> part{};
+                                part.add(share(place) * by, arm, motion.d);
+                                pair.write_internal_column(first + j, part, columns, out);
+                                for (std::size_t i = 0; i < kept.size; ++i)
+                                  out.derivatives[(12 + first + i) * (24 + size) + 24 + first + j] = rate_by[i];
+                              });
+    }
+  }
+  template <class T>
+  Vec<T> friction_arm(const EndGap<T>& gap) const {
+    return gap.q + (T(play_.radius_b()) - T(0.5) * gap.penetration) * gap.n;
+  }
+
+  template <class T, class Friction>
+  RelativeForce<T> force(const RelativeMotion<T>& motion, const Normals& normals, const Friction& friction) const {
     RelativeForce<T> total{};
     for (std::size_t i = 0; i < places; ++i) {
       if (!normals.on[i]) continue;
@@ -237,8 +335,7 @@ class RevoluteClearanceInSpace final : public Joint {
       const T normal = space::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
       total.add(T(-share(i)) * (normal * gap.m), gap.q, motion.d);
       if (!play_.slides) continue;
-      const Vec<T> arm = gap.q + (T(play_.radius_b()) - T(0.5) * gap.penetration) * gap.n;
-      total.add(T(share(i)) * play_.friction_force(normal, gap.slip), arm, motion.d);
+      total.add(T(share(i)) * friction(i, normal, gap), friction_arm(gap), motion.d);
     }
     return total;
   }

@@ -22,7 +22,7 @@ constexpr double share(std::size_t place) { return is_end(place) ? 0.5 : 1.0; }
 ///   q = (s L/2 - d_z)/r_z r        from P_b to the axis in the end plane
 ///   e = d + q - s L/2 z            eccentricity, in the plane       n = e/|e|     delta = |e| - c
 ///   m = n - (n.r)/r_z z            across the journal's axis: the derivative of delta by a shift of the journal
-///   h = u + w_b x q - w_a x s L/2 z,   delta' = m.(h - w_a x e)
+///   h = u + w_b x q - w_a x s L/2 z,   g = h - w_a x e,   delta' = m.g,   e' = g - g_z/r_z r
 ///   v_T = h + (R_J w_b - R_B w_a) x n, without its part along n
 ///
 /// u = v_b - v_a. Tilts are taken to be small where the round sections of the journal stay round in the end planes.
@@ -40,10 +40,18 @@ struct EndGap {
     if (space::value_of(distance) >= 1e-12 * play.radii.clearance) n = (T(1.0) / distance) * e;
     m = {n.x, n.y, -(dot(n, x.r) / along)};
     h = x.u + cross(x.w_b, q) - cross(x.w_a, Vec<T>{T(0.0), T(0.0), T(height)});
-    rate = dot(m, h - cross(x.w_a, e));
+    g = h - cross(x.w_a, e);
+    rate = dot(m, g);
     slip = across(h + cross(T(play.radius_b()) * x.w_b - T(play.radius_a()) * x.w_a, n), n);
   }
-  Vec<T> q, e, n{T(1.0), T(0.0), T(0.0)}, m, h, slip;
+  /// n' in the axes of a, for the motion that made this; zero at the centre.
+  Vec<T> n_rate(const RelativeMotion<T>& x) const {
+    using std::sqrt;
+    const T distance = sqrt(dot(e, e));
+    if (!(space::value_of(distance) > 0.0)) return {};
+    return (T(1.0) / distance) * across(g - (g.z / x.r.z) * x.r, n);
+  }
+  Vec<T> q, e, n{T(1.0), T(0.0), T(0.0)}, m, h, g, slip;
   T penetration, rate;
 };
 

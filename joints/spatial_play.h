@@ -1,6 +1,8 @@
 // A joint with play in space: what its kinds share.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contact_phase.h"
@@ -11,8 +13,10 @@ namespace freeplay::play {
 using space::Dual;
 using space::Vec;
 
-/// Radii, laws and start. Throws BadParameter. A friction law with internal variables is refused: its bristles have no
-/// direction in the tangential plane.
+/// Internal variables that a friction law may have here: they are turned on the stack.
+inline constexpr int most_law_variables = 8;
+
+/// Radii, laws and start. Throws BadParameter.
 struct SpatialPlay {
   /// `length`: of the bearing [m], NaN without one.
   SpatialPlay(const Parameters& p, double length) : radii(read_radii(p)), start(p) {
@@ -20,9 +24,10 @@ struct SpatialPlay {
     read_materials(p, pair);
     contact = p.contact_law("clearance.contact", pair);
     friction = p.friction_law("clearance.friction");
-    if (friction.internal_variables() > 0)
-      throw BadParameter("clearance.friction", "type-space",
-                         "a friction law with internal variables works in planar models only");
+    law_variables = friction.internal_variables();
+    if (law_variables > most_law_variables)
+      throw BadParameter("clearance.friction", "out-of-range",
+                         "this law has more internal variables than the joint keeps");
     require_radii(radii, friction);
     slides = radii.known() && !is_inert(friction);
   }
@@ -43,11 +48,37 @@ struct SpatialPlay {
     return (space::chained(f.tangential, f.d_normal, normal, f.d_slip, speed) / speed) * slip;
   }
 
+  /// Internal variables of one contact: a vector in the axes of marker a for each of the law's.
+  int memory() const { return 3 * law_variables; }
+
+  /// The same for a law with internal variables, whose memory is a vector z across the normal n for each: z along the
+  /// slip direction u is what the law keeps; z beside it, along p = n x u, is that of a law which slips as fast, less
+  /// what slip alone does,
+  ///
+  ///   F = F(v, z.u) u + (F(v, z.p) - F(v, 0)) p
+  ///   z' = z'(v, z.u) u + (z'(v, z.p) - z'(v, 0)) p - (n'.z) n
+  ///
+  /// with the law's F and z'. For bristles this is z' = v - sigma_0 |v| z/g in the plane of the contact, alike in all
+  /// directions; the last term carries z along as n turns. In planar motion it is the law itself, which must be odd in
+  /// slip and memory. `z` and `z_rate` hold memory() numbers.
+  template <class T>
+  Vec<T> friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate, Span<const T> z,
+                        Span<T> z_rate) const;
+
   Radii radii;
   Start start;
   ContactLawRef contact;
   FrictionLawRef friction;
   bool slides = false;  ///< is there friction?
+  int law_variables = 0;
+
+ private:
+  /// The law's force and rates where its internal variables are `state`.
+  double evaluate(double normal, double speed, const double* state, double* rate) const {
+    const auto count = static_cast<std::size_t>(law_variables);
+    return friction.evaluate({normal, speed, {state, count}}, {rate, count}).tangential;
+  }
+  Dual evaluate(const Dual& normal, const Dual& speed, const Dual* state, Dual* rate) const;
 };
 
 /// |e| - c without the loss of digits of a difference of nearly equal numbers.
@@ -62,6 +93,67 @@ Vec<T> across(const Vec<T>& v, const Vec<T>& n) {
   return v - dot(v, n) * n;
 }
 
+/// Laws give no derivatives of their rates nor by their variables: those are central differences.
+inline Dual SpatialPlay::evaluate(const Dual& normal, const Dual& speed, const Dual* state, Dual* rate) const {
+  const auto count = static_cast<std::size_t>(law_variables);
+  double z[most_law_variables], high[most_law_variables], low[most_law_variables];
+  for (std::size_t i = 0; i < count; ++i) z[i] = state[i].value;
+  FrictionState at{normal.value, speed.value, {z, count}};
+  const FrictionForce f = friction.evaluate(at, {high, count});
+  for (std::size_t i = 0; i < count; ++i) rate[i] = high[i];
+  Dual force(f.tangential, f.d_normal * normal.gradient + f.d_slip * speed.gradient);
+  const auto difference = [&](double& x, double scale, const Dual::Gradient& gradient) {
+    const double middle = x, step = 1e-5 * std::max(std::abs(x), scale);
+    x = middle + step;
+    const double above = friction.evaluate(at, {high, count}).tangential;
+    x = middle - step;
+    const double below = friction.evaluate(at, {low, count}).tangential;
+    x = middle;
+    for (std::size_t i = 0; i < count; ++i) rate[i].gradient += (high[i] - low[i]) / (2.0 * step) * gradient;
+    return (above - below) / (2.0 * step);
+  };
+  difference(at.normal_force, 1.0, normal.gradient);
+  difference(at.slip_speed, 1e-3, speed.gradient);
+  for (std::size_t k = 0; k < count; ++k)
+    force.gradient += difference(z[k], 1e-6, state[k].gradient) * state[k].gradient;
+  return force;
+}
+
+template <class T>
+Vec<T> SpatialPlay::friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate,
+                                   Span<const T> z, Span<T> z_rate) const {
+  using std::sqrt;
+  const auto count = static_cast<std::size_t>(law_variables);
+  const auto variable = [&](std::size_t i) { return Vec<T>{z[3 * i], z[3 * i + 1], z[3 * i + 2]}; };
+  const T squared = dot(slip, slip);
+  T speed(0.0);
+  Vec<T> u;
+  if (space::value_of(squared) > 1e-24) {
+    speed = sqrt(squared);
+    u = (T(1.0) / speed) * slip;
+  } else {
+    // At rest all directions across n are alike.
+    const Eigen::Vector3d normal_of(space::value_of(n.x), space::value_of(n.y), space::value_of(n.z));
+    const Eigen::Vector3d any = normal_of.unitOrthogonal();
+    u = {T(any.x()), T(any.y()), T(any.z())};
+  }
+  const Vec<T> p = cross(n, u);
+  T along[most_law_variables], beside[most_law_variables], none[most_law_variables];
+  T along_rate[most_law_variables], beside_rate[most_law_variables], none_rate[most_law_variables];
+  for (std::size_t i = 0; i < count; ++i) {
+    along[i] = dot(variable(i), u);
+    beside[i] = dot(variable(i), p);
+    none[i] = T(0.0);
+  }
+  const T force = evaluate(normal, speed, along, along_rate);
+  const T sideways = evaluate(normal, speed, beside, beside_rate) - evaluate(normal, speed, none, none_rate);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec<T> rate = along_rate[i] * u + (beside_rate[i] - none_rate[i]) * p - dot(n_rate, variable(i)) * n;
+    z_rate[3 * i] = rate.x, z_rate[3 * i + 1] = rate.y, z_rate[3 * i + 2] = rate.z;
+  }
+  return force * u + sideways * p;
+}
+
 /// v_0 of a contact that begins within dt, from delta'' and the vectors of which delta is made: x' and x''. 0: none
 /// does.
 inline double foreseen_speed(const Approach& gap, double second, const Eigen::Vector3d& rate,
@@ -72,6 +164,42 @@ inline double foreseen_speed(const Approach& gap, double second, const Eigen::Ve
   // Near the centre the parabola is poor; the speed of approach never exceeds the speed.
   const double speed = (rate + s * rate_of_rate).norm();
   return std::max(std::min(gap.rate + second * s, speed), smallest_approach_speed);
+}
+
+/// What a contact remembers: its internal variables less what they were when the last contact ended, since not every
+/// end is told by an event that could clear them.
+struct Memory {
+  Memory(Span<const double> internal, Span<const double> forgotten) : size(internal.size) {
+    for (std::size_t i = 0; i < size; ++i) z[i] = internal[i] - forgotten[i];
+  }
+  template <class T>
+  std::array<T, 3 * most_law_variables> numbers() const {
+    std::array<T, 3 * most_law_variables> out;
+    for (std::size_t i = 0; i < size; ++i) out[i] = T(z[i]);
+    return out;
+  }
+  double z[3 * most_law_variables];
+  std::size_t size;
+};
+
+/// Derivatives of friction with memory by the numbers of the memory: use(j, dF/dz_j, dz'/dz_j) for each.
+template <class Use>
+void differentiate_by_memory(const SpatialPlay& play, double normal, const Vec<double>& slip, const Vec<double>& n,
+                             const Vec<double>& n_rate, const Memory& memory, const Use& use) {
+  auto z = memory.numbers<double>();
+  double high[3 * most_law_variables], low[3 * most_law_variables];
+  const std::size_t size = memory.size;
+  for (std::size_t j = 0; j < size; ++j) {
+    const double middle = z[j], step = 1e-5 * std::max(std::abs(middle), 1e-6);
+    const auto at = [&](double value, double* rate) {
+      z[j] = value;
+      return play.friction_force<double>(normal, slip, n, n_rate, {z.data(), size}, {rate, size});
+    };
+    const Vec<double> above = at(middle + step, high), below = at(middle - step, low);
+    z[j] = middle;
+    for (std::size_t i = 0; i < size; ++i) high[i] = (high[i] - low[i]) / (2.0 * step);
+    use(j, (0.5 / step) * (above - below), Span<const double>{high, size});
+  }
 }
 
 /// Input and history of one of the contacts of a joint.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "freeplay/plugin.h"
@@ -33,8 +34,9 @@ class SphericalClearance final : public Joint {
 
   void declare(JointLayout& layout) const override {
     layout.forces_without_coordinate = 1;
-    layout.history = slots;
+    layout.history = static_cast<int>(slots) + play_.memory();
     layout.forces = 1;
+    layout.internal_variables = play_.memory();
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
     layout.events = contact_events;
@@ -46,14 +48,15 @@ class SphericalClearance final : public Joint {
     const Gap<double> gap(pair.numbers(), play_);
     if (!touches(in, gap.approach())) return;
     const ContactForce f = normal_force(play_.contact, gap.approach(), in);
-    pair.write(force(gap, f).total, out);
     out.potential = f.potential;
     out.potential_rate = storing_power(play_.contact, gap.approach(), f);
-    if (out.derivatives.empty()) return;
-    pair.write_derivatives(force(Gap<Dual>(pair.duals(), play_), f).total, 24, out);
+    if (play_.memory() > 0) return apply_with_memory(in, pair, gap, f, out);
+    pair.write(force(gap, f).total, out);
+    if (!out.derivatives.empty()) pair.write_derivatives(force(Gap<Dual>(pair.duals(), play_), f).total, 24, out);
   }
 
-  void initialize(const JointInput& in, Span<double>, Span<double> history) const override {
+  void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
+    std::fill(internal.begin(), internal.end(), 0.0);
     play::start(in.t, approach(in), history);
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
@@ -72,7 +75,7 @@ class SphericalClearance final : public Joint {
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     write_events(in, approach(in), g, rate);
   }
-  void on_event(int index, const JointInput& in, Span<double>, Span<double> history,
+  void on_event(int index, const JointInput& in, Span<double> internal, Span<double> history,
                 Span<double> fields) const override {
     const PairInFirstAxes pair = seen_from_a(in);
     const Gap<double> gap(pair.numbers(), play_);
@@ -85,11 +88,14 @@ class SphericalClearance final : public Joint {
       }
     } else {
       tell_end(in, gap.approach(), history, fields);
+      forget(internal, history);
     }
     fields[1] = std::sqrt(dot(gap.slip, gap.slip));
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
+    const bool touched = history[phase] != flight;
     play::commit(in, approach(in), play_.contact, 1.0, history);
+    if (touched && history[phase] == flight) forget(in.internal, history);
   }
 
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
@@ -100,7 +106,9 @@ class SphericalClearance final : public Joint {
     if (touches(in, gap.approach())) {
       const ContactForce contact = normal_force(play_.contact, gap.approach(), in);
       normal = contact.normal;
-      f = force(gap, contact);
+      std::array<double, 3 * most_law_variables> unused;
+      f = play_.memory() == 0 ? force(gap, contact)
+                              : force(pair.numbers(), gap, contact, memory(in), {unused.data(), in.internal.size});
     }
     for (std::size_t i = 0; i < 3; ++i) channels[i] = in.b->position[i] - in.a->position[i];
     channels[3] = gap.penetration;
@@ -149,6 +157,13 @@ class SphericalClearance final : public Joint {
       slip = across(motion.u, n) + cross(T(play.radius_b()) * motion.w_b - T(play.radius_a()) * motion.w_a, n);
     }
     Approach approach() const { return {space::value_of(penetration), space::value_of(rate)}; }
+    /// n' in the axes of a, for the motion that made this; zero at the centre.
+    Vec<T> n_rate(const RelativeMotion<T>& motion) const {
+      using std::sqrt;
+      const T distance = sqrt(dot(motion.d, motion.d));
+      if (!(space::value_of(distance) > 0.0)) return {};
+      return (T(1.0) / distance) * across(motion.u - cross(motion.w_a, motion.d), n);
+    }
     Vec<T> n{T(1.0), T(0.0), T(0.0)}, slip;
     T penetration, rate;
   };
@@ -167,11 +182,45 @@ class SphericalClearance final : public Joint {
   template <class T>
   Forces<T> force(const Gap<T>& gap, const ContactForce& f) const {
     const T normal = space::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
-    Forces<T> forces{{-(normal * gap.n), {}, {}}, {}};
-    if (!play_.slides) return forces;
-    forces.friction = play_.friction_force(normal, gap.slip);
-    forces.total.force = forces.total.force + forces.friction;
-    const Vec<T> turning = cross(gap.n, forces.friction);
+    return play_.slides ? forces(gap, normal, play_.friction_force(normal, gap.slip)) : forces(gap, normal, {});
+  }
+  /// Friction with memory, too: `rates` are those of its internal variables.
+  template <class T>
+  Forces<T> force(const RelativeMotion<T>& motion, const Gap<T>& gap, const ContactForce& f, const Memory& memory,
+                  Span<T> rates) const {
+    const T normal = space::chained(f.normal, f.d_penetration, gap.penetration, f.d_rate, gap.rate);
+    const auto z = memory.numbers<T>();
+    return forces(gap, normal,
+                  play_.friction_force<T>(normal, gap.slip, gap.n, gap.n_rate(motion), {z.data(), memory.size}, rates));
+  }
+  void apply_with_memory(const JointInput& in, const PairInFirstAxes& pair, const Gap<double>& gap,
+                         const ContactForce& f, JointForces& out) const {
+    const Memory kept = memory(in);
+    const RelativeMotion<double> motion = pair.numbers();
+    pair.write(force(motion, gap, f, kept, out.internal_rate).total, out);
+    if (out.derivatives.empty()) return;
+    const auto columns = static_cast<Eigen::Index>(24 + kept.size);
+    const RelativeMotion<Dual> duals = pair.duals();
+    std::array<Dual, 3 * most_law_variables> rates;
+    pair.write_derivatives(force<Dual>(duals, Gap<Dual>(duals, play_), f, kept, {rates.data(), kept.size}).total,
+                           columns, out);
+    for (std::size_t i = 0; i < kept.size; ++i) pair.write_rate_derivatives(i, rates[i], columns, out);
+    differentiate_by_memory(play_, f.normal, gap.slip, gap.n, gap.n_rate(motion), kept,
+                            [&](std::size_t j, const Vec<double>& by, Span<const double> rate_by) {
+                              const Forces<double> part = forces(gap, 0.0, by);
+                              pair.write_internal_column(j, part.total, columns, out);
+                              for (std::size_t i = 0; i < kept.size; ++i)
+                                out.derivatives[(12 + i) * (24 + kept.size) + 24 + j] = rate_by[i];
+                            });
+  }
+  Memory memory(const JointInput& in) const { return {in.internal, in.history.part(slots, in.internal.size)}; }
+  static void forget(Span<const double> internal, Span<double> history) {
+    std::copy(internal.begin(), internal.end(), history.begin() + slots);
+  }
+  template <class T>
+  Forces<T> forces(const Gap<T>& gap, const T& normal, const Vec<T>& friction) const {
+    Forces<T> forces{{-(normal * gap.n) + friction, {}, {}}, friction};
+    const Vec<T> turning = cross(gap.n, friction);
     const T half = T(0.5) * gap.penetration;
     forces.total.moment_a = -((T(play_.radius_a()) + half) * turning);
     forces.total.moment_b = (T(play_.radius_b()) - half) * turning;
@@ -194,7 +243,9 @@ Component spherical_clearance() {
            "e = P_b - P_a, n = e/|e|; delta = |e| - c, delta' = n.e', v_T = e' - delta' n + (R_J w_b - R_B w_a) x "
            "n; force on the ball -F_N n + F_T v_T/|v_T| for delta > 0, at the middle of the two surface points. "
            "`ft` is the size of the friction force.",
-       .validity = "Clearance small against the radii; one contact point; friction laws without internal variables.",
+       .validity =
+           "Clearance small against the radii; one contact point; friction laws with internal variables that are "
+           "odd in slip and memory.",
        .references = "Flores, Ambrosio, Claro and Lankarani 2008, Kinematics and Dynamics of Multibody Systems with "
                      "Imperfect Joints",
        .parameters = {parameters.data(), parameters.size()},

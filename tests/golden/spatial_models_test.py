@@ -157,10 +157,18 @@ CLEARANCE = ("{bearing_radius: 10 mm, radial_clearance: 0.2 mm, length: 20 mm, "
              "contact: {law: lankarani-nikravesh, K: 1e9, restitution: 0.9}, friction: {law: coulomb-tanh, mu: 0.05}}")
 
 
+LUGRE = CLEARANCE.replace("{law: coulomb-tanh, mu: 0.05}",
+                          "{law: lugre, mu_s: 0.1, mu_k: 0.05, v_stribeck: 0.01, sigma0: 1e5, sigma1: 10}")
+
+
 class PlanarInSpace(SpatialTest):
-    def assert_same(self, clearance, steps, tolerance):
+    def assert_same(self, clearance, steps, tolerance, joint="revolute"):
         plane = self.run_model(slider_crank("planar", clearance, steps))
-        space = self.run_model(slider_crank("spatial", clearance, steps))
+        text = slider_crank("spatial", clearance, steps)
+        if joint == "spherical":
+            text = text.replace("C: {type: revolute", "C: {type: spherical").replace(" length: 20 mm,", "")
+            self.assertIn("spherical", text)
+        space = self.run_model(text)
         for name in ("body.slider.x", "body.rod.x", "body.rod.y", "joint.A.angle", "joint.B.angle"):
             for x, y in zip(plane[name], space[name], strict=True):
                 self.assertLess(abs(x - y), tolerance, name)
@@ -176,6 +184,15 @@ class PlanarInSpace(SpatialTest):
     def test_a_mechanism_with_clearance_moves_as_in_the_plane(self):
         self.assert_same(CLEARANCE, "integrator: bathe, step: 2 us", 1e-9)
         self.assert_same(CLEARANCE, "accuracy: 1e-10", 1e-9)
+
+    def test_friction_with_memory_acts_as_in_the_plane(self):
+        self.assert_same(LUGRE, "accuracy: 1e-10", 1e-9)
+        # Fixed steps do not end at contacts: their own error is larger.
+        self.assert_same(LUGRE, "integrator: bathe, step: 1 us", 1e-7)
+
+    def test_a_ball_that_moves_in_a_plane_feels_what_a_pin_does(self):
+        for clearance in (CLEARANCE, LUGRE):
+            self.assert_same(clearance, "accuracy: 1e-10", 1e-9, "spherical")
 
 
 def gear_train(space, steps):
@@ -202,6 +219,46 @@ drivers: {motor: {joint: B, kind: torque, value: 0.2*sin(10*t)}}
 simulation: {end: 2 s, %s, output: {interval: 10 ms}}
 """ % (space, v(0, -9.81), inertia(0.02), v(0.05, 0), inertia(1e-3), v(0.2, 0), inertia(1e-3), v(0.2, -0.1),
        v(0.2, 0), v(0.2, -0.1), steps)
+
+
+class TurnedWorlds(SpatialTest):
+    """A body in a ball or a bearing with play moves alike when the whole world is turned."""
+    JOINTS = {"spherical": "{type: spherical, between: [ground/hook, top/neck], clearance: {bearing_radius: 10 mm, "
+                           "radial_clearance: 0.2 mm, contact: {law: flores, K: 1e8, restitution: 0.7}, friction: %s}}",
+              "revolute": "{type: revolute, between: [ground/hook, top/neck], axis: [1, 0, 0], clearance: "
+                          "{bearing_radius: 10 mm, radial_clearance: 0.2 mm, length: 30 mm, "
+                          "contact: {law: flores, K: 1e8, restitution: 0.7}, friction: %s}}"}
+    MODEL = """
+space: spatial
+gravity: %s
+bodies: {top: {mass: 1, inertia: [2e-3, 2e-3, 1e-3], com: [5 mm, 0, -50 mm], frames: {neck: [0, 0, 0]}, pose: {rpy: [%s]},
+               velocity: {angular: %s}}}
+frames: {ground/hook: {position: [0, 0, 0], rpy: [%s]}}
+joints: {J: %s}
+simulation: {end: 60 ms, accuracy: 1e-9, output: {interval: 1 ms}}
+"""
+
+    def test_friction_knows_no_direction_of_its_own(self):
+        roll, pitch, yaw = 0.4, -0.7, 1.9
+        z = lambda a: [[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]]
+        y = lambda a: [[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]]
+        x = lambda a: [[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]]
+        turn = lambda v: product(z(yaw), product(y(pitch), product(x(roll), v)))
+        laws = ("{law: coulomb-tanh, mu: 0.2}", "{law: lugre, mu_s: 0.3, mu_k: 0.2, v_stribeck: 0.01, sigma0: 1e4, sigma1: 5}")
+        for name, joint in self.JOINTS.items():
+            for law in laws:
+                gravity, spin = [1.0, 2.0, -9.0], [3.0, 2.0, 8.0]
+                plain = self.run_model(self.MODEL % (gravity, "0, 0, 0", spin, "0, 0, 0", joint % law))
+                turned = self.run_model(self.MODEL % (turn(gravity), "%r, %r, %r" % (roll, pitch, yaw), turn(spin),
+                                                      "%r, %r, %r" % (roll, pitch, yaw), joint % law))
+                self.assertGreater(plain["energy.dissipated"][-1], 1e-4)
+                self.assertGreater(max(map(abs, plain["joint.J.ft"])), 0.1)
+                for energy in ("kinetic", "dissipated"):
+                    for one, other in zip(plain["energy." + energy], turned["energy." + energy], strict=True):
+                        self.assertLess(abs(one - other), 1e-7, (name, law, energy))
+                for one, other in zip(self.rows(plain, "top", "x", "y", "z"), self.rows(turned, "top", "x", "y", "z"), strict=True):
+                    self.assertLess(math.dist(turn(one), other), 1e-7, (name, law))
+                self.assertLess(max(map(abs, plain["energy.residual"])), 1e-5 * plain["energy.kinetic"][0])
 
 
 class Gears(SpatialTest):

@@ -290,13 +290,15 @@ TEST(RevoluteClearanceInSpace, LoadRestsInTheAxesOfTheBearing) {
   EXPECT_NEAR(place.z(), -(c + depth(12.0)), 1e-15);
 }
 
-TEST(RevoluteClearanceInSpace, NeedsItsLengthAndAFrictionThatHasADirection) {
+TEST(RevoluteClearanceInSpace, NeedsItsLengthAndAFrictionThatItCanKeep) {
   const Component component = in_space(row());
   ParameterStub stub = stub_of(component, false);
   EXPECT_EQ(bad_parameter_id([&] { JointInstance joint(component, stub); }), "missing-key");
   stub.numbers["clearance.length"] = bearing_length;
   stub.friction = std::make_shared<FunctionFriction>(bristle, 1);
-  EXPECT_EQ(bad_parameter_id([&] { JointInstance joint(component, stub); }), "type-space");
+  EXPECT_EQ(bad_parameter_id([&] { JointInstance joint(component, stub); }), "");
+  stub.friction = std::make_shared<FunctionFriction>(bristle, 9);
+  EXPECT_EQ(bad_parameter_id([&] { JointInstance joint(component, stub); }), "out-of-range");
 }
 TEST(RevoluteClearance, HasNoPlayAlongTheAxisInThePlane) {
   ParameterStub stub = radii();
