@@ -210,7 +210,8 @@ class Delta(Mechanism):
         self.assert_column(columns, "body.platform.y", lambda t: 0.08 * (1 - math.cos(w * t)), 1e-12)
         self.assert_column(columns, "body.platform.z", lambda t: -0.5, 1e-12)
         self.assert_column(columns, "body.platform.qw", lambda t: 1.0, 1e-12)
-        self.assert_balance(columns, 1e-6)
+        # Nothing but the work of the motors chooses the steps here; rows between them are interpolated.
+        self.assert_balance(self.run_file("delta", "--accuracy", "1e-9"), 1e-6)
 
     def test_its_arms_turn_by_the_inverse_kinematics_of_two_circles(self):
         columns = self.run_file("delta")
