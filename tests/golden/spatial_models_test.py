@@ -331,6 +331,7 @@ simulation: {end: 1 s, output: {interval: 0.1 s}, %s}
 class Page(SpatialTest):
     """The table of joints in docs/model-file.md is what the program does."""
     MORE = {"distance": ", length: 1", "bushing": ", stiffness: {x: 1}", "spring-damper": ", stiffness: 1",
+            "joint-friction": ", friction: 1", "joint-stop": ", lower: -2, upper: 2, stiffness: 1",
             "revolute-clearance": ", clearance: {radial_clearance: 1 mm, length: 1 cm, contact: {law: hertz, K: 1e8}}",
             "spherical-clearance": ", clearance: {radial_clearance: 1 mm, contact: {law: hertz, K: 1e8}}"}
     ROW = re.compile(r"^\| `([-a-z]+)` \| (\d|-)?(?:, (\d)|0 in space) \| (angle|position|none) \|", re.M)
