@@ -11,8 +11,9 @@
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double rounding = 1e-15;  // of a located event function, in its unit
-constexpr int most_per_step = 8;    // of one joint; more are rounding, not motion
+constexpr double rounding = 1e-15;      // of a located event function, in its unit
+constexpr double same_instant = 1e-12;  // part of a step
+constexpr int most_per_step = 8;        // of one joint; more are rounding, not motion
 
 // A field may be left NaN, which is recorded as empty.
 bool fields_make_sense(const Event& event, Span<const double> fields, Message& message) {
@@ -46,6 +47,7 @@ StepEvents::StepEvents(const System& system, bool located, int flows)
     all_fields += most_per_step * most_fields;
   }
   for (auto* numbers : {&g0_, &r0_, &gm_, &rm_, &g1_, &r1_}) numbers->resize(most_events);
+  happening_.resize(most_events, 0);
   armed_.resize(all_events, 0);
   seen_.resize(all_events, 0);
   // Reserved once: a step appends without allocating.
@@ -99,6 +101,8 @@ bool StepEvents::apply_joint(std::size_t watched, const State& before, const Eva
   const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
   const double dt = after.t() - before.t();
   double reached = 0.0;
+  const std::span told = std::span(happening_).first(events.size);  // at `reached`
+  std::ranges::fill(told, 0);
   for (int count = 0; count < most_per_step; ++count) {
     // The joint's present history decides what can happen next.
     const Point start{before.t(), before.q(), before.v(), before.z(), after.h()};
@@ -112,12 +116,16 @@ bool StepEvents::apply_joint(std::size_t watched, const State& before, const Eva
       armed[i] = std::isnan(g0[i]) || std::isnan(g1[i]) ? 0 : 1;
       if (armed[i] == 0) continue;
       const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
-      auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, reached);
+      // Others may happen at the same instant, as at both ends of a bearing.
+      const double from = told[i] != 0 ? reached : std::max(0.0, reached - same_instant);
+      auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, from);
       if (!s && !known && sign * g1[i] > 0.0) s = reached;  // armed when it was past its zero
       if (s && *s < earliest) earliest = *s, next = static_cast<int>(i);
     }
     if (next < 0) return true;
-    reached = earliest;
+    if (earliest > reached + same_instant) std::ranges::fill(told, 0);
+    reached = std::max(reached, earliest);
+    told[at(next)] = 1;
     if (!tell_inside(joint, next, earliest, before, after, fault)) return false;
   }
   return true;
@@ -232,17 +240,26 @@ bool StepEvents::tell_at_end(const Passage& hunted, double late, State& after, c
   for (const int joint : watched_) {
     const Span<const Event> events = system_.joint_layout(joint).events;
     const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
+    const auto happens = [&](int i) {
+      const double sign = events[at(i)].crossing == Crossing::rising ? 1.0 : -1.0, past = sign * g[at(i)];
+      if (past >= -tolerance && past <= std::max(tolerance, late) && sign * r[at(i)] > 0.0) return true;
+      return joint == hunted.joint && i == hunted.event && !std::isnan(g[at(i)]);
+    };
+    if (!functions(joint, point(after), e_after, g, r, fault)) return false;
     for (int i = 0; i < static_cast<int>(events.size); ++i) {
-      if (events[at(i)].locate == 0) continue;
-      if (!functions(joint, point(after), e_after, g, r, fault)) return false;
-      const double sign = events[at(i)].crossing == Crossing::rising ? 1.0 : -1.0;
-      const double past = sign * g[at(i)];
-      const bool grows = past >= -tolerance && past <= std::max(tolerance, late) && sign * r[at(i)] > 0.0;
-      if (!grows && !(joint == hunted.joint && i == hunted.event && !std::isnan(g[at(i)]))) continue;
+      happening_[at(i)] = events[at(i)].locate != 0 && happens(i) ? 1 : 0;
+    }
+    // What one event makes possible does not happen at the same instant; what it makes impossible does not either.
+    bool changed = false;
+    for (int i = 0; i < static_cast<int>(events.size); ++i) {
+      if (happening_[at(i)] == 0) continue;
+      if (changed && !functions(joint, point(after), e_after, g, r, fault)) return false;
+      if (changed && !happens(i)) continue;
       double numbers[9];
-      if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers))
+      if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers)) {
         return false;
-      break;
+      }
+      changed = true;
     }
   }
   return true;

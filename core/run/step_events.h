@@ -75,6 +75,7 @@ class StepEvents {
   std::vector<int> watched_;
   std::vector<std::size_t> first_event_;  // by watched joint: where its events stand in the next two
   std::vector<char> armed_, seen_;        // could the event happen at the last look; the same for the step being tried
+  std::vector<char> happening_;           // by event of one joint
   std::vector<char> inside_;              // by joint: some of its events are told inside a step
   std::vector<double> g0_, r0_, gm_, rm_, g1_, r1_, values_;
   std::vector<Happening> happenings_;

@@ -261,6 +261,39 @@ simulation: {end: 60 ms, accuracy: 1e-9, output: {interval: 1 ms}}
                 self.assertLess(max(map(abs, plain["energy.residual"])), 1e-5 * plain["energy.kinetic"][0])
 
 
+class BothEnds(SpatialTest):
+    JOURNAL = """
+freeplay: 1
+name: journal
+space: spatial
+gravity: [0, -9.81, 0]
+bodies: {shaft: {mass: 1, inertia: [1e-3, 1e-3, 1e-3]}}
+joints:
+  ring:
+    type: revolute
+    between: [ground, shaft]
+    clearance:
+      bearing_radius: 10 mm
+      radial_clearance: 0.1 mm
+      length: 20 mm
+      material: {E: 207 GPa, nu: 0.3}
+      contact: {law: flores, restitution: 0.7}
+simulation: {end: 30 ms, %s, output: {interval: 1 ms}}
+"""
+
+    def test_ends_that_touch_at_the_same_instant_are_both_told(self):
+        for steps in ("accuracy: 10 nm", "step: 10 us"):
+            with self.subTest(steps=steps):
+                self.write("m.yaml", self.JOURNAL % steps)
+                self.freeplay("run", "m.yaml", "--out", "r", "--force")
+                upper, lower = [], []
+                for line in self.read("r", "events.csv").splitlines()[1:]:
+                    end, what = line.split(",")[2].split("_", 1)
+                    (upper if end == "upper" else lower).append([line.split(",")[0], what] + line.split(",")[3:])
+                self.assertGreater(len(upper), 4)
+                self.assertEqual(upper, lower)
+
+
 class Gears(SpatialTest):
     def test_a_train_turns_as_in_the_plane(self):
         for steps in (EXACT, "integrator: bathe, step: 1 ms"):
