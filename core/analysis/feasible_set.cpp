@@ -251,6 +251,40 @@ class Dual {
   mutable VectorXd multipliers_;
 };
 
+/// The largest value of a support function h that was met, and its direction.
+template <int N>
+class Ascent {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Support = std::function<double(const Vector&, Vector&)>;
+  Ascent(const Support& support, Vector& direction) : support_(support), direction_(direction) {
+    direction_ = Vector::UnitX();
+  }
+
+  /// h(n), and from there to where the farthest point lies, again and again: that never makes h smaller.
+  double look(const Vector& n) {
+    Vector p, m = n;
+    const double value = support_(n, p);
+    if (value > best_) best_ = value, direction_ = n;
+    for (int i = 0; i < 60 && p.norm() > 0.0; ++i) {
+      const Vector next = p.normalized();
+      const double reached = support_(next, p);
+      if (!(reached > best_)) break;
+      best_ = reached;
+      direction_ = next;
+      if ((next - m).squaredNorm() < 1e-30) break;
+      m = next;
+    }
+    return value;
+  }
+  double best() const { return best_; }
+
+ private:
+  const Support& support_;
+  Vector& direction_;
+  double best_ = 0.0;
+};
+
 }  // namespace
 
 double farthest(const std::function<double(const Vector2d&, Vector2d&)>& support, Vector2d& direction) {
@@ -260,25 +294,8 @@ double farthest(const std::function<double(const Vector2d&, Vector2d&)>& support
     double bound, left, right, at_left, at_right;
     bool operator<(const Piece& other) const { return bound < other.bound; }
   };
-  double best = 0.0;
-  direction = Vector2d::UnitX();
-  const auto look = [&](double angle) {
-    const Vector2d n(std::cos(angle), std::sin(angle));
-    Vector2d p, m = n;
-    const double value = support(n, p);
-    if (value > best) best = value, direction = n;
-    // Going where the farthest point lies never makes h smaller.
-    for (int i = 0; i < 60 && p.norm() > 0.0; ++i) {
-      const Vector2d next = p.normalized();
-      const double reached = support(next, p);
-      if (!(reached > best)) break;
-      best = reached;
-      direction = next;
-      if ((next - m).squaredNorm() < 1e-30) break;
-      m = next;
-    }
-    return value;
-  };
+  Ascent<2> found(support, direction);
+  const auto towards = [](double angle) { return Vector2d(std::cos(angle), std::sin(angle)); };
   // Between two directions h is at most the sinusoid through its values there.
   const auto piece = [](double left, double right, double a, double b) {
     const double width = right - left, c = std::cos(width), s = std::sin(width);
@@ -290,19 +307,19 @@ double farthest(const std::function<double(const Vector2d&, Vector2d&)>& support
   };
   std::priority_queue<Piece> pieces;
   double values[first_directions + 1];
-  for (int i = 0; i < first_directions; ++i) values[i] = look(M_PI * i / first_directions);
+  for (int i = 0; i < first_directions; ++i) values[i] = found.look(towards(M_PI * i / first_directions));
   values[first_directions] = values[0];
   for (int i = 0; i < first_directions; ++i) {
     pieces.push(piece(M_PI * i / first_directions, M_PI * (i + 1) / first_directions, values[i], values[i + 1]));
   }
-  for (long i = 0; i < most && !pieces.empty() && pieces.top().bound > best * (1.0 + certainty); ++i) {
+  for (long i = 0; i < most && !pieces.empty() && pieces.top().bound > found.best() * (1.0 + certainty); ++i) {
     const Piece top = pieces.top();
     pieces.pop();
-    const double middle = 0.5 * (top.left + top.right), value = look(middle);
+    const double middle = 0.5 * (top.left + top.right), value = found.look(towards(middle));
     pieces.push(piece(top.left, middle, top.at_left, value));
     pieces.push(piece(middle, top.right, value, top.at_right));
   }
-  return best;
+  return found.best();
 }
 
 namespace {
@@ -333,33 +350,17 @@ double farthest(const std::function<double(const Vector3d&, Vector3d&)>& support
     Vector3d values;
     bool operator<(const Triangle& other) const { return bound < other.bound; }
   };
-  double best = 0.0;
-  direction = Vector3d::UnitX();
-  const auto look = [&](const Vector3d& n) {
-    Vector3d p, m = n;
-    const double value = support(n, p);
-    if (value > best) best = value, direction = n;
-    for (int i = 0; i < 60 && p.norm() > 0.0; ++i) {
-      const Vector3d next = p.normalized();
-      const double reached = support(next, p);
-      if (!(reached > best)) break;
-      best = reached;
-      direction = next;
-      if ((next - m).squaredNorm() < 1e-30) break;
-      m = next;
-    }
-    return value;
-  };
+  Ascent<3> found(support, direction);
   std::priority_queue<Triangle> triangles;
   const auto push = [&](const Eigen::Matrix3d& corners, const Vector3d& values) {
     triangles.push({triangle_bound(corners, values), corners, values});
   };
   // Half of an octahedron; the set is symmetric.
-  const Vector3d axes(look(Vector3d::UnitX()), look(Vector3d::UnitY()), look(Vector3d::UnitZ()));
+  const Vector3d axes(found.look(Vector3d::UnitX()), found.look(Vector3d::UnitY()), found.look(Vector3d::UnitZ()));
   for (const double x : {1.0, -1.0}) {
     for (const double y : {1.0, -1.0}) push(Vector3d(x, y, 1.0).asDiagonal(), axes);
   }
-  for (long cut = 0; triangles.top().bound > best * (1.0 + certainty_in_space); ++cut) {
+  for (long cut = 0; triangles.top().bound > found.best() * (1.0 + certainty_in_space); ++cut) {
     const Triangle top = triangles.top();
     if (cut == most) return top.bound;
     triangles.pop();
@@ -371,7 +372,7 @@ double farthest(const std::function<double(const Vector3d&, Vector3d&)>& support
     }
     const int to = (from + 1) % 3;
     const Vector3d middle = (top.corners.row(from) + top.corners.row(to)).transpose().normalized();
-    const double value = look(middle);
+    const double value = found.look(middle);
     for (const int replaced : {from, to}) {
       Eigen::Matrix3d corners = top.corners;
       Vector3d values = top.values;
@@ -380,7 +381,7 @@ double farthest(const std::function<double(const Vector3d&, Vector3d&)>& support
       push(corners, values);
     }
   }
-  return best;
+  return found.best();
 }
 
 namespace {
