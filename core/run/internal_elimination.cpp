@@ -6,6 +6,8 @@
 namespace freeplay {
 namespace {
 
+constexpr double vanishing_part = 1e-4;  // of the largest variable of a joint
+
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Gauss-Jordan with partial pivoting, in place on a small row-major matrix and its right sides.
@@ -107,6 +109,11 @@ double InternalElimination::advance(std::span<const double> change, double beta_
                                     std::span<double> z_rate) const {
   double largest = 0.0;
   for (const Block& block : blocks_) {
+    // Components of a vector that vanish but for rounding never settle by their own measure.
+    double vanishing = 0.0;
+    for (std::size_t i = at(block.offset); i < at(block.offset + block.size); ++i) {
+      vanishing = std::max({vanishing, vanishing_part * std::abs(z[i]), vanishing_part * beta_z * std::abs(z_rate[i])});
+    }
     for (int i = 0; i < block.size; ++i) {
       const std::size_t index = at(block.offset + i);
       double sum = residual_[index];
@@ -116,7 +123,7 @@ double InternalElimination::advance(std::span<const double> change, double beta_
         if (body != ground) sum += slope(block, i, c) * change[at(width * body + c % width)];
       }
       z_rate[index] += sum;
-      const double size = std::max(std::abs(z[index]), beta_z * std::abs(z_rate[index]));
+      const double size = std::max({std::abs(z[index]), beta_z * std::abs(z_rate[index]), vanishing});
       if (sum != 0.0) largest = std::max(largest, beta_z * std::abs(sum) / size);
     }
   }

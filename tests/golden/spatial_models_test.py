@@ -190,6 +190,30 @@ class PlanarInSpace(SpatialTest):
         # Fixed steps do not end at contacts: their own error is larger.
         self.assert_same(LUGRE, "integrator: bathe, step: 1 us", 1e-7)
 
+    def test_friction_with_memory_at_both_ends_of_a_loaded_journal_costs_no_rejected_steps(self):
+        for integrator in ("bathe", "generalized-alpha"):
+            self.write("m.yaml", """
+freeplay: 1
+name: journal
+space: spatial
+gravity: [0, 0, -9.81]
+bodies: {shaft: {mass: 2, inertia: [0.02, 0.02, 0.02], velocity: {angular: [30, 0, 0]}}}
+joints:
+  ring:
+    type: revolute
+    between: [ground, shaft]
+    axis: [1, 0, 0]
+    clearance:
+      {bearing_radius: 10 mm, length: 40 mm, radial_clearance: 0.1 mm, initial: loaded,
+       contact: {law: kelvin-voigt, K: 1e6, D: 2000},
+       friction: {law: lugre, mu_s: 0.15, mu_k: 0.1, v_stribeck: 0.01, sigma0: 1e5, sigma1: 30}}
+simulation: {end: 20 ms, step: 10 us, integrator: %s}
+""" % integrator)
+            self.freeplay("run", "m.yaml", "--out", "r", "--force")
+            counts = json.loads(self.read("r", "summary.json"))["counts"]
+            self.assertEqual((2000, 0), (counts["steps"], counts["rejected"]), integrator)
+            self.assertLess(counts["iterations"], 10 * counts["steps"], integrator)
+
     def test_a_ball_that_moves_in_a_plane_feels_what_a_pin_does(self):
         for clearance in (CLEARANCE, LUGRE):
             self.assert_same(clearance, "accuracy: 1e-10", 1e-9, "spherical")
