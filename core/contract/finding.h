@@ -40,8 +40,7 @@ class Findings {
   /// Takes over what another suite found; `where` is put before its details.
   void merge(const Findings& other, const std::string& where) {
     for (const Finding& theirs : other.all_) {
-      expect(theirs.rule, theirs.held,
-             [&] { return where.empty() ? theirs.detail : where + ": " + theirs.detail; });
+      expect(theirs.rule, theirs.held, [&] { return where.empty() ? theirs.detail : where + ": " + theirs.detail; });
     }
   }
 
