@@ -11,7 +11,7 @@
 namespace freeplay {
 
 /// Rank-revealing decomposition of J^T (column-pivoted QR), J being nc x nv with columns in m and rad.
-/// Sized once; analyse() and least_norm() do not allocate up to most_dense_columns. Beyond, both are sparse.
+/// Sized once; analyse() and least_norm() do not allocate up to most_columns. Beyond, both are sparse.
 class RowRank {
  public:
   RowRank(int rows, int columns);
@@ -19,6 +19,9 @@ class RowRank {
   /// Relative size below which a pivot counts as zero (theory of redundant constraints, threshold of the largest
   /// pivot).
   static constexpr double tolerance = 1e-10;
+
+  /// Dense decompositions cost the third power of the columns, and redundant mechanisms ask for one in every stage.
+  static constexpr int most_columns = 150;
 
   /// Decomposes J. Returns the rank. `error` says how far off, relative to its largest, the entries may be: smaller
   /// pivots count as zero, too.
@@ -35,7 +38,7 @@ class RowRank {
   void least_norm(std::span<double> lambda, int first_driver);
 
  private:
-  bool is_large() const { return columns_ > most_dense_columns; }
+  bool is_large() const { return columns_ > most_columns; }
 
   int rows_, columns_, rank_ = 0;
   SparseMatrix sparse_;  // J, where it is large
