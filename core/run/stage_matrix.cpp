@@ -10,7 +10,8 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr MatrixEntry nowhere{-1, -1};
 constexpr int left_out = 0;  // the number that nobody reads
 constexpr int first_block = 1;
-constexpr double regular_enough = 1e-6;  // pivot of the normal matrix below which the whole one is factored
+constexpr double measurable = 1e-10;     // pivot of the normal matrix that is not one of rounding
+constexpr double regular_enough = 1e-4;  // pivot of the normal matrix below which the whole one is factored
 // In pairs, so that no comparison waits for all those before.
 template <int width>
 double largest_entry(const Eigen::Matrix<double, width, width>& m) {
@@ -191,7 +192,10 @@ double StageMatrix::factor_rest() {
   std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
               rest_.values().begin());
   const double whole = rest_.factor();
-  if (!(unit_ > 0.0) && normal > regular_enough * regular_enough) unit_ = whole / normal;
+  if (normal > measurable) {
+    unit_ = whole / normal;
+    return whole > 0.0 ? normal : 0.0;
+  }
   return unit_ > 0.0 ? whole / unit_ : whole;
 }
 

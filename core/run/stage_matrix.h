@@ -73,7 +73,7 @@ class StageMatrix {
   KktMatrix rest_;
   std::unique_ptr<NormalMatrix> normal_;  // of rest_, where that is the index-1 matrix; else null
   bool by_normal_ = false;
-  double unit_ = 0.0;  // pivot of rest_ over that of normal_, where both were asked first; 0: not yet
+  double unit_ = 0.0;  // pivot of rest_ over that of normal_, where both were asked last; 0: not yet
   std::vector<Prescribed> prescribed_;
   std::vector<Coupling> couplings_;
   std::size_t first_free_part_ = 0;  // couplings of what is factored with prescribed bodies stand from here to the end
