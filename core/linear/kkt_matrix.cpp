@@ -24,8 +24,8 @@ struct KktMatrix::Impl {
 
   Impl() {
     klu_defaults(&common);
-    common.maxwork =
-        10;  // in passes over the matrix: without a limit the search for a diagonal takes the square of the size
+    // In passes over the matrix: without a limit the search for a diagonal takes the square of the size.
+    common.maxwork = 10;
   }
   ~Impl() { forget(); }
   Impl(const Impl&) = delete;

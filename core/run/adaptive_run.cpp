@@ -105,9 +105,12 @@ bool Simulation::Impl::adaptive_step() {
     bool done = false;
     if (!pursue(hunted, dt, tries, done)) return false;
     if (done || end_inside(hunted, dt, tries)) break;
+    if (outcome.status == RunStatus::failed) return false;
   }
   const bool at_kink = to_kink && trial.t() == goal;
-  if (hunted.joint >= 0 || at_kink) {
+  if (at_kink) {
+    control.restart();
+  } else if (hunted.joint >= 0) {
     control.cut();
   } else {
     control.accept(trial.t() - accepted.t(), error);

@@ -12,8 +12,8 @@ constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step,
 
 void StepControl::accept(double dt, double error) {
   const double e = std::max(error, smallest_error), judged = first_ ? std::max(error, first_error) : e;
-  double factor = std::clamp(0.9 * std::pow(judged, -0.85 / power_) * std::pow(last_error_, 0.2 / power_), 0.2,
-                             first_ ? first_growth : largest_growth);
+  double factor = std::clamp(0.9 * std::pow(judged, -proportional_ / power_) * std::pow(last_error_, damping_ / power_),
+                             0.2, first_ ? first_growth : largest_growth);
   first_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
   next_ = std::min(dt * factor, limits_.largest);
