@@ -15,7 +15,10 @@ class Fixed final : public Joint {
  public:
   explicit Fixed(const Parameters&) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 3; }
+  void declare(JointLayout& layout) const override {
+    layout.constraint_rows = 3;
+    layout.planar_rows = planar_rows;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     for (int i = 0; i < 2; ++i) {
       rows.phi.data[i] = in.b->position[i] - in.a->position[i];
@@ -29,6 +32,9 @@ class Fixed final : public Joint {
     b_in_a = pose(0.0, 0.0);
     return true;
   }
+
+ private:
+  static constexpr PlanarRow planar_rows[] = {PlanarRow::origins, PlanarRow::turn};
 };
 
 /// Two markers that coincide, in space: P_b - P_a = 0, and the rotation vector of b in a is zero.

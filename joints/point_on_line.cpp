@@ -16,6 +16,8 @@ class PointOnLine final : public Joint {
     layout.coordinate = Coordinate::position;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 1;
+    layout.planar_rows = planar_rows;
+    layout.planar_coordinate = 1;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { Slide(in).write_along(row); }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
@@ -24,6 +26,9 @@ class PointOnLine final : public Joint {
     rows.gamma[0] = slide.across_gamma();
     slide.write_across(rows.jacobian.data);
   }
+
+ private:
+  static constexpr PlanarRow planar_rows[] = {PlanarRow::across};
 };
 
 /// Ball in a straight slot, in space: y_a.d = 0 and z_a.d = 0 with d = P_b - P_a; all turns are free.

@@ -19,6 +19,8 @@ class Prismatic final : public Joint {
     layout.coordinate = Coordinate::position;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;
+    layout.planar_rows = planar_rows;
+    layout.planar_coordinate = 1;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { Slide(in).write_along(row); }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
@@ -33,6 +35,9 @@ class Prismatic final : public Joint {
     b_in_a = pose(position, 0.0);
     return true;
   }
+
+ private:
+  static constexpr PlanarRow planar_rows[] = {PlanarRow::across, PlanarRow::turn};
 };
 
 /// Slider in space: the second origin stays on the x axis of marker a, y_a.d = 0 and z_a.d = 0 with d = P_b - P_a, and

@@ -21,6 +21,8 @@ class Revolute final : public Joint {
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;
     layout.pin = 1;
+    layout.planar_rows = planar_rows;
+    layout.planar_coordinate = 1;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
     row.value = relative_angle(*in.a, *in.b);
@@ -37,6 +39,9 @@ class Revolute final : public Joint {
     b_in_a = pose(0.0, angle);
     return true;
   }
+
+ private:
+  static constexpr PlanarRow planar_rows[] = {PlanarRow::origins};
 };
 
 /// Ideal hinge in space: the origins coincide (3 rows, world axes) and the z axes agree (2 rows of `align_z_axes`).

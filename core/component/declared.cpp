@@ -35,6 +35,17 @@ std::string declaration_fault(const JointLayout& layout) {
   if (!(layout.clearance >= 0.0) || !std::isfinite(layout.clearance)) {
     return fmt::format("it declares a clearance of {} m", layout.clearance);
   }
+  if (layout.planar_rows.size > 0 && layout.space == Space::planar) {
+    if (layout.planar_rows.data == nullptr) return "it declares planar rows and does not say which";
+    std::int32_t rows = 0;
+    for (const PlanarRow row : layout.planar_rows) {
+      if (row > PlanarRow::turn) return "it declares a planar row of an unknown kind";
+      rows += row == PlanarRow::origins ? 2 : 1;
+    }
+    if (rows != layout.constraint_rows) {
+      return fmt::format("it declares {} constraint rows, and planar rows that are {}", layout.constraint_rows, rows);
+    }
+  }
   if (layout.coordinate > Coordinate::position) return "it declares a coordinate of an unknown kind";
   if (layout.events.size > most_names || layout.channels.size > most_names) {
     return fmt::format("it declares {} events and {} channels", layout.events.size, layout.channels.size);

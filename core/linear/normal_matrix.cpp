@@ -1,119 +1,132 @@
 #include "linear/normal_matrix.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
 
 namespace freeplay {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr std::size_t densest = 24;  // products for each entry of G, beyond which S is too dense
+constexpr std::size_t densest = 24;        // products for each number of G, beyond which S is too dense
+constexpr std::size_t most_filled = 1000;  // operations for each number of G, beyond which its factors are
 
-bool same_column(const NormalMatrix::Entry& a, const NormalMatrix::Entry& b) { return a.column == b.column; }
+// Of a row: its place in an order that keeps the factors sparse.
+std::vector<int> sparse_order(int rows, const std::vector<std::pair<int, int>>& places) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(2 * places.size());
+  for (const auto& [row, column] : places) {
+    entries.emplace_back(row, column, 1.0);
+    if (row != column) entries.emplace_back(column, row, 1.0);
+  }
+  Eigen::SparseMatrix<double> s(rows, rows);
+  s.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic> order;
+  Eigen::AMDOrdering<int>()(s, order);
+  std::vector<int> out(at(rows));
+  for (int place = 0; place < rows; ++place) out[at(order.indices()[place])] = place;
+  return out;
+}
 
 }  // namespace
 
-bool NormalMatrix::set_pattern(std::span<const double> mass, int rows, std::vector<Entry> entries) {
-  const auto sort = [&] { std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.column, e.row); }); };
-  sort();
-  std::size_t count = 0;
-  for (std::size_t i = 0, first = 0; i < entries.size(); ++i) {
-    if (!same_column(entries[i], entries[first])) first = i;
-    count += i - first + 1;
+bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows, std::span<const Piece> pieces) {
+  // Pieces of one body, behind each other.
+  std::vector<int> by_body(pieces.size());
+  std::iota(by_body.begin(), by_body.end(), 0);
+  std::ranges::stable_sort(by_body, {}, [&](int i) { return pieces[at(i)].body; });
+  std::vector<std::pair<int, int>> pairs;  // of pieces
+  for (std::size_t i = 0, first = 0; i < by_body.size(); ++i) {
+    if (pieces[at(by_body[i])].body != pieces[at(by_body[first])].body) first = i;
+    for (std::size_t k = first; k <= i; ++k) pairs.emplace_back(by_body[i], by_body[k]);
+    if (pairs.size() > densest * pieces.size()) return false;
   }
-  if (count > densest * entries.size()) return false;
-
-  // Column and row of the upper part, each once, in order; smaller than triplets.
-  const auto fill = [&] {
-    std::vector<std::pair<int, int>> places;
-    places.reserve(count);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      for (std::size_t k = i + 1; k-- > 0 && same_column(entries[k], entries[i]);) {
-        places.emplace_back(entries[i].row, entries[k].row);
-      }
+  const auto places = [&](const auto& row_of) {
+    std::vector<std::pair<int, int>> out;
+    out.reserve(pairs.size());
+    for (const auto& [a, b] : pairs) {
+      const auto [low, high] = std::minmax({row_of(a), row_of(b)});
+      out.emplace_back(high, low);
     }
-    std::ranges::sort(places);
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    s_.resize(rows, rows);
-    s_.resizeNonZeros(static_cast<Eigen::Index>(places.size()));
-    std::fill_n(s_.outerIndexPtr(), rows + 1, 0);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      ++s_.outerIndexPtr()[places[i].first + 1];
-      s_.innerIndexPtr()[i] = places[i].second;
-      s_.valuePtr()[i] = 1.0;
-    }
-    std::partial_sum(s_.outerIndexPtr(), s_.outerIndexPtr() + rows + 1, s_.outerIndexPtr());
+    std::ranges::sort(out);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
   };
-  fill();
-  Eigen::PermutationMatrix<Eigen::Dynamic> order;
-  Eigen::AMDOrdering<int>()(Sparse(s_.selfadjointView<Eigen::Upper>()), order);
-  order_.assign(at(rows), 0);
-  for (int place = 0; place < rows; ++place) order_[at(order.indices()[place])] = place;
-  for (Entry& entry : entries) entry.row = order_[at(entry.row)];
-  sort();
-  fill();
+  order_ = sparse_order(rows, places([&](int i) { return pieces[at(i)].row; }));
+  const auto place_of = [&](int i) { return order_[at(pieces[at(i)].row)]; };
+  if (!factors_.set_pattern(rows, places(place_of), most_filled * pieces.size())) return false;
 
+  width_ = width;
   inverse_mass_.clear();
   for (const double m : mass) inverse_mass_.push_back(1.0 / m);
-  entries_ = std::move(entries);
-  numbers_.assign(entries_.size(), 0.0);
-  weighted_ = numbers_;
-  multipliers_.resize(rows);
-  const auto place_of = [&](int row, int column) {
-    const int *begin = s_.innerIndexPtr() + s_.outerIndexPtr()[column],
-              *end = s_.innerIndexPtr() + s_.outerIndexPtr()[column + 1];
-    return static_cast<int>(std::lower_bound(begin, end, row) - s_.innerIndexPtr());
-  };
+  pieces_.assign(pieces.begin(), pieces.end());
+  for (Piece& piece : pieces_) piece.row = order_[at(piece.row)];
   products_.clear();
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    for (std::size_t k = i + 1; k-- > 0 && same_column(entries_[k], entries_[i]);) {
-      products_.push_back({place_of(entries_[k].row, entries_[i].row), static_cast<int>(i), static_cast<int>(k)});
-    }
+  products_.reserve(pairs.size());
+  for (const auto& [a, b] : pairs) {
+    const auto [low, high] = std::minmax({place_of(a), place_of(b)});
+    products_.push_back({factors_.place(high, low), a, b});
   }
-  diagonal_.clear();
-  for (int r = 0; r < rows; ++r) diagonal_.push_back(place_of(r, r));
-  factors_.analyzePattern(s_);
+  weighted_.assign(at(width) * pieces.size(), 0.0);
+  diagonal_.assign(at(rows), 0.0);
+  multipliers_.assign(at(rows), 0.0);
   return true;
 }
 
-double NormalMatrix::factor(std::span<const double> values) {
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    numbers_[i] = values[entries_[i].value];
-    weighted_[i] = numbers_[i] * inverse_mass_[at(entries_[i].column)];
+template <int width>
+void NormalMatrix::multiply(std::span<const double> numbers) {
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const double* inverse = &inverse_mass_[width * at(pieces_[p].body)];
+    for (std::size_t c = 0; c < width; ++c) weighted_[width * p + c] = numbers[width * p + c] * inverse[c];
   }
-  double* s = s_.valuePtr();
-  std::fill_n(s, s_.nonZeros(), 0.0);
-  for (const Product& p : products_) s[p.target] += numbers_[at(p.a)] * weighted_[at(p.b)];
-  factors_.refactor(s_);
-  if (factors_.info() != Eigen::Success) return 0.0;
+  double* const s = factors_.values().data();
+  for (const Product& product : products_) {
+    const double *a = &numbers[width * at(product.a)], *b = &weighted_[width * at(product.b)];
+    double sum = a[0] * b[0];
+    for (int c = 1; c < width; ++c) sum += a[c] * b[c];
+    s[product.target] += sum;
+  }
+}
+
+double NormalMatrix::factor(std::span<const double> numbers) {
+  const std::span<double> s = factors_.values();
+  std::ranges::fill(s, 0.0);
+  width_ == 3 ? multiply<3>(numbers) : multiply<6>(numbers);
+  for (std::size_t r = 0; r < diagonal_.size(); ++r) diagonal_[r] = s[at(factors_.diagonal(static_cast<int>(r)))];
+  factors_.factor();
   double smallest = 1.0;
-  const auto& pivots = factors_.pivots();
-  for (Eigen::Index r = 0; r < pivots.size(); ++r) {
-    const double part = pivots[r] / s[diagonal_[static_cast<std::size_t>(r)]];
+  for (std::size_t r = 0; r < diagonal_.size(); ++r) {
+    const double part = s[at(factors_.diagonal(static_cast<int>(r)))] / diagonal_[r];
     if (!(part >= smallest)) smallest = part;  // keeps a NaN
   }
   return smallest > 0.0 ? smallest : 0.0;
 }
 
-void NormalMatrix::solve(std::span<const double> right, std::span<double> update) const {
-  const std::size_t bodies = inverse_mass_.size();
-  for (std::size_t r = 0; r < order_.size(); ++r) multipliers_[order_[r]] = -right[bodies + r];
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    multipliers_[entries_[i].row] += weighted_[i] * right[at(entries_[i].column)];
+template <int width>
+void NormalMatrix::substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+  for (std::size_t r = 0; r < order_.size(); ++r) multipliers_[at(order_[r])] = l[r];
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const double *g = &weighted_[width * p], *b = &x[width * at(pieces_[p].body)];
+    double sum = g[0] * b[0];
+    for (int c = 1; c < width; ++c) sum += g[c] * b[c];
+    multipliers_[at(pieces_[p].row)] += sum;
   }
-  factors_.matrixL().solveInPlace(multipliers_);
-  multipliers_.array() /= factors_.pivots().array();
-  factors_.matrixU().solveInPlace(multipliers_);
-  std::copy_n(right.begin(), bodies, update.begin());
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    update[at(entries_[i].column)] -= numbers_[i] * multipliers_[entries_[i].row];
+  factors_.solve(multipliers_);
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const double* g = &numbers[width * p];
+    const double multiplier = multipliers_[at(pieces_[p].row)];
+    double* b = &x[width * at(pieces_[p].body)];
+    for (int c = 0; c < width; ++c) b[c] -= g[c] * multiplier;
   }
-  for (std::size_t i = 0; i < bodies; ++i) update[i] *= inverse_mass_[i];
-  for (std::size_t r = 0; r < order_.size(); ++r) update[bodies + r] = multipliers_[order_[r]];
+  for (std::size_t i = 0; i < inverse_mass_.size(); ++i) x[i] *= inverse_mass_[i];
+  for (std::size_t r = 0; r < order_.size(); ++r) l[r] = multipliers_[at(order_[r])];
+}
+
+void NormalMatrix::solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+  width_ == 3 ? substitute<3>(numbers, x, l) : substitute<6>(numbers, x, l);
 }
 
 }  // namespace freeplay

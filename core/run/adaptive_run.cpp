@@ -141,6 +141,7 @@ bool Simulation::Impl::write_rows_inside() {
 bool Simulation::Impl::settle_between() {
   StateView view = between.view();
   solver.use_history(between.h());
+  solver.move_away();
   return solver.project_position(view) && solver.project_velocity(view) &&
          solver.accelerate(view, {z_rate.data(), z_rate.size()});
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace freeplay {
@@ -15,6 +16,8 @@ constexpr double slow_contraction = 0.1;     // a stale factor that contracts le
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr double off_constraints = 10.0;     // relative change of Phi_q by relative size of Phi, about
 constexpr int refinement_limit = 30;
+constexpr int quick_passes = 3;        // of a projection of velocities with factors that are there
+constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
 constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
@@ -71,7 +74,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              }},
       e_(system),
       rows_(system.layout().nc(), system.layout().nv()),
-      index_one_{.matrix = StageMatrix(system, false)} {
+      index_one_{.matrix = AccelerationMatrix(system)} {
   const int nv = system.layout().nv(), nc = system.layout().nc();
   for (int i = 0; i < kept_factors; ++i) factors_.push_back({.matrix = StageMatrix(system, true)});
   for (int i = 0; i < nv; ++i) unit_.push_back(system.is_turn(i) ? 1.0 : system.size());
@@ -112,9 +115,24 @@ NewtonStageSolver::Factor& NewtonStageSolver::factor_for(double beta_q, double b
 
 bool NewtonStageSolver::evaluate(const StateView& s, unsigned terms) {
   const Point point{*s.t, s.q, s.v, s.z, h_};
-  if (system_.evaluate(point, terms, e_)) return true;
+  if (system_.evaluate(point, terms | only_asked, e_)) return true;
   trouble_ = e_.fault.kind == Fault::Kind::plugin ? e_.fault.message.text : e_.fault.motion.text;
   return false;
+}
+
+template <class AnyFactor>
+double NewtonStageSolver::factor_once(AnyFactor& factor) {
+  if (!factor.has_pattern) {
+    const Profile::Timer start(system_.profile(), Phase::start);
+    factor.matrix.set_pattern(dependent_);
+  }
+  factor.has_pattern = true;
+  ++factorizations_;
+  if constexpr (std::is_same_v<AnyFactor, IndexOne>) {
+    return factor.matrix.factor(e_);
+  } else {
+    return factor.matrix.factor(e_, factor.beta_q, factor.beta_v, factor.beta_z);
+  }
 }
 
 // Much cheaper than to look which ones depend on others, and mostly enough.
@@ -144,24 +162,15 @@ bool NewtonStageSolver::keep_independent_rows() {
   return !same;
 }
 
-double NewtonStageSolver::factor_once(Factor& factor) {
-  if (!factor.has_pattern) {
-    const Profile::Timer start(system_.profile(), Phase::start);
-    factor.matrix.set_pattern(dependent_);
-  }
-  factor.has_pattern = true;
-  ++factorizations_;
-  return factor.matrix.factor(e_, factor.beta_q, factor.beta_v, factor.beta_z);
-}
-
-bool NewtonStageSolver::refactor(Factor& factor) {
+template <class AnyFactor>
+bool NewtonStageSolver::refactor(AnyFactor& factor) {
   const Profile::Timer timer(system_.profile(), Phase::factorization);
   if (rank_ < 0) {
     const Profile::Timer start(system_.profile(), Phase::start);
     if (!rows_are_independent()) find_dependent_rows();
   }
   double pivot = factor_once(factor);
-  if (&factor == &index_one_) {
+  if constexpr (std::is_same_v<AnyFactor, IndexOne>) {
     largest_pivot_ = std::max(largest_pivot_, pivot);
     last_regularity_ = pivot / largest_pivot_;
     regularity_ = std::min(regularity_, last_regularity_);
@@ -304,7 +313,7 @@ bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double beta) {
 
 bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
   const std::size_t nv = x_a.size(), nc = x_c.size();
-  Factor& factor = index_one_;
+  IndexOne& factor = index_one_;
   bool fresh = false;
   if (!factor.valid) {
     if (!refactor(factor)) return false;
@@ -350,68 +359,72 @@ bool NewtonStageSolver::refine(std::span<double> x_a, std::span<double> x_c, dou
   return true;
 }
 
-bool NewtonStageSolver::holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c) {
+template <int width>
+bool NewtonStageSolver::equations_hold(std::span<const double> x_a, std::span<const double> x_c) {
   const std::size_t nv = x_a.size();
   for (std::size_t i = 0; i < nv; ++i) {
     const double inertia = system_.mass()[i] * x_a[i];
     work_[i] = right_a_[i] - inertia;
     size_[i] = std::abs(right_a_[i]) + std::abs(inertia);
   }
-  for (std::size_t r = 0; r < x_c.size(); ++r) {
-    work_[nv + r] = right_c_[r];
-    size_[nv + r] = std::abs(right_c_[r]);
-  }
-  const std::size_t width = at(system_.body_velocities());
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     const double* entry = &e_.jacobian[at(block.offset)];
-    const std::size_t body = width * at(block.body);
-    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r, entry += width) {
-      double left = work_[nv + r], size = size_[nv + r];
-      for (std::size_t c = 0; c < width; ++c) {
-        const double force = entry[c] * x_c[r], moved = entry[c] * x_a[body + c];
-        work_[body + c] -= force;
-        size_[body + c] += std::abs(force);
-        left -= moved;
-        size += std::abs(moved);
+    double *left = &work_[at(width * block.body)], *size = &size_[at(width * block.body)];
+    for (int r = block.row; r < block.row + block.rows; ++r, entry += width) {
+      const double multiplier = x_c[at(r)];
+      for (int c = 0; c < width; ++c) {
+        const double force = entry[c] * multiplier;
+        left[c] -= force;
+        size[c] += std::abs(force);
       }
-      work_[nv + r] = left;
-      size_[nv + r] = size;
     }
   }
-  const auto holds = [&](std::size_t i) { return std::abs(work_[i]) <= 8.0 * rounding * size_[i]; };
   int failing = 0;
-  for (std::size_t i = 0; i < nv + x_c.size(); ++i) failing += holds(i) ? 0 : 1;
-  if (failing == 0 || !any_dependent_) return failing == 0;
-  for (std::size_t r = 0; r < x_c.size(); ++r) failing -= dependent_[r] && !holds(nv + r) ? 1 : 0;
+  for (std::size_t i = 0; i < nv; ++i) failing += std::abs(work_[i]) <= 8.0 * rounding * size_[i] ? 0 : 1;
   return failing == 0;
 }
 
-// Whether every row holds as well as its terms are rounded; leaves what is missing in right_c_.
-bool NewtonStageSolver::velocities_hold(std::span<const double> v) {
-  for (std::size_t r = 0; r < right_c_.size(); ++r) {
-    right_c_[r] = e_.nu[r];
-    size_[r] = std::abs(e_.nu[r]);
+// Leaves what is missing in `left`, by row.
+template <int width>
+bool NewtonStageSolver::rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
+                                     std::span<double> left) {
+  double* const size = size_.data();
+  for (std::size_t r = 0; r < right.size(); ++r) {
+    left[r] = right[r];
+    size[r] = std::abs(right[r]);
   }
-  const std::size_t width = at(system_.body_velocities());
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
-    const double* entry = &e_.jacobian[at(block.offset)];
-    const double* rate = &v[width * at(block.body)];
-    for (std::size_t r = at(block.row); r < at(block.row + block.rows); ++r, entry += width) {
-      double left = right_c_[r], size = size_[r];
-      for (std::size_t c = 0; c < width; ++c) {
+    const double *entry = &e_.jacobian[at(block.offset)], *rate = &x_a[at(width * block.body)];
+    for (int r = block.row; r < block.row + block.rows; ++r, entry += width) {
+      double sum = 0.0, sizes = 0.0;
+      for (int c = 0; c < width; ++c) {
         const double moved = entry[c] * rate[c];
-        left -= moved;
-        size += std::abs(moved);
+        sum += moved;
+        sizes += std::abs(moved);
       }
-      right_c_[r] = left;
-      size_[r] = size;
+      left[at(r)] -= sum;
+      size[r] += sizes;
     }
   }
   int failing = 0;
-  for (std::size_t r = 0; r < right_c_.size(); ++r)
-    failing += std::abs(right_c_[r]) <= 4.0 * rounding * size_[r] ? 0 : 1;
+  for (std::size_t r = 0; r < right.size(); ++r) {
+    failing += std::abs(left[r]) <= tolerance * rounding * size[r] || dependent_[r] != 0 ? 0 : 1;
+  }
   return failing == 0;
 }
+
+bool NewtonStageSolver::rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance,
+                                  std::span<double> left) {
+  return system_.body_velocities() == 3 ? rows_hold_in<3>(right, x_a, tolerance, left)
+                                        : rows_hold_in<6>(right, x_a, tolerance, left);
+}
+
+bool NewtonStageSolver::holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c) {
+  return rows_hold(right_c_, x_a, 8.0, std::span(work_).first(right_c_.size())) &&
+         (system_.body_velocities() == 3 ? equations_hold<3>(x_a, x_c) : equations_hold<6>(x_a, x_c));
+}
+
+bool NewtonStageSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_.nu, v, 4.0, right_c_); }
 
 bool NewtonStageSolver::project_velocity(StateView& state) {
   if (state.lambda.size == 0) return true;
@@ -419,12 +432,32 @@ bool NewtonStageSolver::project_velocity(StateView& state) {
   if (!e_.has_rows_at(here) && !evaluate(state, rows)) return false;
   std::ranges::fill(multipliers_, 0.0);
   if (velocities_hold(state.v)) return true;
+  const double speed = norm(state.v);
+  // Small changes may be made with factors from close by; what they err by is smaller yet.
+  for (int pass = 0; pass < quick_passes && index_one_.valid; ++pass) {
+    solve_rows(right_c_);
+    if (!(norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
+    for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
+    for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += update_[increment_.size() + r];
+    if (velocities_hold(state.v)) return true;
+  }
   std::ranges::fill(right_a_, 0.0);
   std::ranges::fill(increment_, 0.0);
+  std::ranges::copy(multipliers_, other_lambda_.begin());
+  std::ranges::fill(multipliers_, 0.0);
   // The change is a small part of v: digits below the rounding of v are not asked for.
-  if (!refine(increment_, multipliers_, norm(state.v))) return false;
+  if (!refine(increment_, multipliers_, speed)) return false;
   for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += increment_[i];
+  for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += other_lambda_[r];
   return true;
+}
+
+/// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
+void NewtonStageSolver::solve_rows(std::span<const double> gap) {
+  const std::size_t nv = increment_.size();
+  std::fill_n(right_.begin(), nv, 0.0);
+  for (std::size_t r = 0; r < gap.size(); ++r) right_[nv + r] = dependent_[r] ? 0.0 : gap[r];
+  index_one_.matrix.solve(right_, update_);
 }
 
 bool NewtonStageSolver::project_position(StateView& state) {
@@ -440,11 +473,8 @@ bool NewtonStageSolver::project_position(StateView& state) {
     const bool slow = gap > slow_contraction * previous;
     if ((!index_one_.valid || slow) && !refactor(index_one_)) return false;
     previous = gap;
-    std::ranges::fill(right_, 0.0);
-    for (std::size_t r = 0; r < e_.phi.size(); ++r) {
-      if (!dependent_[r]) right_[increment_.size() + r] = -e_.phi[r];
-    }
-    index_one_.matrix.solve(right_, update_);
+    for (std::size_t r = 0; r < e_.phi.size(); ++r) right_c_[r] = -e_.phi[r];
+    solve_rows(right_c_);
     system_.retract(state.q, std::span(update_).first(increment_.size()), state.q);
   }
   trouble_ = "positions could not be projected on the constraints";
@@ -461,16 +491,19 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
     if (rows_.analyse(entries_, off_constraints * largest(e_.phi) / system_.size()) > rank_) keep_independent_rows();
   }
   if (!refactor(index_one_)) return false;
-  std::ranges::copy(e_.force, right_a_.begin());
-  std::ranges::copy(e_.gamma, right_c_.begin());
   // Nothing of the past enters, so that the same state always has the same accelerations.
-  for (std::size_t i = 0; i < right_a_.size(); ++i) right_[i] = right_a_[i];
-  for (std::size_t r = 0; r < right_c_.size(); ++r) right_[right_a_.size() + r] = dependent_[r] ? 0.0 : right_c_[r];
+  const std::size_t nv = state.a.size, nc = state.lambda.size;
+  for (std::size_t i = 0; i < nv; ++i) right_[i] = e_.force[i];
+  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : e_.gamma[r];
   index_one_.matrix.solve(right_, update_);
-  std::copy_n(update_.begin(), state.a.size, state.a.begin());
-  std::copy_n(update_.begin() + static_cast<std::ptrdiff_t>(state.a.size), state.lambda.size, state.lambda.begin());
-  // Where drivers alone decide the motion, a is right at once and the multipliers are not.
-  if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
+  for (std::size_t i = 0; i < nv; ++i) state.a[i] = update_[i];
+  for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = update_[nv + r];
+  if (!index_one_.matrix.is_well_conditioned()) {
+    std::ranges::copy(e_.force, right_a_.begin());
+    std::ranges::copy(e_.gamma, right_c_.begin());
+    // Where drivers alone decide the motion, a is right at once and the multipliers are not.
+    if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
+  }
   std::ranges::copy(e_.internal_rate, z_rate.begin());
   if (any_dependent_) {
     const Profile::Timer timer(system_.profile(), Phase::solution);
@@ -537,7 +570,7 @@ double NewtonStageSolver::internal_error_norm(double dt, const StateView& end, s
 }
 
 bool NewtonStageSolver::mobility(const State& state, int joint, std::span<double> out) {
-  if (!system_.evaluate(point(state), term_position, e_)) return false;
+  if (!system_.evaluate(point(state), term_position | only_asked, e_)) return false;
   const JointElement& element = system_.model().joints[at(joint)];
   const int markers[2] = {element.marker_a, element.marker_b};
   std::ranges::fill(out, 0.0);

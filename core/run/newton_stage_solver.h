@@ -15,6 +15,7 @@
 
 #include "freeplay/integrator.h"
 #include "linear/row_rank.h"
+#include "run/acceleration_matrix.h"
 #include "run/energy_account.h"
 #include "run/stage_matrix.h"
 #include "system/system.h"
@@ -63,6 +64,8 @@ class NewtonStageSolver {
   /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
   bool mobility(const State& state, int joint, std::span<double> out);
 
+  /// The states to come are not close to the last one: factors are made anew there.
+  void move_away() { index_one_.valid = false; }
   /// The equations where they were looked at last.
   Evaluation& evaluation() { return e_; }
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
@@ -86,11 +89,18 @@ class NewtonStageSolver {
     bool valid = false, has_pattern = false;
   };
 
+  struct IndexOne {
+    AccelerationMatrix matrix;
+    bool valid = false, has_pattern = false;
+  };
+
   Factor& factor_for(double beta_q, double beta_v);
   bool evaluate(const StateView& at, unsigned terms);
-  /// Factors at the present evaluation (which must hold Phi_q and, for betas above zero, derivatives).
-  bool refactor(Factor& factor);
-  double factor_once(Factor& factor);
+  /// Factor at the present evaluation, which must hold Phi_q and, for a stage, derivatives.
+  template <class AnyFactor>
+  bool refactor(AnyFactor& factor);
+  template <class AnyFactor>
+  double factor_once(AnyFactor& factor);
   /// Both return whether others than before are left out.
   bool rows_are_independent();
   bool find_dependent_rows();
@@ -106,9 +116,18 @@ class NewtonStageSolver {
   /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
   /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
   bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
-  bool velocities_hold(std::span<const double> v);
-  /// Whether every equation of the index-1 system holds as well as its terms are rounded (Oettli and Prager 1964).
+  /// Whether every equation of the index-1 system holds as well as its terms are rounded (Oettli and Prager 1964), and
+  /// parts of it; the second with the right sides `right`, to so many roundings.
   bool holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c);
+  template <int width>
+  bool equations_hold(std::span<const double> x_a, std::span<const double> x_c);
+  template <int width>
+  bool rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
+                    std::span<double> left);
+  bool rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance, std::span<double> left);
+  /// The same for Phi_q v = nu; leaves what is missing in right_c_.
+  bool velocities_hold(std::span<const double> v);
+  void solve_rows(std::span<const double> gap);
 
   const System& system_;
   StageOptions options_;
@@ -116,7 +135,7 @@ class NewtonStageSolver {
   Evaluation e_;
   RowRank rows_;
   std::span<const double> h_;
-  Factor index_one_;
+  IndexOne index_one_;
   std::vector<Factor> factors_;  // of stages, one for each pair of betas
   std::vector<double> unit_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, size_, multipliers_;
   std::vector<SparseEntry> entries_;

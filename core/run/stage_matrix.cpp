@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run/block_inverse.h"
+
 namespace freeplay {
 namespace {
 
@@ -10,19 +12,6 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr MatrixEntry nowhere{-1, -1};
 constexpr int left_out = 0;  // the number that nobody reads
 constexpr int first_block = 1;
-constexpr double measurable = 1e-10;     // pivot of the normal matrix that is not one of rounding
-constexpr double regular_enough = 1e-4;  // pivot of the normal matrix below which the whole one is factored
-// In pairs, so that no comparison waits for all those before.
-template <int width>
-double largest_entry(const Eigen::Matrix<double, width, width>& m) {
-  double by_column[width];
-  for (int c = 0; c < width; ++c) {
-    by_column[c] = std::abs(m(0, c));
-    for (int r = 1; r < width; ++r) by_column[c] = by_column[c] > std::abs(m(r, c)) ? by_column[c] : std::abs(m(r, c));
-  }
-  for (int c = 1; c < width; ++c) by_column[0] = by_column[0] > by_column[c] ? by_column[0] : by_column[c];
-  return by_column[0];
-}
 
 }  // namespace
 
@@ -142,7 +131,6 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
   first_rest_ = first_alone_ + alone_.size();
   const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
   for (std::size_t i = 0; i < found.size(); ++i) slots[factored_entry[i]] = static_cast<int>(first_rest_) + found[i];
-  set_normal_pattern(factored, found);
   rest_right_.assign(unknowns_.size(), 0.0);
   rest_update_.assign(unknowns_.size(), 0.0);
 
@@ -159,44 +147,6 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
   for (int i = 0; i < size; ++i) {
     constants_[at(slots_.constant[at(i)])] += i < nv ? system_.mass()[at(i)] : 1.0;
   }
-}
-
-// Where forces do not enter, M is diagonal and the multipliers decide everything.
-void StageMatrix::set_normal_pattern(std::span<const MatrixEntry> factored, std::span<const int> slots) {
-  const int nv = system_.layout().nv(), size = static_cast<int>(unknowns_.size());
-  const auto bodies = static_cast<int>(std::ranges::lower_bound(unknowns_, nv) - unknowns_.begin());
-  std::vector<double> mass;
-  for (int i = 0; i < bodies; ++i) mass.push_back(system_.mass()[at(unknowns_[at(i)])]);
-  const bool regular = std::ranges::all_of(mass, [](double m) { return m > 0.0; });
-  normal_.reset();
-  by_normal_ = false;
-  unit_ = 0.0;
-  if (forces_ || !regular || size == bodies) return;
-  std::vector<NormalMatrix::Entry> entries;
-  std::vector<char> known(rest_.values().size(), 0);
-  for (std::size_t i = 0; i < factored.size(); ++i) {
-    const auto [row, column] = factored[i];
-    if (row < bodies || column >= bodies || known[at(slots[i])]) continue;
-    known[at(slots[i])] = 1;
-    entries.push_back({row - bodies, column, at(slots[i])});
-  }
-  normal_ = std::make_unique<NormalMatrix>();
-  if (!normal_->set_pattern(mass, size - bodies, std::move(entries))) normal_.reset();
-}
-
-// Towards a singular position the pivots of both fall alike, with the square of the distance.
-double StageMatrix::factor_rest() {
-  const double normal = normal_ ? normal_->factor(std::span(values_).subspan(first_rest_)) : 0.0;
-  by_normal_ = normal > regular_enough;
-  if (by_normal_) return normal;
-  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
-              rest_.values().begin());
-  const double whole = rest_.factor();
-  if (normal > measurable) {
-    unit_ = whole / normal;
-    return whole > 0.0 ? normal : 0.0;
-  }
-  return unit_ > 0.0 ? whole / unit_ : whole;
 }
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
@@ -222,7 +172,9 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
     values_[at(*slot++)] += entry;
     values_[at(*slot++)] += entry;
   }
-  double smallest = factor_rest();
+  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
+              rest_.values().begin());
+  double smallest = rest_.factor();
   for (std::size_t i = first_alone_; i < first_rest_; ++i) {
     if (values_[i] == 0.0 || !std::isfinite(values_[i])) smallest = 0.0;
   }
@@ -237,10 +189,7 @@ double StageMatrix::invert_blocks() {
   for (Prescribed& body : prescribed_) {
     const Square block = Eigen::Map<const Square>(numbers);
     numbers += width * width;
-    const Square inverse = block.inverse();
-    Eigen::Map<Square>(body.inverse) = inverse;
-    const double size = largest_entry<width>(block) * largest_entry<width>(inverse);
-    smallest = std::min(smallest, size > 0.0 && std::isfinite(size) ? 1.0 / size : 0.0);
+    smallest = std::min(smallest, invert_block<width>(block, body.inverse));
   }
   return smallest;
 }
@@ -276,7 +225,7 @@ void StageMatrix::substitute(std::span<double> right, std::span<double> update) 
   for (std::size_t i = 0; i < alone_.size(); ++i) update[at(alone_[i])] = right[at(alone_[i])] / value[i];
   if (!unknowns_.empty()) {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) rest_right_[i] = right[at(unknowns_[i])];
-    by_normal_ ? normal_->solve(rest_right_, rest_update_) : rest_.solve(rest_right_, rest_update_);
+    rest_.solve(rest_right_, rest_update_);
     for (std::size_t i = 0; i < unknowns_.size(); ++i) update[at(unknowns_[i])] = rest_update_[i];
   }
   for (std::size_t p = prescribed_.size(); p-- > 0;) {

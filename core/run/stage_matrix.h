@@ -8,14 +8,10 @@
 // are then alone in their row and column, as those of a body that only forces move, are divided out.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "linear/kkt_matrix.h"
-#include "linear/normal_matrix.h"
 #include "run/internal_elimination.h"
 #include "run/prescribed_bodies.h"
 #include "system/system.h"
@@ -35,8 +31,6 @@ class StageMatrix {
   double factor(Evaluation& e, double beta_q, double beta_v, double beta_z);
   /// The update (da, dlambda) for a right side, which is used up.
   void solve(std::span<double> right, std::span<double> update) const;
-  /// After factor() of an index-1 matrix: its rows are far from depending on each other. False says nothing.
-  bool has_independent_rows() const { return by_normal_; }
   InternalElimination& internal() { return internal_; }
 
  private:
@@ -63,17 +57,12 @@ class StageMatrix {
   template <int width>
   void substitute(std::span<double> right, std::span<double> update) const;
   std::vector<MatrixEntry> entries(std::span<const char> dependent) const;
-  void set_normal_pattern(std::span<const MatrixEntry> factored, std::span<const int> slots);
-  double factor_rest();
   void subtract(std::size_t first, std::size_t end, std::span<const double> update, std::span<double> right) const;
 
   const System& system_;
   bool forces_;
   InternalElimination internal_;
   KktMatrix rest_;
-  std::unique_ptr<NormalMatrix> normal_;  // of rest_, where that is the index-1 matrix; else null
-  bool by_normal_ = false;
-  double unit_ = 0.0;  // pivot of rest_ over that of normal_, where both were asked last; 0: not yet
   std::vector<Prescribed> prescribed_;
   std::vector<Coupling> couplings_;
   std::size_t first_free_part_ = 0;  // couplings of what is factored with prescribed bodies stand from here to the end

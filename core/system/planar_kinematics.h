@@ -21,11 +21,14 @@ struct Mount {
   BodyId body = ground;
   double x = 0.0, y = 0.0;          ///< offset from the centre of mass, body axes [m]
   double cosine = 1.0, sine = 0.0;  ///< of the marker's angle on the body
+  double angle = 0.0;               ///< [rad]
 };
 
-/// Offset of a marker from its body's centre of mass in world axes [m], and the body's angular velocity.
+/// Offset of a marker from its body's centre of mass in world axes [m], the body's angular velocity, and where the
+/// marker stands [m].
 struct Arm {
   double x = 0.0, y = 0.0, w = 0.0;
+  double at_x = 0.0, at_y = 0.0;
 };
 
 /// Sine and cosine of a body's angle.
@@ -34,7 +37,8 @@ struct Turn {
 };
 
 inline Mount mount(const Model& model, const Marker& marker) {
-  Mount m{marker.body, marker.position[0], marker.position[1], std::cos(marker.angle), std::sin(marker.angle)};
+  Mount m{marker.body, marker.position[0], marker.position[1], std::cos(marker.angle), std::sin(marker.angle),
+          marker.angle};
   if (marker.body != ground) {
     const Body& body = model.bodies[static_cast<std::size_t>(marker.body)];
     m.x -= body.com[0];
@@ -43,13 +47,16 @@ inline Mount mount(const Model& model, const Marker& marker) {
   return m;
 }
 
-/// Pose and twist of a marker. Entries that a planar motion never changes are left as they are (zero, and 1 in the
-/// rotation's last place).
-inline void marker_kinematics(const Mount& m, const double* q, const double* v, const Turn& turn, MarkerKinematics& k,
-                              Arm& arm) {
-  arm = {turn.cosine * m.x - turn.sine * m.y, turn.sine * m.x + turn.cosine * m.y, v[2]};
-  k.position[0] = q[0] + arm.x;
-  k.position[1] = q[1] + arm.y;
+inline void marker_arm(const Mount& m, const double* q, const double* v, const Turn& turn, Arm& arm) {
+  const double x = turn.cosine * m.x - turn.sine * m.y, y = turn.sine * m.x + turn.cosine * m.y;
+  arm = {x, y, v[2], q[0] + x, q[1] + y};
+}
+
+/// Pose and twist of a marker whose arm is known. Entries that a planar motion never changes are left as they are
+/// (zero, and 1 in the rotation's last place).
+inline void marker_kinematics(const Mount& m, const double* v, const Turn& turn, const Arm& arm, MarkerKinematics& k) {
+  k.position[0] = arm.at_x;
+  k.position[1] = arm.at_y;
   const double c = turn.cosine * m.cosine - turn.sine * m.sine, s = turn.sine * m.cosine + turn.cosine * m.sine;
   k.rotation[0] = c;
   k.rotation[1] = -s;

@@ -15,6 +15,8 @@ double length(const Vector3& v) { return std::hypot(std::hypot(v[0], v[1]), v[2]
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+planar::DeclaredRows::Ends ends_of(const JointRecord& r) { return {r.marker_a, r.marker_b, r.body_a, r.body_b}; }
+
 // Body axes from principal axes, right-handed; the body's own where they are principal already.
 spatial::Matrix principal_axes(const Body& body, spatial::Vector& moments) {
   const spatial::Matrix inertia = Eigen::Map<const RowMajor>(body.inertia.data());
@@ -87,6 +89,8 @@ System::System(const Model& model, Variant variant)
     offset += rows * body_velocities();
     return static_cast<int>(blocks_.size()) - 1;
   };
+  const auto offset_of = [&](int block) { return block < 0 ? -1 : blocks_[at(block)].offset; };
+  std::vector<int> declared;  // joints that declare their coordinate
   records_.reserve(model.joints.size());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
@@ -105,6 +109,9 @@ System::System(const Model& model, Variant variant)
     r.internal = layout_.internal(j);
     r.history = layout_.history(j);
     r.turn = layout_.turn(j);
+    const bool may_declare = planar && !r.stands_off;
+    const bool declares_rows = may_declare && layout.planar_rows.size > 0;
+    const bool declares_coordinate = may_declare && layout.planar_coordinate != 0;
     r.coordinate_terms = term_coordinate;
     if (layout.constraint_rows > 0 && layout.rows_without_coordinate == 0) r.coordinate_terms |= term_position;
     if (layout.forces_without_coordinate == 0) {
@@ -114,14 +121,18 @@ System::System(const Model& model, Variant variant)
     if (element.gear < 0 && r.rows.size > 0) {
       r.block_a = add_block(r.body_a, r.rows.offset, r.rows.size);
       r.block_b = add_block(r.body_b, r.rows.offset, r.rows.size);
-      r.row_space = static_cast<int>(row_blank_.size());
-      for (const int count : {12 * r.rows.size, r.rows.size, r.rows.size, r.rows.size}) {
-        row_blank_.insert(row_blank_.end(), at(count), 0.0);
-        row_blank_.insert(row_blank_.end(), guard::marks, guard::mark());
+      if (declares_rows) {
+        declared_.add_rows(layout.planar_rows, ends_of(r), r.rows.offset, offset_of(r.block_a), offset_of(r.block_b));
+      } else {
+        r.row_space = static_cast<int>(row_blank_.size());
+        for (const int count : {12 * r.rows.size, r.rows.size, r.rows.size, r.rows.size}) {
+          row_blank_.insert(row_blank_.end(), at(count), 0.0);
+          row_blank_.insert(row_blank_.end(), guard::marks, guard::mark());
+        }
+        with_rows_.push_back(j);
       }
-      with_rows_.push_back(j);
     }
-    if (layout.coordinate != Coordinate::none) with_coordinate_.push_back(j);
+    if (layout.coordinate != Coordinate::none) (declares_coordinate ? declared : with_coordinate_).push_back(j);
     if (layout.forces != 0) {
       force_blocks_.push_back({j, r.body_a, r.body_b, r.internal.size, internal_offset});
       internal_offset += r.internal.size * (6 * body_velocities() + r.internal.size);
@@ -141,6 +152,30 @@ System::System(const Model& model, Variant variant)
     records_[at(joint)].coordinate_terms |= term_position | term_force;  // its rate makes the driver's power
     driver_block_a_.push_back(row < 0 ? -1 : add_block(body_a(joint), row, 1));
     driver_block_b_.push_back(row < 0 ? -1 : add_block(body_b(joint), row, 1));
+  }
+  for (const int j : declared) {
+    const JointRecord& r = records_[at(j)];
+    declared_.add_coordinate(r.layout->coordinate, ends_of(r), j, r.coordinate_terms, r.turn);
+  }
+  sort_markers();
+}
+
+// By who reads them.
+void System::sort_markers() {
+  std::vector<char> asked(model_.markers.size(),
+                          model_.space == Space::planar && variant_ == Variant::released ? 0 : 1);
+  const auto ask = [&](int joint) {
+    const JointRecord& r = records_[at(joint)];
+    asked[at(r.marker_a)] = asked[at(r.marker_b)] = 1;
+  };
+  for (const int j : with_rows_) ask(j);
+  for (const int j : with_coordinate_) ask(j);
+  for (const ForceBlock& block : force_blocks_) ask(block.joint);
+  for (const AppliedForce& force : model_.forces) asked[at(force.marker)] = 1;
+  for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
+    if (model_.markers[at(m)].body == ground) continue;
+    moving_markers_.push_back(m);
+    (asked[at(m)] != 0 ? asked_markers_ : other_markers_).push_back(m);
   }
 }
 
@@ -183,7 +218,8 @@ Evaluation::Evaluation(const System& system) {
     const double rest[7] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, still_body[6] = {};
     if (model.markers[m].body != ground) continue;
     if (planar) {
-      planar::marker_kinematics(system.mounts_[m], still_body, still_body, planar::Turn{}, markers[m], arms[m]);
+      planar::marker_arm(system.mounts_[m], still_body, still_body, planar::Turn{}, arms[m]);
+      planar::marker_kinematics(system.mounts_[m], still_body, planar::Turn{}, arms[m], markers[m]);
     } else {
       spatial::marker_kinematics(system.spatial_mounts_[m], rest, still_body, spatial::Turn{}, markers[m],
                                  spatial_arms[m]);
@@ -216,6 +252,7 @@ Evaluation::Evaluation(const System& system) {
   int widest = 0;
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
   row_space = system.row_blank_;
+  system.declared_.write_constants(*this);
   rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
   motion_time = std::numeric_limits<double>::quiet_NaN();

@@ -14,6 +14,7 @@
 
 #include "component/joint_ref.h"
 #include "linear/sparse_matrix.h"
+#include "system/declared_rows.h"
 #include "system/layout.h"
 #include "system/motion.h"
 #include "system/planar_kinematics.h"
@@ -39,6 +40,7 @@ enum Term : unsigned {
   term_derivative = 16,   ///< derivatives of f (with f)
   term_coordinate = 32,   ///< coordinates of all joints
   term_event = 64,        ///< what JointRef::events() and on_event() read
+  only_asked = 128,       ///< Evaluation::markers of joints and forces that read them while the equations are filled
 };
 
 /// Element that failed, and why.
@@ -182,9 +184,12 @@ class System {
   double gravity_potential(std::span<const double> q) const;
 
  private:
+  void sort_markers();
   bool fill(const Point& point, unsigned terms, Evaluation& e) const;
   template <class Bodies>
   bool fill_in(const Point& point, unsigned terms, Evaluation& e) const;
+  template <class Bodies>
+  void place_markers(const Point& point, bool only_asked, Evaluation& e) const;
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
   static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
   static bool refuse(int joint, const char* why, Evaluation& e);
@@ -230,8 +235,11 @@ class System {
   std::vector<spatial::Mount> spatial_mounts_;
   std::vector<spatial::Matrix> principal_;  // by body: body axes from principal axes; in space
   std::vector<InitialOffset> offsets_;
-  std::vector<JointRecord> records_;              // by joint
-  std::vector<int> with_coordinate_, with_rows_;  // joints, into records_; gears have no rows of their own here
+  std::vector<JointRecord> records_;                // by joint
+  std::vector<int> with_coordinate_, with_rows_;    // joints that are asked; gears have no rows of their own here
+  planar::DeclaredRows declared_;                   // of joints that are not
+  std::vector<int> moving_markers_;                 // not on ground
+  std::vector<int> asked_markers_, other_markers_;  // these, by Term::only_asked
   std::vector<JacobianBlock> blocks_;
   std::vector<double> row_blank_;  // what Evaluation::row_space holds before joints fill it
   std::vector<int> driver_block_a_, driver_block_b_;

@@ -44,6 +44,14 @@ bool Evaluation::is_at(const Point& point, unsigned terms) const {
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& known, Evaluation& e) const {
   if (!known.is_at(point, terms & ~unsigned{term_coordinate})) return evaluate(point, terms, e);
   std::swap(e, known);
+  if ((e.filled & only_asked) != 0 && (terms & only_asked) == 0) {
+    for (const int m : other_markers_) {  // planar
+      const BodyId body = mounts_[at(m)].body;
+      planar::marker_kinematics(mounts_[at(m)], &point.v[3 * at(body)], e.turns[at(body)], e.arms[at(m)],
+                                e.markers[at(m)]);
+    }
+    e.filled &= ~unsigned{only_asked};
+  }
   return (terms & term_coordinate) == 0 || evaluate_coordinates(point, term_coordinate, e);
 }
 
@@ -65,19 +73,35 @@ bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
   return by_space([&]<class Bodies>(Bodies) { return fill_in<Bodies>(point, terms, e); });
 }
 
+template <>
+void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, Evaluation& e) const {
+  for (std::size_t b = 0; b < e.turns.size(); ++b) e.turns[b] = turn(planar::Bodies{}, &point.q[3 * b], nullptr);
+  for (const int m : moving_markers_) {
+    const std::size_t body = at(mounts_[at(m)].body);
+    planar::marker_arm(mounts_[at(m)], &point.q[3 * body], &point.v[3 * body], e.turns[body], e.arms[at(m)]);
+  }
+  for (const int m : only_asked ? asked_markers_ : moving_markers_) {
+    const std::size_t body = at(mounts_[at(m)].body);
+    planar::marker_kinematics(mounts_[at(m)], &point.v[3 * body], e.turns[body], e.arms[at(m)], e.markers[at(m)]);
+  }
+}
+
+template <>
+void System::place_markers<spatial::Bodies>(const Point& point, bool, Evaluation& e) const {
+  const auto q = [&](std::size_t body) { return &point.q[7 * body]; };
+  const auto v = [&](std::size_t body) { return &point.v[6 * body]; };
+  for (std::size_t b = 0; b < e.spatial_turns.size(); ++b) e.spatial_turns[b] = turn(spatial::Bodies{}, q(b), v(b));
+  for (const int m : moving_markers_) {
+    const std::size_t body = at(spatial_mounts_[at(m)].body);
+    marker_kinematics(spatial_mounts_[at(m)], q(body), v(body), e.spatial_turns[body], e.markers[at(m)],
+                      e.spatial_arms[at(m)]);
+  }
+}
+
 template <class Bodies>
 bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
   e.fault.kind = Fault::Kind::none;
-  auto& turns = e.turns_of<Bodies>();
-  const auto q = [&](std::size_t body) { return &point.q[Bodies::coordinates * body]; };
-  const auto v = [&](std::size_t body) { return &point.v[Bodies::velocities * body]; };
-  for (std::size_t b = 0; b < turns.size(); ++b) turns[b] = turn(Bodies{}, q(b), v(b));
-  const auto& mounts = mounts_of<Bodies>();
-  for (std::size_t m = 0; m < mounts.size(); ++m) {
-    const BodyId body = mounts[m].body;
-    if (body == ground) continue;
-    marker_kinematics(mounts[m], q(at(body)), v(at(body)), turns[at(body)], e.markers[m], e.arms_of<Bodies>()[m]);
-  }
+  place_markers<Bodies>(point, (terms & only_asked) != 0, e);
   if (variant_ == Variant::closed) {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
       if (!model_.joints[j].has_play) continue;
@@ -98,6 +122,7 @@ bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
   }
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
+    declared_.fill_rows(point, mounts_, e);
     if (!evaluate_rows<Bodies>(point, e)) return false;
     evaluate_gear_rows<Bodies>(e);
     evaluate_driver_rows<Bodies>(e);
@@ -128,6 +153,7 @@ void System::add_gyroscopic(const Point& point, bool derivatives, Evaluation& e)
 }
 
 bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const {
+  declared_.fill_coordinates(point, mounts_, terms, e);
   for (const int j : with_coordinate_) {
     const JointRecord& record = records_[at(j)];
     if ((record.coordinate_terms & terms) == 0) continue;

@@ -50,6 +50,14 @@ struct Event {
 /// The one number that tells where a joint stands. Drivers, gears and start values work on it.
 enum class Coordinate : std::uint32_t { none, angle, position };
 
+/// Rows of a planar joint that the host can make itself. With d = P_b - P_a, h the x axis of marker a, n = h turned by
+/// +90 degrees and theta the angles of the markers:
+enum class PlanarRow : std::uint32_t {
+  origins,  ///< two rows, d_x = 0 and d_y = 0
+  across,   ///< n.d = 0
+  turn      ///< theta_b - theta_a = 0, up to whole turns
+};
+
 /// What a joint asks of the model, answered once, before the layout of the state is fixed.
 struct JointLayout {
   std::uint32_t size = sizeof(JointLayout);
@@ -66,6 +74,11 @@ struct JointLayout {
   Span<const Channel> channels;
   std::uint32_t rows_without_coordinate = 0;    ///< nonzero: constrain() does not read the coordinate, which saves time
   std::uint32_t forces_without_coordinate = 0;  ///< nonzero: apply() and the calls about steps and events do not either
+  /// Planar models: constrain() writes just these rows, in this order. The host may make them itself, for all joints at
+  /// once and without asking. Empty: it always asks.
+  Span<const PlanarRow> planar_rows;
+  /// Planar models, nonzero: coordinate() is theta_b - theta_a or, a position, h.d. The host may make it itself.
+  std::uint32_t planar_coordinate = 0;
 };
 
 /// Everything a joint may read. All views are valid during the call only.
