@@ -163,6 +163,11 @@ bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexc
 }
 
 bool Expression::evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept {
+  if (program_.size() == 1 && program_[0].operation == Operation::push_constant &&
+      std::isfinite(program_[0].constant)) {
+    out = Jet::constant(program_[0].constant);
+    return true;
+  }
   if (stack_depth_ <= shallow_stack) return run<shallow_stack>(t, out, failure);
   return stack_depth_ <= usual_stack ? run<usual_stack>(t, out, failure) : run<deepest_stack>(t, out, failure);
 }

@@ -158,9 +158,10 @@ bool same_names(Span<const Channel> a, Span<const Channel> b) {
 bool same_layout(const JointLayout& a, const JointLayout& b) {
   const auto numbers = [](const JointLayout& l) {
     return std::tuple(l.coordinate, l.constraint_rows, l.internal_variables, l.history, l.forces != 0,
-                      l.analytic_derivatives != 0, l.pin != 0, l.clearance);
+                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance);
   };
-  return numbers(a) == numbers(b) && same_names(a.channels, b.channels) &&
+  return numbers(a) == numbers(b) && std::ranges::equal(a.planar_rows, b.planar_rows) &&
+         same_names(a.channels, b.channels) &&
          std::ranges::equal(a.events, b.events, [](const Event& x, const Event& y) {
            return std::string_view(x.name) == y.name && x.crossing == y.crossing && x.locate == y.locate &&
                   same_names(x.fields, y.fields);

@@ -7,6 +7,7 @@
 
 #include "contract/joint_contract.h"
 #include "contract/joint_words.h"
+#include "contract/planar_declaration.h"
 #include "contract/slope.h"
 #include "freeplay/eigen.h"
 
@@ -154,6 +155,17 @@ class RowCheck {
     }
   }
 
+  /// Rows and coordinate are those that the layout declares.
+  void declared() {
+    const JointLayout& layout = probe_.layout();
+    if (probe_.space() != Space::planar || here_.size() == 0) return;
+    const MarkerKinematics &a = moment_.markers.a, &b = moment_.markers.b;
+    const std::vector<DeclaredRow> rows = declared_rows(layout.planar_rows, a, b);
+    for (std::size_t r = 0; r < rows.size(); ++r) equals(r, rows[r]);
+    if (layout.planar_coordinate == 0 || layout.coordinate == Coordinate::none) return;
+    equals(here_.size() - 1, declared_coordinate(layout.coordinate, a, b));
+  }
+
   void independent() {
     const std::size_t n = static_cast<std::size_t>(probe_.layout().constraint_rows);
     if (n == 0 || here_.size() < n) return;
@@ -192,6 +204,19 @@ class RowCheck {
     for (const double v : twists(moment_.markers)) fastest = std::max(fastest, std::abs(v));
     for (double& size : sizes) size *= fastest;
     return sizes;
+  }
+
+  void equals(std::size_t row, const DeclaredRow& wanted) {
+    const double size = 1.0 + sizes_of_terms()[row], fastest = 1.0 + sizes_of_rates()[row];
+    double off = here_.value[row] - wanted.value;
+    if (wanted.is_angle) off -= 2.0 * M_PI * std::round(off / (2.0 * M_PI));
+    bool same = std::abs(off) <= 1e-12 * size && std::abs(here_.nu[row]) <= 1e-12 * fastest &&
+                std::abs(here_.gamma[row] - wanted.gamma) <= 1e-12 * fastest * fastest;
+    for (std::size_t i = 0; i < 12; ++i) {
+      same = same && std::abs(here_.jacobian[12 * row + i] - wanted.jacobian[i]) <= 1e-12 * size;
+    }
+    findings_.expect("planar-rows", same,
+                     [&] { return fmt::format("{} is not what is declared, {}", row_word(row), words_of(moment_)); });
   }
 
   bool is_row(std::size_t row) const { return static_cast<int>(row) < probe_.layout().constraint_rows; }
@@ -251,6 +276,7 @@ void check_rows(const JointProbe& probe, const std::vector<JointMoment>& moments
   if (probe.layout().constraint_rows == 0 && probe.layout().coordinate == Coordinate::none) return;
   for (const JointMoment& moment : moments) {
     RowCheck check(probe, moment, findings);
+    check.declared();
     check.jacobian();
     check.partial_time();
     check.gamma(random_twelve(probe.space(), random, 3.0));

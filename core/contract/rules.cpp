@@ -73,6 +73,9 @@ constexpr Rule rules[] = {
      "a rotation matrix."},
     {"pin", joints,
      "A joint that sets `pin` keeps the origins of its markers together in the plane and leaves the turn free."},
+    {"planar-rows", joints,
+     "constrain() and coordinate() write what `planar_rows` and `planar_coordinate` declare. Where they do not, leave "
+     "these empty: the host then asks."},
     // Forces of joints.
     {"balance", joints,
      "The wrenches on a and b have no resultant force and no resultant moment about any point. Look at the reaction on "

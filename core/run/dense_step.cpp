@@ -11,24 +11,45 @@ struct Moved {
   double q, v, a;
 };
 
-// The quintic of an increment at s, from its derivatives at both ends and its value `q` at the end.
-Moved quintic(double s, double dt, double start_v, double start_a, double q, double end_v, double end_a) {
-  const double s2 = s * s, s3 = s2 * s;
-  // v0 x + a0 x^2/2 + s^3 (c3 + c4 s + c5 s^2) with x = s dt, from what is missing at the end.
-  const double v0 = dt * start_v, a0 = dt * dt * start_a;
-  q = q - v0 - 0.5 * a0;
-  const double v = dt * end_v - v0 - a0, a = dt * dt * end_a - a0;
-  const double c3 = 10.0 * q - 4.0 * v + 0.5 * a, c4 = -15.0 * q + 7.0 * v - a, c5 = 6.0 * q - 3.0 * v + 0.5 * a;
-  return {s * v0 + 0.5 * s2 * a0 + s3 * (c3 + s * (c4 + s * c5)),
-          (v0 + s * a0 + s2 * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5))) / dt,
-          (a0 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (dt * dt)};
-}
+// The quintic of an increment at the fraction s of a step dt, from its derivatives at both ends and its value at the
+// end: all three are sums of these with weights that depend on s alone.
+class Quintic {
+ public:
+  // v0 x + a0 x^2/2 + s^3 (c3 + c4 s + c5 s^2) with x = s dt; of what is missing at the end, in q, dt v and dt^2 a,
+  // c3 = 10 q - 4 v + a/2, c4 = -15 q + 7 v - a, c5 = 6 q - 3 v + a/2.
+  Quintic(double s, double dt) {
+    const double s2 = s * s, s3 = s2 * s;
+    position_ = weights(s3 * (10.0 + s * (-15.0 + s * 6.0)), s3 * (-4.0 + s * (7.0 - s * 3.0)),
+                        s3 * (0.5 + s * (-1.0 + s * 0.5)), s, 0.5 * s2, dt, 1.0);
+    velocity_ = weights(s2 * (30.0 + s * (-60.0 + s * 30.0)), s2 * (-12.0 + s * (28.0 - s * 15.0)),
+                        s2 * (1.5 + s * (-4.0 + s * 2.5)), 1.0, s, dt, dt);
+    acceleration_ = weights(s * (60.0 + s * (-180.0 + s * 120.0)), s * (-24.0 + s * (84.0 - s * 60.0)),
+                            s * (3.0 + s * (-12.0 + s * 10.0)), 0.0, 1.0, dt, dt * dt);
+  }
+  Moved operator()(double start_v, double start_a, double q, double end_v, double end_a) const {
+    const auto sum = [&](const Weights& w) {
+      return (w.q * q + w.start_v * start_v) + (w.start_a * start_a + w.end_v * end_v) + w.end_a * end_a;
+    };
+    return {sum(position_), sum(velocity_), sum(acceleration_)};
+  }
+
+ private:
+  struct Weights {
+    double q, start_v, start_a, end_v, end_a;
+  };
+  // Of what is missing, and of v0 and a0 themselves.
+  static Weights weights(double q, double v, double a, double of_v0, double of_a0, double dt, double unit) {
+    return {q / unit, (of_v0 - q - v) * dt / unit, (of_a0 - 0.5 * q - v - a) * dt * dt / unit, v * dt / unit,
+            a * dt * dt / unit};
+  }
+  Weights position_, velocity_, acceleration_;
+};
 
 }  // namespace
 
 void DenseStep::bodies_in_space(double s, State& out) const {
   using spatial::Vector;
-  const double dt = end_.t() - start_.t();
+  const Quintic quintic(s, end_.t() - start_.t());
   for (std::size_t b = 0; 6 * b < out.v().size(); ++b) {
     const double *v0 = &start_.v()[6 * b], *a0 = &start_.a()[6 * b];
     double end[6], end_v[6], end_a[6], moved[6], rate[6];
@@ -40,7 +61,7 @@ void DenseStep::bodies_in_space(double s, State& out) const {
     spatial::target(end_v + 3) = turned_rate;
     spatial::target(end_a + 3) = spatial::rotation_acceleration(turned, turned_rate, w, alpha);
     for (std::size_t i = 0; i < 6; ++i) {
-      const Moved at = quintic(s, dt, v0[i], a0[i], end[i], end_v[i], end_a[i]);
+      const Moved at = quintic(v0[i], a0[i], end[i], end_v[i], end_a[i]);
       moved[i] = at.q;
       rate[i] = at.v;
       out.a()[6 * b + i] = (1.0 - s) * a0[i] + s * end_.a()[6 * b + i];
@@ -56,12 +77,15 @@ void DenseStep::at(double s, State& out) const {
   const double dt = end_.t() - start_.t();
   out.t() = start_.t() + s * dt;
   if (system_.model().space == Space::planar) {
-    for (std::size_t i = 0; i < out.q().size(); ++i) {
-      const Moved at =
-          quintic(s, dt, start_.v()[i], start_.a()[i], end_.q()[i] - start_.q()[i], end_.v()[i], end_.a()[i]);
-      out.q()[i] = start_.q()[i] + at.q;
-      out.v()[i] = at.v;
-      out.a()[i] = at.a;
+    const Quintic quintic(s, dt);
+    const std::span q = out.q(), v = out.v(), a = out.a();
+    const std::span<const double> q0 = start_.q(), v0 = start_.v(), a0 = start_.a();
+    const std::span<const double> q1 = end_.q(), v1 = end_.v(), a1 = end_.a();
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const Moved at = quintic(v0[i], a0[i], q1[i] - q0[i], v1[i], a1[i]);
+      q[i] = q0[i] + at.q;
+      v[i] = at.v;
+      a[i] = at.a;
     }
   } else {
     bodies_in_space(s, out);

@@ -10,8 +10,9 @@ namespace freeplay {
 // A sum is finite only if every term is; differences of infinities are not finite either.
 inline bool is_finite(const JointForces& f) {
   double sum = f.potential + (std::isnan(f.potential_rate) ? 0.0 : f.potential_rate);
-  for (int i = 0; i < 6; ++i) sum += f.wrench_a[i] + f.wrench_b[i];
-  return std::isfinite(sum);
+  double sums[3] = {};  // three sums do not wait for each other
+  for (int i = 0; i < 3; ++i) sums[i] = (f.wrench_a[i] + f.wrench_b[i]) + (f.wrench_a[3 + i] + f.wrench_b[3 + i]);
+  return std::isfinite(sum + (sums[0] + (sums[1] + sums[2])));
 }
 inline bool is_finite(Span<const double> numbers) {
   double sum[4] = {};  // four sums do not wait for each other

@@ -111,7 +111,7 @@ System::System(const Model& model, Variant variant)
     r.turn = layout_.turn(j);
     const bool may_declare = planar && !r.stands_off;
     const bool declares_rows = may_declare && layout.planar_rows.size > 0;
-    const bool declares_coordinate = may_declare && layout.planar_coordinate != 0;
+    r.declares_coordinate = may_declare && layout.planar_coordinate != 0;
     r.coordinate_terms = term_coordinate;
     if (layout.constraint_rows > 0 && layout.rows_without_coordinate == 0) r.coordinate_terms |= term_position;
     if (layout.forces_without_coordinate == 0) {
@@ -132,7 +132,7 @@ System::System(const Model& model, Variant variant)
         with_rows_.push_back(j);
       }
     }
-    if (layout.coordinate != Coordinate::none) (declares_coordinate ? declared : with_coordinate_).push_back(j);
+    if (layout.coordinate != Coordinate::none) (r.declares_coordinate ? declared : with_coordinate_).push_back(j);
     if (layout.forces != 0) {
       force_blocks_.push_back({j, r.body_a, r.body_b, r.internal.size, internal_offset});
       internal_offset += r.internal.size * (6 * body_velocities() + r.internal.size);
@@ -150,8 +150,11 @@ System::System(const Model& model, Variant variant)
     const int joint = model.drivers[at(d)].joint;
     const int row = layout_.driver_row(d);
     records_[at(joint)].coordinate_terms |= term_position | term_force;  // its rate makes the driver's power
-    driver_block_a_.push_back(row < 0 ? -1 : add_block(body_a(joint), row, 1));
-    driver_block_b_.push_back(row < 0 ? -1 : add_block(body_b(joint), row, 1));
+    if (row < 0) continue;
+    const JointRecord& r = records_[at(joint)];
+    const int block_a = add_block(r.body_a, row, 1), block_b = add_block(r.body_b, row, 1);
+    const bool constant = r.declares_coordinate && r.layout->coordinate == Coordinate::angle;
+    driver_rows_.push_back({d, row, joint, offset_of(block_a), offset_of(block_b), constant});
   }
   for (const int j : declared) {
     const JointRecord& r = records_[at(j)];
@@ -173,9 +176,15 @@ void System::sort_markers() {
   for (const ForceBlock& block : force_blocks_) ask(block.joint);
   for (const AppliedForce& force : model_.forces) asked[at(force.marker)] = 1;
   for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
-    if (model_.markers[at(m)].body == ground) continue;
-    moving_markers_.push_back(m);
-    (asked[at(m)] != 0 ? asked_markers_ : other_markers_).push_back(m);
+    if (model_.markers[at(m)].body != ground) moving_markers_.push_back(m);
+  }
+  const auto order = [&](int m) { return 2 * model_.markers[at(m)].body + (asked[at(m)] != 0 ? 0 : 1); };
+  std::ranges::stable_sort(moving_markers_, {}, order);
+  const auto first_of = [&](int rank) {
+    return static_cast<int>(std::ranges::lower_bound(moving_markers_, rank, {}, order) - moving_markers_.begin());
+  };
+  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+    markers_of_body_.push_back({first_of(2 * b), first_of(2 * b + 1), first_of(2 * b + 2)});
   }
 }
 
@@ -253,6 +262,11 @@ Evaluation::Evaluation(const System& system) {
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
   row_space = system.row_blank_;
   system.declared_.write_constants(*this);
+  for (const System::DriverRow& row : system.driver_rows_) {
+    if (!row.constant) continue;
+    if (row.block_a >= 0) jacobian[at(row.block_a) + 2] = -1.0;
+    if (row.block_b >= 0) jacobian[at(row.block_b) + 2] = 1.0;
+  }
   rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
   motion_time = std::numeric_limits<double>::quiet_NaN();

@@ -89,10 +89,11 @@ struct JointRecord {
   int index = 0;                   ///< into Model::joints
   int marker_a = 0, marker_b = 0;  ///< into Evaluation::markers
   BodyId body_a = ground, body_b = ground;
-  bool stands_off = false;         ///< its second marker is Evaluation::shifted
-  unsigned coordinate_terms = 0;   ///< terms that need its coordinate
-  int block_a = -1, block_b = -1;  ///< of its rows, into System::jacobian_blocks(); -1 on ground
-  int row_space = 0;               ///< its part of Evaluation::row_space
+  bool stands_off = false;           ///< its second marker is Evaluation::shifted
+  bool declares_coordinate = false;  ///< it is never asked for it
+  unsigned coordinate_terms = 0;     ///< terms that need its coordinate
+  int block_a = -1, block_b = -1;    ///< of its rows, into System::jacobian_blocks(); -1 on ground
+  int row_space = 0;                 ///< its part of Evaluation::row_space
   Slice rows, internal, history;
   int turn = -1;  ///< Layout::turn
 };
@@ -235,14 +236,22 @@ class System {
   std::vector<spatial::Mount> spatial_mounts_;
   std::vector<spatial::Matrix> principal_;  // by body: body axes from principal axes; in space
   std::vector<InitialOffset> offsets_;
-  std::vector<JointRecord> records_;                // by joint
-  std::vector<int> with_coordinate_, with_rows_;    // joints that are asked; gears have no rows of their own here
-  planar::DeclaredRows declared_;                   // of joints that are not
-  std::vector<int> moving_markers_;                 // not on ground
-  std::vector<int> asked_markers_, other_markers_;  // these, by Term::only_asked
+  std::vector<JointRecord> records_;              // by joint
+  std::vector<int> with_coordinate_, with_rows_;  // joints that are asked; gears have no rows of their own here
+  planar::DeclaredRows declared_;                 // of joints that are not
+  std::vector<int> moving_markers_;  // not on ground: body after body, of each first those of Term::only_asked
+  struct MarkersOfBody {
+    int first = 0, end_asked = 0, end = 0;
+  };
+  std::vector<MarkersOfBody> markers_of_body_;  // in moving_markers_
   std::vector<JacobianBlock> blocks_;
   std::vector<double> row_blank_;  // what Evaluation::row_space holds before joints fill it
-  std::vector<int> driver_block_a_, driver_block_b_;
+  /// Row of a driver: where it stands, and whether it is the same always, as of an angle that is declared.
+  struct DriverRow {
+    int driver, row, joint, block_a, block_b;
+    bool constant;
+  };
+  std::vector<DriverRow> driver_rows_;
   std::vector<std::array<int, 4>> gear_blocks_;  // by gear: of the bodies of its first and of its second joint
   std::vector<double> gear_offsets_;
   std::vector<ForceBlock> force_blocks_;

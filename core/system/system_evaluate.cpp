@@ -45,10 +45,11 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& known, Eva
   if (!known.is_at(point, terms & ~unsigned{term_coordinate})) return evaluate(point, terms, e);
   std::swap(e, known);
   if ((e.filled & only_asked) != 0 && (terms & only_asked) == 0) {
-    for (const int m : other_markers_) {  // planar
-      const BodyId body = mounts_[at(m)].body;
-      planar::marker_kinematics(mounts_[at(m)], &point.v[3 * at(body)], e.turns[at(body)], e.arms[at(m)],
-                                e.markers[at(m)]);
+    for (std::size_t b = 0; b < e.turns.size(); ++b) {  // planar
+      for (int i = markers_of_body_[b].end_asked; i < markers_of_body_[b].end; ++i) {
+        const std::size_t m = at(moving_markers_[at(i)]);
+        planar::marker_kinematics(mounts_[m], &point.v[3 * b], e.turns[b], e.arms[m], e.markers[m]);
+      }
     }
     e.filled &= ~unsigned{only_asked};
   }
@@ -75,14 +76,22 @@ bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
 
 template <>
 void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, Evaluation& e) const {
-  for (std::size_t b = 0; b < e.turns.size(); ++b) e.turns[b] = turn(planar::Bodies{}, &point.q[3 * b], nullptr);
-  for (const int m : moving_markers_) {
-    const std::size_t body = at(mounts_[at(m)].body);
-    planar::marker_arm(mounts_[at(m)], &point.q[3 * body], &point.v[3 * body], e.turns[body], e.arms[at(m)]);
-  }
-  for (const int m : only_asked ? asked_markers_ : moving_markers_) {
-    const std::size_t body = at(mounts_[at(m)].body);
-    planar::marker_kinematics(mounts_[at(m)], &point.v[3 * body], e.turns[body], e.arms[at(m)], e.markers[at(m)]);
+  const planar::Mount* const mounts = mounts_.data();
+  planar::Arm* const arms = e.arms.data();
+  MarkerKinematics* const markers = e.markers.data();
+  for (std::size_t b = 0; b < e.turns.size(); ++b) {
+    // Numbers of their own, which no marker can change.
+    const double q[3] = {point.q[3 * b], point.q[3 * b + 1], point.q[3 * b + 2]};
+    const double v[3] = {point.v[3 * b], point.v[3 * b + 1], point.v[3 * b + 2]};
+    const planar::Turn turned = e.turns[b] = turn(planar::Bodies{}, q, v);
+    const MarkersOfBody own = markers_of_body_[b];
+    for (int i = own.first; i < own.end; ++i) {
+      const int m = moving_markers_[at(i)];
+      planar::Arm arm;
+      planar::marker_arm(mounts[m], q, v, turned, arm);
+      arms[m] = arm;
+      if (i < own.end_asked || !only_asked) planar::marker_kinematics(mounts[m], v, turned, arm, markers[m]);
+    }
   }
 }
 

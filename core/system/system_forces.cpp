@@ -47,18 +47,19 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     if (!good) return blame(j, e);
     if (!guard::intact(rate.end())) return refuse(j, beside, e);
     std::ranges::copy(rate, e.internal_rate.begin() + record.internal.offset);
-    if (!(is_finite(out) && is_finite(rate) && is_finite(slopes)) && markers_are_finite(record, e)) {
+    if (!(is_finite(out) && (nz == 0 || is_finite(rate)) && (slopes.empty() || is_finite(slopes))) &&
+        markers_are_finite(record, e)) {
       return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
     }
     double* wrench = &e.wrench[12 * at(j)];
-    std::copy_n(out.wrench_a, 6, wrench);
-    std::copy_n(out.wrench_b, 6, wrench + 6);
+    for (int i = 0; i < 6; ++i) wrench[i] = out.wrench_a[i];
+    for (int i = 0; i < 6; ++i) wrench[6 + i] = out.wrench_b[i];
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
     const auto& arms = e.arms_of<Bodies>();
     constexpr std::size_t width = Bodies::velocities;
-    if (block.a != ground) add_to_force(wrench, arms[at(record.marker_a)], &e.force[width * at(block.a)]);
-    if (block.b != ground) add_to_force(wrench + 6, arms[at(record.marker_b)], &e.force[width * at(block.b)]);
+    if (block.a != ground) add_to_force(out.wrench_a, arms[at(record.marker_a)], &e.force[width * at(block.a)]);
+    if (block.b != ground) add_to_force(out.wrench_b, arms[at(record.marker_b)], &e.force[width * at(block.b)]);
     if (derivatives) map_derivatives<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
     if (derivatives && nz > 0) map_internal<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
   }

@@ -107,22 +107,22 @@ void System::evaluate_gear_rows(Evaluation& e) const {
 
 template <class Bodies>
 void System::evaluate_driver_rows(Evaluation& e) const {
-  for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
-    const int r = layout_.driver_row(d);
-    if (r < 0) continue;
-    const int j = model_.drivers[at(d)].joint;
-    double row[2 * Bodies::velocities], bias = 0.0;
-    write_coordinate_row<Bodies>(j, e, row, bias);
-    const TimeValue& f = e.motion[at(d)];
-    double error = e.coordinate[at(j)] - f.value;
-    if (motions_->modulo_turns(d)) error -= 2.0 * M_PI * std::round(error / (2.0 * M_PI));
-    e.phi[at(r)] = error;
-    e.nu[at(r)] = f.rate;
-    e.gamma[at(r)] = f.acceleration - bias;
-    const int block_a = driver_block_a_[at(d)], block_b = driver_block_b_[at(d)];
-    constexpr int width = Bodies::velocities;
-    if (block_a >= 0) std::copy_n(row, width, e.jacobian.begin() + blocks_[at(block_a)].offset);
-    if (block_b >= 0) std::copy_n(row + width, width, e.jacobian.begin() + blocks_[at(block_b)].offset);
+  constexpr int width = Bodies::velocities;
+  for (const DriverRow& driver : driver_rows_) {
+    double row[2 * width], bias = 0.0;
+    if (!driver.constant) {
+      write_coordinate_row<Bodies>(driver.joint, e, row, bias);
+      if (driver.block_a >= 0) std::copy_n(row, width, &e.jacobian[at(driver.block_a)]);
+      if (driver.block_b >= 0) std::copy_n(row + width, width, &e.jacobian[at(driver.block_b)]);
+    }
+    const TimeValue& f = e.motion[at(driver.driver)];
+    double error = e.coordinate[at(driver.joint)] - f.value;
+    if (std::abs(error) > M_PI && motions_->modulo_turns(driver.driver)) {
+      error -= 2.0 * M_PI * std::round(error / (2.0 * M_PI));
+    }
+    e.phi[at(driver.row)] = error;
+    e.nu[at(driver.row)] = f.rate;
+    e.gamma[at(driver.row)] = f.acceleration - bias;
   }
 }
 

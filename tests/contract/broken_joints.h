@@ -26,6 +26,8 @@ enum class Flaw {
   place_off_the_coordinate,
   place_stretches,
   no_pin,
+  other_rows,
+  other_coordinate,
   wrong_when_turned,
   wrong_when_turning,
   wrong_when_fast,
@@ -73,6 +75,7 @@ class Tether final : public Joint {
     layout.coordinate = Coordinate::position;
     layout.constraint_rows = flaw_ == Flaw::negative_rows ? -2 : 2;
     layout.pin = flaw_ == Flaw::no_pin ? 1 : 0;
+    layout.planar_coordinate = flaw_ == Flaw::other_coordinate ? 1 : 0;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
     const Vector2 d = xy(in.b->position) - xy(in.a->position), rate = xy(in.b->velocity) - xy(in.a->velocity);
@@ -132,6 +135,9 @@ class Swivel final : public Joint {
     layout.coordinate = Coordinate::angle;
     layout.constraint_rows = 2;
     layout.pin = 1;
+    static constexpr PlanarRow origins[] = {PlanarRow::origins}, others[] = {PlanarRow::across, PlanarRow::turn};
+    layout.planar_rows = flaw_ == Flaw::other_rows ? Span<const PlanarRow>(others) : Span<const PlanarRow>(origins);
+    layout.planar_coordinate = 1;
     if (flaw_ == Flaw::declares_in_turn) layout.history = ++declared_ % 2;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {

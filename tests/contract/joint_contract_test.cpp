@@ -104,6 +104,11 @@ TEST(JointContract, FindsFaultsFarFromTheOrdinary) {
 
 TEST(JointContract, FindsAPinThatIsNone) { expect_found<Tether>({{Flaw::no_pin, "pin"}}); }
 
+TEST(JointContract, FindsRowsOtherThanDeclared) {
+  expect_found<Swivel>({{Flaw::other_rows, "planar-rows"}, {Flaw::wrong_when_fast, "planar-rows"}});
+  expect_found<Tether>({{Flaw::other_coordinate, "planar-rows"}});
+}
+
 TEST(JointContract, FindsADeclarationThatChanges) {
   expect_found<Swivel>({{Flaw::declares_in_turn, "declares-sanely"}});
 }

@@ -9,74 +9,83 @@
 namespace freeplay {
 namespace {
 
-/// A chain of links: row r holds columns r and r + 1, the last row the last four.
+/// A chain of bodies: row r holds bodies r and r + 1, the last row the last three.
 struct Chain {
-  explicit Chain(int rows) : rows_(rows), columns_(rows + 3) {
+  Chain(int rows, int width) : rows_(rows), bodies_(rows + 2), width_(width) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(0.5, 2.0);
-    for (int c = 0; c < columns_; ++c) mass.push_back(number(random));
-    const auto add = [&](int r, int c) {
-      entries.push_back({r, c, values.size()});
-      values.push_back(number(random) * (c % 2 == 0 ? 1.0 : -1.0));
+    for (int c = 0; c < columns(); ++c) mass.push_back(number(random));
+    const auto add = [&](int r, int body, double size) {
+      pieces.push_back({r, body});
+      for (int c = 0; c < width; ++c) numbers.push_back(size * number(random) * (c % 2 == 0 ? 1.0 : -1.0));
     };
     for (int r = 0; r + 1 < rows; ++r) {
-      add(r, r);
-      add(r, r + 1);
-      values.back() *= 0.3;  // else the condition grows with every row
+      add(r, r, 1.0);
+      add(r, r + 1, 0.3);  // else the condition grows with every row
     }
-    for (int c = 1; c <= 4; ++c) add(rows - 1, columns_ - c);
-    for (int i = 0; i < rows + columns_; ++i) right.push_back(number(random));
+    for (int b = 1; b <= 3; ++b) add(rows - 1, bodies_ - b, 1.0);
+    for (int i = 0; i < rows + columns(); ++i) right.push_back(number(random));
   }
+  int columns() const { return bodies_ * width_; }
   /// By a dense LU of the whole system.
   Eigen::VectorXd solution() const {
-    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(rows_ + columns_, rows_ + columns_);
-    for (int c = 0; c < columns_; ++c) whole(c, c) = mass[static_cast<std::size_t>(c)];
-    for (const auto& e : entries) {
-      whole(columns_ + e.row, e.column) = whole(e.column, columns_ + e.row) = values[e.value];
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(rows_ + columns(), rows_ + columns());
+    for (int c = 0; c < columns(); ++c) whole(c, c) = mass[static_cast<std::size_t>(c)];
+    std::size_t next = 0;
+    for (const auto& piece : pieces) {
+      for (int c = width_ * piece.body; c < width_ * (piece.body + 1); ++c) {
+        whole(columns() + piece.row, c) = whole(c, columns() + piece.row) = numbers[next++];
+      }
     }
-    return whole.fullPivLu().solve(Eigen::Map<const Eigen::VectorXd>(right.data(), rows_ + columns_));
+    return whole.fullPivLu().solve(Eigen::Map<const Eigen::VectorXd>(right.data(), rows_ + columns()));
   }
-  int rows_, columns_;
-  std::vector<double> mass, values, right;
-  std::vector<NormalMatrix::Entry> entries;
+  int rows_, bodies_, width_;
+  std::vector<double> mass, numbers, right;
+  std::vector<NormalMatrix::Piece> pieces;
 };
 
 TEST(NormalMatrix, SolvesTheWholeSystem) {
-  for (const int rows : {1, 2, 7, 40}) {
-    const Chain chain(rows);
-    NormalMatrix matrix;
-    ASSERT_TRUE(matrix.set_pattern(chain.mass, rows, chain.entries));
-    for (int again = 0; again < 2; ++again) {
-      EXPECT_GT(matrix.factor(chain.values), 1e-3);
-      std::vector<double> update(chain.right.size());
-      matrix.solve(chain.right, update);
-      const Eigen::VectorXd expected = chain.solution();
-      for (std::size_t i = 0; i < update.size(); ++i) {
-        EXPECT_NEAR(update[i], expected[static_cast<Eigen::Index>(i)], 1e-12 * expected.norm()) << rows << " " << i;
+  for (const int width : {3, 6}) {
+    for (const int rows : {1, 2, 7, 40}) {
+      const Chain chain(rows, width);
+      NormalMatrix matrix;
+      ASSERT_TRUE(matrix.set_pattern(chain.mass, width, rows, chain.pieces));
+      for (int again = 0; again < 2; ++again) {
+        EXPECT_GT(matrix.factor(chain.numbers), 1e-3);
+        const auto columns = static_cast<std::size_t>(chain.columns());
+        std::vector<double> x(chain.right.begin(), chain.right.begin() + chain.columns()), l;
+        for (std::size_t r = columns; r < chain.right.size(); ++r) l.push_back(-chain.right[r]);
+        matrix.solve(chain.numbers, x, l);
+        x.insert(x.end(), l.begin(), l.end());
+        const Eigen::VectorXd expected = chain.solution();
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          EXPECT_NEAR(x[i], expected[static_cast<Eigen::Index>(i)], 1e-12 * expected.norm()) << rows << " " << i;
+        }
       }
     }
   }
 }
 
 TEST(NormalMatrix, PivotFallsWithTheSquareOfTheDistanceFromASingularPosition) {
-  // Two rows that become one: (1, 0) and (1, d).
-  const double mass[] = {1.0, 2.0};
+  // Two rows that become one: (1, 0, 0) and (1, d, 0).
+  const double mass[] = {1.0, 2.0, 3.0};
   NormalMatrix matrix;
-  ASSERT_TRUE(matrix.set_pattern(mass, 2, {{0, 0, 0}, {1, 0, 1}, {1, 1, 2}}));
+  const NormalMatrix::Piece pieces[] = {{0, 0}, {1, 0}};
+  ASSERT_TRUE(matrix.set_pattern(mass, 3, 2, pieces));
   const auto pivot = [&](double d) {
-    const double values[] = {1.0, 1.0, d};
-    return matrix.factor(values);
+    const double numbers[] = {1.0, 0.0, 0.0, 1.0, d, 0.0};
+    return matrix.factor(numbers);
   };
   EXPECT_NEAR(pivot(1e-2) / pivot(1e-3), 100.0, 0.1);
   EXPECT_LT(pivot(0.0), 1e-15);
 }
 
 TEST(NormalMatrix, RefusesABodyThatMakesItDense) {
-  std::vector<NormalMatrix::Entry> entries;
-  for (int r = 0; r < 100; ++r) entries.push_back({r, 0, static_cast<std::size_t>(r)});
-  const double mass[] = {1.0};
+  std::vector<NormalMatrix::Piece> pieces;
+  for (int r = 0; r < 100; ++r) pieces.push_back({r, 0});
+  const double mass[] = {1.0, 1.0, 1.0};
   NormalMatrix matrix;
-  EXPECT_FALSE(matrix.set_pattern(mass, 100, entries));
+  EXPECT_FALSE(matrix.set_pattern(mass, 3, 100, pieces));
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "run/stage_matrix.h"
-
 #include <cmath>
 #include <memory>
 #include <random>
@@ -9,6 +7,7 @@
 #include <Eigen/Dense>
 #include <gmock/gmock.h>
 
+#include "run/acceleration_matrix.h"
 #include "run/assembly.h"
 #include "validation/run_model.h"
 
@@ -96,23 +95,31 @@ void expect_solution(const std::string& text, double press) {
   Evaluation e(system);
   ASSERT_TRUE(system.evaluate(point(start.state), term_position | term_velocity | term_force | term_derivative, e));
   const int nv = system.layout().nv(), nc = system.layout().nc();
-  for (const bool forces : {false, true}) {
-    const double beta_q = forces ? 1e-10 : 0.0, beta_v = forces ? 1e-5 : 0.0;
-    StageMatrix matrix(system, forces);
-    matrix.set_pattern(std::vector<char>(static_cast<std::size_t>(nc), 0));
+  const std::vector<char> none(static_cast<std::size_t>(nc), 0);
+  const auto expect = [&](auto& matrix, const auto& factor, double beta_q, double beta_v, const char* name) {
+    matrix.set_pattern(none);
     for (int pass = 0; pass < 2; ++pass) {  // with fresh pivots, and with those of the first pass
-      ASSERT_GT(matrix.factor(e, beta_q, beta_v, 0.0), 1e-12);
+      ASSERT_GT(factor(), 1e-12);
       Eigen::VectorXd right = Eigen::VectorXd::NullaryExpr(nv + nc, [&] { return uniform(engine); });
       const Eigen::VectorXd want = dense_solution(system, e, beta_q, beta_v, right);
       Eigen::VectorXd update = Eigen::VectorXd::Zero(nv + nc);
       matrix.solve({right.data(), static_cast<std::size_t>(right.size())},
                    {update.data(), static_cast<std::size_t>(update.size())});
-      EXPECT_LT((update - want).norm(), 1e-9 * want.norm()) << "forces " << forces;
+      EXPECT_LT((update - want).norm(), 1e-9 * want.norm()) << name;
     }
-  }
+  };
+  AccelerationMatrix index_one(system);
+  expect(
+      index_one, [&] { return index_one.factor(e); }, 0.0, 0.0, "index 1");
+  StageMatrix whole(system, false);
+  expect(
+      whole, [&] { return whole.factor(e, 0.0, 0.0, 0.0); }, 0.0, 0.0, "without forces");
+  StageMatrix stage(system, true);
+  expect(
+      stage, [&] { return stage.factor(e, 1e-10, 1e-5, 0.0); }, 1e-10, 1e-5, "with forces");
 }
 
-TEST(StageMatrix, SolvesWhatItsWrittenOutMatrixDoes) {
+TEST(StageMatrix, AndThatOfAccelerationsSolveWhatTheirWrittenOutMatricesDo) {
   expect_solution(mechanism("3-rrr"), 2e-4);
   expect_solution(mechanism("slider-crank"), 1e-3);
   expect_solution(mechanism("four-bar"), 1e-3);
