@@ -135,7 +135,6 @@ class RunJob {
         path_(std::move(path)),
         channels_(*loaded.model),
         recording_(path_, options.force, *loaded.model, channels_),
-        rows_(channels_),
         sinks_(recording_.sinks()),
         simulation_(assembled.system, assembled.start, channels_, all_sinks()) {}
 
@@ -173,7 +172,7 @@ class RunJob {
   }
 
   std::span<Sink* const> all_sinks() {
-    if (options_.verify) sinks_.push_back(&rows_);
+    if (options_.verify) sinks_.push_back(&rows_.emplace(channels_));
     return sinks_;
   }
 
@@ -199,7 +198,7 @@ class RunJob {
       for (const char* quantity : {"x", "y"}) positions.push_back(fmt::format("body.{}.{}", body.name, quantity));
     }
     Verification result =
-        verify(rows_.table(), rows.table(), positions, std::max(least_agreement, settings().accuracy));
+        verify(rows_->table(), rows.table(), positions, std::max(least_agreement, settings().accuracy));
     const Settings& finer = loaded.model->settings;
     result.finer = !finer.adaptive        ? fmt::format("step {:g} s", finer.step)
                    : finer.accuracy > 0.0 ? fmt::format("accuracy {:g} m", finer.accuracy)
@@ -256,7 +255,7 @@ class RunJob {
   std::filesystem::path path_;
   Channels channels_;
   Recording recording_;
-  RowMemory rows_;
+  std::optional<RowMemory> rows_;  // to verify
   std::vector<Sink*> sinks_;
   Simulation simulation_;
   Profile profile_;
@@ -287,8 +286,7 @@ int run(const RunOptions& options, const CommonOptions& common) {
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
   // What it refuses is told before the directory is cleared of an earlier result.
-  const Channels channels(*loaded.model);
-  Simulation(assembled->system, assembled->start, channels, {});
+  require_sound_integrator(assembled->system);
   if (options.dry_run) return dry_run(loaded, *assembled, common);
   return RunJob(loaded, *assembled, path, options, common).execute();
 }

@@ -84,7 +84,7 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
       e_trial(owner),
       e_between(owner),
       observer(owner, all_channels),
-      events(owner, adaptive, flows),
+      events(owner, adaptive, between, e_between),
       statistics(model, all_channels),
       scratch(at(integrator_layout.scratch) + guard::marks),
       row(all_channels.all().size(), 0.0),
@@ -558,6 +558,8 @@ Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->statistics; }
 std::span<const double> Simulation::last_row() const { return impl_->row; }
 std::span<const std::string> Simulation::warnings() const { return impl_->warnings; }
+
+void require_sound_integrator(const System& system) { declare(system, EnergyAccount(system).flows()); }
 
 void require_attainable_accuracy(const System& system) {
   const Settings& settings = system.model().settings;
