@@ -98,7 +98,7 @@ int list_channels(const ListOptions& options, const CommonOptions& common) {
   TextTable table;
   for (const ChannelInfo& channel : channels.all()) {
     list.push_back({{"name", channel.name}, {"unit", channel.unit}});
-    table.add_row({channel.name, channel.unit});
+    table.add_row({channel.name, std::string(channel.unit)});
   }
   if (common.json) {
     print_json(list);

@@ -135,9 +135,8 @@ class RunJob {
         path_(std::move(path)),
         channels_(*loaded.model),
         recording_(path_, options.force, *loaded.model, channels_),
-        rows_(channels_),
         sinks_(recording_.sinks()),
-        simulation_(assembled.system, assembled.start, channels_, all_sinks()) {}
+        simulation_(std::in_place, assembled.system, assembled.start, channels_, all_sinks()) {}
 
   int execute() {
     note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
@@ -148,18 +147,26 @@ class RunJob {
                        library.table->compiler(), library.path));
     }
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
-    Outcome outcome = run();
-    for (const std::string& text : simulation_.warnings()) warn(text);
+    const Outcome outcome = run();
+    const Ended ended = end();
+    for (const std::string& text : ended.warnings) warn(text);
     note(fmt::format("{} at {:g} s after {} steps, {} rows", status_word(outcome.status), outcome.time, outcome.steps,
                      outcome.rows));
     if (!outcome.reason.empty()) recording_.log().write(outcome.exit_code == 0 ? "note" : "error", outcome.reason);
     std::optional<Verification> verification;
     if (options_.verify && outcome.exit_code == 0) verification = run_finer();
     recording_.close();
-    return finish(outcome, verification);
+    return finish(outcome, ended, verification);
   }
 
  private:
+  /// What is told of a simulation when it is over.
+  struct Ended {
+    Statistics statistics;
+    std::vector<double> last_row;
+    std::vector<std::string> warnings;
+  };
+
   const Settings& settings() const { return loaded_.model->settings; }
 
   void note(const std::string& text) {
@@ -173,7 +180,7 @@ class RunJob {
   }
 
   std::span<Sink* const> all_sinks() {
-    if (options_.verify) sinks_.push_back(&rows_);
+    if (options_.verify) sinks_.push_back(&rows_.emplace(channels_));
     return sinks_;
   }
 
@@ -199,7 +206,7 @@ class RunJob {
       for (const char* quantity : {"x", "y"}) positions.push_back(fmt::format("body.{}.{}", body.name, quantity));
     }
     Verification result =
-        verify(rows_.table(), rows.table(), positions, std::max(least_agreement, settings().accuracy));
+        verify(rows_->table(), rows.table(), positions, std::max(least_agreement, settings().accuracy));
     const Settings& finer = loaded.model->settings;
     result.finer = !finer.adaptive        ? fmt::format("step {:g} s", finer.step)
                    : finer.accuracy > 0.0 ? fmt::format("accuracy {:g} m", finer.accuracy)
@@ -217,15 +224,23 @@ class RunJob {
       progress.update(t, steps);
       recording_.flush_if_due();
     };
-    return simulation_.run(hooks);
+    return simulation_->run(hooks);
   }
 
-  int finish(const Outcome& outcome, const std::optional<Verification>& verification) {
-    RunRecord record{*loaded_.model,           channels_,
-                     assembled_.start.facts,   outcome,
-                     simulation_.statistics(), simulation_.last_row(),
-                     recording_.advice(),      warnings_of(loaded_.diagnostics, simulation_.warnings()),
-                     recording_.files()};
+  /// The summary of a large model takes memory, and a finer run as much as this one did: matrices go first.
+  Ended end() {
+    const auto row = simulation_->last_row();
+    const auto warnings = simulation_->warnings();
+    Ended ended{simulation_->statistics(), {row.begin(), row.end()}, {warnings.begin(), warnings.end()}};
+    simulation_.reset();
+    return ended;
+  }
+
+  int finish(const Outcome& outcome, const Ended& ended, const std::optional<Verification>& verification) {
+    RunRecord record{
+        *loaded_.model,    channels_,      assembled_.start.facts, outcome,
+        ended.statistics,  ended.last_row, recording_.advice(),    warnings_of(loaded_.diagnostics, ended.warnings),
+        recording_.files()};
     if (verification) {
       for (const ChannelError& channel : verification->channels)
         record.verify.emplace_back(channel.name, channel.error);
@@ -256,9 +271,9 @@ class RunJob {
   std::filesystem::path path_;
   Channels channels_;
   Recording recording_;
-  RowMemory rows_;
+  std::optional<RowMemory> rows_;  // to verify
   std::vector<Sink*> sinks_;
-  Simulation simulation_;
+  std::optional<Simulation> simulation_;  // until it is over
   Profile profile_;
 };
 
@@ -287,8 +302,7 @@ int run(const RunOptions& options, const CommonOptions& common) {
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
   // What it refuses is told before the directory is cleared of an earlier result.
-  const Channels channels(*loaded.model);
-  Simulation(assembled->system, assembled->start, channels, {});
+  require_sound_integrator(assembled->system);
   if (options.dry_run) return dry_run(loaded, *assembled, common);
   return RunJob(loaded, *assembled, path, options, common).execute();
 }

@@ -65,12 +65,12 @@ class ModelWriter {
                  {"paths", Json::object()},
                  {"forces", forces()}};
     json["ground"] = {{"frames", frames("ground")}};
-    for (const Body& one : model_.bodies) json["bodies"][one.name] = body(one);
+    for (const Body& one : model_.bodies) append(json["bodies"], one.name, body(one));
     for (const JointElement& one : model_.joints) {
-      if (!one.is_force) json["joints"][one.name] = joint(one);
+      if (!one.is_force) append(json["joints"], one.name, joint(one));
     }
-    for (const Driver& one : model_.drivers) json["drivers"][one.name] = driver(one);
-    for (const InverseKinematics& one : model_.kinematics) json["paths"][one.name] = path(one);
+    for (const Driver& one : model_.drivers) append(json["drivers"], one.name, driver(one));
+    for (const InverseKinematics& one : model_.kinematics) append(json["paths"], one.name, path(one));
     json["initial"] = initial();
     json["simulation"] = simulation();
     return json;
@@ -294,12 +294,12 @@ class ModelWriter {
     Json json = Json::object();
     auto own = model_.own_gravities.begin();
     for (std::size_t i = 0; i <= model_.force_elements.size(); ++i) {
-      for (; own != model_.own_gravities.end() && own->place == i; ++own) json[own->name] = own_gravity(*own);
+      for (; own != model_.own_gravities.end() && own->place == i; ++own) append(json, own->name, own_gravity(*own));
       if (i == model_.force_elements.size()) break;
       const ForceElement& element = model_.force_elements[i];
       const std::string& name =
           element.joint >= 0 ? model_.joints[at(element.joint)].name : model_.forces[at(element.applied)].name;
-      json[name] = force(element);
+      append(json, name, force(element));
     }
     return json;
   }
@@ -308,8 +308,8 @@ class ModelWriter {
     Json joints = Json::object(), speeds = Json::object();
     for (const JointElement& one : model_.joints) {
       const std::string unit = coordinate_unit(one);
-      if (one.start_coordinate) joints[one.name] = number(one.start_coordinate->value, unit);
-      if (one.start_speed) speeds[one.name] = number(one.start_speed->value, unit + "/s");
+      if (one.start_coordinate) append(joints, one.name, number(one.start_coordinate->value, unit));
+      if (one.start_speed) append(speeds, one.name, number(one.start_speed->value, unit + "/s"));
     }
     return {
         {"joints", joints},

@@ -127,7 +127,7 @@ Json bodies_part(const RunRecord& record) {
     const bool planar = record.model.space == Space::planar;
     const auto names = planar ? std::span<const char* const>(in_plane) : std::span<const char* const>(in_space);
     const std::size_t first = static_cast<std::size_t>(record.channels.bodies[i]);
-    Json& body = part[record.model.bodies[i].name];
+    Json& body = append(part, record.model.bodies[i].name, Json::object());
     for (std::size_t k = 0; k < names.size(); ++k) body[names[k]] = json_number(record.last_row[first + k]);
     body["max_speed"] = json_number(record.statistics.body_max_speed(static_cast<int>(i)));
   }
@@ -143,15 +143,16 @@ Json joints_part(const RunRecord& record) {
     const bool touches = has_contact_statistics(record.channels.joints[i]);
     const auto contact = [&](double value) { return touches ? json_number(value) : Json(nullptr); };
     const bool counted = touches && has_statistics(record.model.settings, record.outcome);
-    part[joint.name] = {{"type", joint.component->description.name},
-                        {"max_force", json_number(seen.max_force)},
-                        {"rms_force", json_number(seen.rms_force)},
-                        {"max_fn", contact(seen.max_normal_force)},
-                        {"max_delta", contact(seen.max_penetration)},
-                        {"max_eccentricity", contact(seen.max_eccentricity)},
-                        {"contacts", counted ? Json(seen.contacts) : Json(nullptr)},
-                        {"contact_fraction", contact(seen.contact_fraction)},
-                        {"dissipated", contact(seen.dissipated)}};
+    append(part, joint.name,
+           {{"type", joint.component->description.name},
+            {"max_force", json_number(seen.max_force)},
+            {"rms_force", json_number(seen.rms_force)},
+            {"max_fn", contact(seen.max_normal_force)},
+            {"max_delta", contact(seen.max_penetration)},
+            {"max_eccentricity", contact(seen.max_eccentricity)},
+            {"contacts", counted ? Json(seen.contacts) : Json(nullptr)},
+            {"contact_fraction", contact(seen.contact_fraction)},
+            {"dissipated", contact(seen.dissipated)}});
   }
   return part;
 }
@@ -161,10 +162,11 @@ Json drivers_part(const RunRecord& record) {
   for (std::size_t i = 0; i < record.model.drivers.size(); ++i) {
     const Driver& driver = record.model.drivers[i];
     const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
-    part[driver.name] = {{"kind", word(driver.kind)},
-                         {"max_abs", json_number(seen.max_abs)},
-                         {"rms", json_number(seen.rms)},
-                         {"work", json_number(seen.work)}};
+    append(part, driver.name,
+           {{"kind", word(driver.kind)},
+            {"max_abs", json_number(seen.max_abs)},
+            {"rms", json_number(seen.rms)},
+            {"work", json_number(seen.work)}});
   }
   return part;
 }
@@ -199,7 +201,7 @@ Json advice_part(const ContactAdvice& advice) {
 Json verify_part(const RunRecord& record) {
   if (record.verify.empty()) return nullptr;
   Json part = Json::object();
-  for (const auto& [channel, error] : record.verify) part[channel] = json_number(error);
+  for (const auto& [channel, error] : record.verify) append(part, channel, json_number(error));
   return part;
 }
 

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/model.h"
@@ -10,8 +11,8 @@
 namespace freeplay {
 
 struct ChannelInfo {
-  std::string name;  ///< KIND.NAME.QUANTITY, or "time"
-  std::string unit;  ///< SI, model-format spelling
+  std::string name;       ///< KIND.NAME.QUANTITY, or "time"
+  std::string_view unit;  ///< SI, model-format spelling; of the core or of the joint's type
 };
 
 /// Where the columns of one joint stand in a row; -1 where it has none.

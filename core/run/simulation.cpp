@@ -82,9 +82,10 @@ Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_ch
       between(owner.layout(), integrator_layout.memory, flows),
       e_accepted(owner),
       e_trial(owner),
-      e_between(owner),
+      own_between(adaptive ? std::optional<Evaluation>(std::in_place, owner) : std::nullopt),
+      e_between(own_between ? *own_between : solver.evaluation()),
       observer(owner, all_channels),
-      events(owner, adaptive, flows),
+      events(owner, adaptive, between, e_between),
       statistics(model, all_channels),
       scratch(at(integrator_layout.scratch) + guard::marks),
       row(all_channels.all().size(), 0.0),
@@ -558,6 +559,8 @@ Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->statistics; }
 std::span<const double> Simulation::last_row() const { return impl_->row; }
 std::span<const std::string> Simulation::warnings() const { return impl_->warnings; }
+
+void require_sound_integrator(const System& system) { declare(system, EnergyAccount(system).flows()); }
 
 void require_attainable_accuracy(const System& system) {
   const Settings& settings = system.model().settings;

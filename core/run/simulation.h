@@ -52,6 +52,9 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Throws Error{plugin} "plugin-failed" when the integrator cannot tell what it needs.
+void require_sound_integrator(const System& system);
+
 /// Throws Error{input} "out-of-range", in the file where it says so, when the error allowed in a step is below the
 /// rounding of positions.
 void require_attainable_accuracy(const System& system);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "run/energy_account.h"
 #include "run/newton_stage_solver.h"
@@ -83,7 +84,9 @@ struct Simulation::Impl {
   NewtonStageSolver solver;
   StepControl control;
   State accepted, trial, between;
-  Evaluation e_accepted, e_trial, e_between;
+  Evaluation e_accepted, e_trial;
+  std::optional<Evaluation> own_between;  // with error control
+  Evaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
   Observer observer;
   StepEvents events;
   Statistics statistics;

@@ -25,11 +25,11 @@ bool fields_make_sense(const Event& event, Span<const double> fields, Message& m
 }
 }  // namespace
 
-StepEvents::StepEvents(const System& system, bool located, int flows)
+StepEvents::StepEvents(const System& system, bool located, State& between, Evaluation& e_between)
     : system_(system),
       located_(located),
-      between_(system.layout(), 0, flows),
-      e_between_(system),
+      between_(between),
+      e_between_(e_between),
       inside_(system.model().joints.size(), 0) {
   std::size_t most_events = 0, all_fields = 0, all_events = 0;
   for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {

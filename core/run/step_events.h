@@ -17,8 +17,9 @@ class StepEvents {
   /// Gives the mobility of a joint at the end of a located step (JointInput::mobility); false when it fails.
   using Mobility = bool (*)(void* self, int joint, double* mobility);
 
-  /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `flows`: as State has them.
-  StepEvents(const System& system, bool located, int flows);
+  /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `between` and `e_between`
+  /// are lent for each call: what they hold does not matter, and is lost.
+  StepEvents(const System& system, bool located, State& between, Evaluation& e_between);
 
   /// A crossing that a step passes or ends at.
   struct Passage {
@@ -70,8 +71,8 @@ class StepEvents {
 
   const System& system_;
   bool located_;
-  State between_;
-  Evaluation e_between_;
+  State& between_;
+  Evaluation& e_between_;
   std::vector<int> watched_;
   std::vector<std::size_t> first_event_;  // by watched joint: where its events stand in the next two
   std::vector<char> armed_, seen_;        // could the event happen at the last look; the same for the step being tried

@@ -9,16 +9,18 @@ import subprocess
 from problems import ROOT
 from timing import Failed
 
+RK4_STEPS = "1.6e-5,1.2e-5,1e-5,8e-6,6e-6,4e-6,3e-6,2e-6,1.5e-6,1e-6,7e-7,5e-7"
+BATHE_STEPS = "1e-5,8e-6,6e-6,5e-6,4e-6,2e-6,1e-6,5e-7,2e-7,1e-7,5e-8"
 CONTACT_METHODS = (  # method, options, steps or tolerances
-    ("rk4", ("--contact", "split"), "8e-6,4e-6,2e-6,1e-6,5e-7,2e-7"),
-    ("rk4", ("--contact", "predict"), "8e-6,4e-6,2e-6,1e-6,5e-7,2e-7"),
-    ("bathe", ("--contact", "split", "--newton-tol", "1e-9"), "4e-6,2e-6,1e-6,5e-7,2e-7,1e-7,5e-8"),
-    ("bathe", ("--contact", "predict", "--newton-tol", "1e-9"), "4e-6,2e-6,1e-6,5e-7,2e-7,1e-7,5e-8"),
-    ("dopri", (), "1e-7,3e-8,1e-8,1e-9,1e-10,1e-11"),
-    ("extrap", (), "1e-7,1e-9,1e-11"),
-    ("adams", (), "1e-7,1e-8,1e-9,1e-10"))
-CHAIN_METHODS = (("natural", (), "2e-2,1e-2,5e-3,2e-3,1e-3"),)
-CHAIN_LINE = re.compile(r"^p2 .* h= *(\S+) +B0 error to 1 s (\S+) m, to 10 s \S+ m +wall s/s (\S+)")
+    ("rk4", ("--contact", "split"), RK4_STEPS),
+    ("rk4", ("--contact", "predict"), RK4_STEPS),
+    ("bathe", ("--contact", "split", "--newton-tol", "1e-9"), BATHE_STEPS),
+    ("bathe", ("--contact", "predict", "--newton-tol", "1e-9"), BATHE_STEPS),
+    ("dopri", (), "1e-7,5e-8,2e-8,1e-8,5e-9,2e-9,1e-9,5e-10,2e-10,1e-10"),
+    ("extrap", (), "1e-6,1e-7,1e-8,1e-9"),
+    ("adams", (), "1e-7,1e-8,3e-9,1e-9,1e-10"))
+CHAIN_METHODS = (("natural", (), "2e-2,1.66667e-2,1.42857e-2,1.25e-2,1e-2,5e-3,2e-3"),)  # parts of 0.1 s
+CHAIN_LINE = re.compile(r"^p2 .* h= *\S+ +B0 error to 1 s (\S+) m, to 10 s \S+ m +wall s/s (\S+)")
 
 
 def source_folder():
@@ -67,10 +69,10 @@ class HandWritten:
         if done.returncode != 0:
             raise Failed("%s: %s" % (" ".join(words), done.stderr.strip()))
         records = []
-        for line in done.stdout.splitlines():
+        for value, line in zip(values.split(","), done.stdout.splitlines(), strict=True):
             chain = CHAIN_LINE.match(line)
             cells = line.split()
-            value, error, rate = (chain[1], chain[2], chain[3]) if chain else (cells[2], cells[5], cells[6])
+            error, rate = (chain[1], chain[2]) if chain else (cells[5], cells[6])
             records.append({"method": " ".join([method, *options[1:2]]), "call": [method, list(options)],
                             "value": float(value), "error": float(error), "rate": float(rate),
                             "steps": round(1.0 / float(value)) if chain else int(cells[9])})

@@ -23,7 +23,7 @@ class Problem:
     columns: tuple = ()    # of it, for `points`
     hand: str = ""         # name at the hand-written programs
     hand_options: tuple = ()
-    scale: float = 1.0     # by which distances of `points` are multiplied
+    between: tuple = ()    # further accuracies of those that always choose their steps: close to the target
 
     def file(self):
         return os.path.join(ROOT, "mechanisms", self.model + ".yaml")
@@ -41,7 +41,7 @@ class Problem:
                 for step in self.steps[:2] if quick else self.steps:
                     yield name, "step", step, self.options("--integrator", name, "--step", repr(step))
             # What is of second order does not go as far.
-            accuracies = self.accuracies if name in ADAPTIVE else self.accuracies[:5]
+            accuracies = sorted(self.accuracies + self.between, reverse=True) if name in ADAPTIVE else self.accuracies[:5]
             for accuracy in accuracies[:2] if quick else accuracies:
                 yield name, "accuracy", accuracy, self.options("--integrator", name, "--accuracy", repr(accuracy))
 
@@ -59,16 +59,16 @@ def four_bar(n):
 PROBLEMS = {
     "slider-crank": Problem(
         "slider-crank", "slider-crank", 8e-3, 20e-6, ("body.slider.x", "body.slider.y"), 1e-6,
-        (2e-6, 1e-6, 5e-7, 2e-7, 1e-7, 5e-8), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8), best=1e-13,
+        (2e-6, 1e-6, 5e-7, 2e-7, 1e-7, 5e-8), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8), between=(5e-5, 2e-5, 5e-6), best=1e-13,
         trajectory="p1_slider_crank_c500_mu000.csv", columns=("slider_x", "slider_y"), hand="p1",
         hand_options=("--window", "0.008", "--horizon", "0.008", "--sample", "2e-5")),
     "3-rrr": Problem(
         "3-rrr", "3-rrr", 20e-3, 1e-4, PLATFORM, 1e-6, (1e-5, 5e-6, 4e-6, 2e-6, 1e-6),
-        (5e-4, 2e-4, 1e-4, 1e-5, 1e-6, 1e-7), trajectory="p3_3rrr_c100_mu100.csv", columns=CONTACT, hand="p3",
+        (5e-4, 2e-4, 1e-4, 1e-5, 1e-6, 1e-7), between=(3e-4, 5e-5, 2e-5), trajectory="p3_3rrr_c100_mu100.csv", columns=CONTACT, hand="p3",
         hand_options=("--window", "0.02", "--horizon", "0.02", "--sample", "1e-4")),
     "4-rrr": Problem(
         "4-rrr", "4-rrr", 20e-3, 1e-4, PLATFORM, 1e-6, (1e-5, 5e-6, 4e-6, 2e-6, 1e-6),
-        (2e-4, 1e-4, 5e-5, 1e-5, 1e-6, 1e-7), hand="p4",
+        (2e-4, 1e-4, 5e-5, 1e-5, 1e-6, 1e-7), between=(1e-3, 5e-4, 7e-5), hand="p4",
         hand_options=("--window", "0.02", "--horizon", "0.02", "--sample", "1e-4")),
     "squeezer": Problem(
         "squeezer", "validation/squeezer", 0.03, 0.01, ("body.K3.x", "body.K3.y"), 1e-6, (1e-4, 5e-5, 2e-5, 1e-5, 5e-6),

@@ -4,8 +4,20 @@ import json
 import math
 import os
 import subprocess
+import sys
 import tempfile
 import time
+
+
+# The kernel counts the memory of who starts a program as the program's own, so a small process starts it.
+STARTER = """
+import os, sys, time
+begin = time.perf_counter()
+_, status, usage = os.wait4(os.posix_spawn(sys.argv[2], sys.argv[2:], os.environ), 0)
+seconds = time.perf_counter() - begin
+os.write(int(sys.argv[1]), b'%.9f %.9f %d' % (seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024))
+sys.exit(os.waitstatus_to_exitcode(status) % 256)
+"""
 
 
 class Failed(Exception):
@@ -34,17 +46,16 @@ class Run:
 
 def measured(words, told=subprocess.DEVNULL):
     """Wall seconds, processor seconds and peak memory [bytes] of a command that must succeed."""
-    with tempfile.TemporaryFile() as errors:
-        begin = time.perf_counter()
-        child = subprocess.Popen(words, stdout=told, stderr=errors)
-        _, status, usage = os.wait4(child.pid, 0)
-        seconds = time.perf_counter() - begin
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode != 0:
+    with tempfile.TemporaryFile() as errors, tempfile.TemporaryFile() as numbers:
+        starter = [sys.executable, "-I", "-S", "-c", STARTER, str(numbers.fileno())]
+        done = subprocess.run(starter + words, stdout=told, stderr=errors, pass_fds=(numbers.fileno(),))
+        if done.returncode != 0:
             errors.seek(0)
-            raise Failed("%s: exit code %d: %s" % (" ".join(words), child.returncode,
+            raise Failed("%s: exit code %d: %s" % (" ".join(words), done.returncode,
                                                    errors.read().decode(errors="replace").strip()[-400:]))
-        return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+        numbers.seek(0)
+        seconds, processor, peak = numbers.read().split()
+        return float(seconds), float(processor), int(peak)
 
 
 class Program:
@@ -67,6 +78,15 @@ class Program:
             seconds = {line.split()[0]: float(line.split()[1]) for line in told if line.split()[0] in ("start", "all")}
         return run, seconds["all"] - seconds["start"]
 
+
+
+def fastest(call, times, seconds):
+    """The run of the least rate of at least `times`, and of as many as fit into `seconds`: on a machine that is not idle
+    a short run is seldom undisturbed."""
+    end, runs = time.perf_counter() + seconds, []
+    while len(runs) < times or time.perf_counter() < end:
+        runs.append(call())
+    return min(runs, key=lambda run: run.rate)
 
 
 def median(values):

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import types
 import unittest
 
 from program import PROGRAM, ROOT, ProgramTest
@@ -69,6 +70,24 @@ class Bench(ProgramTest):
         self.assertNotIn("old", new)
         self.assertTrue(new.endswith("\nb\n<!-- bench growth -->\nkept\n<!-- end -->\n"))
 
+    def test_peak_memory_is_that_of_the_program(self):
+        import timing
+        ballast = bytearray(b"x" * 100_000_000)  # of who measures
+        seconds, _, peak = timing.measured([PROGRAM, "--version"])
+        self.assertLess(peak, 0.5 * len(ballast))
+        self.assertGreater(peak, 1e6)
+        self.assertGreater(seconds, 1e-4)
+        with self.assertRaisesRegex(timing.Failed, "exit code 2: .*no-such-word"):
+            timing.measured([PROGRAM, "no-such-word"])
+
+    def test_the_cheapest_that_is_good_enough_is_chosen_of_those_measured_twice(self):
+        import pareto
+        first = [("a", 1e-5, 1.0), ("b", 1e-7, 2.0), ("c", 1e-7, 3.0), ("d", 1e-6, 4.0), ("e", 1e-9, 5.0)]
+        records = [{"name": name, "error": error, "rate": rate} for name, error, rate in first] + [{"failure": "no", "rate": 0.0}]
+        again = {"b": 3.5, "c": 3.4, "d": 3.6, "e": 0.1}
+        self.assertEqual("c", pareto.choose(records, 1e-6, lambda record: again[record["name"]])["name"])
+        self.assertIsNone(pareto.choose(records, 1e-12, lambda record: 0.0))
+
     def test_numbers_of_the_tables(self):
         import timing
         self.assertEqual((2.0, 2.5), (timing.median([3.0, 1.0, 2.0]), timing.median([1.0, 2.0, 3.0, 4.0])))
@@ -76,6 +95,8 @@ class Bench(ProgramTest):
         slope, steepest = timing.growth([(1.0, 3.0), (10.0, 30.0), (100.0, 3000.0)])
         self.assertAlmostEqual(1.5, slope)
         self.assertAlmostEqual(2.0, steepest)
+        rates = iter([3.0, 1.0, 2.0])
+        self.assertEqual(1.0, timing.fastest(lambda: types.SimpleNamespace(rate=next(rates)), 3, 0.0).rate)
         self.assertEqual(5.0, timing.largest_distance([[0.0, 0.0], [3.0, 4.0]], [[0.0, 1.0], [0.0, 0.0]]))
 
 

@@ -40,7 +40,7 @@ LIBRARIES = {
     "hdf5.h": {"io"},
     "klu.h": {"linear"},
     "SuiteSparseQR.hpp": {"linear"},
-    "openssl": {"io"},
+    "sha2.h": {"io"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"io", "report", "cli"},
