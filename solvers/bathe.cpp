@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "acceleration_history.h"
 #include "freeplay/plugin.h"
 #include "step_error.h"
 
@@ -34,7 +35,7 @@ class Bathe final : public Integrator {
 
   void declare(IntegratorLayout& layout) const override {
     const Sizes& n = layout.sizes;
-    layout.memory = n.nz;  // z' at the accepted state
+    layout.memory = n.nz + AccelerationHistory::size(n, 2);  // z' at the accepted state
     layout.scratch = n.nq + 4 * n.nv + 3 * n.nz + StepError::scratch(n);
     layout.order = 2;
     layout.error_estimate = 1;
@@ -42,21 +43,29 @@ class Bathe final : public Integrator {
     layout.newton_max_iterations = iterations_;
   }
   void restart(StateView& state, StageSolver& solver) const override {
-    if (!state.z.empty()) solver.accelerate(state, state.memory);
+    if (!state.z.empty()) solver.accelerate(state, state.memory.part(0, state.z.size));
+    AccelerationHistory::forget(history_of(state));
   }
 
   Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const override {
     Start n(to, scratch);
+    AccelerationHistory history(dt, n.a, history_of(to));
+    history.guess(0, split_, to.a);
     if (!trapezoid(dt, n, to, solver)) return {.converged = 0, .error = 0.0};
-    if (!backward_euler(dt, n, to, solver)) return {.converged = 0, .error = 0.0};
+    history.solved(0, to.a);
+    prepare_end(dt, n, to);
+    history.guess(1, 1.0, to.a);
+    if (!solve(n.t + dt, q2_ * dt, n, to, solver)) return {.converged = 0, .error = 0.0};
+    history.solved(1, to.a);
+    history.finish(history_of(to));
     const double beta_q = q2_ * dt * q2_ * dt;
     for (std::size_t i = 0; i < n.v.size; ++i) n.increment_known[i] += beta_q * to.a[i];  // now the whole increment
     solver.project_velocity(to);
-    solver.accelerate(to, to.memory);
+    const Span<double> z_rate = to.memory.part(0, to.z.size);
+    solver.accelerate(to, z_rate);
     if (!solver.estimates()) return {.converged = 1, .error = 0.0};
     StepError error(to, scratch.part(n.used, scratch.size - n.used));
-    return {.converged = 1,
-            .error = error(dt, {n.q, n.v, n.a, n.z, n.z_rate}, n.increment_known, to, to.memory, solver)};
+    return {.converged = 1, .error = error(dt, {n.q, n.v, n.a, n.z, n.z_rate}, n.increment_known, to, z_rate, solver)};
   }
 
  private:
@@ -79,7 +88,7 @@ class Bathe final : public Integrator {
       std::copy(state.v.begin(), state.v.end(), v.begin());
       std::copy(state.a.begin(), state.a.end(), a.begin());
       std::copy(state.z.begin(), state.z.end(), z.begin());
-      std::copy(state.memory.begin(), state.memory.end(), z_rate.begin());
+      std::copy_n(state.memory.begin(), state.z.size, z_rate.begin());
     }
     double t;
     std::size_t used = 0;
@@ -96,8 +105,12 @@ class Bathe final : public Integrator {
     return solve(n.t + split_ * dt, b, n, to, solver);
   }
 
-  /// `to` holds the stage at t + s h, whose a is the starting guess of this one.
-  bool backward_euler(double dt, Start& n, StateView& to, StageSolver& solver) const {
+  static Span<double> history_of(StateView& state) {
+    return state.memory.part(state.z.size, state.memory.size - state.z.size);
+  }
+
+  /// The known terms of backward Euler; `to` holds the stage at t + s h.
+  void prepare_end(double dt, Start& n, const StateView& to) const {
     const double b = q2_ * dt, b_first = 0.5 * split_ * dt;
     for (std::size_t i = 0; i < n.v.size; ++i) {
       n.v_known[i] = n.v[i] + dt * (q0_ * n.a[i] + q1_ * to.a[i]);
@@ -107,7 +120,6 @@ class Bathe final : public Integrator {
       const double rate = (to.z[i] - n.z_known[i]) / b_first;
       n.z_known[i] = n.z[i] + dt * (q0_ * to.memory[i] + q1_ * rate);
     }
-    return solve(n.t + dt, b, n, to, solver);
   }
 
   static bool solve(double t, double b, const Start& n, StateView& to, StageSolver& solver) {

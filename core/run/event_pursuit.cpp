@@ -121,7 +121,7 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
         return false;
       }
       std::swap(trial, between);
-      std::swap(e_trial, e_between);
+      swap(e_trial, e_between);
       return ended_inside = true;
     }
     const double change = (end.value - aim_past(end, at_event)) / end.rate;

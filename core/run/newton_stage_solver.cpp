@@ -16,8 +16,11 @@ constexpr double slow_contraction = 0.1;     // a stale factor that contracts le
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr double off_constraints = 10.0;     // relative change of Phi_q by relative size of Phi, about
 constexpr int refinement_limit = 30;
-constexpr int quick_passes = 3;        // of a projection of velocities with factors that are there
-constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
+constexpr double careful = 10.0,
+                 least_contraction = 1e-5;  // a ratio that was seen stands for others up to so much more
+constexpr int seen_for = 8;                 // stages
+constexpr int quick_passes = 3;             // of a projection of velocities with factors that are there
+constexpr double small_change = 1e-5;       // of velocities, relative, that these may make
 constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
@@ -218,7 +221,10 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (renew) {
       if (!refactor(factor)) return true;  // singular: not converged, a shorter step may do
       fresh = true;
+      factor.contraction = 1.0;
     }
+    if (iteration == 0 && e_.acting != factor.acting) factor.contraction = 1.0;
+    factor.acting = e_.acting;
     ++iterations_;
     ++result.iterations;
 
@@ -253,16 +259,28 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       trouble_ = "a number in the state is not finite";
       return true;
     }
+    const double change_before = previous;
     ratio = iteration == 0 ? 1.0 : change / previous;
     previous = change;
     // Left over after this update: a geometric series of ratio r. Judged in position and, with a unit time of 1 s, in
     // velocity. Below the noise of Phi (rounding of coordinates, divided by beta_q) nothing more can be won.
-    const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
-    const bool accurate = iteration > 0 && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
-    const bool noise = change * beta_q <= 50.0 * rounding && (ratio >= 0.3 || change * beta_q <= rounding);
+    if (iteration > 0 && change_before * beta_q > 8.0 * rounding) {
+      factor.contraction = std::max(careful * ratio, least_contraction);
+      factor.since_seen = 0;
+    }
+    // The first update has no ratio of its own: that of a stage not long ago stands for it, with the same forces on.
+    const bool foreseen = iteration == 0 && factor.contraction < 0.1 && ++factor.since_seen <= seen_for;
+    const double part = foreseen ? factor.contraction : ratio;
+    const double left = part < 1.0 ? part / (1.0 - part) * change : change;
+    const bool accurate =
+        (iteration > 0 || foreseen) && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
+    // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors.
+    const bool stays = iteration > 0 && change * beta_q <= 50.0 * rounding && ratio >= 0.3;
+    const bool noise = change * beta_q <= (iteration > 0 ? 1.0 : 4.0) * rounding || stays;
+    if (stays && !fresh && ++factor.stays > most_stays) factor.stays = 0, factor.valid = false;
     const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
-    if (internal_settled && (accurate || (iteration > 0 && noise) || change == 0.0 ||
-                             (stagnates && is_rounding_of_phi(factor, std::max(beta_q, beta_v))))) {
+    if (internal_settled &&
+        (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, std::max(beta_q, beta_v))))) {
       for (std::size_t i = 0; i < at(nv); ++i) {
         out.v[i] = stage.v_known[i] + beta_v * out.a[i];
         increment_[i] = stage.increment_known[i] + beta_q * out.a[i];

@@ -87,6 +87,9 @@ class NewtonStageSolver {
     double beta_q = 0.0, beta_v = 0.0, beta_z = 0.0;
     long used = -1;
     bool valid = false, has_pattern = false;
+    double contraction = 1.0;  // of the iteration, seen last; 1: not seen with these forces
+    int since_seen = 0;        // stages
+    std::uint64_t acting = 0;  // Evaluation::acting
   };
 
   struct IndexOne {

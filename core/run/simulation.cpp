@@ -305,7 +305,7 @@ void Simulation::Impl::add_energy() {
   DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(0.5, between);
   std::ranges::copy(trial.h(), between.h().begin());  // as the attempt had it
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.
-  const bool seen = system.evaluate(point(between), term_force, e_between);
+  const bool seen = system.evaluate(point(between), term_force | only_asked, e_between);
   energy.flow(seen ? e_between : e_trial, between.lambda(), flow_half_way);
   energy.add(dt, flow_half_way, e_trial, trial.lambda());
 }
@@ -343,7 +343,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
     if (const int turn = system.layout().turn(j); turn >= 0) trial.h()[at(turn)] = e_trial.coordinate[at(j)];
   }
   std::swap(accepted, trial);
-  std::swap(e_accepted, e_trial);
+  swap(e_accepted, e_trial);
   outcome.time = accepted.t();
   if ((!events.happenings().empty() || ended_inside) && !refresh()) return false;
   ended_inside = false;

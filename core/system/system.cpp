@@ -173,7 +173,9 @@ void System::sort_markers() {
   };
   for (const int j : with_rows_) ask(j);
   for (const int j : with_coordinate_) ask(j);
-  for (const ForceBlock& block : force_blocks_) ask(block.joint);
+  for (const JointRecord& r : records_) {
+    if (r.layout->forces != 0 || r.layout->history > 0 || !r.layout->events.empty()) ask(r.index);
+  }
   for (const AppliedForce& force : model_.forces) asked[at(force.marker)] = 1;
   for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
     if (model_.markers[at(m)].body != ground) moving_markers_.push_back(m);

@@ -7,9 +7,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "component/joint_ref.h"
@@ -40,7 +42,7 @@ enum Term : unsigned {
   term_derivative = 16,   ///< derivatives of f (with f)
   term_coordinate = 32,   ///< coordinates of all joints
   term_event = 64,        ///< what JointRef::events() and on_event() read
-  only_asked = 128,       ///< Evaluation::markers of joints and forces that read them while the equations are filled
+  only_asked = 128,       ///< of Evaluation::markers only those of joints and forces that are asked in every step
 };
 
 /// Element that failed, and why.
@@ -279,6 +281,7 @@ struct Evaluation {
   std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
   std::vector<double> internal_rate;                ///< z'
   std::vector<double> applied;                      ///< by applied force: wrench in world axes at its marker
+  std::uint64_t acting = 0;                         ///< tells which force blocks act at all
   Fault fault;
 
   /// Whether phi, Phi_q and nu are those of this time and these coordinates.
@@ -299,15 +302,6 @@ struct Evaluation {
   const auto& arms_of() const {
     return const_cast<Evaluation*>(this)->arms_of<Bodies>();
   }
-  template <class Bodies>
-  auto& turns_of() {
-    if constexpr (Bodies::velocities == planar::velocities) {
-      return turns;
-    } else {
-      return spatial_turns;
-    }
-  }
-
   // Work space.
   std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
   std::vector<double> row_space;          ///< of every joint with rows: G, phi, nu, gamma, with marks behind each
@@ -317,6 +311,20 @@ struct Evaluation {
   double motion_time;
   unsigned filled = 0;        ///< terms that `place` speaks of
   std::vector<double> place;  ///< t, q, v, z, h of the last evaluation that did not fail
+
+  /// Everything but the faults, which say nothing of evaluations that did not fail.
+  friend void swap(Evaluation& a, Evaluation& b) noexcept {
+    const auto numbers = [](Evaluation& e) {
+      // All members, so that a new one is not forgotten.
+      auto& [e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21, e31,
+             faults, e22, e23, e24, e25, e26, e27, e28, e29, e30] = e;
+      return std::tie(e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21,
+                      e31, e22, e23, e24, e25, e26, e27, e28, e29, e30);
+    };
+    auto first = numbers(a), second = numbers(b);
+    first.swap(second);
+    a.fault.kind = b.fault.kind = Fault::Kind::none;
+  }
 };
 
 /// Calls `body` with the bodies of the model's space, planar::Bodies{} or spatial::Bodies{}.

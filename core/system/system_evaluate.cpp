@@ -43,7 +43,7 @@ bool Evaluation::is_at(const Point& point, unsigned terms) const {
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& known, Evaluation& e) const {
   if (!known.is_at(point, terms & ~unsigned{term_coordinate})) return evaluate(point, terms, e);
-  std::swap(e, known);
+  swap(e, known);
   if ((e.filled & only_asked) != 0 && (terms & only_asked) == 0) {
     for (std::size_t b = 0; b < e.turns.size(); ++b) {  // planar
       for (int i = markers_of_body_[b].end_asked; i < markers_of_body_[b].end; ++i) {

@@ -21,6 +21,7 @@ template <class Bodies>
 bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const {
   const Profile::Timer timer(profile_, Phase::joints);
   std::ranges::copy(weight_, e.force.begin());
+  e.acting = 0;
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
@@ -54,6 +55,9 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     double* wrench = &e.wrench[12 * at(j)];
     for (int i = 0; i < 6; ++i) wrench[i] = out.wrench_a[i];
     for (int i = 0; i < 6; ++i) wrench[6 + i] = out.wrench_b[i];
+    double size = 0.0;
+    for (int i = 0; i < 6; ++i) size += std::abs(out.wrench_b[i]);
+    e.acting = 31 * e.acting + (size > 0.0 ? 1 : 0);
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
     const auto& arms = e.arms_of<Bodies>();
