@@ -303,6 +303,7 @@ int run(const RunOptions& options, const CommonOptions& common) {
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
   // What it refuses is told before the directory is cleared of an earlier result.
   require_sound_integrator(assembled->system);
+  loaded.document.reset();  // nothing asks for it any more, and that of a large model is large
   if (options.dry_run) return dry_run(loaded, *assembled, common);
   return RunJob(loaded, *assembled, path, options, common).execute();
 }
