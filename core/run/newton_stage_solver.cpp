@@ -19,8 +19,9 @@ constexpr int refinement_limit = 30;
 constexpr double careful = 10.0,
                  least_contraction = 1e-5;  // a ratio that was seen stands for others up to so much more
 constexpr int seen_for = 8;                 // stages
-constexpr int quick_passes = 3;             // of a projection of velocities with factors that are there
-constexpr double small_change = 1e-5;       // of velocities, relative, that these may make
+constexpr int most_stays = 8;    // iterations that do not shrink at the size of roundings, before factors are renewed
+constexpr int quick_passes = 3;  // of a projection of velocities with factors that are there
+constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
 constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;

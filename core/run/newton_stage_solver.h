@@ -89,6 +89,7 @@ class NewtonStageSolver {
     bool valid = false, has_pattern = false;
     double contraction = 1.0;  // of the iteration, seen last; 1: not seen with these forces
     int since_seen = 0;        // stages
+    int stays = 0;             // iterations since the factors were made that did not shrink at the size of roundings
     std::uint64_t acting = 0;  // Evaluation::acting
   };
 
