@@ -12,45 +12,58 @@ namespace freeplay {
 ///
 ///   a_n + c (a_n - a_n-1) + c (c + 1)/2 (a_n - 2 a_n-1 + a_n-2) + d
 ///
-/// with d what the same guess was off in the step before: the error falls with h^4 where the motion is smooth, so that
-/// one iteration does. Steps of one length only; after another length, or an event, it begins anew. A guess changes
-/// what a stage costs, not what it solves.
+/// with d what the same sum was off in the step before: the error falls with h^4 where the motion is smooth, so that
+/// one iteration does. Where the sum was no better than a_n, as behind an impact, and in steps of another length than
+/// those before, it is not used. A guess changes what a stage costs, not what it solves.
 class AccelerationHistory {
  public:
-  static int size(const Sizes& n, int stages) { return 2 + (2 + stages) * n.nv; }
+  static int size(const Sizes& n, int stages) { return 2 + stages + (2 + stages) * n.nv; }
   static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
 
   /// At the start of a step of length dt; `a` are its accelerations, which stay where they are.
-  AccelerationHistory(double dt, Span<const double> a, Span<double> memory)
-      : a_(a),
-        steps_(memory[0]),
-        previous_(memory.part(2, a.size)),
-        older_(memory.part(2 + a.size, a.size)),
-        off_(memory.part(2 + 2 * a.size, memory.size - 2 - 2 * a.size)) {
-    if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) steps_ = 0.0;
+  AccelerationHistory(double dt, int stages, Span<const double> a, Span<double> memory)
+      : a_(a), steps_(memory[0]), count_(memory.data[0]) {
+    std::size_t used = 2;
+    const auto take = [&](std::size_t size) {
+      used += size;
+      return memory.part(used - size, size);
+    };
+    good_ = take(static_cast<std::size_t>(stages));
+    previous_ = take(a.size);
+    older_ = take(a.size);
+    off_ = take(static_cast<std::size_t>(stages) * a.size);
+    if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
+      steps_ = 0.0;
+      std::fill(good_.begin(), good_.end(), 0.0);
+    }
     memory[1] = dt;
-    known_ = static_cast<int>(std::min(steps_, 2.0));
   }
 
-  /// The guess for a stage.
+  /// The guess for a stage; `out` is left as it is where there is none.
   void guess(int stage, double c, Span<double> out) {
     const Span<double> off = of_stage(stage);
-    const double linear = known_ > 0 ? c : 0.0, square = known_ > 1 ? 0.5 * c * (c + 1.0) : 0.0;
-    const bool corrects = steps_ > 2.0;  // what was off, was so with three points
+    const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0;
+    const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
     for (std::size_t i = 0; i < a_.size; ++i) {
-      const double base = a_[i] + linear * (a_[i] - previous_[i]) + square * (a_[i] - 2.0 * previous_[i] + older_[i]);
-      out[i] = base + (corrects ? off[i] : 0.0);
-      off[i] = base;
+      const double sum = a_[i] + linear * (a_[i] - previous_[i]) + square * (a_[i] - 2.0 * previous_[i] + older_[i]);
+      if (good) out[i] = sum + off[i];
+      off[i] = sum;
     }
   }
   /// What it came out as.
   void solved(int stage, Span<const double> a) {
     const Span<double> off = of_stage(stage);
-    for (std::size_t i = 0; i < a.size; ++i) off[i] = a[i] - off[i];
+    double missed = 0.0, moved = 0.0;
+    for (std::size_t i = 0; i < a.size; ++i) {
+      off[i] = a[i] - off[i];
+      missed = std::max(missed, std::abs(off[i]));
+      moved = std::max(moved, std::abs(a[i] - a_[i]));
+    }
+    good_[static_cast<std::size_t>(stage)] = steps_ > 1.0 && missed <= 0.5 * moved ? 1.0 : 0.0;
   }
   /// After the last stage.
-  void finish(Span<double> memory) {
-    memory[0] = std::min(steps_ + 1.0, 3.0);
+  void finish() {
+    count_ = std::min(steps_ + 1.0, 2.0);
     std::copy(previous_.begin(), previous_.end(), older_.begin());
     std::copy(a_.begin(), a_.end(), previous_.begin());
   }
@@ -60,8 +73,8 @@ class AccelerationHistory {
 
   Span<const double> a_;
   double steps_;
-  int known_ = 0;
-  Span<double> previous_, older_, off_;
+  double& count_;
+  Span<double> good_, previous_, older_, off_;
 };
 
 }  // namespace freeplay

@@ -49,7 +49,7 @@ class Bathe final : public Integrator {
 
   Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const override {
     Start n(to, scratch);
-    AccelerationHistory history(dt, n.a, history_of(to));
+    AccelerationHistory history(dt, 2, n.a, history_of(to));
     history.guess(0, split_, to.a);
     if (!trapezoid(dt, n, to, solver)) return {.converged = 0, .error = 0.0};
     history.solved(0, to.a);
@@ -57,7 +57,7 @@ class Bathe final : public Integrator {
     history.guess(1, 1.0, to.a);
     if (!solve(n.t + dt, q2_ * dt, n, to, solver)) return {.converged = 0, .error = 0.0};
     history.solved(1, to.a);
-    history.finish(history_of(to));
+    history.finish();
     const double beta_q = q2_ * dt * q2_ * dt;
     for (std::size_t i = 0; i < n.v.size; ++i) n.increment_known[i] += beta_q * to.a[i];  // now the whole increment
     solver.project_velocity(to);
