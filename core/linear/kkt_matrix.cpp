@@ -11,7 +11,6 @@ namespace freeplay {
 namespace {
 
 constexpr double smallest_growth = 1e-6;  // of pivots that are used again: digits that may be lost
-constexpr int largest_dense = 40;         // measured: up to here a product with the inverse is the faster solution
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -22,9 +21,11 @@ struct KktMatrix::Impl {
   std::vector<double> values, factored;
   double pivots = 0.0;  // smallest over largest of `factored`
   // Of small matrices: rows in parts of their largest entry, factors, and the inverse of the whole.
-  Eigen::MatrixXd dense, inverse;
-  Eigen::VectorXd scale;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+  // Their largest size is told, so that nothing is allocated.
+  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, largest_dense, largest_dense>;
+  Small dense, inverse;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, largest_dense, 1> scale;
+  Eigen::PartialPivLU<Small> lu;
   bool has_factors = false;
   klu_common common;
   klu_symbolic* symbolic = nullptr;
@@ -117,9 +118,9 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
   m.factored.assign(m.rows.size(), 0.0);
   m.has_factors = false;
   if (m.is_dense()) {
-    m.dense = m.inverse = Eigen::MatrixXd::Zero(size, size);
-    m.scale = Eigen::VectorXd::Zero(size);
-    m.lu = Eigen::PartialPivLU<Eigen::MatrixXd>(size);
+    m.dense = m.inverse = Impl::Small::Zero(size, size);
+    m.scale.setZero(size);
+    m.lu = Eigen::PartialPivLU<Impl::Small>(size);
   }
   return slots;
 }

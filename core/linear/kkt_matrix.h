@@ -18,6 +18,7 @@ struct MatrixEntry {
 /// while they are good.
 class KktMatrix {
  public:
+  static constexpr int largest_dense = 40;  ///< measured: up to here a product with the inverse is the faster solution
   KktMatrix();
   KktMatrix(KktMatrix&&) noexcept;
   KktMatrix& operator=(KktMatrix&&) noexcept;

@@ -149,7 +149,7 @@ class Assembler {
     check_paths();
     system_.motions().follow(std::make_shared<const PathFollower>(closed_, state_.q(), state_.h()));
     hold_followed_drivers(true);
-    e_.motion_time = nan;
+    e_.forget_motions();
   }
 
   // Either the drivers of these entries hold the mechanism, or the paths do.
@@ -344,7 +344,7 @@ class Assembler {
       const Driver& driver = model_.drivers[at(d)];
       if (driver.kind == DriverKind::velocity && !model_.joints[at(driver.joint)].start_coordinate) {
         system_.motions().set_start(d, e_.coordinate[at(driver.joint)]);
-        e_.motion_time = nan;
+        e_.forget_motions();
       }
     }
   }

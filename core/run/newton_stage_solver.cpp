@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -19,8 +20,10 @@ constexpr int refinement_limit = 30;
 constexpr double careful = 10.0,
                  least_contraction = 1e-5;  // a ratio that was seen stands for others up to so much more
 constexpr int seen_for = 8;                 // stages
-constexpr int most_stays = 8;    // iterations that do not shrink at the size of roundings, before factors are renewed
-constexpr int quick_passes = 3;  // of a projection of velocities with factors that are there
+constexpr double most_foreseen = 100.0;     // size of a first update that may be the only one, in tolerances
+constexpr int most_stays = 3;    // iterations that do not shrink at the size of roundings, before factors are renewed
+constexpr int noise_for = 64;    // stages, until it is looked at again
+constexpr int quick_passes = 3;  // of a projection of velocities
 constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
 constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
@@ -90,6 +93,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   right_c_.resize(at(nc));
   work_.resize(at(nv + nc));
   size_.resize(at(nv + nc));
+  factored_at_.resize(at(1 + system.layout().nq()));
   multipliers_.resize(at(nc));
   other_a_.resize(at(nv));
   other_lambda_.resize(at(nc));
@@ -175,6 +179,7 @@ bool NewtonStageSolver::refactor(AnyFactor& factor) {
   }
   double pivot = factor_once(factor);
   if constexpr (std::is_same_v<AnyFactor, IndexOne>) {
+    std::copy_n(e_.place.begin(), factored_at_.size(), factored_at_.begin());
     largest_pivot_ = std::max(largest_pivot_, pivot);
     last_regularity_ = pivot / largest_pivot_;
     regularity_ = std::min(regularity_, last_regularity_);
@@ -224,7 +229,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       fresh = true;
       factor.contraction = 1.0;
     }
-    if (iteration == 0 && e_.acting != factor.acting) factor.contraction = 1.0;
+    if (iteration == 0 && e_.acting != factor.acting) factor.contraction = 1.0, factor.noise = 0.0;
     factor.acting = e_.acting;
     ++iterations_;
     ++result.iterations;
@@ -266,19 +271,26 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     // Left over after this update: a geometric series of ratio r. Judged in position and, with a unit time of 1 s, in
     // velocity. Below the noise of Phi (rounding of coordinates, divided by beta_q) nothing more can be won.
     if (iteration > 0 && change_before * beta_q > 8.0 * rounding) {
-      factor.contraction = std::max(careful * ratio, least_contraction);
+      factor.contraction = std::max({careful * ratio, 0.5 * factor.contraction, least_contraction});
       factor.since_seen = 0;
     }
-    // The first update has no ratio of its own: that of a stage not long ago stands for it, with the same forces on.
-    const bool foreseen = iteration == 0 && factor.contraction < 0.1 && ++factor.since_seen <= seen_for;
+    // The first update has no ratio of its own. Where it is small, that of a stage not long ago stands for it, with the
+    // same forces on.
+    const double size = change * std::max(beta_q, beta_v);
+    const bool foreseen = iteration == 0 && factor.contraction < 0.1 && size <= most_foreseen * options_.tolerance &&
+                          ++factor.since_seen <= seen_for;
     const double part = foreseen ? factor.contraction : ratio;
     const double left = part < 1.0 ? part / (1.0 - part) * change : change;
     const bool accurate =
         (iteration > 0 || foreseen) && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
-    // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors.
-    const bool stays = iteration > 0 && change * beta_q <= 50.0 * rounding && ratio >= 0.3;
-    const bool noise = change * beta_q <= (iteration > 0 ? 1.0 : 4.0) * rounding || stays;
+    // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors: which of
+    // both, new ones tell.
+    const bool tiny = change * beta_q <= 50.0 * rounding;
+    const bool stays = iteration > 0 && tiny && ratio >= 0.3;
+    if (stays && fresh) factor.noise = std::max(change, 0.5 * factor.noise), factor.since_noise = 0;
     if (stays && !fresh && ++factor.stays > most_stays) factor.stays = 0, factor.valid = false;
+    const bool quiet = iteration == 0 && tiny && change <= 2.0 * factor.noise && ++factor.since_noise <= noise_for;
+    const bool noise = stays || quiet || (iteration > 0 && change * beta_q <= rounding);
     const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
     if (internal_settled &&
         (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, std::max(beta_q, beta_v))))) {
@@ -407,27 +419,19 @@ bool NewtonStageSolver::equations_hold(std::span<const double> x_a, std::span<co
 template <int width>
 bool NewtonStageSolver::rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
                                      std::span<double> left) {
-  double* const size = size_.data();
-  for (std::size_t r = 0; r < right.size(); ++r) {
-    left[r] = right[r];
-    size[r] = std::abs(right[r]);
-  }
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
-    const double *entry = &e_.jacobian[at(block.offset)], *rate = &x_a[at(width * block.body)];
-    for (int r = block.row; r < block.row + block.rows; ++r, entry += width) {
-      double sum = 0.0, sizes = 0.0;
-      for (int c = 0; c < width; ++c) {
-        const double moved = entry[c] * rate[c];
-        sum += moved;
-        sizes += std::abs(moved);
-      }
-      left[at(r)] -= sum;
-      size[r] += sizes;
-    }
-  }
   int failing = 0;
   for (std::size_t r = 0; r < right.size(); ++r) {
-    failing += std::abs(left[r]) <= tolerance * rounding * size[r] || dependent_[r] != 0 ? 0 : 1;
+    double gap = right[r], size = std::abs(right[r]);
+    for (const System::RowPiece& piece : system_.row_pieces(r)) {
+      const double *entry = &e_.jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
+      for (int c = 0; c < width; ++c) {
+        const double moved = entry[c] * rate[c];
+        gap -= moved;
+        size += std::abs(moved);
+      }
+    }
+    left[r] = gap;
+    failing += std::abs(gap) <= tolerance * rounding * size || dependent_[r] != 0 ? 0 : 1;
   }
   return failing == 0;
 }
@@ -445,6 +449,12 @@ bool NewtonStageSolver::holds_to_rounding(std::span<const double> x_a, std::span
 
 bool NewtonStageSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_.nu, v, 4.0, right_c_); }
 
+// Phi_q depends on time and coordinates alone.
+bool NewtonStageSolver::is_factored_here() const {
+  return index_one_.valid &&
+         std::memcmp(factored_at_.data(), e_.place.data(), factored_at_.size() * sizeof(double)) == 0;
+}
+
 bool NewtonStageSolver::project_velocity(StateView& state) {
   if (state.lambda.size == 0) return true;
   const Point here{*state.t, state.q, state.v, state.z, h_};
@@ -452,8 +462,8 @@ bool NewtonStageSolver::project_velocity(StateView& state) {
   std::ranges::fill(multipliers_, 0.0);
   if (velocities_hold(state.v)) return true;
   const double speed = norm(state.v);
-  // Small changes may be made with factors from close by; what they err by is smaller yet.
-  for (int pass = 0; pass < quick_passes && index_one_.valid; ++pass) {
+  if (!is_factored_here() && !refactor(index_one_)) return false;
+  for (int pass = 0; pass < quick_passes; ++pass) {
     solve_rows(right_c_);
     if (!(norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
     for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
@@ -509,7 +519,7 @@ bool NewtonStageSolver::accelerate(StateView& state, Span<double> z_rate) {
     // a stage is a little off the constraints.
     if (rows_.analyse(entries_, off_constraints * largest(e_.phi) / system_.size()) > rank_) keep_independent_rows();
   }
-  if (!refactor(index_one_)) return false;
+  if (!is_factored_here() && !refactor(index_one_)) return false;
   // Nothing of the past enters, so that the same state always has the same accelerations.
   const std::size_t nv = state.a.size, nc = state.lambda.size;
   for (std::size_t i = 0; i < nv; ++i) right_[i] = e_.force[i];

@@ -90,6 +90,8 @@ class NewtonStageSolver {
     double contraction = 1.0;  // of the iteration, seen last; 1: not seen with these forces
     int since_seen = 0;        // stages
     int stays = 0;             // iterations since the factors were made that did not shrink at the size of roundings
+    double noise = 0.0;        // of accelerations, with new factors
+    int since_noise = 0;       // stages
     std::uint64_t acting = 0;  // Evaluation::acting
   };
 
@@ -129,6 +131,8 @@ class NewtonStageSolver {
   bool rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
                     std::span<double> left);
   bool rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance, std::span<double> left);
+  /// The index-1 factors are those of the present evaluation.
+  bool is_factored_here() const;
   /// The same for Phi_q v = nu; leaves what is missing in right_c_.
   bool velocities_hold(std::span<const double> v);
   void solve_rows(std::span<const double> gap);
@@ -144,6 +148,7 @@ class NewtonStageSolver {
   std::vector<double> unit_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, size_, multipliers_;
   std::vector<SparseEntry> entries_;
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
+  std::vector<double> factored_at_;                                    // t and q of the index-1 factors
   std::vector<char> dependent_;
   bool any_dependent_ = false, drifts_ = true;
   int rank_ = -1;  // of the rows that are kept; -1 before the first look

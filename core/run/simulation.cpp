@@ -204,7 +204,7 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
 
 bool Simulation::Impl::begin() {
   const Profile::Timer timer(system.profile(), Phase::start);
-  e_accepted.motion_time = std::numeric_limits<double>::quiet_NaN();
+  e_accepted.forget_motions();
   if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
   StateView view = accepted.view();
   Message message;

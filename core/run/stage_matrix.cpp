@@ -12,6 +12,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr MatrixEntry nowhere{-1, -1};
 constexpr int left_out = 0;  // the number that nobody reads
 constexpr int first_block = 1;
+constexpr int largest_whole = 20;  // unknowns: taking some of them out costs more than it saves
 
 }  // namespace
 
@@ -53,13 +54,14 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
   const int nv = system_.layout().nv(), size = nv + system_.layout().nc(), width = system_.body_velocities();
   prescribed_.clear();
   std::vector<int> owner(at(size), -1);  // of a coordinate or row: its prescribed body
-  for (const PrescribedBody& body : prescribed_bodies(system_, dependent)) {
+  const bool tiny = size <= largest_whole;
+  for (const PrescribedBody& body : tiny ? std::vector<PrescribedBody>{} : prescribed_bodies(system_, dependent)) {
     const int index = static_cast<int>(prescribed_.size());
     for (int c = 0; c < width; ++c) owner[at(width * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
     prescribed_.emplace_back().who = body;
   }
   const std::vector<MatrixEntry> all = entries(dependent);
-  std::vector<char> coupled(at(size), 0);  // shares a row or column with another free unknown
+  std::vector<char> coupled(at(size), tiny ? 1 : 0);  // shares a row or column with another free unknown
   for (const auto [row, column] : all) {
     if (row < 0 || row == column || owner[at(row)] >= 0 || owner[at(column)] >= 0) continue;
     coupled[at(row)] = coupled[at(column)] = 1;
@@ -213,6 +215,7 @@ void StageMatrix::substitute(std::span<double> right, std::span<double> update) 
   using Square = Eigen::Matrix<double, width, width>;
   using Vector = Eigen::Matrix<double, width, 1>;
   const int nv = system_.layout().nv();
+  if (unknowns_.size() == update.size()) return rest_.solve(right, update);
   for (const Prescribed& body : prescribed_) {
     subtract(body.first_row_part, body.end_row_part, update, right);
     Vector b;

@@ -33,7 +33,7 @@ struct Arm {
 
 /// Sine and cosine of a body's angle.
 struct Turn {
-  double cosine = 1.0, sine = 0.0;
+  double cosine = 1.0, sine = 0.0, angle = 0.0;
 };
 
 inline Mount mount(const Model& model, const Marker& marker) {
@@ -109,6 +109,6 @@ struct Bodies {
   using Arm = planar::Arm;
   static constexpr int coordinates = planar::coordinates, velocities = planar::velocities;
 };
-inline Turn turn(Bodies, const double* q, const double*) { return {std::cos(q[2]), std::sin(q[2])}; }
+inline Turn turn(Bodies, const double* q, const double*) { return {std::cos(q[2]), std::sin(q[2]), q[2]}; }
 
 }  // namespace freeplay::planar

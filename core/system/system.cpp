@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/Eigenvalues>
 
@@ -161,6 +162,23 @@ System::System(const Model& model, Variant variant)
     declared_.add_coordinate(r.layout->coordinate, ends_of(r), j, r.coordinate_terms, r.turn);
   }
   sort_markers();
+  sort_rows();
+}
+
+void System::sort_rows() {
+  row_starts_.assign(at(layout_.nc()) + 1, 0);
+  for (const JacobianBlock& block : blocks_) {
+    for (int r = block.row; r < block.row + block.rows; ++r) ++row_starts_[at(r) + 1];
+  }
+  std::partial_sum(row_starts_.begin(), row_starts_.end(), row_starts_.begin());
+  row_pieces_.resize(row_starts_.back());
+  std::vector<std::size_t> next(row_starts_.begin(), row_starts_.end() - 1);
+  const int width = body_velocities();
+  for (const JacobianBlock& block : blocks_) {
+    for (int r = 0; r < block.rows; ++r) {
+      row_pieces_[next[at(block.row + r)]++] = {block.offset + r * width, width * block.body};
+    }
+  }
 }
 
 // By who reads them.
@@ -271,7 +289,8 @@ Evaluation::Evaluation(const System& system) {
   }
   rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
-  motion_time = std::numeric_limits<double>::quiet_NaN();
+  other_motion.resize(model.drivers.size());
+  forget_motions();
   place.resize(at(1 + layout.nq() + layout.nv() + layout.nz() + layout.nh()));
 }
 
@@ -293,17 +312,14 @@ void System::add_transposed(const Evaluation& e, std::span<const double> lambda,
 }
 
 void System::multiply(const Evaluation& e, std::span<const double> v, std::span<double> out) const {
-  std::ranges::fill(out, 0.0);
   by_space([&]<class Bodies>(Bodies) {
-    constexpr int width = Bodies::velocities;
-    for (const JacobianBlock& block : blocks_) {
-      const double* entries = &e.jacobian[at(block.offset)];
-      const double* from = &v[at(width * block.body)];
-      for (int r = 0; r < block.rows; ++r, entries += width) {
-        double sum = entries[0] * from[0];
-        for (int c = 1; c < width; ++c) sum += entries[c] * from[c];
-        out[at(block.row + r)] += sum;
+    for (std::size_t r = 0; r < out.size(); ++r) {
+      double sum = 0.0;
+      for (const RowPiece& piece : row_pieces(r)) {
+        const double *entries = &e.jacobian[at(piece.offset)], *from = &v[at(piece.velocity)];
+        for (int c = 0; c < Bodies::velocities; ++c) sum += entries[c] * from[c];
       }
+      out[r] = sum;
     }
   });
 }

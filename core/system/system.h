@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -165,6 +166,13 @@ class System {
   void jacobian_entries(const Evaluation& e, std::vector<SparseEntry>& out) const;
 
   std::span<const JacobianBlock> jacobian_blocks() const { return blocks_; }
+  /// What a row has in the columns of one body: from `offset` of Evaluation::jacobian, for v from `velocity` on.
+  struct RowPiece {
+    int offset, velocity;
+  };
+  std::span<const RowPiece> row_pieces(std::size_t row) const {
+    return std::span(row_pieces_).subspan(row_starts_[row], row_starts_[row + 1] - row_starts_[row]);
+  }
   std::span<const ForceBlock> force_blocks() const { return force_blocks_; }
 
   /// What joint `index` sees at an evaluated point; valid while `e` and the point's arrays are.
@@ -188,6 +196,7 @@ class System {
 
  private:
   void sort_markers();
+  void sort_rows();
   bool fill(const Point& point, unsigned terms, Evaluation& e) const;
   template <class Bodies>
   bool fill_in(const Point& point, unsigned terms, Evaluation& e) const;
@@ -247,7 +256,9 @@ class System {
   };
   std::vector<MarkersOfBody> markers_of_body_;  // in moving_markers_
   std::vector<JacobianBlock> blocks_;
-  std::vector<double> row_blank_;  // what Evaluation::row_space holds before joints fill it
+  std::vector<RowPiece> row_pieces_;     // row by row
+  std::vector<std::size_t> row_starts_;  // in row_pieces_
+  std::vector<double> row_blank_;        // what Evaluation::row_space holds before joints fill it
   /// Row of a driver: where it stands, and whether it is the same always, as of an angle that is declared.
   struct DriverRow {
     int driver, row, joint, block_a, block_b;
@@ -284,6 +295,8 @@ struct Evaluation {
   std::uint64_t acting = 0;                         ///< tells which force blocks act at all
   Fault fault;
 
+  /// Prescribed motions are not those of their times any more.
+  void forget_motions() { motion_time = other_motion_time = std::numeric_limits<double>::quiet_NaN(); }
   /// Whether phi, Phi_q and nu are those of this time and these coordinates.
   bool has_rows_at(const Point& point) const;
   /// Whether these terms were filled at this very point.
@@ -309,6 +322,9 @@ struct Evaluation {
   std::vector<planar::Turn> turns;
   std::vector<spatial::Turn> spatial_turns;
   double motion_time;
+  /// Of the time before that one: methods come back to the middle of a step.
+  std::vector<TimeValue> other_motion;
+  double other_motion_time;
   unsigned filled = 0;        ///< terms that `place` speaks of
   std::vector<double> place;  ///< t, q, v, z, h of the last evaluation that did not fail
 
@@ -317,9 +333,9 @@ struct Evaluation {
     const auto numbers = [](Evaluation& e) {
       // All members, so that a new one is not forgotten.
       auto& [e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21, e31,
-             faults, e22, e23, e24, e25, e26, e27, e28, e29, e30] = e;
+             faults, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33] = e;
       return std::tie(e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21,
-                      e31, e22, e23, e24, e25, e26, e27, e28, e29, e30);
+                      e31, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33);
     };
     auto first = numbers(a), second = numbers(b);
     first.swap(second);

@@ -83,7 +83,8 @@ void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, 
     // Numbers of their own, which no marker can change.
     const double q[3] = {point.q[3 * b], point.q[3 * b + 1], point.q[3 * b + 2]};
     const double v[3] = {point.v[3 * b], point.v[3 * b + 1], point.v[3 * b + 2]};
-    const planar::Turn turned = e.turns[b] = turn(planar::Bodies{}, q, v);
+    if (e.turns[b].angle != q[2]) e.turns[b] = turn(planar::Bodies{}, q, v);
+    const planar::Turn turned = e.turns[b];
     const MarkersOfBody own = markers_of_body_[b];
     for (int i = own.first; i < own.end; ++i) {
       const int m = moving_markers_[at(i)];
@@ -122,12 +123,16 @@ bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
     }
   }
   if (!model_.drivers.empty() && (terms & (term_position | term_force)) != 0 && e.motion_time != point.t) {
-    e.motion_time = std::numeric_limits<double>::quiet_NaN();
-    if (!motions_->evaluate(point.t, {e.motion.data(), e.motion.size()}, e.fault.motion)) {
-      e.fault.kind = Fault::Kind::motion;
-      return false;
+    std::swap(e.motion, e.other_motion);
+    std::swap(e.motion_time, e.other_motion_time);
+    if (e.motion_time != point.t) {
+      e.motion_time = std::numeric_limits<double>::quiet_NaN();
+      if (!motions_->evaluate(point.t, {e.motion.data(), e.motion.size()}, e.fault.motion)) {
+        e.fault.kind = Fault::Kind::motion;
+        return false;
+      }
+      e.motion_time = point.t;
     }
-    e.motion_time = point.t;
   }
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {

@@ -152,7 +152,7 @@ TEST(Bathe, DeclaresWhatItNeedsAndPassesTheNewtonParameters) {
   IntegratorLayout layout;
   layout.sizes = {7, 6, 2, 3};
   integrator.call(&abi::IntegratorTable::declare, &layout);
-  EXPECT_EQ(layout.memory, 3);
+  EXPECT_EQ(layout.memory, 3 + 2 + 2 + 4 * 6);  // z', and what guesses of two stages need
   EXPECT_EQ(layout.order, 2);
   EXPECT_EQ(layout.newton_tolerance, 1e-8);
   EXPECT_EQ(layout.newton_max_iterations, 7);
