@@ -150,9 +150,37 @@ bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexc
   Jet stack[depth];
   Jet* top = stack;  // one past the last operand
   for (const Instruction& instruction : program_) {
-    if (instruction.operation == Operation::push_time) {
-      *top++ = Jet::time(t);
-      continue;
+    // What most formulas are made of, without a call; what is not finite, or has no value, is told of below.
+    Jet quick;
+    switch (instruction.operation) {
+      case Operation::push_time:
+        *top++ = Jet::time(t);
+        continue;
+      case Operation::push_constant:
+        if (!std::isfinite(instruction.constant)) break;
+        *top++ = Jet::constant(instruction.constant);
+        continue;
+      case Operation::add:
+        quick = top[-2] + top[-1];
+        if (!quick.is_finite()) break;
+        --top;
+        top[-1] = quick;
+        continue;
+      case Operation::multiply:
+        quick = top[-2] * top[-1];
+        if (!quick.is_finite()) break;
+        --top;
+        top[-1] = quick;
+        continue;
+      case Operation::divide:
+        if (top[-1].value == 0.0) break;
+        quick = top[-2] / top[-1];
+        if (!quick.is_finite()) break;
+        --top;
+        top[-1] = quick;
+        continue;
+      default:
+        break;
     }
     Jet* const operands = top - operand_count(instruction.operation);
     if (!apply(instruction, operands, failure)) return false;

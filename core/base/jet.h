@@ -17,7 +17,9 @@ struct Jet {
   bool is_constant() const { return rate == 0.0 && acceleration == 0.0; }
   /// The value and the first `order` derivatives.
   bool is_finite(int order = 2) const {
-    return std::isfinite(value) && (order < 1 || std::isfinite(rate)) && (order < 2 || std::isfinite(acceleration));
+    // A difference of a number from itself is zero unless it is not finite.
+    if (order >= 2) return (value - value) + (rate - rate) + (acceleration - acceleration) == 0.0;
+    return std::isfinite(value) && (order < 1 || std::isfinite(rate));
   }
 };
 

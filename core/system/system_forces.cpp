@@ -53,17 +53,21 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
       return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
     }
     double* wrench = &e.wrench[12 * at(j)];
-    for (int i = 0; i < 6; ++i) wrench[i] = out.wrench_a[i];
-    for (int i = 0; i < 6; ++i) wrench[6 + i] = out.wrench_b[i];
     double size = 0.0;
-    for (int i = 0; i < 6; ++i) size += std::abs(out.wrench_b[i]);
-    e.acting = 31 * e.acting + (size > 0.0 ? 1 : 0);
+    for (int i = 0; i < 6; ++i) {
+      wrench[i] = out.wrench_a[i];
+      wrench[6 + i] = out.wrench_b[i];
+      size += std::abs(out.wrench_a[i]) + std::abs(out.wrench_b[i]);
+    }
+    e.acting = 31 * e.acting + (size != 0.0 ? 1 : 0);
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
-    const auto& arms = e.arms_of<Bodies>();
-    constexpr std::size_t width = Bodies::velocities;
-    if (block.a != ground) add_to_force(out.wrench_a, arms[at(record.marker_a)], &e.force[width * at(block.a)]);
-    if (block.b != ground) add_to_force(out.wrench_b, arms[at(record.marker_b)], &e.force[width * at(block.b)]);
+    if (size != 0.0) {  // also where it is no number
+      const auto& arms = e.arms_of<Bodies>();
+      constexpr std::size_t width = Bodies::velocities;
+      if (block.a != ground) add_to_force(out.wrench_a, arms[at(record.marker_a)], &e.force[width * at(block.a)]);
+      if (block.b != ground) add_to_force(out.wrench_b, arms[at(record.marker_b)], &e.force[width * at(block.b)]);
+    }
     if (derivatives) map_derivatives<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
     if (derivatives && nz > 0) map_internal<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
   }
