@@ -17,14 +17,14 @@ constexpr double slow_contraction = 0.1;     // a stale factor that contracts le
 constexpr double internal_tolerance = 1e-8;  // last change of an internal variable, relative; the next is its square
 constexpr double off_constraints = 10.0;     // relative change of Phi_q by relative size of Phi, about
 constexpr int refinement_limit = 30;
-constexpr double careful = 10.0,
-                 least_contraction = 1e-5;  // a ratio that was seen stands for others up to so much more
-constexpr int seen_for = 8;                 // stages
-constexpr double most_foreseen = 100.0;     // size of a first update that may be the only one, in tolerances
-constexpr int most_stays = 3;    // iterations that do not shrink at the size of roundings, before factors are renewed
-constexpr int noise_for = 64;    // stages, until it is looked at again
-constexpr int quick_passes = 3;  // of a projection of velocities
-constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
+// A contraction that was seen stands for others that may be so much worse, for so many stages.
+constexpr double careful = 10.0, least_contraction = 1e-5;
+constexpr int seen_for = 8;
+constexpr double most_foreseen = 100.0;  // size of a first update that may be the only one, in tolerances
+constexpr int most_stays = 3;            // iterations that roundings alone could have kept large, with old factors
+constexpr int noise_for = 64;            // stages, until noise is looked at again
+constexpr int quick_passes = 3;          // of a projection of velocities
+constexpr double small_change = 1e-5;    // of velocities, relative, that these may make
 constexpr int kept_factors = 4;
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
@@ -118,6 +118,8 @@ NewtonStageSolver::Factor& NewtonStageSolver::factor_for(double beta_q, double b
   oldest->beta_v = beta_v;
   oldest->used = clock_;
   oldest->valid = false;
+  oldest->noise = 0.0;
+  oldest->stays = 0;
   return *oldest;
 }
 
