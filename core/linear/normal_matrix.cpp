@@ -37,7 +37,7 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
   // Pieces of one body, behind each other.
   std::vector<int> by_body(pieces.size());
   std::iota(by_body.begin(), by_body.end(), 0);
-  std::ranges::stable_sort(by_body, {}, [&](int i) { return pieces[at(i)].body; });
+  std::ranges::sort(by_body, {}, [&](int i) { return std::pair(pieces[at(i)].body, i); });
   std::vector<std::pair<int, int>> pairs;  // of pieces
   for (std::size_t i = 0, first = 0; i < by_body.size(); ++i) {
     if (pieces[at(by_body[i])].body != pieces[at(by_body[first])].body) first = i;

@@ -96,8 +96,8 @@ void AccelerationMatrix::sort_couplings(std::span<const int> owner_of_row, std::
   };
   const auto of_body = [&](const Coupling& c) { return owner_of_body[at(c.body)]; };
   by_body_ = by_row_;
-  std::ranges::stable_sort(by_row_, {}, of_row);
-  std::ranges::stable_sort(by_body_, {}, of_body);
+  std::ranges::sort(by_row_, {}, [&](const Coupling& c) { return std::tuple(of_row(c), c.row, c.body); });
+  std::ranges::sort(by_body_, {}, [&](const Coupling& c) { return std::tuple(of_body(c), c.row, c.body); });
   const auto first_of = [](const std::vector<Coupling>& list, int owner, const auto& owner_of) {
     return static_cast<std::size_t>(std::ranges::lower_bound(list, owner, {}, owner_of) - list.begin());
   };

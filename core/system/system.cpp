@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -199,7 +200,7 @@ void System::sort_markers() {
     if (model_.markers[at(m)].body != ground) moving_markers_.push_back(m);
   }
   const auto order = [&](int m) { return 2 * model_.markers[at(m)].body + (asked[at(m)] != 0 ? 0 : 1); };
-  std::ranges::stable_sort(moving_markers_, {}, order);
+  std::ranges::sort(moving_markers_, {}, [&](int m) { return std::pair(order(m), m); });
   const auto first_of = [&](int rank) {
     return static_cast<int>(std::ranges::lower_bound(moving_markers_, rank, {}, order) - moving_markers_.begin());
   };
