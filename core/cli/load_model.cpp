@@ -80,16 +80,22 @@ void check_limit(const StopCondition& condition, const ChannelInfo& channel, Dia
                                 dimension_name(condition.quantity.dimension)));
 }
 
+/// First words of channels, as `body`.
+std::vector<std::string> kinds_of(const std::vector<std::string>& channels) {
+  std::vector<std::string> kinds;
+  for (const std::string& channel : channels) {
+    const std::string_view word = std::string_view(channel).substr(0, channel.find('.'));
+    if (kinds.empty() || kinds.back() != word) kinds.emplace_back(word);
+  }
+  return kinds;
+}
+
 /// The channel or pattern that was meant: another kind of column where its first word is none.
-std::string nearest_channel(const std::string& name, const std::vector<std::string>& names) {
+std::string nearest_channel(const std::string& name, const std::vector<std::string>& names,
+                            const std::vector<std::string>& kinds) {
   const std::size_t dot = std::min(name.find('.'), name.size());
   const std::string kind = name.substr(0, dot);
-  std::vector<std::string> kinds;
-  for (const std::string& known : names) {
-    std::string word = known.substr(0, known.find('.'));
-    if (word == kind) return is_pattern(name) ? "" : nearest(name, names);
-    if (kinds.empty() || kinds.back() != word) kinds.push_back(std::move(word));
-  }
+  if (std::ranges::find(kinds, kind) != kinds.end()) return is_pattern(name) ? "" : nearest(name, names);
   const std::string meant = nearest(kind, kinds);
   return meant.empty() ? "" : meant + name.substr(dot);
 }
@@ -98,7 +104,7 @@ std::string nearest_channel(const std::string& name, const std::vector<std::stri
 void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
                     Diagnostics& diagnostics) {
   const Channels channels(model);
-  const std::vector<std::string> names = channel_names(channels);
+  const std::vector<std::string> names = channel_names(channels), kinds = kinds_of(names);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
     const std::string_view fixed = std::string_view(name).substr(0, name.find('*'));
     if (std::ranges::any_of(unsure, [&](const std::string& beginning) {
@@ -106,7 +112,7 @@ void check_channels(const Model& model, const Document& document, const std::vec
         })) {
       return;
     }
-    diagnostics.error(location, character_count(name), "unknown-name", message, nearest_channel(name, names));
+    diagnostics.error(location, character_count(name), "unknown-name", message, nearest_channel(name, names, kinds));
   };
   std::unordered_map<std::string_view, const ChannelInfo*> by_name;
   for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
