@@ -97,33 +97,37 @@ std::optional<Leg> closed_form_leg(const Model& model, int driver) {
 
 namespace {
 
-// As with constant jets, without the zeros.
-Jet operator*(double factor, const Jet& a) { return {factor * a.value, factor * a.rate, factor * a.acceleration}; }
-Jet operator+(const Jet& a, double constant) { return {a.value + constant, a.rate, a.acceleration}; }
-Jet operator-(const Jet& a, double constant) { return {a.value - constant, a.rate, a.acceleration}; }
-
 // C relative to A.
 struct Reach {
   Jet x, y;
 };
 
 Reach reach_of(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
-  const double cosine = std::cos(angle.value), sine = std::sin(angle.value);
-  const Jet c = chain(cosine, -sine, -cosine, angle), s = chain(sine, cosine, -sine, angle);
-  return {x + leg.cx * c - leg.cy * s - leg.ax, y + leg.cx * s + leg.cy * c - leg.ay};
+  const double cosine = std::cos(angle.value), sine = std::sin(angle.value), w = angle.rate;
+  const double px = cosine * leg.cx - sine * leg.cy, py = sine * leg.cx + cosine * leg.cy;
+  return {{x.value + px - leg.ax, x.rate - py * w, x.acceleration - py * angle.acceleration - px * w * w},
+          {y.value + py - leg.ay, y.rate + px * w, y.acceleration + px * angle.acceleration - py * w * w}};
 }
 
+// The length |r| = l2 of the coupler, r = C - A - l1 u with the direction u of the crank, E the quarter turn,
+// differentiated twice; r.E u l1 = -elbow root/2 has its digits near stretch, too.
 CrankPose solve_crank(const Leg& leg, const Reach& reach) {
-  const Jet squared = reach.x * reach.x + reach.y * reach.y;
-  const Jet w1 = 2.0 * leg.crank * reach.x, w2 = 2.0 * leg.crank * reach.y;
-  const Jet w3 = squared + (leg.crank * leg.crank - leg.coupler * leg.coupler);
-  const Jet room = w1 * w1 + w2 * w2 - w3 * w3;
+  const double x = reach.x.value, y = reach.y.value, squared = x * x + y * y;
+  const double w1 = 2.0 * leg.crank * x, w2 = 2.0 * leg.crank * y;
+  const double w3 = squared + (leg.crank * leg.crank - leg.coupler * leg.coupler);
+  const double far = w1 * w1 + w2 * w2, room = far - w3 * w3;
   CrankPose pose;
-  pose.distance = std::sqrt(squared.value);
-  pose.reachable = room.value > 0.0;
+  pose.distance = std::sqrt(squared);
+  pose.reachable = room > 0.0;
   if (!pose.reachable) return pose;
-  const Jet direction = atan2(w2, w1) + leg.elbow * atan2(sqrt(room), w3);
-  pose.crank = direction - leg.crank_direction;
+  const double root = leg.elbow * std::sqrt(room), to_x = w1 * w3 - root * w2, to_y = w2 * w3 + root * w1;
+  const double bx = leg.crank * to_x / far, by = leg.crank * to_y / far;  // B relative to A
+  const double rx = x - bx, ry = y - by, lever = -2.0 / root;
+  const double rate = (rx * reach.x.rate + ry * reach.y.rate) * lever;
+  const double rx_rate = reach.x.rate + by * rate, ry_rate = reach.y.rate - bx * rate;
+  const double inward = rx * (reach.x.acceleration + bx * rate * rate) + ry * (reach.y.acceleration + by * rate * rate);
+  pose.crank = {std::atan2(to_y, to_x) - leg.crank_direction, rate,
+                (rx_rate * rx_rate + ry_rate * ry_rate + inward) * lever};
   return pose;
 }
 
@@ -162,7 +166,8 @@ LegAngles leg_angles(const Leg& leg, double x, double y, double cosine, double s
     if (!angles.reachable) return angles;
     room = 0.0;
   }
-  const double direction = std::atan2(w2, w1) + leg.elbow * std::atan2(std::sqrt(room), w3);
+  const double root = leg.elbow * std::sqrt(room);
+  const double direction = std::atan2(w2 * w3 + root * w1, w1 * w3 - root * w2);
   angles.crank = direction - leg.crank_direction;
   angles.coupler =
       std::atan2(py - leg.crank * std::sin(direction), px - leg.crank * std::cos(direction)) - leg.coupler_direction;

@@ -11,7 +11,8 @@ namespace freeplay {
 
 /// Ground pin A - crank - pin B - coupler - pin C on the platform. The crank's direction A to B follows from C by
 ///   w1 cos + w2 sin = w3,  (w1, w2) = 2 l1 (C - A),  w3 = |C - A|^2 + l1^2 - l2^2
-///   direction = atan2(w2, w1) + elbow atan2(sqrt(w1^2 + w2^2 - w3^2), w3)
+///   direction = atan2(w2, w1) + elbow atan2(r, w3) = atan2(w2 w3 + elbow r w1, w1 w3 - elbow r w2),
+///   r = sqrt(w1^2 + w2^2 - w3^2)
 /// Zhang and Zhang 2016, eq. (4), in the atan2 form that keeps its digits near stretch.
 struct Leg {
   std::string name;                   ///< of the driven joint
