@@ -36,12 +36,15 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
   for (std::size_t f = 0; f < model.forces.size(); ++f) {
     out[flow++] = power(&e.applied[6 * f], e.markers[at(model.forces[f].marker)]);
   }
-  for (const ForceBlock& block : system_.force_blocks()) {
-    const JointElement& joint = model.joints[at(block.joint)];
-    const double* wrench = &e.wrench[12 * at(block.joint)];
-    const double rate = e.potential_rate[at(block.joint)];
-    out[flow++] = power(wrench, e.markers[at(joint.marker_a)]) + power(wrench + 6, e.markers[at(joint.marker_b)]) +
-                  (std::isnan(rate) ? 0.0 : rate);
+  for (std::size_t f = 0; f < system_.force_blocks().size(); ++f) {
+    const std::size_t j = at(system_.force_blocks()[f].joint);
+    const double rate = e.potential_rate[j], *wrench = &e.wrench[12 * j];
+    double given = std::isnan(rate) ? 0.0 : rate;
+    if (e.acts[f] != 0) {
+      given += power(wrench, e.markers[at(model.joints[j].marker_a)]) +
+               power(wrench + 6, e.markers[at(model.joints[j].marker_b)]);
+    }
+    out[flow++] = given;
   }
 }
 
@@ -82,14 +85,19 @@ void EnergyAccount::add(double dt, std::span<const double> half_way, const Evalu
   }
 }
 
-// Integral from 0 to s of the parabola with these values at 0, s and 1.
-double EnergyAccount::up_to(double s, double begin, double here, double end) {
-  const double slope = end - begin, room = s * (1.0 - s), bend = room > 1e-9 ? (here - begin - s * slope) / room : 0.0;
-  return s * (begin + s * (0.5 * slope + bend * (0.5 - s / 3.0)));
+// Of a step of length dt, with these powers at its start, at its fraction s (which may lie a little beyond 1) and at
+// its end: from the nearer end, whose integral is known, over the parabola through the three.
+double EnergyAccount::integral_at(double s, double dt, const Ends& integral, double begin, double here, double end) {
+  const double slope = end - begin, room = s * (1.0 - s), off = here - begin - s * slope;
+  const double bend = std::abs(room) > 1e-9 ? off / room : 0.0;
+  const auto from_start = [&](double x) { return x * (begin + x * (0.5 * slope + bend * (0.5 - x / 3.0))); };
+  if (s <= 0.5) return integral.start + dt * from_start(s);
+  return integral.end - dt * (from_start(1.0) - from_start(s));
 }
 
 bool EnergyAccount::integrate_to(double s, double dt, const Evaluation& here, std::span<const double> lambda_here,
-                                 const Evaluation& end, std::span<const double> lambda_end, std::span<double> out) {
+                                 const Evaluation& end, std::span<const double> lambda_end,
+                                 std::span<const double> integral_end, std::span<double> out) {
   flow(here, lambda_here, integral_inside_);
   flow(end, lambda_end, power_before_);
   double off = 0.0, size = 0.0;
@@ -97,7 +105,7 @@ bool EnergyAccount::integrate_to(double s, double dt, const Evaluation& here, st
     const double begins = power_[i], is = integral_inside_[i], ends = power_before_[i];
     off += std::abs(is - begins - s * (ends - begins));
     size += std::abs(begins) + std::abs(is) + std::abs(ends);
-    out[i] = integral_[i] + dt * up_to(s, begins, is, ends);
+    out[i] = integral_at(s, dt, {integral_[i], integral_end[i]}, begins, is, ends);
   }
   return off <= nearly_straight * size;
 }
@@ -106,7 +114,8 @@ void EnergyAccount::fill_inside(double s, const Evaluation& e, std::span<const d
                                 std::span<double> row) {
   flow(e, lambda, integral_inside_);
   for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
-    integral_inside_[i] = integral_before_[i] + dt_ * up_to(s, power_before_[i], integral_inside_[i], power_[i]);
+    integral_inside_[i] =
+        integral_at(s, dt_, {integral_before_[i], integral_[i]}, power_before_[i], integral_inside_[i], power_[i]);
   }
   fill(e, channels, row, integral_inside_,
        row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda)));

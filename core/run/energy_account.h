@@ -39,10 +39,11 @@ class EnergyAccount {
     fill(e, channels, row, integral_, row_work_);
   }
   /// The flows() integrals at the fraction s of a step of the length dt that begins at the end of the last one, from
-  /// the powers there and at its end. False where these are too far from a straight line for a parabola to be as good
-  /// as a step of the integrator.
+  /// the powers there and at its end and the integrals at its end. False where the powers are too far from a straight
+  /// line for a parabola to be as good as a step of the integrator.
   bool integrate_to(double s, double dt, const Evaluation& here, std::span<const double> lambda_here,
-                    const Evaluation& end, std::span<const double> lambda_end, std::span<double> out);
+                    const Evaluation& end, std::span<const double> lambda_end, std::span<const double> integral_end,
+                    std::span<double> out);
   /// Dissipated, work and residual at the fraction s of the last step, where `e` and `lambda` are: powers as parabolas
   /// over the step.
   void fill_inside(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
@@ -63,7 +64,10 @@ class EnergyAccount {
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
             double row_work);
   double row_power(const Evaluation& e, std::span<const double> lambda) const;
-  static double up_to(double s, double begin, double here, double end);
+  struct Ends {
+    double start, end;
+  };
+  static double integral_at(double s, double dt, const Ends& integral, double begin, double here, double end);
 
   const System& system_;
   double dt_ = 0.0, initial_ = 0.0;

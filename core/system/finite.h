@@ -8,11 +8,19 @@
 namespace freeplay {
 
 // A sum is finite only if every term is; differences of infinities are not finite either.
-inline bool is_finite(const JointForces& f) {
-  double sum = f.potential + (std::isnan(f.potential_rate) ? 0.0 : f.potential_rate);
-  double sums[3] = {};  // three sums do not wait for each other
-  for (int i = 0; i < 3; ++i) sums[i] = (f.wrench_a[i] + f.wrench_b[i]) + (f.wrench_a[3 + i] + f.wrench_b[3 + i]);
-  return std::isfinite(sum + (sums[0] + (sums[1] + sums[2])));
+
+/// Zero only if no force acts.
+inline double size_of(const JointForces& f) {
+  double sums[2] = {};  // two sums do not wait for each other
+  for (int i = 0; i < 6; i += 2) {
+    sums[0] += std::abs(f.wrench_a[i]) + std::abs(f.wrench_b[i]);
+    sums[1] += std::abs(f.wrench_a[i + 1]) + std::abs(f.wrench_b[i + 1]);
+  }
+  return sums[0] + sums[1];
+}
+/// Finite only if the numbers of energy are that were told.
+inline double energy_of(const JointForces& f) {
+  return f.potential + (std::isnan(f.potential_rate) ? 0.0 : f.potential_rate);
 }
 inline bool is_finite(Span<const double> numbers) {
   double sum[4] = {};  // four sums do not wait for each other

@@ -277,6 +277,7 @@ Evaluation::Evaluation(const System& system) {
   potential_rate.resize(joints);
   wrench.resize(12 * joints);
   internal_rate.resize(at(layout.nz()));
+  acts.assign(system.force_blocks().size(), 0);
   applied.resize(6 * model.forces.size());
   shifted.assign(joints, still);
   int widest = 0;

@@ -292,7 +292,8 @@ struct Evaluation {
   std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
   std::vector<double> internal_rate;                ///< z'
   std::vector<double> applied;                      ///< by applied force: wrench in world axes at its marker
-  std::uint64_t acting = 0;                         ///< tells which force blocks act at all
+  std::vector<unsigned char> acts;                  ///< by force block: whether its wrenches are not all zero
+  std::uint64_t acting = 0;                         ///< the same of all blocks together
   Fault fault;
 
   /// Prescribed motions are not those of their times any more.
@@ -332,10 +333,10 @@ struct Evaluation {
   friend void swap(Evaluation& a, Evaluation& b) noexcept {
     const auto numbers = [](Evaluation& e) {
       // All members, so that a new one is not forgotten.
-      auto& [e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21, e31,
+      auto& [e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21, e31, e34,
              faults, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33] = e;
       return std::tie(e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21,
-                      e31, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33);
+                      e31, e34, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33);
     };
     auto first = numbers(a), second = numbers(b);
     first.swap(second);

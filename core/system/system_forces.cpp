@@ -48,18 +48,17 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     if (!good) return blame(j, e);
     if (!guard::intact(rate.end())) return refuse(j, beside, e);
     std::ranges::copy(rate, e.internal_rate.begin() + record.internal.offset);
-    if (!(is_finite(out) && (nz == 0 || is_finite(rate)) && (slopes.empty() || is_finite(slopes))) &&
+    const double size = size_of(out);
+    if (!(std::isfinite(size + energy_of(out)) && (nz == 0 || is_finite(rate)) &&
+          (slopes.empty() || is_finite(slopes))) &&
         markers_are_finite(record, e)) {
       return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
     }
     double* wrench = &e.wrench[12 * at(j)];
-    double size = 0.0;
-    for (int i = 0; i < 6; ++i) {
-      wrench[i] = out.wrench_a[i];
-      wrench[6 + i] = out.wrench_b[i];
-      size += std::abs(out.wrench_a[i]) + std::abs(out.wrench_b[i]);
-    }
-    e.acting = 31 * e.acting + (size != 0.0 ? 1 : 0);
+    std::copy_n(out.wrench_a, 6, wrench);
+    std::copy_n(out.wrench_b, 6, wrench + 6);
+    e.acts[f] = size != 0.0 ? 1 : 0;
+    e.acting = 31 * e.acting + e.acts[f];
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
     if (size != 0.0) {  // also where it is no number
