@@ -74,25 +74,27 @@ bool Simulation::Impl::adaptive_step() {
   StepEvents::Passage hunted;
   std::size_t detours = 0;
   double asked = 0.0;
-  for (int tries = 0;; ++tries) {
+  for (int hunts = 0;;) {
     const double left = goal - accepted.t();
     const bool last = dt >= left * (1.0 - 1e-12);
     if (last) dt = left;
     if (!last && accepted.t() + dt == accepted.t()) return fail(4, why_so_small(dt, limiting));
     bool converged = false;
+    ended_inside = false;
     if (!step(dt, converged)) return false;
     const bool passed = converged && error <= 1.0;
     if (hunted.joint < 0 && take_detour(passed, detours, asked, dt)) continue;
     if (passed && solver.regularity() < hopeless) return fail(4, why_singular());
     if (!passed) {
       ++outcome.rejected;
+      hunted = {};
       if (converged) {
         control.reject(dt, error);
+        dt = before_event(dt, control.next(), hunted);
       } else {
         control.halve(dt);
+        dt = control.next();
       }
-      dt = control.next();
-      hunted = {};
       if (dt >= smallest) continue;
       if (plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());
       if (solver.regularity() < stuck_there) return fail(4, why_singular());
@@ -103,9 +105,17 @@ bool Simulation::Impl::adaptive_step() {
       return fail_with(e_trial.fault, trial.t());
     }
     bool done = false;
-    if (!pursue(hunted, dt, tries, done)) return false;
-    if (done || end_inside(hunted, dt, tries)) break;
+    if (!pursue(hunted, dt, hunts, done)) return false;
+    if (done) break;
+    const double whole = trial.t() - accepted.t();
+    if (end_inside(hunted, dt, hunts, left)) {
+      if (trial.t() - accepted.t() <= whole) break;
+      // Beyond its end another event may lie.
+      if (!pursue(hunted, dt, hunts, done)) return false;
+      if (done) break;
+    }
     if (outcome.status == RunStatus::failed) return false;
+    ++hunts;
   }
   const bool at_kink = to_kink && trial.t() == goal;
   if (at_kink) {

@@ -18,19 +18,38 @@ constexpr double event_time = 1e-11;      // a located event is as sharp as this
 constexpr double event_rounding = 1e-15;  // [unit of the function]
 constexpr double event_share = 1e-5;      // or as this part of what a position may err by in a step
 constexpr double largest_defect = 0.5;    // of the motion interpolated there, as a part of what a step may err
-constexpr int most_tries = 40;            // to end a step at an event
-constexpr int early_tries = 4;            // of these, that trust the interpolated motion
+constexpr int most_hunts = 40;            // to end a step at an event
+constexpr int early_hunts = 4;            // of these, that trust the interpolated motion
+constexpr double most_foretold = 100.0;   // error of a step that still tells about when an event comes
+constexpr double little_beyond = 1.01;    // of a step: its motion is continued so far
 
 }  // namespace
 
+// The length of the step to try in place of one of the length dt that erred too much: `shorter`, or to an event that it
+// met before, whose change of forces may be what it erred by.
+double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Passage& hunted) {
+  if (!(error <= most_foretold) || solver.regularity() < near_singular) return shorter;
+  const Profile::Timer timer(system.profile(), Phase::events);
+  // What no joint can be asked about tells nothing; nor does it matter, as the step does not stand.
+  Fault fault;
+  StepEvents::Passage found;
+  if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial) ||
+      !events.first_crossing(accepted, e_accepted, trial, e_trial, false, found, fault)) {
+    return shorter;
+  }
+  if (found.joint < 0 || !(found.fraction * dt < shorter)) return shorter;
+  hunted = found;
+  return found.fraction * dt;
+}
+
 // Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
 // is where to try next.
-bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done) {
+bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int hunts, bool& done) {
   const Profile::Timer timer(system.profile(), Phase::events);
   Fault fault;
   StepEvents::Passage found;
   if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
-  const bool early = tries < early_tries;
+  const bool early = hunts < early_hunts;
   if (!events.first_crossing(accepted, e_accepted, trial, e_trial, early, found, fault)) {
     return fail_with(fault, trial.t());
   }
@@ -44,7 +63,7 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   // The step ends just past the zero, so that what begins there acts from the first on.
   const double past = hunted.value;
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
-  const bool sharp = is_sharp(hunted) || tries > most_tries / 2;
+  const bool sharp = is_sharp(hunted) || hunts > most_hunts / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
   // An event may lie so close to the start of the step that the time cannot tell them apart.
   const double least = std::nextafter(accepted.t(), unbounded) - accepted.t();
@@ -52,7 +71,7 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
     done = true;
     return true;
   }
-  if (tries > most_tries) {
+  if (hunts > most_hunts) {
     return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located", accepted.t(),
                                system.joint_layout(hunted.joint).events[at(hunted.event)].name,
                                model.joints[at(hunted.joint)].name));
@@ -61,11 +80,17 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int tries
   const double aim = aim_past(hunted, dt);
   const double newton = dt - (hunted.value - aim) / hunted.rate;
   const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
+  // What a longer or less accurate step met is not here, or not yet.
+  if (found.joint < 0 && !(past >= 0.0) && !near) {
+    hunted = {};
+    done = true;
+    return true;
+  }
   const double beyond = early && hunted.rate > 0.0 ? aim / hunted.rate : 0.0;
   const double root = found.fraction * dt + beyond;
   double next = near ? newton : (found.joint >= 0 ? root : dt);
   // Rounding may hold Newton's step where it is: then by more each time.
-  const double nudge = std::ldexp(4.0 * rounding, tries);
+  const double nudge = std::ldexp(4.0 * rounding, hunts);
   if (std::abs(next - dt) <= nudge * dt) next = past < 0.0 ? dt * (1.0 + nudge) : dt * (1.0 - nudge);
   if (!(next > 0.0)) next = 0.5 * dt;
   dt = std::max(next, least);
@@ -93,19 +118,20 @@ double Simulation::Impl::defect_inside(double dt) {
   return solver.velocity_error(defect);
 }
 
-// Ends the step that was just made at the event inside it, about `dt` after its start, and not by another step up to
-// there: the interpolated motion errs by less than the step may, and its constraints are made to hold. Not where joints
-// have variables of their own, which are known less well inside. False where the event must be hunted by steps.
-bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, int tries) {
-  const double whole = trial.t() - accepted.t();
-  if (hunted.joint < 0 || tries >= early_tries || !(dt < whole) || system.layout().nz() > 0) return false;
+// Ends the step that was just made at the event inside it or a little behind, about `dt` after its start and before
+// `longest`, and not by another step up to there: the interpolated motion errs by less than the step may, and its
+// constraints are made to hold. Not where joints have variables of their own, which are known less well inside. False
+// where the event must be hunted by steps.
+bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, int hunts, double longest) {
+  const double whole = trial.t() - accepted.t(), last = std::min(longest, little_beyond * whole);
+  if (hunted.joint < 0 || hunts >= early_hunts || !(dt < last) || system.layout().nz() > 0) return false;
   if (solver.regularity() < near_singular) return false;
   const Profile::Timer timer(system.profile(), Phase::events);
   const DenseStep motion(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate);
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   StepEvents::Passage end = hunted;
   double at_event = dt;
-  for (int look = 0; look < early_tries; ++look) {
+  for (int look = 0; look < early_hunts; ++look) {
     motion.at(at_event / whole, between);
     std::ranges::copy(between.a(), defect.begin());
     if (!begin_steps(at_event, between) || !settle_between()) return false;
@@ -117,7 +143,8 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
     }
     if (end.value >= 0.0 && end.value <= tolerance && is_sharp(end)) {
       if (flows > 0 && !energy.integrate_to(at_event / whole, whole, e_between, between.lambda(), e_trial,
-                                            trial.lambda(), std::span(between.z()).last(at(flows)))) {
+                                            trial.lambda(), std::span<const double>(trial.z()).last(at(flows)),
+                                            std::span(between.z()).last(at(flows)))) {
         return false;
       }
       std::swap(trial, between);
@@ -125,7 +152,7 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
       return ended_inside = true;
     }
     const double change = (end.value - aim_past(end, at_event)) / end.rate;
-    if (!(end.rate > 0.0) || !(std::abs(change) < 0.1 * at_event) || !(at_event - change < whole)) return false;
+    if (!(end.rate > 0.0) || !(std::abs(change) < 0.1 * at_event) || !(at_event - change < last)) return false;
     if (at_event - change == at_event) return false;
     at_event -= change;
   }

@@ -53,8 +53,9 @@ struct Simulation::Impl {
   bool look_inside(double t);
   bool settle_between();
   // and their ends at events (event_pursuit.cpp).
-  bool pursue(StepEvents::Passage& hunted, double& dt, int tries, bool& done);
-  bool end_inside(const StepEvents::Passage& hunted, double dt, int tries);
+  double before_event(double dt, double shorter, StepEvents::Passage& hunted);
+  bool pursue(StepEvents::Passage& hunted, double& dt, int hunts, bool& done);
+  bool end_inside(const StepEvents::Passage& hunted, double dt, int hunts, double longest);
   double defect_inside(double dt);
   bool is_sharp(const StepEvents::Passage& end) const;
   double aim_past(const StepEvents::Passage& end, double dt) const;

@@ -8,13 +8,14 @@ namespace {
 constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway
 constexpr double largest_growth = 5.0;
 constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step, which nobody chose well
+constexpr double broken_power = 3.0;  // behind an event forces grow as broken powers: errors fall no faster
 }  // namespace
 
 void StepControl::accept(double dt, double error) {
   const double e = std::max(error, smallest_error), judged = first_ ? std::max(error, first_error) : e;
   double factor = std::clamp(0.9 * std::pow(judged, -proportional_ / power_) * std::pow(last_error_, damping_ / power_),
                              0.2, first_ ? first_growth : largest_growth);
-  first_ = false;
+  first_ = broken_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
   next_ = std::min(dt * factor, limits_.largest);
   last_error_ = e;
@@ -22,7 +23,8 @@ void StepControl::accept(double dt, double error) {
 }
 
 void StepControl::reject(double dt, double error) {
-  const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -1.0 / power_), 0.1, 0.9) : 0.1;
+  const double power = broken_ ? std::min(power_, broken_power) : power_;
+  const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -1.0 / power), 0.1, 0.9) : 0.1;
   next_ = dt * factor;
   rejected_ = true;
   first_ = false;

@@ -26,8 +26,9 @@ class StepControl {
   const StepLimits& limits() const { return limits_; }
   void accept(double dt, double error);
   /// The step was made shorter, to end at an event: the proposal stands, and the law of motion may be a new one, of
-  /// which the last errors say nothing.
-  void cut() { last_error_ = 1.0, rejected_ = false, first_ = false; }
+  /// which the last errors say nothing. The next step may be far too short (then the one behind it grows as after the
+  /// first of the run) or far too long (then its error is taken to fall with h^3).
+  void cut() { last_error_ = 1.0, rejected_ = false, first_ = broken_ = true; }
   /// Behind a kink of what is prescribed the motion is a new one: its steps begin as those of the run did.
   void restart() { next_ = limits_.first, last_error_ = 1.0, rejected_ = false, first_ = true; }
   void reject(double dt, double error);
@@ -37,7 +38,7 @@ class StepControl {
  private:
   StepLimits limits_;
   double power_, proportional_, damping_, next_, last_error_ = 1.0;
-  bool rejected_ = false, first_ = true;
+  bool rejected_ = false, first_ = true, broken_ = false;
 };
 
 }  // namespace freeplay

@@ -64,5 +64,26 @@ TEST(StepControl, StepThatEndsAtAnEventLeavesTheProposal) {
   EXPECT_EQ(control.next(), before);
 }
 
+TEST(StepControl, StepBehindAnEventMayBeFarTooShort) {
+  StepControl control({1.0, 1e-6, 1e3}, 5);
+  control.accept(1.0, 0.5);
+  control.cut();
+  control.accept(1e-3, 1e-12);
+  EXPECT_GT(control.next(), 50e-3);
+  const double grown = control.next();
+  control.accept(grown, 1e-12);
+  EXPECT_NEAR(control.next() / grown, 5.0, 1e-12);
+}
+
+TEST(StepControl, ErrorsBehindAnEventFallWithThePowerOfThreeOfTheStep) {
+  StepControl control({1.0, 1e-6, 10.0}, 6);
+  control.cut();
+  control.reject(1.0, 27.0);
+  EXPECT_NEAR(control.next(), 0.3, 1e-15);
+  control.accept(0.3, 0.5);
+  control.reject(1.0, 64.0);
+  EXPECT_NEAR(control.next(), 0.45, 1e-15);
+}
+
 }  // namespace
 }  // namespace freeplay
