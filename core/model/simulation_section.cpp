@@ -111,7 +111,7 @@ class SimulationSection {
       settings_.adaptive = true;
       settings_.step = 1e-5 * span;
       settings_.smallest_step = 1e-14 * span;
-      settings_.largest_step = 0.1 * span;
+      settings_.largest_step = 0.25 * span;
       settings_.per_contact = steps_of_accurate_contact;
     } else {
       if (draft_.options.step) settings_.step = *draft_.options.step;
