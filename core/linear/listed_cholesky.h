@@ -8,8 +8,8 @@
 
 namespace freeplay {
 
-/// For matrices that are factored a million times and are too small for the bookkeeping of a general method. The order is
-/// the caller's.
+/// For matrices that are factored a million times and are too small for the bookkeeping of a general method. The order
+/// is the caller's.
 class ListedCholesky {
  public:
   /// `entries`: (row, column) of the lower part; the diagonal is always there. False where the factors would take more

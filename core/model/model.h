@@ -68,8 +68,8 @@ struct JointElement {
   JointRef ideal;
   JointLayout ideal_layout;
   bool has_play = false;
-  bool is_force = false;  ///< an entry of `forces`
-  int gear = -1;          ///< index into Model::gears
+  bool is_force = false;        ///< an entry of `forces`
+  int gear = -1;                ///< index into Model::gears
   std::optional<Vector3> axis;  ///< as given, made a unit vector; the markers are turned already
   std::optional<StartValue> start_coordinate, start_speed;
 };
