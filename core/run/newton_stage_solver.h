@@ -9,14 +9,12 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "freeplay/integrator.h"
-#include "linear/row_rank.h"
-#include "run/acceleration_matrix.h"
 #include "run/energy_account.h"
+#include "run/index_one_solver.h"
 #include "run/stage_matrix.h"
 #include "system/system.h"
 
@@ -33,15 +31,15 @@ class NewtonStageSolver {
 
   const abi::StageSolverTable& table() const { return table_; }
   /// h of the states handed in from now on; views must stay valid.
-  void use_history(std::span<const double> h) { h_ = h; }
+  void use_history(std::span<const double> h) { index_one_.use_history(h); }
 
   bool solve(const Stage& stage, StateView& out, StageResult& result);
-  bool project_velocity(StateView& state);
+  bool project_velocity(StateView& state) { return index_one_.project_velocity(state); }
   /// Multipliers mu of the last project_velocity(): the impulse on the bodies was -Phi_q^T mu [N s, N m s].
-  std::span<const double> impulse() const { return multipliers_; }
-  bool project_position(StateView& state);
+  std::span<const double> impulse() const { return index_one_.impulse(); }
+  bool project_position(StateView& state) { return index_one_.project_position(state); }
   /// Index-1 system; redundant multipliers come out with driver efforts, then reactions, of least norm.
-  bool accelerate(StateView& state, Span<double> z_rate);
+  bool accelerate(StateView& state, Span<double> z_rate) { return index_one_.accelerate(state, z_rate); }
 
   /// From now on attempts return their error in units of `position` [m], angles by the model's size, and in velocity of
   /// `velocity` [m/s] plus the part `relative` of the largest velocity.
@@ -51,8 +49,8 @@ class NewtonStageSolver {
   }
   /// The velocities at the start of the attempt. Their rounding is no error.
   void use_velocity(std::span<const double> v) {
-    regularity_ = 1.0;
-    allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * norm(v);
+    index_one_.begin_attempt();
+    allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * index_one_.norm(v);
   }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
   double velocity_error(std::span<const double> velocity) { return part_of_allowed(velocity, allowed_rate_); }
@@ -60,26 +58,26 @@ class NewtonStageSolver {
   /// Index into v of the largest part of the last error_norm().
   int worst_component() const { return worst_component_; }
   /// accelerate() appends the powers of the account to z'; z of the states handed in then has as many numbers more.
-  void integrate_flows(const EnergyAccount& account) { flows_ = &account; }
+  void integrate_flows(const EnergyAccount& account) { index_one_.integrate_flows(&account); }
   /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
-  bool mobility(const State& state, int joint, std::span<double> out);
+  bool mobility(const State& state, int joint, std::span<double> out) { return index_one_.mobility(state, joint, out); }
 
   /// The states to come are not close to the last one: factors are made anew there.
-  void move_away() { index_one_.valid = false; }
+  void move_away() { index_one_.move_away(); }
   /// The equations where they were looked at last.
   Evaluation& evaluation() { return e_; }
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
-  const Fault& fault() const { return e_.fault; }
-  const char* trouble() const { return trouble_; }
+  const Fault& fault() const { return index_one_.fault(); }
+  const char* trouble() const { return index_one_.trouble(); }
   /// Row with the largest position residual when the last stage gave up, or -1.
   int worst_row() const { return worst_row_; }
   long iterations() const { return iterations_; }
-  long factorizations() const { return factorizations_; }
+  long factorizations() const { return factorizations_ + index_one_.factorizations(); }
   /// Smallest pivot of the index-1 matrix in the present attempt, or in the last that had one, in parts of its largest
   /// value in the run. It falls with the square of the distance from a singular position of the constraints.
-  double regularity() const { return regularity_ < 1.0 ? regularity_ : last_regularity_; }
+  double regularity() const { return index_one_.regularity(); }
   /// Row that comes closest to depending on the others where the equations were looked at last, or -1. Slow.
-  int weakest_row();
+  int weakest_row() { return index_one_.weakest_row(); }
 
  private:
   struct Factor {
@@ -95,69 +93,35 @@ class NewtonStageSolver {
     std::uint64_t acting = 0;  // Evaluation::acting
   };
 
-  struct IndexOne {
-    AccelerationMatrix matrix;
-    bool valid = false, has_pattern = false;
-  };
-
   Factor& factor_for(double beta_q, double beta_v);
-  bool evaluate(const StateView& at, unsigned terms);
-  /// Factor at the present evaluation, which must hold Phi_q and, for a stage, derivatives.
-  template <class AnyFactor>
-  bool refactor(AnyFactor& factor);
-  template <class AnyFactor>
-  double factor_once(AnyFactor& factor);
-  /// Both return whether others than before are left out.
-  bool rows_are_independent();
+  /// Factor at the present evaluation, which must hold Phi_q and derivatives.
+  bool refactor(Factor& factor);
+  double factor_once(Factor& factor);
   bool find_dependent_rows();
-  bool keep_independent_rows();
+  void follow_choice_of_rows();
   /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the
   /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
   /// square over the size of the model.
   double part_of_allowed(std::span<const double> error, double allowed);
-  double norm(std::span<const double> increment) const;
   /// Whether the last update of a stage is what the rounding of Phi makes of itself: close to a singular position it
   /// grows without bound, and nothing more can be won.
   bool is_rounding_of_phi(const Factor& factor, double beta);
-  /// Iterates x += A0^-1 (b - A x) for the index-1 matrix at the present evaluation, b in (right_a_, right_c_), until
-  /// x_a is right to rounding, of itself or of `scale`, and with `multipliers` x_c, too.
-  bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
-  /// Whether every equation of the index-1 system holds as well as its terms are rounded (Oettli and Prager 1964), and
-  /// parts of it; the second with the right sides `right`, to so many roundings.
-  bool holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c);
-  template <int width>
-  bool equations_hold(std::span<const double> x_a, std::span<const double> x_c);
-  template <int width>
-  bool rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
-                    std::span<double> left);
-  bool rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance, std::span<double> left);
-  /// The index-1 factors are those of the present evaluation.
-  bool is_factored_here() const;
-  /// The same for Phi_q v = nu; leaves what is missing in right_c_.
-  bool velocities_hold(std::span<const double> v);
-  void solve_rows(std::span<const double> gap);
 
   const System& system_;
   StageOptions options_;
   abi::StageSolverTable table_;
-  Evaluation e_;
-  RowRank rows_;
-  std::span<const double> h_;
-  IndexOne index_one_;
-  std::vector<Factor> factors_;  // of stages, one for each pair of betas
-  std::vector<double> unit_, right_, update_, increment_, z_rate_, right_a_, right_c_, work_, size_, multipliers_;
-  std::vector<SparseEntry> entries_;
+  IndexOneSolver index_one_;
+  // Views of what it holds.
+  Evaluation& e_;
+  std::span<const char> dependent_;
+  std::span<const double> unit_;
+  std::vector<Factor> factors_;  // one for each pair of betas
+  int choice_of_rows_ = 0;       // that they were made with
+  std::vector<double> right_, update_, increment_, z_rate_, work_;
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
-  std::vector<double> factored_at_;                                    // t and q of the index-1 factors
-  std::vector<char> dependent_;
-  bool any_dependent_ = false, drifts_ = true;
-  int rank_ = -1;  // of the rows that are kept; -1 before the first look
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
-  const EnergyAccount* flows_ = nullptr;
   double allowed_ = 0.0, allowed_slow_ = 0.0, allowed_part_ = 0.0, allowed_rate_ = 0.0;
-  double largest_pivot_ = 0.0, regularity_ = 1.0, last_regularity_ = 1.0;
   int worst_row_ = -1, worst_component_ = -1;
-  const char* trouble_ = "";
 };
 
 }  // namespace freeplay
