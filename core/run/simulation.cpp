@@ -18,6 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double smallest_step = 1e-3;      // of the step asked for
+constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
@@ -56,7 +57,8 @@ double local_tolerance(const System& system) {
 }
 
 StepLimits step_limits(const Settings& settings) {
-  return {settings.step, settings.smallest_step, settings.largest_step};
+  return {settings.step, settings.smallest_step, settings.largest_step,
+          settings.accuracy > 0.0 ? largest_uninformed * settings.largest_step : settings.largest_step};
 }
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }

@@ -5,7 +5,7 @@
 
 namespace freeplay {
 namespace {
-constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway
+constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway, and little is learned
 constexpr double largest_growth = 5.0;
 constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step, which nobody chose well
 constexpr double broken_power = 3.0;  // behind an event forces grow as broken powers: errors fall no faster
@@ -17,7 +17,7 @@ void StepControl::accept(double dt, double error) {
                              0.2, first_ ? first_growth : largest_growth);
   first_ = broken_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
-  next_ = std::min(dt * factor, limits_.largest);
+  next_ = std::min({dt * factor, limits_.largest, error > smallest_error ? limits_.largest : limits_.uninformed});
   last_error_ = e;
   rejected_ = false;
 }

@@ -1,10 +1,14 @@
 // StepControl: the size of the next step from the error of the last.
 #pragma once
 
+#include <limits>
+
 namespace freeplay {
 
 struct StepLimits {
   double first, smallest, largest;  ///< [s]
+  /// Largest behind a step that hardly erred, as of a body at rest: it says nothing of forces to come [s].
+  double uninformed = std::numeric_limits<double>::infinity();
 };
 
 /// Proportional-integral control: after an accepted step with the error E (1 is allowed) the next is

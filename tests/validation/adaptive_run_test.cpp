@@ -232,6 +232,24 @@ TEST(StepBound, FailureNamesTheJointThatForcesTheSmallStep) {
   EXPECT_NE(run.outcome().reason.find("joint 'ring'"), std::string::npos) << run.outcome().reason;
 }
 
+// The impulse of the push is that between the middles of its ramps, 0.3 N s; the accuracy is one per second.
+TEST(StepBound, BodyAtRestIsNotLeftAloneWhileSomethingPushesIt) {
+  for (const double begin : {1.3, 3.1, 5.0, 7.7}) {
+    const auto ramp = [&](double after) {
+      return "smooth(t, " + number(begin + after) + ", " + number(begin + after + 0.1) + ")";
+    };
+    const std::string push = ramp(0.0) + " - " + ramp(0.3);
+    const ModelRun run(
+        "freeplay: 1\nbodies: {sled: {mass: 2, inertia: 1}}\n"
+        "joints: {rail: {type: prismatic, between: [ground, sled]}}\n"
+        "forces: {push: {type: force, at: sled, value: ['" +
+        push +
+        "', 0]}}\n"
+        "simulation: {end: 10, accuracy: 1e-6, output: {interval: 10}}\n");
+    EXPECT_NEAR(run.last("body.sled.vx"), 0.15, 1e-5) << begin;
+  }
+}
+
 TEST(LawOutsideItsRange, IsToldOnceForEachJointWithNumbers) {
   const std::unique_ptr<Model> model = load(mechanism("slider-crank"), accurate(1e-6, 2e-3));
   System system(*model);

@@ -64,6 +64,14 @@ TEST(StepControl, StepThatEndsAtAnEventLeavesTheProposal) {
   EXPECT_EQ(control.next(), before);
 }
 
+TEST(StepControl, StepThatHardlyErredSaysLittleOfTheNext) {
+  StepControl control({1.0, 1e-6, 10.0, 2.0}, 5);
+  control.accept(1.0, 1e-9);
+  EXPECT_EQ(control.next(), 2.0);
+  control.accept(2.0, 1e-7);
+  EXPECT_EQ(control.next(), 10.0);
+}
+
 TEST(StepControl, StepBehindAnEventMayBeFarTooShort) {
   StepControl control({1.0, 1e-6, 1e3}, 5);
   control.accept(1.0, 0.5);
