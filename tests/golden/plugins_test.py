@@ -228,7 +228,7 @@ class ProbesTest(ProgramTest):
                                    cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                    text=True)
         self.addCleanup(running.kill)
-        deadline = time.monotonic() + 20.0
+        deadline = time.monotonic() + 60.0
         while not os.path.exists(self.path("r", "results.csv")):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)
