@@ -4,7 +4,7 @@ import os
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 FIXED = ("bathe", "newmark", "hht", "generalized-alpha")  # take steps of one size, or steps that the error chooses
-ADAPTIVE = ("dopri5", "verner6", "arkode")                # always choose them
+ADAPTIVE = ("dopri5", "verner6", "verner7", "arkode")     # always choose them
 
 
 @dataclasses.dataclass(frozen=True)

@@ -22,9 +22,17 @@ struct Pair {
 std::ostream& operator<<(std::ostream& out, const Pair& pair) { return out << pair.name; }
 
 // The last divisor of dopri5: Hairer and Wanner, Solving ODEs II, IV.2; of verner6: b^T A^6 1 of its tableau in
-// rational numbers is 1/5400, b^T A^7 1 = 0.
+// rational numbers is 1/5400, b^T A^7 1 = 0; of verner7: b^T A^7 1 = 1/39717.69787874202 of the table of 40 digits,
+// b^T A^8 1 = 1/338143.5098439531, b^T A^9 1 = 0.
 const Pair pairs[] = {{"dopri5", {1, 2, 3, 4, 5, 5}, 5, 6, 2e-15, 0.1, {0.15, 0.1}},
-                      {"verner6", {1, 2, 3, 4, 5, 6, 7.5}, 6, 8, 4e-15, 0.2, {0.3, 0.2}}};
+                      {"verner6", {1, 2, 3, 4, 5, 6, 7.5}, 6, 8, 4e-15, 0.2, {0.3, 0.2}},
+                      {"verner7",
+                       {1, 2, 3, 4, 5, 6, 7, 39717.69787874202 / 5040.0, 338143.5098439531 / 39717.69787874202},
+                       7,
+                       10,
+                       2e-14,
+                       0.4,
+                       {0.3, 0.2}}};
 
 class ExplicitRungeKutta : public testing::TestWithParam<Pair> {
  protected:
@@ -66,6 +74,18 @@ TEST_P(ExplicitRungeKutta, ErrorFallsWithItsPowerOfTheStep) {
   for (int i = 0; i < 3; ++i) errors[i] = start(1.0, 1.0, 0.5).step(GetParam().longest / (1 << i)).error;
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), GetParam().order, GetParam().apart[0]);
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), GetParam().order, GetParam().apart[1]);
+}
+
+// Where q'' = 2 q q' all conditions of its order count, not only those of linear equations.
+TEST_P(ExplicitRungeKutta, LocalErrorFallsWithThePowerAfterItsOrder) {
+  const auto local_error = [](double h) {
+    OscillatorRun run(GetParam().name, ParameterStub(component(freeplay_plugin_v1_solvers, GetParam().name)),
+                      {.omega = 0.0, .bent = true}, std::tan(0.5), 1.0 + std::tan(0.5) * std::tan(0.5));
+    run.step(h);
+    return std::abs(run.q[0] - std::tan(0.5 + h));
+  };
+  const double h = 0.5 * GetParam().longest;
+  EXPECT_NEAR(std::log2(local_error(h) / local_error(0.5 * h)), GetParam().order + 1, 0.7);
 }
 
 TEST_P(ExplicitRungeKutta, TakesOneEvaluationForEachStageAndNoIteration) {

@@ -15,11 +15,13 @@ extern "C" freeplay::Status freeplay_plugin_v1_solvers(const freeplay::Host*, fr
 namespace freeplay::test {
 
 /// q'' = -omega^2 q - 2 zeta omega q', and apart from it z' = -decay z. Stages are linear and solved in closed form.
+/// With `bent` q'' has 2 q q' besides, which stages leave out: with omega = 0 then q = tan(t) is a motion.
 /// `post_solve` is what the acceleration solved again at the end of a step has on top.
 struct Oscillator {
   double omega = 1.0, zeta = 0.0, decay = 0.0;
   int stages_to_converge = 1000;
   double post_solve = 0.0;
+  bool bent = false;
   bool estimates = false;  ///< the run asks for errors, in units of 1 m and 1 m/s
   int projections = 0, accelerations = 0;
   std::vector<Stage> stages{};
@@ -74,6 +76,7 @@ struct Oscillator {
   static Status accelerate(void* s, StateView* state, Span<double> z_rate, Message*) noexcept {
     ++self(s).accelerations;
     state->a[0] = self(s).acceleration(state->q[0], state->v[0]) + self(s).post_solve;
+    if (self(s).bent) state->a[0] += 2.0 * state->q[0] * state->v[0];
     if (!state->z.empty()) z_rate[0] = -self(s).decay * state->z[0];
     return Status::ok;
   }
@@ -91,7 +94,7 @@ struct OscillatorRun {
     q[0] = q0;
     v[0] = v0;
     z[0] = z0;
-    a[0] = oscillator.acceleration(q0, v0);
+    a[0] = oscillator.acceleration(q0, v0) + (oscillator.bent ? 2.0 * q0 * v0 : 0.0);
     StateView s = state();
     const abi::StageSolverTable table = oscillator.table();
     integrator.call(&abi::IntegratorTable::restart, &s, &table);
