@@ -31,7 +31,7 @@ bool Simulation::Impl::run_adaptive(const RunHooks& hooks) {
     const long before = outcome.steps;
     const bool going = adaptive_step() && check_stop() && check_interrupt(hooks);
     const bool due = accepted.t() >= row_time(next_row);
-    if (outcome.steps > before && (due || !going)) write_row();
+    if (outcome.steps > before && (due || !going) && !write_row()) return false;
     if (!going) return false;
     while (row_time(next_row) <= accepted.t() && accepted.t() < settings.end) ++next_row;
   }
@@ -120,12 +120,13 @@ bool Simulation::Impl::adaptive_step() {
   const bool at_kink = to_kink && trial.t() == goal;
   if (at_kink) {
     control.restart();
-  } else if (hunted.joint >= 0) {
-    control.cut();
-  } else {
+  } else if (hunted.joint < 0) {
     control.accept(trial.t() - accepted.t(), error);
   }
-  return accept(hunted, at_kink ? kink : unbounded);
+  if (!accept(hunted, at_kink ? kink : unbounded)) return false;
+  // Forces that begin or end at an event do so once it is told.
+  if (hunted.joint >= 0 && !at_kink) control.cut(e_accepted.acting);
+  return true;
 }
 
 // Whether to try another length of the step that was just made, and back to the one `asked` for after all of them.

@@ -222,7 +222,8 @@ bool Simulation::Impl::begin() {
     return fail_with(fault, accepted.t());
   }
   energy.start(e_accepted, accepted.lambda(), channels, row);
-  return record_row() && tell_sinks();
+  row_is_known = true;
+  return record_step() && tell_sinks();
 }
 
 // The joints' history in `state` at the begin of a step of the length dt from the accepted state.
@@ -347,10 +348,16 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   std::swap(accepted, trial);
   swap(e_accepted, e_trial);
   outcome.time = accepted.t();
-  if ((!events.happenings().empty() || ended_inside) && !refresh()) return false;
+  const bool changed = !events.happenings().empty() || ended_inside;
   ended_inside = false;
-  if (kink < unbounded && !pass_kink(kink)) return false;
-  if (!record_row()) return false;
+  if ((changed && !refresh()) || (kink < unbounded && !pass_kink(kink))) {
+    // The row of the last state from which the run could go on may still be asked for.
+    std::swap(accepted, trial);
+    swap(e_accepted, e_trial);
+    return false;
+  }
+  row_is_known = false;
+  if (!record_step()) return false;
   ++outcome.steps;  // from now on its row may be written
   return note_warnings() && tell_sinks();
 }
@@ -374,13 +381,22 @@ bool Simulation::Impl::refresh() {
   return true;
 }
 
-bool Simulation::Impl::record_row() {
-  const Profile::Timer timer(system.profile(), Phase::statistics);
+// The channels of the accepted state: asked for by rows, statistics, stop conditions and warnings, and seldom by all
+// steps.
+bool Simulation::Impl::know_row() {
+  if (row_is_known) return true;
   Fault fault;
   if (!observer.observe(point(accepted), e_accepted, accepted.lambda(), row, fault)) {
     return fail_with(fault, accepted.t());
   }
   energy.fill(e_accepted, channels, row);
+  return row_is_known = true;
+}
+
+bool Simulation::Impl::record_step() {
+  if (!statistics.counts(accepted.t())) return true;
+  const Profile::Timer timer(system.profile(), Phase::statistics);
+  if (!know_row()) return false;
   double position = 0.0, velocity = 0.0;
   system.multiply(e_accepted, accepted.v(), residual);
   for (std::size_t r = 0; r < residual.size(); ++r) {
@@ -404,6 +420,7 @@ bool Simulation::Impl::note_warnings() {
       return fail_with(fault, accepted.t());
     }
     if (warning.text == nullptr) continue;
+    if (!know_row()) return false;
     warning.time = accepted.t();
     std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,
                 warning_values.begin() + static_cast<std::ptrdiff_t>(warning.values));
@@ -448,6 +465,7 @@ bool Simulation::Impl::check_stop() {
   for (std::size_t i = 0; i < settings.stop.size(); ++i) {
     const StopCondition& stop = settings.stop[i];
     if (stop_columns[i] < 0 || accepted.t() < stop.after) continue;
+    if (!know_row()) return false;
     const double value = row[at(stop_columns[i])];
     if (stop.above ? value <= stop.limit : value >= stop.limit) continue;
     outcome.status = RunStatus::stopped;
@@ -513,10 +531,12 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
   return true;
 }
 
-void Simulation::Impl::write_row() {
+bool Simulation::Impl::write_row() {
   const Profile::Timer timer(system.profile(), Phase::output);
+  if (!know_row()) return false;
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row);
+  return true;
 }
 
 double Simulation::Impl::row_time(long index) const {
@@ -529,7 +549,7 @@ bool Simulation::Impl::run_fixed(const RunHooks& hooks) {
     const long before = outcome.steps;
     const bool going = advance_to(row_time(next_row++), hooks);
     // A run that was stopped keeps the state it stopped in.
-    if (going || outcome.steps > before) write_row();
+    if ((going || outcome.steps > before) && !write_row()) return false;
     if (!going) return false;
   }
   return true;
@@ -540,10 +560,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   system.set_profile(hooks.profile);
   if (hooks.profile != nullptr) hooks.profile->start();
   outcome.time = accepted.t();
-  if (begin()) {
-    write_row();
-    adaptive ? run_adaptive(hooks) : run_fixed(hooks);
-  }
+  if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
   if (hooks.profile != nullptr) hooks.profile->stop();
   system.set_profile(nullptr);

@@ -30,7 +30,8 @@ struct Simulation::Impl {
   bool accept(const StepEvents::Passage& located, double kink = unbounded);
   void add_energy();
   bool refresh();
-  bool record_row();
+  bool know_row();
+  bool record_step();
   bool note_warnings();
   bool tell_sinks();
   bool check_stop();
@@ -64,7 +65,7 @@ struct Simulation::Impl {
   std::string why_singular();
   double row_time(long index) const;
 
-  void write_row();
+  bool write_row();
   bool fail(int exit_code, std::string reason);
   bool fail_with(const Fault& fault, double t);
   bool fail_beside(int joint);
@@ -112,6 +113,7 @@ struct Simulation::Impl {
   double error = 0.0;         // of the last attempt
   bool ended_inside = false;  // the step that is being accepted was cut short: the integrator has no memory of its end
   double allowed = 0.0;       // by which positions may err in one step, with error control [m]
+  bool row_is_known = false;  // `row` is that of the accepted state
   long next_row = 1;
   std::chrono::steady_clock::time_point started;
   double last_progress = 0.0;

@@ -28,11 +28,15 @@ Statistics::Statistics(const Model& model, const Channels& channels)
       body_speed_(model.bodies.size(), -1.0),
       planar_(model.space == Space::planar) {}
 
+// A step that ends a rounding error before the instant belongs to what follows.
+bool Statistics::counts(double t) const {
+  return !(t < discard_until_ - 1e-12 * std::max(1.0, std::abs(discard_until_)));
+}
+
 void Statistics::add(std::span<const double> row, std::span<const double> driver_work,
                      std::span<const double> joint_loss, double position, double velocity) {
-  // A step that ends a rounding error before the instant belongs to what follows.
   const double t = row[at(channels_.time)];
-  if (t < discard_until_ - 1e-12 * std::max(1.0, std::abs(discard_until_))) return;
+  if (!counts(t)) return;
   const bool first = !seen_;
   const double dt = first ? 0.0 : t - last_time_;
   const auto value = [&](int column) { return row[at(column)]; };

@@ -25,6 +25,8 @@ class Statistics {
  public:
   Statistics(const Model& model, const Channels& channels);
 
+  /// Whether a state at t is one of those that count.
+  bool counts(double t) const;
   /// The accepted row at the end of a step (or the start row). `work` and `dissipated` per driver and joint come from
   /// the energy account, `position` and `velocity` are the largest constraint residuals [m or rad, per s].
   void add(std::span<const double> row, std::span<const double> driver_work, std::span<const double> joint_loss,

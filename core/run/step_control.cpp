@@ -11,6 +11,17 @@ constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step,
 constexpr double broken_power = 3.0;  // behind an event forces grow as broken powers: errors fall no faster
 }  // namespace
 
+void StepControl::cut(std::uint64_t law) {
+  last_error_ = 1.0, rejected_ = false, first_ = broken_ = true;
+  law_ = &*std::ranges::find(laws_, law, &Law::name);
+  if (law_ == laws_.end()) {
+    law_ = &*std::ranges::min_element(laws_, {}, &Law::used);
+    *law_ = {.name = law};
+  }
+  law_->used = ++events_;
+  if (law_->first_step > 0.0) next_ = law_->first_step;
+}
+
 void StepControl::accept(double dt, double error) {
   const double e = std::max(error, smallest_error), judged = first_ ? std::max(error, first_error) : e;
   double factor = std::clamp(0.9 * std::pow(judged, -proportional_ / power_) * std::pow(last_error_, damping_ / power_),
@@ -20,6 +31,8 @@ void StepControl::accept(double dt, double error) {
   next_ = std::min({dt * factor, limits_.largest, error > smallest_error ? limits_.largest : limits_.uninformed});
   last_error_ = e;
   rejected_ = false;
+  if (law_ != nullptr) law_->first_step = next_;
+  law_ = nullptr;
 }
 
 void StepControl::reject(double dt, double error) {

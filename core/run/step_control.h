@@ -1,6 +1,8 @@
 // StepControl: the size of the next step from the error of the last.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <limits>
 
 namespace freeplay {
@@ -29,10 +31,11 @@ class StepControl {
   double next() const { return next_; }
   const StepLimits& limits() const { return limits_; }
   void accept(double dt, double error);
-  /// The step was made shorter, to end at an event: the proposal stands, and the law of motion may be a new one, of
-  /// which the last errors say nothing. The next step may be far too short (then the one behind it grows as after the
+  /// The step was made shorter, to end at an event, and the law of motion may be a new one, of which the last errors
+  /// say nothing. `law` tells laws apart: where it held before, the proposal is what the first step of it would have
+  /// been; else the proposal stands. The next step may be far too short (then the one behind it grows as after the
   /// first of the run) or far too long (then its error is taken to fall with h^3).
-  void cut() { last_error_ = 1.0, rejected_ = false, first_ = broken_ = true; }
+  void cut(std::uint64_t law);
   /// Behind a kink of what is prescribed the motion is a new one: its steps begin as those of the run did.
   void restart() { next_ = limits_.first, last_error_ = 1.0, rejected_ = false, first_ = true; }
   void reject(double dt, double error);
@@ -40,7 +43,17 @@ class StepControl {
   void halve(double dt);
 
  private:
+  /// A law of motion that began at an event.
+  struct Law {
+    std::uint64_t name = 0;
+    double first_step = 0.0;  ///< that its first error told to be right; 0: not known
+    long used = 0;            ///< events before it began last
+  };
+
   StepLimits limits_;
+  std::array<Law, 8> laws_{};
+  Law* law_ = nullptr;  ///< that began at the end of the last step
+  long events_ = 0;
   double power_, proportional_, damping_, next_, last_error_ = 1.0;
   bool rejected_ = false, first_ = true, broken_ = false;
 };

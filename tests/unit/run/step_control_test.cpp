@@ -64,7 +64,7 @@ TEST(StepControl, StepThatEndsAtAnEventLeavesTheProposal) {
   StepControl control({1.0, 1e-6, 10.0}, 3);
   control.accept(1.0, 0.5);
   const double before = control.next();
-  control.cut();
+  control.cut(1);
   EXPECT_EQ(control.next(), before);
 }
 
@@ -79,13 +79,61 @@ TEST(StepControl, StepThatHardlyErredSaysLittleOfTheNext) {
 TEST(StepControl, StepBehindAnEventMayBeFarTooShort) {
   StepControl control({1.0, 1e-6, 1e3}, 5);
   control.accept(1.0, 0.5);
-  control.cut();
+  control.cut(1);
   expect_far_growth_once(control, 1e-3);
+}
+
+TEST(StepControl, LawThatHeldBeforeBeginsWithTheStepThatItsFirstErrorToldToBeRight) {
+  constexpr std::uint64_t flight = 0, contact = 1;
+  StepControl control({1.0, 1e-6, 1e3}, 5);
+  control.accept(1.0, 0.5);
+  control.cut(contact);
+  control.reject(control.next(), 1e6);
+  const double first = control.next();
+  control.accept(first, 0.9);
+  const double of_contact = control.next();
+  control.accept(of_contact, 1e-3);
+  const double last = control.next();
+  control.cut(flight);  // nothing is known of it
+  EXPECT_EQ(control.next(), last);
+  control.accept(last, 1e-9);
+  const double of_flight = control.next();
+  control.accept(of_flight, 2e-2);
+  control.cut(contact);
+  EXPECT_EQ(control.next(), of_contact);
+  control.cut(flight);
+  EXPECT_EQ(control.next(), of_flight);
+}
+
+TEST(StepControl, LawThatEndedInItsFirstStepLeavesTheProposal) {
+  StepControl control({1.0, 1e-6, 1e3}, 5);
+  control.accept(1.0, 0.5);
+  const double before = control.next();
+  for (const std::uint64_t law : {1, 2, 1}) {
+    control.cut(law);
+    EXPECT_EQ(control.next(), before);
+  }
+}
+
+TEST(StepControl, OfManyLawsThoseThatHeldLastAreKnown) {
+  StepControl control({1.0, 1e-6, 1e3}, 5);
+  std::vector<double> first;
+  for (std::uint64_t law = 0; law < 20; ++law) {
+    control.cut(law);
+    control.accept(control.next(), law % 2 == 0 ? 0.9 : 0.4);
+    first.push_back(control.next());
+  }
+  control.cut(19);
+  EXPECT_EQ(control.next(), first[19]);
+  control.cut(15);
+  EXPECT_EQ(control.next(), first[15]);
+  control.cut(3);  // forgotten
+  EXPECT_EQ(control.next(), first[15]);
 }
 
 TEST(StepControl, ErrorsBehindAnEventFallWithThePowerOfThreeOfTheStep) {
   StepControl control({1.0, 1e-6, 10.0}, 6);
-  control.cut();
+  control.cut(1);
   control.reject(1.0, 27.0);
   EXPECT_NEAR(control.next(), 0.3, 1e-15);
   control.accept(0.3, 0.5);
