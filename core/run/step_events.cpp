@@ -14,6 +14,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = 1e-15;      // of a located event function, in its unit
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr int most_per_step = 8;        // of one joint; more are rounding, not motion
+constexpr double faster_inside = 2.0;   // than at both ends no event function moves inside a step, or its error tells
 
 // A field may be left NaN, which is recorded as empty.
 bool fields_make_sense(const Event& event, Span<const double> fields, Message& message) {
@@ -50,6 +51,7 @@ StepEvents::StepEvents(const System& system, bool located, State& between, Evalu
   happening_.resize(most_events, 0);
   armed_.resize(all_events, 0);
   seen_.resize(all_events, 0);
+  for (auto* numbers : {&start_, &start_rate_, &end_, &end_rate_}) numbers->resize(all_events);
   // Reserved once: a step appends without allocating.
   values_.reserve(all_fields);
   happenings_.reserve(most_per_step * watched_.size());
@@ -153,36 +155,61 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   return tell(joint, event, point(between_), e_between_, after, fault);
 }
 
+bool StepEvents::functions_at_ends(const State& before, const Evaluation& e_before, const State& after,
+                                   const Evaluation& e_after, Fault& fault) {
+  const Point end{after.t(), after.q(), after.v(), after.z(), before.h()};
+  for (std::size_t w = 0; w < watched_.size(); ++w) {
+    const std::size_t first = first_event_[w], count = system_.joint_layout(watched_[w]).events.size;
+    const auto part = [&](std::vector<double>& of_all) { return std::span(of_all).subspan(first, count); };
+    if (!functions(watched_[w], point(before), e_before, part(start_), part(start_rate_), fault)) return false;
+    if (!functions(watched_[w], end, e_after, part(end_), part(end_rate_), fault)) return false;
+  }
+  return true;
+}
+
+// Whether an event function may pass its zero inside a step of length dt, growing with `sign`: what lies below it at
+// both ends has too far to go.
+bool StepEvents::could_cross(std::size_t event, double sign, double dt) const {
+  const double farthest = faster_inside * dt * std::max(std::abs(start_rate_[event]), std::abs(end_rate_[event]));
+  return !(sign * start_[event] < 0.0 && sign * end_[event] < 0.0 && -sign * (start_[event] + end_[event]) > farthest);
+}
+
 bool StepEvents::first_crossing(const State& before, const Evaluation& e_before, const State& after,
                                 const Evaluation& e_after, bool sharp, Passage& found, Fault& fault) {
   found = {};
   if (watched_.empty()) return true;
-  DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
-  if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
-    fault = e_between_.fault;
-    return false;
-  }
-  const double half = 0.5 * (after.t() - before.t());
+  if (!functions_at_ends(before, e_before, after, e_after, fault)) return false;
+  const double dt = after.t() - before.t(), half = 0.5 * dt;
   double earliest = 2.0;
+  bool looked = false;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const int joint = watched_[w];
     const Span<const Event> events = system_.joint_layout(joint).events;
-    const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
     const std::span gm = std::span(gm_).first(events.size), rm = std::span(rm_).first(events.size);
-    const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
-    const Point end{after.t(), after.q(), after.v(), after.z(), before.h()};
-    if (!functions(joint, point(before), e_before, g0, r0, fault)) return false;
-    if (!functions(joint, point(between_), e_between_, gm, rm, fault)) return false;
-    if (!functions(joint, end, e_after, g1, r1, fault)) return false;
+    bool asked = false;
     for (std::size_t i = 0; i < events.size; ++i) {
       if (events[i].locate == 0) continue;
-      const bool known = armed_[first_event_[w] + i] != 0;
-      const bool armed = !std::isnan(g0[i]) && !std::isnan(gm[i]) && !std::isnan(g1[i]);
-      seen_[first_event_[w] + i] = armed ? 1 : 0;
-      if (!armed) continue;
+      const std::size_t event = first_event_[w] + i;
       const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
-      const Hermite first{sign * g0[i], sign * r0[i] * half, sign * gm[i], sign * rm[i] * half};
-      const Hermite second{first.value1, first.slope1, sign * g1[i], sign * r1[i] * half};
+      const bool known = armed_[event] != 0;
+      seen_[event] = std::isnan(start_[event]) || std::isnan(end_[event]) ? 0 : 1;
+      if (seen_[event] == 0 || !could_cross(event, sign, dt)) continue;
+      if (!looked) {
+        DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
+        if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+          fault = e_between_.fault;
+          return false;
+        }
+      }
+      looked = true;
+      if (!asked && !functions(joint, point(between_), e_between_, gm, rm, fault)) return false;
+      asked = true;
+      if (std::isnan(gm[i])) {
+        seen_[event] = 0;
+        continue;
+      }
+      const Hermite first{sign * start_[event], sign * start_rate_[event] * half, sign * gm[i], sign * rm[i] * half};
+      const Hermite second{first.value1, first.slope1, sign * end_[event], sign * end_rate_[event] * half};
       double at = 2.0;
       // A function that rests at its zero crosses it by rounding all the time.
       if (std::max(first.value1, second.value1) <= rounding) continue;
@@ -195,7 +222,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       }
       if (at < earliest) {
         earliest = at;
-        found = {joint, static_cast<int>(i), at, second.value1, sign * r1[i]};
+        found = {joint, static_cast<int>(i), at, second.value1, sign * end_rate_[event]};
       }
     }
   }
