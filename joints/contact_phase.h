@@ -39,9 +39,8 @@ inline constexpr Channel event_fields[] = {
     {"speed", "m/s"}, {"tangential_speed", "m/s"}, {"direction", "rad"}, {"duration", "s"},
     {"max_fn", "N"},  {"max_delta", "m"},          {"steps", "1"}};
 /// Where steps end at events a flight lasts until its event: an attempt that passes it stays smooth.
-inline bool touches(const JointInput& in, const Approach& gap) {
-  return gap.penetration > 0.0 && (in.per_contact == 0.0 || in.history[phase] != flight);
-}
+inline bool flies(const JointInput& in) { return in.per_contact != 0.0 && in.history[phase] == flight; }
+inline bool touches(const JointInput& in, const Approach& gap) { return gap.penetration > 0.0 && !flies(in); }
 
 /// v_0 is the rate itself, which adds dF/dv_0 to dF/ddelta'; laws do not give it, so the sum is differenced.
 inline ContactForce unpredicted(const ContactLawRef& law, const Approach& gap) {

@@ -92,8 +92,9 @@ class RevoluteClearance final : public Joint {
     write_turn(row.jacobian);
   }
   void apply(const JointInput& in, JointForces& out) const override {
-    const Gap gap(in, radii_);
     out.potential_rate = 0.0;
+    if (flies(in)) return;
+    const Gap gap(in, radii_);
     if (!touches(in, gap)) return;
     const Forces f = forces(in, gap, out.internal_rate);
     const Eigen::Vector2d on_b = -f.normal.normal * gap.n + f.friction.tangential * gap.t;

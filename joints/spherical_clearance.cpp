@@ -44,6 +44,7 @@ class SphericalClearance final : public Joint {
   }
   void apply(const JointInput& in, JointForces& out) const override {
     out.potential_rate = 0.0;
+    if (flies(in)) return;
     const PairInFirstAxes pair = seen_from_a(in);
     const Gap<double> gap(pair.numbers(), play_);
     if (!touches(in, gap.approach())) return;

@@ -31,7 +31,7 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const std::size_t nz = at(record.internal.size), table = (12 + nz) * (24 + nz);
     JointForces out{};
     const Span<double> rate(e.rate_space.data(), nz);
-    std::ranges::fill(rate, 0.0);
+    for (double& z : rate) z = 0.0;
     guard::set(rate.end());
     out.internal_rate = rate;
     Span<double> slopes;
@@ -47,20 +47,23 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     }
     if (!good) return blame(j, e);
     if (!guard::intact(rate.end())) return refuse(j, beside, e);
-    std::ranges::copy(rate, e.internal_rate.begin() + record.internal.offset);
+    if (nz > 0) std::ranges::copy(rate, e.internal_rate.begin() + record.internal.offset);
     const double size = size_of(out);
     if (!(std::isfinite(size + energy_of(out)) && (nz == 0 || is_finite(rate)) &&
           (slopes.empty() || is_finite(slopes))) &&
         markers_are_finite(record, e)) {
       return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
     }
-    double* wrench = &e.wrench[12 * at(j)];
-    std::copy_n(out.wrench_a, 6, wrench);
-    std::copy_n(out.wrench_b, 6, wrench + 6);
+    const bool rests = size == 0.0 && e.acts[f] == 0;  // its wrenches are zero, and were
     e.acts[f] = size != 0.0 ? 1 : 0;
     e.acting = 31 * e.acting + e.acts[f];
     e.potential[at(j)] = out.potential;
     e.potential_rate[at(j)] = out.potential_rate;
+    if (!rests) {
+      double* wrench = &e.wrench[12 * at(j)];
+      std::copy_n(out.wrench_a, 6, wrench);
+      std::copy_n(out.wrench_b, 6, wrench + 6);
+    }
     if (size != 0.0) {  // also where it is no number
       const auto& arms = e.arms_of<Bodies>();
       constexpr std::size_t width = Bodies::velocities;
