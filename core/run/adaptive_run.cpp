@@ -64,14 +64,18 @@ bool Simulation::Impl::adaptive_step() {
   const double smallest = control.limits().smallest;
   double dt = 0.0;
   int limiting = -1;
+  Fault fault;
   if (!bounded_step(dt, limiting)) return false;
+  if (!events.look_from(accepted, e_accepted, fault)) return fail_with(fault, accepted.t());
   if (!(dt >= smallest)) {
     return fail(4, solver.regularity() < stuck_there ? why_singular() : why_so_small(dt, limiting));
   }
   const double kink = next_kink();
   const bool to_kink = kink <= settings.end;
   const double goal = to_kink ? before(kink) : settings.end;
-  StepEvents::Passage hunted;
+  const double reach = std::min(dt, goal - accepted.t());
+  StepEvents::Passage hunted = events.expected_within(reach);
+  if (hunted.joint >= 0) dt = hunted.fraction * reach;
   std::size_t detours = 0;
   double asked = 0.0;
   for (int hunts = 0;;) {

@@ -5,7 +5,7 @@
 
 namespace freeplay {
 namespace {
-constexpr double nearly_straight = 1e-3;  // what is left of a smooth power is then a small part of that
+constexpr double nearly_straight = 3e-3;  // what is left of a smooth power is then a small part of that
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 

@@ -14,6 +14,13 @@ struct Hermite {
     return value0 * (1.0 + 2.0 * s) * c * c + slope0 * s * c * c + value1 * s * s * (3.0 - 2.0 * s) -
            slope1 * s * s * c;
   }
+  /// The same cubic over the interval behind, of the length `part` of this one.
+  Hermite ahead(double part) const {
+    const double bend = 6.0 * (value0 - value1) + 2.0 * slope0 + 4.0 * slope1;  // second derivative at the end
+    const double twist = 12.0 * (value0 - value1) + 6.0 * (slope0 + slope1);    // third
+    const double value = value1 + part * (slope1 + part * (0.5 * bend + part * twist / 6.0));
+    return {value1, part * slope1, value, part * (slope1 + part * (bend + 0.5 * part * twist))};
+  }
 };
 
 /// First s in (from, 1] where the cubic passes zero upwards. A contact that opens and closes inside the step is found

@@ -24,8 +24,10 @@ void StepControl::cut(std::uint64_t law) {
 
 void StepControl::accept(double dt, double error) {
   const double e = std::max(error, smallest_error), judged = first_ ? std::max(error, first_error) : e;
+  // A step that something else made shorter than proposed does not hold back the next.
+  const double growth = first_ ? first_growth : std::max(largest_growth, next_ / dt);
   double factor = std::clamp(0.9 * std::pow(judged, -proportional_ / power_) * std::pow(last_error_, damping_ / power_),
-                             0.2, first_ ? first_growth : largest_growth);
+                             0.2, growth);
   first_ = broken_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
   next_ = std::min({dt * factor, limits_.largest, error > smallest_error ? limits_.largest : limits_.uninformed});

@@ -14,6 +14,8 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = 1e-15;      // of a located event function, in its unit
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr int most_per_step = 8;        // of one joint; more are rounding, not motion
+constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
+constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little
 constexpr double faster_inside = 2.0;   // than at both ends no event function moves inside a step, or its error tells
 
 // A field may be left NaN, which is recorded as empty.
@@ -51,7 +53,8 @@ StepEvents::StepEvents(const System& system, bool located, State& between, Evalu
   happening_.resize(most_events, 0);
   armed_.resize(all_events, 0);
   seen_.resize(all_events, 0);
-  for (auto* numbers : {&start_, &start_rate_, &end_, &end_rate_}) numbers->resize(all_events);
+  for (auto* numbers : {&start_, &start_rate_, &end_, &end_rate_, &earlier_, &earlier_rate_})
+    numbers->resize(all_events);
   // Reserved once: a step appends without allocating.
   values_.reserve(all_fields);
   happenings_.reserve(most_per_step * watched_.size());
@@ -155,16 +158,45 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   return tell(joint, event, point(between_), e_between_, after, fault);
 }
 
-bool StepEvents::functions_at_ends(const State& before, const Evaluation& e_before, const State& after,
-                                   const Evaluation& e_after, Fault& fault) {
-  const Point end{after.t(), after.q(), after.v(), after.z(), before.h()};
+bool StepEvents::functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g,
+                                  std::vector<double>& rate, Fault& fault) const {
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const std::size_t first = first_event_[w], count = system_.joint_layout(watched_[w]).events.size;
-    const auto part = [&](std::vector<double>& of_all) { return std::span(of_all).subspan(first, count); };
-    if (!functions(watched_[w], point(before), e_before, part(start_), part(start_rate_), fault)) return false;
-    if (!functions(watched_[w], end, e_after, part(end_), part(end_rate_), fault)) return false;
+    if (!functions(watched_[w], point, e, std::span(g).subspan(first, count), std::span(rate).subspan(first, count),
+                   fault)) {
+      return false;
+    }
   }
   return true;
+}
+
+bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault& fault) {
+  std::swap(start_, earlier_);
+  std::swap(start_rate_, earlier_rate_);
+  // Behind an event functions go on otherwise.
+  earlier_by_ = happenings_.empty() ? start.t() - start_time_ : 0.0;
+  start_time_ = start.t();
+  return functions_of_all(point(start), e_start, start_, start_rate_, fault);
+}
+
+StepEvents::Passage StepEvents::expected_within(double dt) const {
+  Passage first;
+  if (!(dt <= much_longer * earlier_by_)) return first;
+  for (std::size_t w = 0; w < watched_.size(); ++w) {
+    const Span<const Event> events = system_.joint_layout(watched_[w]).events;
+    for (std::size_t i = 0; i < events.size; ++i) {
+      const std::size_t event = first_event_[w] + i;
+      if (events[i].locate == 0 || std::isnan(earlier_[event]) || std::isnan(start_[event])) continue;
+      const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
+      const Hermite before{sign * earlier_[event], sign * earlier_rate_[event] * earlier_by_, sign * start_[event],
+                           sign * start_rate_[event] * earlier_by_};
+      const Hermite ahead = before.ahead(dt / earlier_by_);
+      const auto s = first_rise(ahead, 0.0);
+      if (s && *s<first.fraction&& * s> at_once)
+        first = {watched_[w], static_cast<int>(i), *s, ahead.value1, ahead.slope1 / dt};
+    }
+  }
+  return first;
 }
 
 // Whether an event function may pass its zero inside a step of length dt, growing with `sign`: what lies below it at
@@ -178,7 +210,8 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
                                 const Evaluation& e_after, bool sharp, Passage& found, Fault& fault) {
   found = {};
   if (watched_.empty()) return true;
-  if (!functions_at_ends(before, e_before, after, e_after, fault)) return false;
+  const Point end{after.t(), after.q(), after.v(), after.z(), before.h()};
+  if (!functions_of_all(end, e_after, end_, end_rate_, fault)) return false;
   const double dt = after.t() - before.t(), half = 0.5 * dt;
   double earliest = 2.0;
   bool looked = false;

@@ -28,8 +28,13 @@ class StepEvents {
     double value = 0.0;     ///< of the function at the end, growing through zero [its unit]
     double rate = 0.0;      ///< its time derivative
   };
-  /// The earliest crossing of a located event within the step; joint -1 without one. Looks at both ends and, where one
-  /// could be reached, at the middle, and between them at the cubics of (g, g'), then, if `sharp`, along the
+  /// Looks at the events in an accepted state, from which the next steps start.
+  bool look_from(const State& start, const Evaluation& e_start, Fault& fault);
+  /// The first located event that is to be expected within `dt` from the start, as the functions went in the step
+  /// before; joint -1 without one. A step up to there errs less than one across it, behind which other forces act.
+  Passage expected_within(double dt) const;
+  /// The earliest crossing of a located event within the step from there; joint -1 without one. Looks at both ends and,
+  /// where one could be reached, at the middle, and between them at the cubics of (g, g'), then, if `sharp`, along the
   /// interpolated motion. Events that stand at their zero when the step begins count as passed.
   bool first_crossing(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                       bool sharp, Passage& found, Fault& fault);
@@ -63,8 +68,8 @@ class StepEvents {
                    const Evaluation& e_after, Fault& fault);
   bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
                  Fault& fault) const;
-  bool functions_at_ends(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
-                         Fault& fault);
+  bool functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g, std::vector<double>& rate,
+                        Fault& fault) const;
   bool could_cross(std::size_t event, double sign, double dt) const;
   bool sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                Passage& found, Fault& fault);
@@ -79,9 +84,11 @@ class StepEvents {
   std::vector<int> watched_;
   std::vector<std::size_t> first_event_;  // by watched joint: where its events stand in the next two
   std::vector<char> armed_, seen_;        // could the event happen at the last look; the same for the step being tried
-  std::vector<double> start_, start_rate_, end_, end_rate_;  // functions of all events at both ends of a step
-  std::vector<char> happening_;                              // by event of one joint
-  std::vector<char> inside_;                                 // by joint: some of its events are told inside a step
+  // Functions of all events at both ends of a step, and at the start of the step before.
+  std::vector<double> start_, start_rate_, end_, end_rate_, earlier_, earlier_rate_;
+  double start_time_ = 0.0, earlier_by_ = 0.0;  // 0: what was before says nothing
+  std::vector<char> happening_;                 // by event of one joint
+  std::vector<char> inside_;                    // by joint: some of its events are told inside a step
   std::vector<double> g0_, r0_, gm_, rm_, g1_, r1_, values_;
   std::vector<Happening> happenings_;
 };
