@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acceleration_history.h"
 #include "freeplay/plugin.h"
+#include "stage_history.h"
 #include "step_error.h"
 
 namespace freeplay {
@@ -35,8 +35,8 @@ class Bathe final : public Integrator {
 
   void declare(IntegratorLayout& layout) const override {
     const Sizes& n = layout.sizes;
-    layout.memory = n.nz + AccelerationHistory::size(n, 2);  // z' at the accepted state
-    layout.scratch = n.nq + 4 * n.nv + 3 * n.nz + StepError::scratch(n);
+    layout.memory = n.nz + StageHistory::size(n, 2);  // z' at the accepted state
+    layout.scratch = n.nq + 4 * n.nv + n.nc + 3 * n.nz + StepError::scratch(n);
     layout.order = 2;
     layout.error_estimate = 1;
     layout.newton_tolerance = tolerance_;
@@ -44,19 +44,19 @@ class Bathe final : public Integrator {
   }
   void restart(StateView& state, StageSolver& solver) const override {
     if (!state.z.empty()) solver.accelerate(state, state.memory.part(0, state.z.size));
-    AccelerationHistory::forget(history_of(state));
+    StageHistory::forget(history_of(state));
   }
 
   Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const override {
     Start n(to, scratch);
-    AccelerationHistory history(dt, 2, n.a, history_of(to));
-    history.guess(0, split_, to.a);
+    StageHistory history(dt, 2, n.a, n.lambda, history_of(to));
+    history.guess(0, split_, to);
     if (!trapezoid(dt, n, to, solver)) return {.converged = 0, .error = 0.0};
-    history.solved(0, to.a);
+    history.solved(0, to);
     prepare_end(dt, n, to);
-    history.guess(1, 1.0, to.a);
+    history.guess(1, 1.0, to);
     if (!solve(n.t + dt, q2_ * dt, n, to, solver)) return {.converged = 0, .error = 0.0};
-    history.solved(1, to.a);
+    history.solved(1, to);
     history.finish();
     const double beta_q = q2_ * dt * q2_ * dt;
     for (std::size_t i = 0; i < n.v.size; ++i) n.increment_known[i] += beta_q * to.a[i];  // now the whole increment
@@ -79,6 +79,7 @@ class Bathe final : public Integrator {
       q = take(state.q.size);
       v = take(state.v.size);
       a = take(state.v.size);
+      lambda = take(state.lambda.size);
       z = take(state.z.size);
       v_known = take(state.v.size);
       increment_known = take(state.v.size);
@@ -87,12 +88,13 @@ class Bathe final : public Integrator {
       std::copy(state.q.begin(), state.q.end(), q.begin());
       std::copy(state.v.begin(), state.v.end(), v.begin());
       std::copy(state.a.begin(), state.a.end(), a.begin());
+      std::copy(state.lambda.begin(), state.lambda.end(), lambda.begin());
       std::copy(state.z.begin(), state.z.end(), z.begin());
       std::copy_n(state.memory.begin(), state.z.size, z_rate.begin());
     }
     double t;
     std::size_t used = 0;
-    Span<double> q, v, a, z, v_known, increment_known, z_known, z_rate;
+    Span<double> q, v, a, lambda, z, v_known, increment_known, z_known, z_rate;
   };
 
   bool trapezoid(double dt, Start& n, StateView& to, StageSolver& solver) const {

@@ -16,6 +16,8 @@ constexpr double most_foreseen = 100.0;  // size of a first update that may be t
 constexpr int most_stays = 3;            // iterations that roundings alone could have kept large, with old factors
 constexpr int noise_for = 64;            // stages, until noise is looked at again
 constexpr int kept_factors = 4;
+constexpr double unknown_contraction = 0.5;  // at most, while factors are those of the same forces
+constexpr double roundings_of_phi = 8.0;     // of its largest terms: what is left of Phi then says nothing
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double largest(std::span<const double> numbers) {
@@ -78,6 +80,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   increment_.resize(at(nv));
   z_rate_.resize(at(system.layout().nz()));
   work_.resize(at(nv + nc));
+  quiet_phi_.resize(at(nc));
   other_a_.resize(at(nv));
   other_lambda_.resize(at(nc));
   other_z_.resize(at(system.layout().nz()));
@@ -123,9 +126,25 @@ bool NewtonStageSolver::refactor(Factor& factor) {
   double pivot = factor_once(factor);
   // The rank may have changed along the motion: rows that say nothing new are then left out.
   if (!(pivot > IndexOneSolver::singular_pivot) && find_dependent_rows()) pivot = factor_once(factor);
+  note_rounding_of_phi();
   factor.valid = pivot > 0.0 && std::isfinite(pivot);
   if (!factor.valid) index_one_.note_trouble("the equations of motion are singular");
   return factor.valid;
+}
+
+// A row rounds as the coordinates do that it is made of.
+void NewtonStageSolver::note_rounding_of_phi() {
+  const std::size_t width = at(system_.body_velocities());
+  for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
+    double largest_term = 0.0;
+    for (const System::RowPiece& piece : system_.row_pieces(r)) {
+      for (std::size_t c = 0; c < width; ++c) {
+        largest_term =
+            std::max(largest_term, std::abs(e_.jacobian[at(piece.offset) + c]) * unit_[at(piece.velocity) + c]);
+      }
+    }
+    quiet_phi_[r] = roundings_of_phi * rounding * largest_term;
+  }
 }
 
 bool NewtonStageSolver::find_dependent_rows() {
@@ -170,7 +189,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       fresh = true;
       factor.contraction = 1.0;
     }
-    if (iteration == 0 && e_.acting != factor.acting) factor.contraction = 1.0, factor.noise = 0.0;
+    const bool same_forces = e_.acting == factor.acting;
+    if (iteration == 0 && !same_forces) factor.contraction = 1.0, factor.noise = 0.0;
     factor.acting = e_.acting;
     ++iterations_;
     ++result.iterations;
@@ -181,7 +201,9 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       right_[i] = e_.force[i] - system_.mass()[i] * out.a[i] - right_[i];
     }
     if (position) {
-      for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = -e_.phi[r] / beta_q;
+      for (std::size_t r = 0; r < at(nc); ++r) {
+        right_[at(nv) + r] = std::abs(e_.phi[r]) <= quiet_phi_[r] ? 0.0 : -e_.phi[r] / beta_q;
+      }
     } else {
       system_.multiply(e_, out.v, std::span(work_).first(at(nc)));
       for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_.nu[r] - work_[r]) / beta_v;
@@ -220,10 +242,10 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const double size = change * std::max(beta_q, beta_v);
     const bool foreseen = iteration == 0 && factor.contraction < 0.1 && size <= most_foreseen * options_.tolerance &&
                           ++factor.since_seen <= seen_for;
-    const double part = foreseen ? factor.contraction : ratio;
+    const double part = foreseen ? factor.contraction : iteration == 0 ? unknown_contraction : ratio;
     const double left = part < 1.0 ? part / (1.0 - part) * change : change;
-    const bool accurate =
-        (iteration > 0 || foreseen) && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
+    const bool judged = iteration > 0 || foreseen || same_forces;
+    const bool accurate = judged && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
     // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors: which of
     // both, new ones tell.
     const bool tiny = change * beta_q <= 50.0 * rounding;

@@ -98,6 +98,7 @@ class NewtonStageSolver {
   bool refactor(Factor& factor);
   double factor_once(Factor& factor);
   bool find_dependent_rows();
+  void note_rounding_of_phi();
   void follow_choice_of_rows();
   /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the
   /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
@@ -118,6 +119,7 @@ class NewtonStageSolver {
   std::vector<Factor> factors_;  // one for each pair of betas
   int choice_of_rows_ = 0;       // that they were made with
   std::vector<double> right_, update_, increment_, z_rate_, work_;
+  std::vector<double> quiet_phi_;                                      // by row: below, Phi is rounding
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
   double allowed_ = 0.0, allowed_slow_ = 0.0, allowed_part_ = 0.0, allowed_rate_ = 0.0;

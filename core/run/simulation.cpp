@@ -306,7 +306,8 @@ void Simulation::Impl::add_energy() {
     return energy.take(dt, e_trial, trial.lambda(), std::span<const double>(trial.z()).last(at(flows)));
   }
   DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(0.5, between);
-  std::ranges::copy(trial.h(), between.h().begin());  // as the attempt had it
+  std::ranges::copy(trial.h(), between.h().begin());        // as the attempt had it
+  e_trial.lend_motions(between.t(), 1e-9 * dt, e_between);  // of a stage
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.
   const bool seen = system.evaluate(point(between), term_force | only_asked, e_between);
   energy.flow(seen ? e_between : e_trial, between.lambda(), flow_half_way);
@@ -394,8 +395,8 @@ bool Simulation::Impl::know_row() {
 }
 
 bool Simulation::Impl::record_step() {
-  if (!statistics.counts(accepted.t())) return true;
   const Profile::Timer timer(system.profile(), Phase::statistics);
+  if (!statistics.counts(accepted.t())) return true;
   if (!know_row()) return false;
   double position = 0.0, velocity = 0.0;
   system.multiply(e_accepted, accepted.v(), residual);

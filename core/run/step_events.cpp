@@ -176,7 +176,18 @@ bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault&
   // Behind an event functions go on otherwise.
   earlier_by_ = happenings_.empty() ? start.t() - start_time_ : 0.0;
   start_time_ = start.t();
-  return functions_of_all(point(start), e_start, start_, start_rate_, fault);
+  if (!functions_of_all(point(start), e_start, start_, start_rate_, fault)) return false;
+  for (const Happening& told : happenings_) leave_zero(told.joint, told.event);
+  return true;
+}
+
+// An event that was told at its very zero lies behind, and not at the start of the step to come.
+void StepEvents::leave_zero(int joint, int event) {
+  const Event& told = system_.joint_layout(joint).events[at(event)];
+  if (told.locate == 0) return;
+  const auto w = static_cast<std::size_t>(std::ranges::lower_bound(watched_, joint) - watched_.begin());
+  double& value = start_[first_event_[w] + at(event)];
+  if (std::abs(value) <= tolerance) value = std::copysign(tolerance, told.crossing == Crossing::rising ? 1.0 : -1.0);
 }
 
 StepEvents::Passage StepEvents::expected_within(double dt) const {

@@ -35,7 +35,7 @@ class StepEvents {
   Passage expected_within(double dt) const;
   /// The earliest crossing of a located event within the step from there; joint -1 without one. Looks at both ends and,
   /// where one could be reached, at the middle, and between them at the cubics of (g, g'), then, if `sharp`, along the
-  /// interpolated motion. Events that stand at their zero when the step begins count as passed.
+  /// interpolated motion. Events that were told when the step begins count as passed.
   bool first_crossing(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                       bool sharp, Passage& found, Fault& fault);
   /// Value and rate of one event at the end of a step, growing through zero.
@@ -70,6 +70,7 @@ class StepEvents {
                  Fault& fault) const;
   bool functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g, std::vector<double>& rate,
                         Fault& fault) const;
+  void leave_zero(int joint, int event);
   bool could_cross(std::size_t event, double sign, double dt) const;
   bool sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                Passage& found, Fault& fault);

@@ -298,6 +298,13 @@ struct Evaluation {
 
   /// Prescribed motions are not those of their times any more.
   void forget_motions() { motion_time = other_motion_time = std::numeric_limits<double>::quiet_NaN(); }
+  /// Gives the prescribed motions of the time `t` away where it keeps them, within `apart`; `t` is then that very time.
+  void lend_motions(double& t, double apart, Evaluation& to) {
+    if (!(std::abs(other_motion_time - t) <= apart)) return;
+    t = other_motion_time;
+    other_motion.swap(to.motion);
+    std::swap(other_motion_time, to.motion_time);
+  }
   /// Whether phi, Phi_q and nu are those of this time and these coordinates.
   bool has_rows_at(const Point& point) const;
   /// Whether these terms were filled at this very point.

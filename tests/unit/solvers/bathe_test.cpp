@@ -103,6 +103,19 @@ TEST(Bathe, StagesHoldPositionsAndThenVelocitiesAreProjected) {
   EXPECT_EQ(run.oscillator.accelerations, before + 1);
 }
 
+// The accelerations of the first stage are off those of the motion by a third of their change, in every step alike.
+TEST(Bathe, GuessesStagesFromThoseOfTheStepsBefore) {
+  Trial run(0.5, 0.0, {}, 1.0, 0.0);
+  for (int step = 0; step < 8; ++step) run.step(0.01);
+  const double a = run.a[0];
+  run.step(0.01);
+  const std::size_t last = run.oscillator.guesses.size() - 1;
+  for (const std::size_t stage : {last - 1, last}) {
+    const double moved = run.oscillator.solutions[stage] - a;
+    EXPECT_NEAR(run.oscillator.guesses[stage], run.oscillator.solutions[stage], 1e-3 * std::abs(moved)) << stage;
+  }
+}
+
 TEST(Bathe, OptimalSplitGivesBothStagesOneMatrix) {
   for (const double rho : {0.0, 0.3, 1.0}) {
     Trial run(optimal, rho, {}, 1.0, 0.0);
@@ -152,7 +165,7 @@ TEST(Bathe, DeclaresWhatItNeedsAndPassesTheNewtonParameters) {
   IntegratorLayout layout;
   layout.sizes = {7, 6, 2, 3};
   integrator.call(&abi::IntegratorTable::declare, &layout);
-  EXPECT_EQ(layout.memory, 3 + 2 + 2 + 4 * 6);  // z', and what guesses of two stages need
+  EXPECT_EQ(layout.memory, 3 + 2 + 2 + 6 * (6 + 2));  // z', and what guesses of two stages need
   EXPECT_EQ(layout.order, 2);
   EXPECT_EQ(layout.newton_tolerance, 1e-8);
   EXPECT_EQ(layout.newton_max_iterations, 7);

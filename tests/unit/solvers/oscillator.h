@@ -25,7 +25,7 @@ struct Oscillator {
   bool estimates = false;  ///< the run asks for errors, in units of 1 m and 1 m/s
   int projections = 0, accelerations = 0;
   std::vector<Stage> stages{};
-  std::vector<double> guesses{};
+  std::vector<double> guesses{}, solutions{};
 
   double acceleration(double q, double v) const { return -omega * omega * q - 2.0 * zeta * omega * v; }
 
@@ -55,6 +55,7 @@ struct Oscillator {
     const double a =
         o.acceleration(q, v) / (1.0 + o.omega * o.omega * stage->beta_q + 2.0 * o.zeta * o.omega * stage->beta_v);
     *out->t = stage->t;
+    o.solutions.push_back(a);
     out->a[0] = a;
     out->v[0] = v + stage->beta_v * a;
     out->q[0] = q + stage->beta_q * a;

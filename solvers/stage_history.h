@@ -1,0 +1,91 @@
+// StageHistory: guesses the accelerations and multipliers of the stages to come from those of the steps before.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "freeplay/integrator.h"
+
+namespace freeplay {
+
+/// Numbers in an integrator's memory. A stage at t_n + c h starts its iteration, of x = (a, lambda), at
+///
+///   x_n + c (x_n - x_n-1) + c (c + 1)/2 (x_n - 2 x_n-1 + x_n-2) + d
+///
+/// with d what the same sum was off in the step before: the error falls with h^4 where the motion is smooth, so that
+/// one iteration does. Where such a guess would have been no better than a_n, as behind an impact, and in steps of
+/// another length than those before, it is not used. A guess changes what a stage costs, not what it solves.
+class StageHistory {
+ public:
+  static int size(const Sizes& n, int stages) { return 2 + stages + (2 + 2 * stages) * (n.nv + n.nc); }
+  static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
+
+  /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
+  StageHistory(double dt, int stages, Span<const double> a, Span<const double> lambda, Span<double> memory)
+      : a_(a), lambda_(lambda), steps_(memory[0]), count_(memory.data[0]) {
+    std::size_t used = 2;
+    const auto take = [&](std::size_t size) {
+      used += size;
+      return memory.part(used - size, size);
+    };
+    good_ = take(static_cast<std::size_t>(stages));
+    previous_ = take(count());
+    older_ = take(count());
+    off_ = take(static_cast<std::size_t>(stages) * count());
+    guess_ = take(static_cast<std::size_t>(stages) * count());
+    if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
+      steps_ = 0.0;
+      std::fill(good_.begin(), good_.end(), 0.0);
+    }
+    memory[1] = dt;
+  }
+
+  /// The guess for a stage, in `to`, which is left as it is where there is none.
+  void guess(int stage, double c, StateView& to) {
+    const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0;
+    const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
+    const auto foresee = [&](Span<const double> now, std::size_t first, Span<double> out) {
+      const double *previous = previous_.data + first, *older = older_.data + first;
+      double *off = of_stage(stage, off_) + first, *guess = of_stage(stage, guess_) + first;
+      for (std::size_t i = 0; i < now.size; ++i) {
+        const double sum = now[i] + linear * (now[i] - previous[i]) + square * (now[i] - 2.0 * previous[i] + older[i]);
+        guess[i] = sum + off[i];
+        if (good) out[i] = guess[i];
+        off[i] = sum;
+      }
+    };
+    foresee(a_, 0, to.a);
+    foresee(lambda_, a_.size, to.lambda);
+  }
+  /// What it came out as.
+  void solved(int stage, const StateView& to) {
+    double* const off = of_stage(stage, off_);
+    const double* const guess = of_stage(stage, guess_);
+    double missed = 0.0, moved = 0.0;
+    for (std::size_t i = 0; i < a_.size; ++i) {
+      missed = std::max(missed, std::abs(to.a[i] - guess[i]));
+      moved = std::max(moved, std::abs(to.a[i] - a_[i]));
+      off[i] = to.a[i] - off[i];
+    }
+    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] = to.lambda[r] - off[a_.size + r];
+    good_[static_cast<std::size_t>(stage)] = steps_ > 1.0 && missed <= 0.5 * moved ? 1.0 : 0.0;
+  }
+  /// After the last stage.
+  void finish() {
+    count_ = std::min(steps_ + 1.0, 2.0);
+    std::copy(previous_.begin(), previous_.end(), older_.begin());
+    std::copy(a_.begin(), a_.end(), previous_.begin());
+    std::copy(lambda_.begin(), lambda_.end(), previous_.begin() + a_.size);
+  }
+
+ private:
+  std::size_t count() const { return a_.size + lambda_.size; }
+  double* of_stage(int stage, Span<double> all) const { return all.data + static_cast<std::size_t>(stage) * count(); }
+
+  Span<const double> a_, lambda_;
+  double steps_;
+  double& count_;
+  Span<double> good_, previous_, older_, off_, guess_;
+};
+
+}  // namespace freeplay
