@@ -59,13 +59,14 @@ def measure(bench, problem):
     points, source, apart = reference(bench, problem)
     bench.print("%s: first %g s, error against %s%s" % (
         problem.name, problem.end, source, "" if apart is None else " (own run, accuracy %g m: %.2g m apart)" % (problem.best, apart)))
-    records = []
+    records, timed = [], problem.timed_file(bench.build)
     for name, kind, value, options in problem.candidates(integrators(bench), bench.quick):
         record = {"integrator": name, "kind": kind, "value": value, "options": options}
         records.append(record)
         try:
-            run = fastest(lambda: bench.program.run(problem.file(), options), *TRIED)
-            record.update(error=largest_distance(run.columns(problem.points), points), rate=run.rate, steps=run.steps)
+            error = largest_distance(bench.program.run(problem.file(), options).columns(problem.points), points)
+            run = fastest(lambda: bench.program.run(timed, options), *TRIED)
+            record.update(error=error, rate=run.rate, steps=run.steps)
         except Failed as failure:
             record["failure"] = str(failure)
     bench.print(table(["integrator", "", "[s] or [m]", "error [m]", "wall s/s", "steps"], [
@@ -105,8 +106,10 @@ def choose(records, target, again):
 
 def compare(bench, problem, records, theirs):
     """Our best against theirs, and Bathe against Bathe at the same step, pair by pair."""
+    timed = problem.timed_file(bench.build)
+
     def our_rate(record):
-        return fastest(lambda: bench.program.run(problem.file(), record["options"]), *COMPARED).rate
+        return fastest(lambda: bench.program.run(timed, record["options"]), *COMPARED).rate
 
     def their_rate(record):
         return bench.hand.again(problem, record)

@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from problems import PROBLEMS, ROOT, WINDOWS
+from problems import PROBLEMS, ROOT, WINDOWS, with_interval
 from tables import table
 from timing import Failed, alternate, growth, measured, median
 
@@ -116,32 +116,20 @@ def load(bench):
     return found
 
 
-OUTPUTS = (  # name, model, text of its rows, options
-    ("3-rrr, bathe", "3-rrr", "interval: 0.1 ms", ["--end", "0.2 s", "--step", "2us", "--integrator", "bathe"]),
-    ("3-rrr, accuracy 1 um", "3-rrr", "interval: 0.1 ms", ["--end", "1 s", "--accuracy", "1um"]),
-    ("four-bar-320, bathe", "validation/a02-chain", "interval: 1 s", ["--end", "1 s", "--step", "1ms", "--integrator", "bathe", *windows(320)]),
-    ("four-bar-320, accuracy 1 um", "validation/a02-chain", "interval: 1 s", ["--end", "1 s", "--accuracy", "1um", *windows(320)]))
-
-
-def with_interval(bench, model, old, new):
-    with open(os.path.join(ROOT, "mechanisms", model + ".yaml"), encoding="utf-8") as file:
-        text = file.read()
-    if text.count(old) != 1:
-        raise Failed("mechanisms/%s.yaml does not hold '%s' once" % (model, old))
-    path = os.path.join(bench.build, "models", "%s-%s.yaml" % (os.path.basename(model), new.replace(" ", "")))
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text.replace(old, "interval: " + new))
-    return path
+OUTPUTS = (  # name, model, options
+    ("3-rrr, bathe", "3-rrr", ["--end", "0.2 s", "--step", "2us", "--integrator", "bathe"]),
+    ("3-rrr, accuracy 1 um", "3-rrr", ["--end", "1 s", "--accuracy", "1um"]),
+    ("four-bar-320, bathe", "validation/a02-chain", ["--end", "1 s", "--step", "1ms", "--integrator", "bathe", *windows(320)]),
+    ("four-bar-320, accuracy 1 um", "validation/a02-chain", ["--end", "1 s", "--accuracy", "1um", *windows(320)]))
 
 
 def output(bench):
     """All channels 1000 times a second against first and last row alone, in turn."""
     rows, found = [], {}
-    for name, model, old, options in OUTPUTS:
+    for name, model, options in OUTPUTS:
         if bench.quick:
             options = ["--end", "20 ms"] + options[2:]
-        full, none = (with_interval(bench, model, old, interval) for interval in ("1 ms", "10 s"))
+        full, none = (with_interval(bench.build, model, interval) for interval in ("1 ms", "10 s"))
         a, b = alternate(bench.passes, lambda: bench.program.run(full, options, "full"),
                          lambda: bench.program.run(none, options, "none"))
         numbers = {}
