@@ -47,6 +47,19 @@ class Profile(ProgramTest):
             self.assertEqual(numbers["rows"], counts["output"])
             self.assertGreaterEqual(counts["integrator"], numbers["steps"] + numbers["rejected"])
 
+    def test_most_steps_to_an_event_are_taken_once(self):
+        out, _ = self.freeplay("run", mechanism("slider-crank"), "--end", "8 ms", "--integrator", "verner7", "--accuracy", "0.3 mm",
+                               "--profile", "--out", "r")
+        _, counts, numbers = self.table(out)
+        self.assertGreater(numbers["events"], 30)
+        self.assertLess(counts["integrator"] - numbers["steps"], numbers["events"])
+
+    def test_what_positions_are_off_by_rounding_starts_no_iteration(self):
+        out, _ = self.freeplay("run", mechanism("slider-crank"), "--end", "0.5 ms", "--integrator", "bathe", "--step", "0.1 us",
+                               "--profile", "--out", "r")
+        _, _, numbers = self.table(out)
+        self.assertLess(numbers["iterations"], 2.9 * numbers["steps"])
+
     def test_results_do_not_depend_on_it(self):
         self.run_model("3-rrr", "a")
         self.run_model("3-rrr", "b", "--profile")

@@ -10,6 +10,14 @@ namespace {
 /// The cubic a + b s + c s^2 + d s^3 by its ends.
 Hermite cubic(double a, double b, double c, double d) { return {a, b, a + b + c + d, b + 2.0 * c + 3.0 * d}; }
 
+TEST(HermiteCubic, GoesOnBehindItsInterval) {
+  const Hermite ahead = cubic(-0.1, 0.2, 0.3, 0.4).ahead(0.7);
+  for (const double s : {0.0, 0.25, 1.0}) {
+    const double x = 1.0 + 0.7 * s;
+    EXPECT_NEAR(ahead.at(s), -0.1 + x * (0.2 + x * (0.3 + x * 0.4)), 4e-15) << s;
+  }
+}
+
 TEST(FirstRise, FindsTheZeroOfALineToRounding) {
   const auto s = first_rise(cubic(-0.3, 1.0, 0.0, 0.0), 0.0);
   ASSERT_TRUE(s);
