@@ -336,13 +336,14 @@ bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<
 
 bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> out) {
   if (!system_.evaluate(point(state), term_position | only_asked, e_)) return false;
+  if (!is_factored_here() && !factor()) return false;
   const JointElement& element = system_.model().joints[at(joint)];
   const int markers[2] = {element.marker_a, element.marker_b};
   std::ranges::fill(out, 0.0);
+  std::ranges::fill(right_c_, 0.0);
   const std::size_t directions = system_.model().space == Space::planar ? 2 : 3;
   for (std::size_t direction = 0; direction < directions; ++direction) {
     std::ranges::fill(right_a_, 0.0);
-    std::ranges::fill(right_c_, 0.0);
     double wrench[6] = {};
     for (const int end : {0, 1}) {
       wrench[direction] = end == 0 ? -1.0 : 1.0;
@@ -350,9 +351,7 @@ bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> o
         system_.add_wrench(markers[end], wrench, e_, right_a_);
       }
     }
-    std::ranges::fill(increment_, 0.0);
-    std::ranges::fill(multipliers_, 0.0);
-    if (!refine(increment_, multipliers_, 0.0)) return false;
+    if (!move_by_forces()) return false;
     const std::size_t width = at(system_.body_velocities());
     for (const int end : {0, 1}) {
       const BodyId body = system_.model().markers[at(markers[end])].body;
@@ -365,6 +364,20 @@ bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> o
       }
     }
   }
+  return true;
+}
+
+// increment_ <- the accelerations by the forces right_a_ alone, of rows that stay.
+bool IndexOneSolver::move_by_forces() {
+  if (!matrix_.is_well_conditioned()) {
+    std::ranges::fill(increment_, 0.0);
+    std::ranges::fill(multipliers_, 0.0);
+    return refine(increment_, multipliers_, 0.0);
+  }
+  std::ranges::copy(right_a_, right_.begin());
+  std::fill(right_.begin() + static_cast<std::ptrdiff_t>(right_a_.size()), right_.end(), 0.0);
+  matrix_.solve(right_, update_);
+  std::copy_n(update_.begin(), increment_.size(), increment_.begin());
   return true;
 }
 

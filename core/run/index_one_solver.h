@@ -83,6 +83,7 @@ class IndexOneSolver {
   /// Iterates x += A0^-1 (b - A x) at the present evaluation, b in (right_a_, right_c_), until x_a is right to
   /// rounding, of itself or of `scale`, and with `multipliers` x_c, too.
   bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
+  bool move_by_forces();
   /// Whether every equation holds as well as its terms are rounded (Oettli and Prager 1964), and parts of it; the
   /// second with the right sides `right`, to so many roundings.
   bool holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c);
