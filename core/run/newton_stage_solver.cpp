@@ -244,7 +244,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
                           ++factor.since_seen <= seen_for;
     const double part = foreseen ? factor.contraction : iteration == 0 ? unknown_contraction : ratio;
     const double left = part < 1.0 ? part / (1.0 - part) * change : change;
-    const bool judged = iteration > 0 || foreseen || same_forces;
+    const bool judged = iteration > 0 || same_forces;  // which what is foreseen needs, too
     const bool accurate = judged && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
     // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors: which of
     // both, new ones tell.
