@@ -133,13 +133,15 @@ inline void tell_end(const JointInput& in, const Approach& gap, Span<double> his
   fields[6] = history[steps] + 1.0;  // the step in which it ends
   reset(history);
 }
+/// What commit() does to a flight that goes on.
+inline void stay_in_flight(Span<double> history) { history[predicted] = 0.0; }
 /// `share`: of the law's force that this contact has.
 inline void commit(const JointInput& in, const Approach& gap, const ContactLawRef& law, double share,
                    Span<double> history) {
   // Crossings that no event told, because delta stood at its zero to rounding when the step began.
   if (history[phase] == flight && gap.penetration > 0.0 && gap.rate > 0.0) begin(in.t, gap.rate, false, history);
   if (history[phase] != flight && gap.penetration <= 0.0 && gap.rate <= 0.0) reset(history);
-  history[predicted] = 0.0;
+  stay_in_flight(history);
   if (history[phase] == flight) return;
   // A contact that began at the very end of the step has not taken it.
   if (in.t > history[begin_time]) history[steps] += 1.0;

@@ -93,9 +93,8 @@ class RevoluteClearance final : public Joint {
   }
   void apply(const JointInput& in, JointForces& out) const override {
     out.potential_rate = 0.0;
-    if (flies(in)) return;
+    if (flies(in) || !reaches(in)) return;
     const Gap gap(in, radii_);
-    if (!touches(in, gap)) return;
     const Forces f = forces(in, gap, out.internal_rate);
     const Eigen::Vector2d on_b = -f.normal.normal * gap.n + f.friction.tangential * gap.t;
     for (int i = 0; i < 2; ++i) {
@@ -115,8 +114,9 @@ class RevoluteClearance final : public Joint {
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
                   Span<double> history) const override {
-    const bool foresee = play::begin_step(in, dt, history);
-    history[predicted] = foresee ? predict(Gap(in, radii_), acc, dt) : 0.0;
+    if (play::begin_step(in, dt, history) && may_reach(in, acc, dt)) {
+      history[predicted] = predict(Gap(in, radii_), acc, dt);
+    }
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     write_events(in, Gap(in, radii_), g, rate);
@@ -138,6 +138,7 @@ class RevoluteClearance final : public Joint {
     fields[2] = std::atan2(gap.e.y(), gap.e.x());
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
+    if (history[phase] == flight && !reaches(in)) return stay_in_flight(history);
     play::commit(in, Gap(in, radii_), contact_law_, 1.0, history);
   }
 
@@ -166,8 +167,8 @@ class RevoluteClearance final : public Joint {
     return impact_step(in);
   }
   const char* warning(const JointInput& in) const override {
+    if (in.history[phase] == flight || !reaches(in)) return nullptr;
     const Gap gap(in, radii_);
-    if (in.history[phase] == flight || !touches(in, gap)) return nullptr;
     return contact_law_.outside_range({gap.penetration, gap.rate, in.history[approach_speed]});
   }
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
@@ -187,6 +188,19 @@ class RevoluteClearance final : public Joint {
     FrictionForce friction;
   };
 
+  /// Whether delta > 0, without the roots and quotients of a Gap: most journals fly most of the time.
+  bool reaches(const JointInput& in) const {
+    return (position(*in.b) - position(*in.a)).squaredNorm() > radii_.clearance * radii_.clearance;
+  }
+  /// Whether the journal can get to the bearing in a time dt with these accelerations: lengths are never more than
+  /// the sums of their parts.
+  bool may_reach(const JointInput& in, const MarkerAccelerations& acc, double dt) const {
+    const auto length = [](const Eigen::Vector2d& x) { return std::abs(x.x()) + std::abs(x.y()); };
+    const double way = dt * length(velocity(*in.b) - velocity(*in.a)) +
+                       0.5 * dt * dt * length({acc.b[0] - acc.a[0], acc.b[1] - acc.a[1]});
+    const double left = radii_.clearance - way;
+    return !(left > 0.0 && (position(*in.b) - position(*in.a)).squaredNorm() < left * left);
+  }
   double radius_a() const { return radii_.known() ? radii_.bearing : 0.0; }
   double radius_b() const { return radii_.known() ? radii_.journal : 0.0; }
   /// Distances of C from the origins of a and b, along n.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
-#include <Eigen/LU>
 #include <klu.h>
 
 namespace freeplay {
@@ -13,6 +13,74 @@ namespace {
 constexpr double smallest_growth = 1e-6;  // of pivots that are used again: digits that may be lost
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+// Loops of our own: with a dozen unknowns, Eigen spends most of its time on choosing its way through larger matrices.
+
+/// a, by columns, becomes its inverse, by Gauss and Jordan, who take the rows in `order`, with a pivot chosen in every
+/// row; `place` is room for `size` numbers. What is zero already costs a look. Returns the smallest pivot over the
+/// largest, 0 for a singular matrix, of which nothing is left.
+double invert(double* a, int size, const int* order, int* place) {
+  double smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
+  const auto column = [&](int c) { return a + c * size; };
+  for (int step = 0; step < size; ++step) {
+    const int k = order[step];
+    int chosen = k;
+    for (int later = step + 1; later < size; ++later) {
+      if (std::abs(column(order[later])[k]) > std::abs(column(chosen)[k])) chosen = order[later];
+    }
+    place[step] = chosen;
+    double* const own = column(k);
+    if (chosen != k) std::swap_ranges(own, own + size, column(chosen));
+    const double pivot = std::abs(own[k]);
+    smallest = std::min(smallest, pivot);
+    largest = std::max(largest, pivot);
+    if (!(pivot > 0.0)) return 0.0;
+    const double inverse = 1.0 / own[k];
+    own[k] = 1.0;
+    for (int r = 0; r < size; ++r) own[r] *= inverse;
+    for (int c = 0; c < size; ++c) {
+      double* const other = column(c);
+      const double factor = other[k];
+      if (c == k || factor == 0.0) continue;
+      other[k] = 0.0;
+      for (int r = 0; r < size; ++r) other[r] -= factor * own[r];
+    }
+  }
+  // Columns that changed places are rows of the inverse.
+  for (int step = size; step-- > 0;) {
+    const int k = order[step], other = place[step];
+    if (other == k) continue;
+    for (int c = 0; c < size; ++c) std::swap(column(c)[k], column(c)[other]);
+  }
+  return std::isfinite(largest) ? smallest / largest : 0.0;
+}
+
+/// y += a x with so many columns of `size` numbers.
+template <int columns>
+void add_columns(const double* __restrict a, int size, const double* __restrict x, double* __restrict y) {
+  for (int r = 0; r < size; ++r) {
+    double sum = a[r] * x[0];
+    for (int c = 1; c < columns; ++c) sum += a[c * size + r] * x[c];
+    y[r] += sum;
+  }
+}
+
+/// y = a x with a square matrix by columns.
+void multiply(const double* a, int size, const double* x, double* y) {
+  std::fill_n(y, size, 0.0);
+  int c = 0;
+  for (; c + 4 <= size; c += 4) add_columns<4>(a + c * size, size, x + c, y);
+  switch (size - c) {
+    case 1:
+      return add_columns<1>(a + c * size, size, x + c, y);
+    case 2:
+      return add_columns<2>(a + c * size, size, x + c, y);
+    case 3:
+      return add_columns<3>(a + c * size, size, x + c, y);
+    default:
+      return;
+  }
+}
+
 }  // namespace
 
 struct KktMatrix::Impl {
@@ -20,12 +88,9 @@ struct KktMatrix::Impl {
   std::vector<int> starts, rows;  // columns one after the other
   std::vector<double> values, factored;
   double pivots = 0.0;  // smallest over largest of `factored`
-  // Of small matrices: rows in parts of their largest entry, factors, and the inverse of the whole.
-  // Their largest size is told, so that nothing is allocated.
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, largest_dense, largest_dense>;
-  Small dense, inverse;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, largest_dense, 1> scale;
-  Eigen::PartialPivLU<Small> lu;
+  // Of small matrices: the inverse of the whole, by columns, and what it takes to find it.
+  std::vector<double> inverse, scale;
+  std::vector<int> order, place;
   bool has_factors = false;
   klu_common common;
   klu_symbolic* symbolic = nullptr;
@@ -65,28 +130,25 @@ struct KktMatrix::Impl {
   }
 };
 
+// Rows in parts of their largest entry.
 double KktMatrix::Impl::invert() {
-  dense.setZero();
-  scale.setZero();
+  std::ranges::fill(inverse, 0.0);
+  std::ranges::fill(scale, 0.0);
+  for (std::size_t i = 0; i < rows.size(); ++i) scale[at(rows[i])] = std::max(scale[at(rows[i])], std::abs(values[i]));
+  for (double& size_of_row : scale) {
+    if (!(size_of_row > 0.0)) return 0.0;
+    size_of_row = 1.0 / size_of_row;
+  }
   for (int c = 0; c < size; ++c) {
     for (int i = starts[at(c)]; i < starts[at(c) + 1]; ++i) {
-      dense(rows[at(i)], c) = values[at(i)];
-      scale[rows[at(i)]] = std::max(scale[rows[at(i)]], std::abs(values[at(i)]));
+      inverse[at(c * size + rows[at(i)])] = values[at(i)] * scale[at(rows[at(i)])];
     }
   }
-  if (!(scale.minCoeff() > 0.0)) return 0.0;
-  scale = scale.cwiseInverse();
-  for (int c = 0; c < size; ++c) dense.col(c).array() *= scale.array();
-  lu.compute(dense);
-  const auto diagonal = lu.matrixLU().diagonal().cwiseAbs();
-  const double smallest = diagonal.minCoeff(), largest = diagonal.maxCoeff();
-  if (!(smallest > 0.0) || !std::isfinite(largest)) return 0.0;
-  inverse.setIdentity();
-  inverse.applyOnTheLeft(lu.permutationP());
-  lu.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(inverse);
-  lu.matrixLU().triangularView<Eigen::Upper>().solveInPlace(inverse);
-  for (int c = 0; c < size; ++c) inverse.col(c) *= scale[c];
-  return smallest / largest;
+  const double regularity = freeplay::invert(inverse.data(), size, order.data(), place.data());
+  for (int c = 0; c < size; ++c) {
+    for (int r = 0; r < size; ++r) inverse[at(c * size + r)] *= scale[at(c)];
+  }
+  return regularity;
 }
 
 KktMatrix::KktMatrix() : impl_(std::make_unique<Impl>()) {}
@@ -118,9 +180,13 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
   m.factored.assign(m.rows.size(), 0.0);
   m.has_factors = false;
   if (m.is_dense()) {
-    m.dense = m.inverse = Impl::Small::Zero(size, size);
-    m.scale.setZero(size);
-    m.lu = Eigen::PartialPivLU<Impl::Small>(size);
+    m.inverse.assign(at(size * size), 0.0);
+    m.scale.assign(at(size), 0.0);
+    m.place.assign(at(size), 0);
+    m.order.resize(at(size));
+    std::iota(m.order.begin(), m.order.end(), 0);
+    // Unknowns that many others share come last, so that little fills in.
+    std::ranges::stable_sort(m.order, {}, [&](int c) { return m.starts[at(c) + 1] - m.starts[at(c)]; });
   }
   return slots;
 }
@@ -150,9 +216,7 @@ double KktMatrix::factor() {
 void KktMatrix::solve(std::span<const double> b, std::span<double> x) const {
   Impl& m = *impl_;
   if (m.is_dense()) {
-    Eigen::Map<Eigen::VectorXd>(x.data(), m.size).noalias() =
-        m.inverse * Eigen::Map<const Eigen::VectorXd>(b.data(), m.size);
-    return;
+    return multiply(m.inverse.data(), m.size, b.data(), x.data());
   }
   std::ranges::copy(b, x.begin());
   if (m.size > 0) klu_solve(m.symbolic, m.numeric, m.size, 1, x.data(), &m.common);

@@ -12,10 +12,10 @@ struct MatrixEntry {
   int row, column;
 };
 
-/// Up to 40 unknowns the inverse, made of a dense LU with rows in parts of their largest entry. Above LU of the sparse
-/// matrix by KLU (Davis and Palamadai Natarajan 2010, ACM TOMS 37, algorithm 907): block triangular form, so that
-/// unknowns that are decided one after the other cost no more than a substitution; order and pivots found once and kept
-/// while they are good.
+/// Up to 40 unknowns the inverse, with rows in parts of their largest entry. Above LU of the sparse matrix by KLU
+/// (Davis and Palamadai Natarajan 2010, ACM TOMS 37, algorithm 907): block triangular form, so that unknowns that are
+/// decided one after the other cost no more than a substitution; order and pivots found once and kept while they are
+/// good.
 class KktMatrix {
  public:
   static constexpr int largest_dense = 40;  ///< a product of this size costs about what KLU takes for ten unknowns

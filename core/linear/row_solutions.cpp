@@ -65,9 +65,9 @@ int numerical_rank(const SparseMatrix& j) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr;
   qr.setThreshold(rank_threshold);
   qr.compute(a.transpose());
-  // Pivots all far above the threshold leave no doubt; singular values cost ten times as much.
-  const VectorXd pivots = qr.matrixR().diagonal().cwiseAbs();
-  const bool clear = pivots.minCoeff() > full_rank * pivots.maxCoeff();
+  // Pivots far above the threshold leave no doubt, nor does a rest of nothing; singular values cost ten times as much.
+  const Eigen::ArrayXd pivots = qr.matrixR().diagonal().cwiseAbs();
+  const bool clear = (pivots == 0.0 || pivots > full_rank * pivots.maxCoeff()).all();
   if (clear || a.rows() > most_rows_for_singular_values) return static_cast<int>(qr.rank());
   const VectorXd sigma = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
   int count = 0;

@@ -102,11 +102,12 @@ struct Reach {
   Jet x, y;
 };
 
-Reach reach_of(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
-  const double cosine = std::cos(angle.value), sine = std::sin(angle.value), w = angle.rate;
-  const double px = cosine * leg.cx - sine * leg.cy, py = sine * leg.cx + cosine * leg.cy;
-  return {{x.value + px - leg.ax, x.rate - py * w, x.acceleration - py * angle.acceleration - px * w * w},
-          {y.value + py - leg.ay, y.rate + px * w, y.acceleration + px * angle.acceleration - py * w * w}};
+Reach reach_of(const Leg& leg, const Jet& x, const Jet& y, const PlatformTurn& platform) {
+  const double w = platform.angle.rate, alpha = platform.angle.acceleration;
+  const double px = platform.cosine * leg.cx - platform.sine * leg.cy;
+  const double py = platform.sine * leg.cx + platform.cosine * leg.cy;
+  return {{x.value + px - leg.ax, x.rate - py * w, x.acceleration - py * alpha - px * w * w},
+          {y.value + py - leg.ay, y.rate + px * w, y.acceleration + px * alpha - py * w * w}};
 }
 
 // The length |r| = l2 of the coupler, r = C - A - l1 u with the direction u of the crank, E the quarter turn,
@@ -133,12 +134,12 @@ CrankPose solve_crank(const Leg& leg, const Reach& reach) {
 
 }  // namespace
 
-CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
-  return solve_crank(leg, reach_of(leg, x, y, angle));
+CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const PlatformTurn& platform) {
+  return solve_crank(leg, reach_of(leg, x, y, platform));
 }
 
-LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle) {
-  const Reach reach = reach_of(leg, x, y, angle);
+LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const PlatformTurn& platform) {
+  const Reach reach = reach_of(leg, x, y, platform);
   LegPose pose{solve_crank(leg, reach), {}};
   if (!pose.reachable) return pose;
   const Jet direction = pose.crank + Jet::constant(leg.crank_direction), length = Jet::constant(leg.crank);

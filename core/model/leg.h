@@ -1,6 +1,7 @@
 // Leg: closed-form inverse kinematics of a crank and a coupler that carry a platform.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -56,9 +57,17 @@ struct LegPose : CrankPose {
   Jet coupler;
 };
 
-/// `x`, `y` [m] and `angle` [rad]: position of the path's frame and angle of the platform's body.
-CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
-LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const Jet& angle);
+/// How the platform's body is turned [rad]: once for all its legs.
+struct PlatformTurn {
+  PlatformTurn() = default;
+  PlatformTurn(const Jet& turned) : angle(turned), cosine(std::cos(turned.value)), sine(std::sin(turned.value)) {}
+  Jet angle;
+  double cosine = 1.0, sine = 0.0;
+};
+
+/// `x`, `y` [m]: position of the path's frame.
+CrankPose solve_crank(const Leg& leg, const Jet& x, const Jet& y, const PlatformTurn& platform);
+LegPose solve_leg(const Leg& leg, const Jet& x, const Jet& y, const PlatformTurn& platform);
 
 /// Angles of the bodies of crank and coupler [rad], principal values, without derivatives. A leg that is just stretched
 /// or folded, up to rounding, is in reach.

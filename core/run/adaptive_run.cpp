@@ -105,8 +105,8 @@ bool Simulation::Impl::adaptive_step() {
       return fail(4, converged ? why_so_small(dt, -1) : why_not_converged(dt));
     }
     if (last) trial.t() = goal;
-    if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
-      return fail_with(e_trial.fault, trial.t());
+    if (!evaluate_all(trial, e_trial)) {
+      return fail_with(e_trial->fault, trial.t());
     }
     bool done = false;
     if (!pursue(hunted, dt, hunts, done)) return false;
@@ -129,7 +129,7 @@ bool Simulation::Impl::adaptive_step() {
   }
   if (!accept(hunted, at_kink ? kink : unbounded)) return false;
   // Forces that begin or end at an event do so once it is told.
-  if (hunted.joint >= 0 && !at_kink) control.cut(e_accepted.acting);
+  if (hunted.joint >= 0 && !at_kink) control.cut(e_accepted->acting);
   return true;
 }
 
@@ -161,16 +161,16 @@ bool Simulation::Impl::settle_between() {
          solver.accelerate(view, {z_rate.data(), z_rate.size()});
 }
 
-// A consistent state inside the step that was just made, in `between` and e_between.
+// A consistent state inside the step that was just made, in `between` and e_between->
 bool Simulation::Impl::look_inside(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
-  DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(s, between);
+  DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate).at(s, between);
   between.t() = t;
   if (!settle_between()) {
     if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), t);
     return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
   }
-  if (!system.evaluate(point(between), all_terms, solver.evaluation(), e_between)) return fail_with(e_between.fault, t);
+  if (!evaluate_all(between, e_between)) return fail_with(e_between->fault, t);
   return true;
 }
 
@@ -203,7 +203,8 @@ std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const 
   if (limiting_joint >= 0) return text + fmt::format("; joint '{}' asks for it", model.joints[at(limiting_joint)].name);
   const int worst = solver.worst_component();
   if (worst < 0) return text;
-  const int width = system.body_velocities(), body = worst / width, part = worst % width;
+  const int width = system.body_velocities(), part = worst % width;
+  const BodyId body = system.layout().body_at(worst / width);
   constexpr const char* planar[] = {"x", "y", "angle"};
   constexpr const char* spatial[] = {"x", "y", "z", "rotation", "rotation", "rotation"};
   text += fmt::format("; the error is largest in body '{}' ({})", model.bodies[at(body)].name,

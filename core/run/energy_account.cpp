@@ -5,6 +5,8 @@
 
 namespace freeplay {
 namespace {
+constexpr double same_length = 1e-6;      // of steps, relative
+constexpr double bends_little = 1e-6;     // third differences of powers, relative: the cubic errs by a fortieth of that
 constexpr double nearly_straight = 3e-3;  // what is left of a smooth power is then a small part of that
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
@@ -21,7 +23,7 @@ EnergyAccount::EnergyAccount(const System& system)
       joint_loss_(system.model().joints.size(), 0.0),
       stored_start_(system.model().joints.size(), 0.0) {
   const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
-  for (auto* numbers : {&power_, &integral_, &power_before_, &integral_before_, &integral_inside_})
+  for (auto* numbers : {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &integral_inside_})
     numbers->resize(count);
 }
 
@@ -31,7 +33,8 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int r = system_.layout().driver_row(d);
     const double effort = r < 0 ? e.motion[at(d)].value : -lambda[at(r)];
-    out[flow++] = effort * e.coordinate_rate[at(model.drivers[at(d)].joint)];
+    const bool driven = r >= system_.layout().nc();  // its coordinate is not always looked at
+    out[flow++] = effort * (driven ? e.motion[at(d)].rate : e.coordinate_rate[at(model.drivers[at(d)].joint)]);
   }
   for (std::size_t f = 0; f < model.forces.size(); ++f) {
     out[flow++] = power(&e.applied[6 * f], e.markers[at(model.forces[f].marker)]);
@@ -50,11 +53,9 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
 
 /// -lambda^T nu over the rows of joints: what the force of a row that moves by itself puts in.
 double EnergyAccount::row_power(const Evaluation& e, std::span<const double> lambda) const {
-  double power = 0.0;
-  for (int j = 0; j < static_cast<int>(system_.model().joints.size()); ++j) {
-    const Slice rows = system_.layout().rows(j);
-    for (std::size_t r = at(rows.offset); r < at(rows.offset + rows.size); ++r) power -= lambda[r] * e.nu[r];
-  }
+  // What driven bodies move in a row is not its own motion.
+  double power = -system_.power_from_driven(e, lambda);
+  for (std::size_t r = 0; r < at(system_.layout().first_driver_row()); ++r) power -= lambda[r] * e.nu[r];
   return power;
 }
 
@@ -67,14 +68,36 @@ void EnergyAccount::start(const Evaluation& e, std::span<const double> lambda, c
 
 void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double> lambda,
                          std::span<const double> integrals) {
+  steps_alike_ = is_like_last(dt, e) ? steps_alike_ + 1 : 1;
   dt_ = dt;
+  std::swap(power_earlier_, power_before_);
   std::ranges::copy(power_, power_before_.begin());
   std::ranges::copy(integral_, integral_before_.begin());
   std::ranges::copy(integrals, integral_.begin());
   row_power_before_ = row_power_;
   row_work_before_ = row_work_;
-  renew(e, lambda);
+  look(e, lambda);
   row_work_ += 0.5 * dt * (row_power_before_ + row_power_);
+}
+
+bool EnergyAccount::is_like_last(double dt, const Evaluation& e) const {
+  return steps_alike_ > 0 && std::abs(dt - dt_) <= same_length * dt && e.acting == acting_;
+}
+
+bool EnergyAccount::add_smooth(double dt, const Evaluation& e, std::span<const double> lambda) {
+  if (steps_alike_ < 2 || !is_like_last(dt, e)) return false;
+  flow(e, lambda, integral_inside_);
+  double third = 0.0, size = 0.0;  // of their differences
+  for (std::size_t i = 0; i < power_.size(); ++i) {
+    const double end = integral_inside_[i], start = power_[i];
+    third += std::abs(end - power_earlier_[i] - 3.0 * (start - power_before_[i]));
+    size += std::abs(end) + std::abs(start);
+    integral_inside_[i] =
+        integral_[i] + dt / 24.0 * (9.0 * end + 19.0 * start - 5.0 * power_before_[i] + power_earlier_[i]);
+  }
+  if (!(third <= bends_little * size)) return false;
+  take(dt, e, lambda, integral_inside_);
+  return true;
 }
 
 void EnergyAccount::add(double dt, std::span<const double> half_way, const Evaluation& e,

@@ -1,6 +1,7 @@
 // EnergyAccount: work put in and energy dissipated since the start, by element.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,9 @@ double power(const double* wrench, const MarkerKinematics& k);
 /// instant, and nothing for an elastic force, whatever the step; joints that do not tell the rate are booked by
 /// differences of what they store, which takes errors of the method for losses. What an integrator or a projection
 /// loses is never booked; it is the residual. The powers ("flows": drivers, applied forces, joints with forces, in this
-/// order) are integrated by Simpson's rule over accepted steps, or by the integrator itself, along with z, where it
-/// can: then to its order; those of rows by the trapezoidal rule.
+/// order) are integrated over accepted steps by the cubic through their values at the ends of the last steps, by
+/// Simpson's rule where there are none yet, or by the integrator itself, along with z, where it can: then to its order;
+/// those of rows by the trapezoidal rule.
 class EnergyAccount {
  public:
   explicit EnergyAccount(const System& system);
@@ -32,7 +34,11 @@ class EnergyAccount {
              std::span<const double> row);
   /// The end of an accepted step, with the flows() integrals since the start.
   void take(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> integrals);
-  /// The same with the powers in the middle of the step.
+  /// The end of an accepted step that goes on smoothly like those before: with the powers P at its ends and theirs,
+  /// dt/24 (9 P_1 + 19 P_0 - 5 P_-1 + P_-2). False, and nothing is done, where the steps before were of another length
+  /// or had other forces on than `e` has, since the last event, or where these powers are far from a parabola.
+  bool add_smooth(double dt, const Evaluation& e, std::span<const double> lambda);
+  /// The same of any step, with the powers in its middle.
   void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
   /// Fills dissipated, work and residual of a row that holds the observed columns, at the end of the last step.
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row) {
@@ -50,8 +56,8 @@ class EnergyAccount {
                    std::span<double> row);
   /// An event changed what acts at the end of the last step.
   void renew(const Evaluation& e, std::span<const double> lambda) {
-    flow(e, lambda, power_);
-    row_power_ = row_power(e, lambda);
+    look(e, lambda);
+    steps_alike_ = 0;
   }
 
   /// Work of an impulse at the end of the last step [J].
@@ -64,6 +70,12 @@ class EnergyAccount {
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
             double row_work);
   double row_power(const Evaluation& e, std::span<const double> lambda) const;
+  bool is_like_last(double dt, const Evaluation& e) const;
+  void look(const Evaluation& e, std::span<const double> lambda) {
+    flow(e, lambda, power_);
+    row_power_ = row_power(e, lambda);
+    acting_ = e.acting;
+  }
   struct Ends {
     double start, end;
   };
@@ -75,6 +87,9 @@ class EnergyAccount {
   double row_power_before_ = 0.0, row_work_before_ = 0.0;  // at its start
   std::vector<double> driver_work_, joint_loss_, stored_start_;
   std::vector<double> power_, integral_;                                  // at the end of the last step
+  std::vector<double> power_earlier_;                                     // at the start of the step before that
+  int steps_alike_ = 0;                                                   // in length and forces, the last ones
+  std::uint64_t acting_ = 0;                                              // Evaluation::acting at the end of the last
   std::vector<double> power_before_, integral_before_, integral_inside_;  // of the last step
 };
 

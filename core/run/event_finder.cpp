@@ -1,12 +1,19 @@
 #include "run/event_finder.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 namespace freeplay {
+namespace {
+constexpr double farthest_lift = 0.15;  // 4/27, and no less by rounding
+}  // namespace
 
 std::optional<double> first_rise(const Hermite& curve, double from) {
+  // Its slopes lift the cubic by at most 4/27 of each above the larger of its ends.
+  const double lift = farthest_lift * (std::abs(curve.slope0) + std::abs(curve.slope1));
+  if (std::max(curve.value0, curve.value1) < -lift) return std::nullopt;
   // Between the zeros of the derivative 3 a s^2 + 2 b s + c the cubic is monotone.
   const double a = 2.0 * (curve.value0 - curve.value1) + curve.slope0 + curve.slope1;
   const double b = 3.0 * (curve.value1 - curve.value0) - 2.0 * curve.slope0 - curve.slope1;

@@ -33,7 +33,7 @@ double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Pas
   // What no joint can be asked about tells nothing; nor does it matter, as the step does not stand.
   Fault fault;
   StepEvents::Passage found;
-  if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial) ||
+  if (!evaluate_all(trial, e_trial) ||
       !events.first_crossing(accepted, e_accepted, trial, e_trial, false, found, fault)) {
     return shorter;
   }
@@ -127,7 +127,7 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
   if (hunted.joint < 0 || hunts >= early_hunts || !(dt < last) || system.layout().nz() > 0) return false;
   if (solver.regularity() < near_singular) return false;
   const Profile::Timer timer(system.profile(), Phase::events);
-  const DenseStep motion(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate);
+  const DenseStep motion(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate);
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   StepEvents::Passage end = hunted;
   double at_event = dt;
@@ -137,8 +137,7 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
     if (!begin_steps(at_event, between) || !settle_between()) return false;
     if (!(defect_inside(at_event) <= largest_defect)) return false;
     Fault fault;
-    if (!system.evaluate(point(between), all_terms, solver.evaluation(), e_between) ||
-        !events.at_end(between, e_between, end, fault)) {
+    if (!evaluate_all(between, e_between) || !events.at_end(between, e_between, end, fault)) {
       return false;
     }
     if (end.value >= 0.0 && end.value <= tolerance && is_sharp(end)) {

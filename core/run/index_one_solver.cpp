@@ -34,7 +34,8 @@ IndexOneSolver::IndexOneSolver(const System& system, int max_iterations)
       matrix_(system) {
   const int nv = system.layout().nv(), nc = system.layout().nc();
   for (int i = 0; i < nv; ++i) unit_.push_back(system.is_turn(i) ? 1.0 : system.size());
-  factored_at_.resize(at(1 + system.layout().nq()));
+  for (const double unit : unit_) per_unit_.push_back(1.0 / unit);
+  factored_at_.resize(at(system.layout().nq()));
   right_.resize(at(nv + nc));
   update_.resize(at(nv + nc));
   increment_.resize(at(nv));
@@ -45,19 +46,20 @@ IndexOneSolver::IndexOneSolver(const System& system, int max_iterations)
   multipliers_.resize(at(nc));
   first_multipliers_.resize(at(nc));
   dependent_.assign(at(nc), 0);
+  loads_.resize(at(system.layout().all_rows()));
 }
 
 bool IndexOneSolver::evaluate(const StateView& s, unsigned terms) {
   const Point point{*s.t, s.q, s.v, s.z, h_};
   if (system_.evaluate(point, terms | only_asked, e_)) return true;
-  trouble_ = e_.fault.kind == Fault::Kind::plugin ? e_.fault.message.text : e_.fault.motion.text;
+  trouble_ = e_->fault.kind == Fault::Kind::plugin ? e_->fault.message.text : e_->fault.motion.text;
   return false;
 }
 
 double IndexOneSolver::norm(std::span<const double> increment) const {
   double largest = 0.0;
   for (std::size_t i = 0; i < unit_.size(); ++i) {
-    const double scaled = std::abs(increment[i]) / unit_[i];
+    const double scaled = std::abs(increment[i]) * per_unit_[i];
     if (!(scaled <= largest)) largest = scaled;  // keeps a NaN
   }
   return largest;
@@ -83,7 +85,8 @@ bool IndexOneSolver::factor() {
   const Profile::Timer timer(system_.profile(), Phase::factorization);
   know_rows();
   double pivot = factor_once();
-  std::copy_n(e_.place.begin(), factored_at_.size(), factored_at_.begin());
+  factored_time_ = e_->time;
+  std::copy_n(e_->q.begin(), factored_at_.size(), factored_at_.begin());
   largest_pivot_ = std::max(largest_pivot_, pivot);
   last_regularity_ = pivot / largest_pivot_;
   regularity_ = std::min(regularity_, last_regularity_);
@@ -183,7 +186,7 @@ bool IndexOneSolver::equations_hold(std::span<const double> x_a, std::span<const
     size_[i] = std::abs(right_a_[i]) + std::abs(inertia);
   }
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
-    const double* entry = &e_.jacobian[at(block.offset)];
+    const double* entry = &e_->jacobian[at(block.offset)];
     double *left = &work_[at(width * block.body)], *size = &size_[at(width * block.body)];
     for (int r = block.row; r < block.row + block.rows; ++r, entry += width) {
       const double multiplier = x_c[at(r)];
@@ -207,7 +210,7 @@ bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const
   for (std::size_t r = 0; r < right.size(); ++r) {
     double gap = right[r], size = std::abs(right[r]);
     for (const System::RowPiece& piece : system_.row_pieces(r)) {
-      const double *entry = &e_.jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
+      const double *entry = &e_->jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
       for (int c = 0; c < width; ++c) {
         const double moved = entry[c] * rate[c];
         gap -= moved;
@@ -231,49 +234,54 @@ bool IndexOneSolver::holds_to_rounding(std::span<const double> x_a, std::span<co
          (system_.body_velocities() == 3 ? equations_hold<3>(x_a, x_c) : equations_hold<6>(x_a, x_c));
 }
 
-bool IndexOneSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_.nu, v, 4.0, right_c_); }
+bool IndexOneSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_->nu, v, 4.0, right_c_); }
 
 // Phi_q depends on time and coordinates alone.
 bool IndexOneSolver::is_factored_here() const {
-  return valid_ && std::memcmp(factored_at_.data(), e_.place.data(), factored_at_.size() * sizeof(double)) == 0;
+  return valid_ && factored_time_ == e_->time &&
+         std::memcmp(factored_at_.data(), e_->q.data(), factored_at_.size() * sizeof(double)) == 0;
 }
 
 bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
-  if (!e_.is_at({*state.t, state.q, state.v, state.z, h_}, index_one) && !evaluate(state, index_one)) return false;
+  if (!e_->is_at({*state.t, state.q, state.v, state.z, h_}, index_one) && !evaluate(state, index_one)) return false;
   if (any_dependent_) {
     const Profile::Timer timer(system_.profile(), Phase::factorization);
     system_.jacobian_entries(e_, entries_);
     // Rows that were left out in a singular position count again; not those that seem to say something new only because
     // a stage is a little off the constraints.
-    if (rows_.analyse(entries_, off_constraints * largest(e_.phi) / system_.size()) > rank_) keep_independent_rows();
+    if (rows_.analyse(entries_, off_constraints * largest(e_->phi) / system_.size()) > rank_) keep_independent_rows();
   }
   if (!is_factored_here() && !factor()) return false;
   // Nothing of the past enters, so that the same state always has the same accelerations.
   const std::size_t nv = state.a.size, nc = state.lambda.size;
-  for (std::size_t i = 0; i < nv; ++i) right_[i] = e_.force[i];
-  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : e_.gamma[r];
+  for (std::size_t i = 0; i < nv; ++i) right_[i] = e_->force[i];
+  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : e_->gamma[r];
   matrix_.solve(right_, update_);
   for (std::size_t i = 0; i < nv; ++i) state.a[i] = update_[i];
   for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = update_[nv + r];
   if (!matrix_.is_well_conditioned()) {
-    std::ranges::copy(e_.force, right_a_.begin());
-    std::ranges::copy(e_.gamma, right_c_.begin());
+    std::copy_n(e_->force.begin(), nv, right_a_.begin());
+    std::ranges::copy(e_->gamma, right_c_.begin());
     // Where drivers alone decide the motion, a is right at once and the multipliers are not.
     if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
   }
-  std::ranges::copy(e_.internal_rate, z_rate.begin());
+  std::ranges::copy(e_->internal_rate, z_rate.begin());
   if (any_dependent_) {
     const Profile::Timer timer(system_.profile(), Phase::solution);
     rows_.least_norm(state.lambda, system_.layout().first_driver_row());
   }
-  if (flows_ != nullptr) flows_->flow(e_, state.lambda, z_rate.part(e_.internal_rate.size(), at(flows_->flows())));
+  if (flows_ != nullptr) {
+    std::ranges::copy(state.lambda, loads_.begin());
+    system_.recover_loads(e_, loads_);
+    flows_->flow(e_, loads_, z_rate.part(e_->internal_rate.size(), at(flows_->flows())));
+  }
   return true;
 }
 
 bool IndexOneSolver::project_velocity(StateView& state) {
   if (state.lambda.size == 0) return true;
   const Point here{*state.t, state.q, state.v, state.z, h_};
-  if (!e_.has_rows_at(here) && !evaluate(state, rows)) return false;
+  if (!e_->has_rows_at(here) && !evaluate(state, rows)) return false;
   std::ranges::fill(multipliers_, 0.0);
   if (velocities_hold(state.v)) return true;
   const double speed = norm(state.v);
@@ -311,13 +319,13 @@ bool IndexOneSolver::project_position(StateView& state) {
   for (int iteration = 0; iteration < max_iterations_; ++iteration) {
     // Where the last projection moved nothing, as of bodies that drivers alone move, accelerate() will follow here.
     if (!evaluate(state, drifts_ ? rows : index_one)) return false;
-    const double gap = largest(e_.phi);
+    const double gap = largest(e_->phi);
     drifts_ = !(gap <= target);
     if (gap <= target || (gap < 1e-12 * system_.size() && gap > 0.5 * previous)) return true;
     const bool slow = gap > slow_contraction * previous;
     if ((!valid_ || slow) && !factor()) return false;
     previous = gap;
-    for (std::size_t r = 0; r < e_.phi.size(); ++r) right_c_[r] = -e_.phi[r];
+    for (std::size_t r = 0; r < e_->phi.size(); ++r) right_c_[r] = -e_->phi[r];
     solve_rows(right_c_);
     system_.retract(state.q, std::span(update_).first(increment_.size()), state.q);
   }
@@ -347,14 +355,14 @@ bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> o
     double wrench[6] = {};
     for (const int end : {0, 1}) {
       wrench[direction] = end == 0 ? -1.0 : 1.0;
-      if (system_.model().markers[at(markers[end])].body != ground) {
+      if (system_.unknown_of(markers[end]) != ground) {
         system_.add_wrench(markers[end], wrench, e_, right_a_);
       }
     }
     if (!move_by_forces()) return false;
     const std::size_t width = at(system_.body_velocities());
     for (const int end : {0, 1}) {
-      const BodyId body = system_.model().markers[at(markers[end])].body;
+      const BodyId body = system_.unknown_of(markers[end]);
       if (body == ground) continue;
       for (std::size_t i = 0; i < directions; ++i) {
         double g[6] = {}, row[6];

@@ -30,7 +30,7 @@ class IndexOneSolver {
   void use_history(std::span<const double> h) { h_ = h; }
   bool evaluate(const StateView& at, unsigned terms);
   /// The equations where they were looked at last.
-  Evaluation& evaluation() { return e_; }
+  KeptEvaluation& evaluation() { return e_; }
 
   /// Redundant multipliers come out with driver efforts, then reactions, of least norm. Factors are those of the very
   /// position, so that the same state always has the same accelerations.
@@ -70,7 +70,7 @@ class IndexOneSolver {
   std::span<const double> units() const { return unit_; }  ///< of increments: 1 for angles, else the model's size
 
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
-  const Fault& fault() const { return e_.fault; }
+  const Fault& fault() const { return e_->fault; }
   const char* trouble() const { return trouble_; }
   void note_trouble(const char* text) { trouble_ = text; }
   long factorizations() const { return factorizations_; }
@@ -101,14 +101,16 @@ class IndexOneSolver {
 
   const System& system_;
   int max_iterations_;
-  Evaluation e_;
+  KeptEvaluation e_;
   RowRank rows_;
   std::span<const double> h_;
   AccelerationMatrix matrix_;
   bool valid_ = false, has_pattern_ = false;  // its factors, its pattern
-  std::vector<double> factored_at_;           // t and q of its factors
-  std::vector<double> unit_, right_, update_, increment_, right_a_, right_c_, work_, size_;
+  double factored_time_ = 0.0;                // of its factors
+  std::vector<double> factored_at_;           // their coordinates
+  std::vector<double> unit_, per_unit_, right_, update_, increment_, right_a_, right_c_, work_, size_;
   std::vector<double> multipliers_, first_multipliers_;
+  std::vector<double> loads_;  // multipliers with those of driven bodies
   std::vector<SparseEntry> entries_;
   std::vector<char> dependent_;
   bool any_dependent_ = false, drifts_ = true;

@@ -35,39 +35,84 @@ bool Simulation::Impl::pass_kink(double kink) {
   for (double next = kink; next - kink <= margin(kink); next = system.motions().next_kink(next)) {
     accepted.t() = next + margin(next);
   }
-  std::ranges::copy(e_accepted.nu, residual.begin());
+  note_driven(e_accepted);
   StateView view = accepted.view();
   solver.use_history(accepted.h());
   const bool good = solver.project_velocity(view);
-  if (!good || !system.evaluate(point(accepted), all_terms, e_accepted)) {
-    const Fault& fault = good ? e_accepted.fault : solver.fault();
+  if (!good || !evaluate_all(accepted, e_accepted)) {
+    const Fault& fault = good ? e_accepted->fault : solver.fault();
     if (fault.kind != Fault::Kind::none) return fail_with(fault, kink);
     return fail(4, fmt::format("t = {:.9g} s: {}", kink, solver.trouble()));
   }
-  for (std::size_t r = 0; r < e_accepted.phi.size(); ++r) {
-    if (std::abs(e_accepted.phi[r]) <= 1e-9 * system.size()) continue;
+  if (const int jumping = row_that_jumps(); jumping >= 0) {
     return fail(4, fmt::format("t = {:.9g} s: {}: the prescribed position jumps; no motion follows it", kink,
-                               row_name(static_cast<int>(r))));
+                               row_name(jumping)));
   }
-  // At rows that do not move by themselves the impulse does no work.
-  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
-    const int r = system.layout().driver_row(d);
-    if (r < 0) continue;
-    const double work = -solver.impulse()[at(r)] * 0.5 * (residual[at(r)] + e_accepted.nu[at(r)]);
-    energy.add_driver_work(d, work);
-    if (flows > 0) accepted.z().last(at(flows))[at(d)] += work;
-  }
+  std::ranges::copy(solver.impulse(), impulses.begin());
+  book_impulses(e_accepted);
   if (!refresh()) return false;
   accepted.t() = kink;
   return true;
 }
 
-void Simulation::Impl::note_jumps(double kink) {
+// Where drivers and driven bodies are, to be compared with how they go on.
+void Simulation::Impl::note_driven(const Evaluation& e) {
+  std::ranges::copy(e.motion, motion_before.begin());
+  std::ranges::copy(e.q, q_before.begin());
+  std::ranges::copy(e.v, v_before.begin());
+}
+
+// A row that holds a driven body which is elsewhere behind a kink, or that does not hold any more; -1: none.
+int Simulation::Impl::row_that_jumps() const {
+  const double allowed_gap = 1e-9 * system.size();
+  for (std::size_t i = accepted.q().size(); i < q_before.size(); ++i) {
+    const std::size_t driven = (i - accepted.q().size()) / 3;
+    if (std::abs(e_accepted->q[i] - q_before[i]) > allowed_gap) return system.row_of_driven(driven);
+  }
+  for (std::size_t r = 0; r < e_accepted->phi.size(); ++r) {
+    if (std::abs(e_accepted->phi[r]) > allowed_gap) return static_cast<int>(r);
+  }
+  return -1;
+}
+
+// The work of `impulses` in rows of unknowns, and of those that changed the velocities of driven bodies to those in
+// `behind`. At rows that do not move by themselves an impulse does no work.
+void Simulation::Impl::book_impulses(Evaluation& behind) {
+  const std::size_t first = accepted.v().size();
+  for (std::size_t i = 0; i < driven_change.size(); ++i) driven_change[i] = behind.v[first + i] - v_before[first + i];
+  system.recover_impulses(behind, driven_change, impulses);
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const int r = system.layout().driver_row(d);
+    if (r < 0) continue;
+    const double work = -impulses[at(r)] * 0.5 * (motion_before[at(d)].rate + behind.motion[at(d)].rate);
+    energy.add_driver_work(d, work);
+    if (flows > 0) accepted.z().last(at(flows))[at(d)] += work;
+  }
+}
+
+// Of a step of fixed size that went over a kink: the work of the blow on driven bodies. That on others is part of the
+// step.
+void Simulation::Impl::book_jump(double kink) {
+  Point here = point(accepted);
+  const auto look = [&](double t) {
+    here.t = t;
+    return system.evaluate(here, term_position | only_asked, e_between);
+  };
+  if (!look(kink - margin(kink))) return;
+  note_driven(e_between);
+  if (!look(kink + margin(kink))) return;
+  std::ranges::fill(impulses, 0.0);
+  book_impulses(e_between);
+}
+
+// Whether the speed of a driver jumps.
+bool Simulation::Impl::note_jumps(double kink) {
   MotionFault fault;
   if (!system.motions().evaluate(kink - margin(kink), {motion_before.data(), motion_before.size()}, fault) ||
       !system.motions().evaluate(kink + margin(kink), {motion_behind.data(), motion_behind.size()}, fault)) {
-    return;  // the run will meet it
+    return false;  // the run will meet it
   }
+  bool any = false;
   for (std::size_t d = 0; d < speed_jumps.size(); ++d) {
     if (system.layout().driver_row(static_cast<int>(d)) < 0) continue;
     const double from = motion_before[d].rate, to = motion_behind[d].rate;
@@ -75,8 +120,10 @@ void Simulation::Impl::note_jumps(double kink) {
     if (std::abs(to - from) <= smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(kink) * steady) {
       continue;
     }
+    any = true;
     if (speed_jumps[d].count++ == 0) speed_jumps[d] = {1, kink, from, to};
   }
+  return any;
 }
 
 void Simulation::Impl::format_jumps() {

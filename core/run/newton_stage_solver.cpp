@@ -15,10 +15,17 @@ constexpr int seen_for = 8;
 constexpr double most_foreseen = 100.0;  // size of a first update that may be the only one, in tolerances
 constexpr int most_stays = 3;            // iterations that roundings alone could have kept large, with old factors
 constexpr int noise_for = 64;            // stages, until noise is looked at again
+constexpr double immaterial = 0.1;       // part of the tolerance, or of a rounding
 constexpr int kept_factors = 4;
+constexpr std::size_t few_unknowns = 100;
 constexpr double unknown_contraction = 0.5;  // at most, while factors are those of the same forces
-constexpr double roundings_of_phi = 8.0;     // of its largest terms: what is left of Phi then says nothing
+constexpr double roundings_of_phi = 16.0;    // of its largest terms: what is left of Phi then says nothing
+constexpr double small_part = 1e-4;          // of the first update: much less than what the step itself errs
+constexpr double many_steps = 5000.0;        // that together may move by the tolerance
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// By how much x leaves the band, so that a correction sets in without a jump.
+double beyond(double x, double band) { return std::abs(x) <= band ? 0.0 : x - std::copysign(band, x); }
 
 double largest(std::span<const double> numbers) {
   double size = 0.0;
@@ -109,12 +116,18 @@ NewtonStageSolver::Factor& NewtonStageSolver::factor_for(double beta_q, double b
   return *oldest;
 }
 
-double NewtonStageSolver::factor_once(Factor& factor) {
-  if (!factor.has_pattern) {
-    const Profile::Timer start(system_.profile(), Phase::start);
-    factor.matrix.set_pattern(dependent_);
+// Where little is needed, that of all factors: no step length allocates then.
+void NewtonStageSolver::set_pattern(Factor& factor) {
+  const Profile::Timer start(system_.profile(), Phase::start);
+  for (Factor& each : factors_) {
+    if (&each != &factor && update_.size() > few_unknowns) continue;
+    each.matrix.set_pattern(dependent_);
+    each.has_pattern = true;
   }
-  factor.has_pattern = true;
+}
+
+double NewtonStageSolver::factor_once(Factor& factor) {
+  if (!factor.has_pattern) set_pattern(factor);
   ++factorizations_;
   return factor.matrix.factor(e_, factor.beta_q, factor.beta_v, factor.beta_z);
 }
@@ -140,7 +153,7 @@ void NewtonStageSolver::note_rounding_of_phi() {
     for (const System::RowPiece& piece : system_.row_pieces(r)) {
       for (std::size_t c = 0; c < width; ++c) {
         largest_term =
-            std::max(largest_term, std::abs(e_.jacobian[at(piece.offset) + c]) * unit_[at(piece.velocity) + c]);
+            std::max(largest_term, std::abs(e_->jacobian[at(piece.offset) + c]) * unit_[at(piece.velocity) + c]);
       }
     }
     quiet_phi_[r] = roundings_of_phi * rounding * largest_term;
@@ -160,9 +173,20 @@ void NewtonStageSolver::follow_choice_of_rows() {
   for (Factor& factor : factors_) factor.valid = factor.has_pattern = false;
 }
 
+void NewtonStageSolver::follow_accelerations(const Stage& stage, StateView& out) {
+  for (std::size_t i = 0; i < increment_.size(); ++i) {
+    out.v[i] = stage.v_known[i] + stage.beta_v * out.a[i];
+    increment_[i] = stage.increment_known[i] + stage.beta_q * out.a[i];
+  }
+  system_.retract(stage.q_base, increment_, out.q);
+  for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
+}
+
 bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& result) {
   const int nv = system_.layout().nv(), nc = system_.layout().nc();
   const double beta_v = stage.beta_v, beta_q = stage.beta_q;
+  const double way = std::max(beta_q, beta_v);
+  double allowed = options_.tolerance;  // in velocity, with a unit time of 1 s
   const bool position = stage.level == ConstraintLevel::position;
   result = {0, 0};
   worst_row_ = -1;
@@ -175,13 +199,9 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   double previous = std::numeric_limits<double>::infinity(), ratio = 1.0;
   int diverging = 0;
   for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
-    for (std::size_t i = 0; i < at(nv); ++i) {
-      out.v[i] = stage.v_known[i] + beta_v * out.a[i];
-      increment_[i] = stage.increment_known[i] + beta_q * out.a[i];
-    }
-    system_.retract(stage.q_base, increment_, out.q);
-    for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
-    const unsigned terms = term_position | term_velocity | term_force;
+    follow_accelerations(stage, out);
+    // Without rows what is looked at here may be the end of the step already, see below.
+    const unsigned terms = term_position | term_velocity | term_force | (nc == 0 ? term_acceleration : 0u);
     const bool renew = !factor.valid || (!fresh && ratio > IndexOneSolver::slow_contraction && iteration > 1);
     if (!index_one_.evaluate(out, terms | (renew ? term_derivative : 0u))) return false;
     if (renew) {
@@ -189,32 +209,39 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       fresh = true;
       factor.contraction = 1.0;
     }
-    const bool same_forces = e_.acting == factor.acting;
+    const bool same_forces = e_->acting == factor.acting;
     if (iteration == 0 && !same_forces) factor.contraction = 1.0, factor.noise = 0.0;
-    factor.acting = e_.acting;
+    factor.acting = e_->acting;
     ++iterations_;
     ++result.iterations;
 
     std::fill(right_.begin(), right_.end(), 0.0);
     system_.add_transposed(e_, out.lambda, std::span(right_).first(at(nv)));
     for (std::size_t i = 0; i < at(nv); ++i) {
-      right_[i] = e_.force[i] - system_.mass()[i] * out.a[i] - right_[i];
+      right_[i] = e_->force[i] - system_.mass()[i] * out.a[i] - right_[i];
     }
     if (position) {
-      for (std::size_t r = 0; r < at(nc); ++r) {
-        right_[at(nv) + r] = std::abs(e_.phi[r]) <= quiet_phi_[r] ? 0.0 : -e_.phi[r] / beta_q;
-      }
+      for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = -beyond(e_->phi[r], quiet_phi_[r]) / beta_q;
     } else {
       system_.multiply(e_, out.v, std::span(work_).first(at(nc)));
-      for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_.nu[r] - work_[r]) / beta_v;
+      for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_->nu[r] - work_[r]) / beta_v;
     }
     for (std::size_t r = 0; r < at(nc); ++r) {
       if (dependent_[r]) right_[at(nv) + r] = 0.0;
     }
     if (!factor.matrix.internal().empty()) {
-      factor.matrix.internal().add_to_right(e_.internal_rate, z_rate_, std::span(right_).first(at(nv)));
+      factor.matrix.internal().add_to_right(e_->internal_rate, z_rate_, std::span(right_).first(at(nv)));
     }
     factor.matrix.solve(right_, update_);
+    const double change = index_one_.norm(std::span(update_).first(at(nv)));
+    if (iteration == 0) {
+      const double most = options_.tolerance * std::max(1.0, 1.0 / (many_steps * beta_v));
+      allowed = std::clamp(small_part * change * beta_v, options_.tolerance, most);
+    }
+    // What moves nothing any more is left as it was looked at: the accelerations there cost no other look.
+    const bool there =
+        nc == 0 && iteration > 0 && factor.matrix.internal().empty() && change * way <= immaterial * allowed;
+    if (there) std::ranges::fill(update_, 0.0);
     for (std::size_t i = 0; i < at(nv); ++i) out.a[i] += update_[i];
     for (std::size_t r = 0; r < at(nc); ++r) out.lambda[r] += update_[at(nv) + r];
     bool internal_settled = true;
@@ -223,7 +250,6 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
                                                           z_rate_) <= internal_tolerance;
     }
 
-    const double change = index_one_.norm(std::span(update_).first(at(nv)));
     if (!std::isfinite(change)) {
       index_one_.note_trouble("a number in the state is not finite");
       return true;
@@ -231,21 +257,21 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const double change_before = previous;
     ratio = iteration == 0 ? 1.0 : change / previous;
     previous = change;
-    // Left over after this update: a geometric series of ratio r. Judged in position and, with a unit time of 1 s, in
-    // velocity. Below the noise of Phi (rounding of coordinates, divided by beta_q) nothing more can be won.
+    // Left over after this update: a geometric series of ratio r. Below the noise of Phi (rounding of coordinates,
+    // divided by beta_q) nothing more can be won.
     if (iteration > 0 && change_before * beta_q > 8.0 * rounding) {
       factor.contraction = std::max({careful * ratio, 0.5 * factor.contraction, least_contraction});
       factor.since_seen = 0;
     }
     // The first update has no ratio of its own. Where it is small, that of a stage not long ago stands for it, with the
     // same forces on.
-    const double size = change * std::max(beta_q, beta_v);
-    const bool foreseen = iteration == 0 && factor.contraction < 0.1 && size <= most_foreseen * options_.tolerance &&
+    const bool foreseen = iteration == 0 && factor.contraction < 0.1 && change * way <= most_foreseen * allowed &&
                           ++factor.since_seen <= seen_for;
     const double part = foreseen ? factor.contraction : iteration == 0 ? unknown_contraction : ratio;
     const double left = part < 1.0 ? part / (1.0 - part) * change : change;
     const bool judged = iteration > 0 || same_forces;  // which what is foreseen needs, too
-    const bool accurate = judged && left * beta_q <= options_.tolerance && left * beta_v <= options_.tolerance;
+    const bool accurate = judged && ((left * beta_q <= options_.tolerance && left * beta_v <= allowed) ||
+                                     left * beta_q <= immaterial * rounding);
     // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors: which of
     // both, new ones tell.
     const bool tiny = change * beta_q <= 50.0 * rounding;
@@ -255,18 +281,12 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const bool quiet = iteration == 0 && tiny && change <= 2.0 * factor.noise && ++factor.since_noise <= noise_for;
     const bool noise = stays || quiet || (iteration > 0 && change * beta_q <= rounding);
     const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
-    if (internal_settled &&
-        (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, std::max(beta_q, beta_v))))) {
-      for (std::size_t i = 0; i < at(nv); ++i) {
-        out.v[i] = stage.v_known[i] + beta_v * out.a[i];
-        increment_[i] = stage.increment_known[i] + beta_q * out.a[i];
-      }
-      system_.retract(stage.q_base, increment_, out.q);
-      for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
+    if (internal_settled && (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way)))) {
+      follow_accelerations(stage, out);
       if (index_one_.any_dependent()) {
         // Rows that were left out must hold by themselves.
         for (std::size_t r = 0; r < at(nc); ++r) {
-          if (dependent_[r] && position && std::abs(e_.phi[r]) > 1e-9 * system_.size()) {
+          if (dependent_[r] && position && std::abs(e_->phi[r]) > 1e-9 * system_.size()) {
             worst_row_ = static_cast<int>(r);
             if (find_dependent_rows()) break;
             index_one_.note_trouble("redundant constraints contradict each other");
@@ -289,21 +309,21 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   index_one_.note_trouble("the iteration of a stage did not converge");
   double farthest = -1.0;
   for (int r = 0; r < nc; ++r) {
-    if (std::abs(e_.phi[at(r)]) > farthest) farthest = std::abs(e_.phi[at(r)]), worst_row_ = r;
+    if (std::abs(e_->phi[at(r)]) > farthest) farthest = std::abs(e_->phi[at(r)]), worst_row_ = r;
   }
   return true;
 }
 
-bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double beta) {
-  if (!(largest(e_.phi) <= 8.0 * rounding * system_.size())) return false;
+bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double way) {
+  if (!(largest(e_->phi) <= 8.0 * rounding * system_.size())) return false;
   const std::size_t nv = unit_.size();
   std::fill(right_.begin(), right_.end(), 0.0);
-  for (std::size_t r = 0; r < e_.phi.size(); ++r) {
-    if (!dependent_[r]) right_[nv + r] = -e_.phi[r] / factor.beta_q;
+  for (std::size_t r = 0; r < e_->phi.size(); ++r) {
+    if (!dependent_[r]) right_[nv + r] = -beyond(e_->phi[r], quiet_phi_[r]) / factor.beta_q;
   }
   factor.matrix.solve(right_, work_);
   for (std::size_t i = 0; i < nv; ++i) work_[i] = update_[i] - work_[i];
-  return index_one_.norm(std::span(work_).first(nv)) * beta <= options_.tolerance;
+  return index_one_.norm(std::span(work_).first(nv)) * way <= options_.tolerance;
 }
 
 double NewtonStageSolver::error_norm(std::span<const double> position, std::span<const double> velocity) {

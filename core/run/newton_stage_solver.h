@@ -21,7 +21,9 @@
 namespace freeplay {
 
 struct StageOptions {
-  double tolerance = 1e-10;  ///< largest position error left by a stage, in model sizes [1], and its like in velocity
+  /// Largest position error left by a stage, in model sizes [1], and per second that in velocity; where the step itself
+  /// errs much, so much in velocity that 5000 such steps together move by it.
+  double tolerance = 1e-10;
   int max_iterations = 20;
 };
 
@@ -65,7 +67,7 @@ class NewtonStageSolver {
   /// The states to come are not close to the last one: factors are made anew there.
   void move_away() { index_one_.move_away(); }
   /// The equations where they were looked at last.
-  Evaluation& evaluation() { return e_; }
+  KeptEvaluation& evaluation() { return e_; }
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
   const Fault& fault() const { return index_one_.fault(); }
   const char* trouble() const { return index_one_.trouble(); }
@@ -96,6 +98,7 @@ class NewtonStageSolver {
   Factor& factor_for(double beta_q, double beta_v);
   /// Factor at the present evaluation, which must hold Phi_q and derivatives.
   bool refactor(Factor& factor);
+  void set_pattern(Factor& factor);
   double factor_once(Factor& factor);
   bool find_dependent_rows();
   void note_rounding_of_phi();
@@ -104,16 +107,18 @@ class NewtonStageSolver {
   /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
   /// square over the size of the model.
   double part_of_allowed(std::span<const double> error, double allowed);
+  /// Velocities, coordinates and internal variables of a stage at the accelerations that `out` has.
+  void follow_accelerations(const Stage& stage, StateView& out);
   /// Whether the last update of a stage is what the rounding of Phi makes of itself: close to a singular position it
   /// grows without bound, and nothing more can be won.
-  bool is_rounding_of_phi(const Factor& factor, double beta);
+  bool is_rounding_of_phi(const Factor& factor, double way);
 
   const System& system_;
   StageOptions options_;
   abi::StageSolverTable table_;
   IndexOneSolver index_one_;
   // Views of what it holds.
-  Evaluation& e_;
+  KeptEvaluation& e_;
   std::span<const char> dependent_;
   std::span<const double> unit_;
   std::vector<Factor> factors_;  // one for each pair of betas

@@ -19,7 +19,7 @@ bool Observer::observe(const Point& point, const Evaluation& e, std::span<const 
                        Fault& fault) const {
   const Model& model = system_.model();
   row[at(channels_.time)] = point.t;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, point, row);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, e, row);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     if (!observe_joint(j, point, e, lambda, row, fault)) return false;
   }
@@ -28,24 +28,25 @@ bool Observer::observe(const Point& point, const Evaluation& e, std::span<const 
     if (!observe_path(k, point, e, row, fault)) return false;
   }
   for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) observe_force(f, e, row);
-  for (int f = 0; f < static_cast<int>(channels_.frames.size()); ++f) observe_frame(f, point, e, row);
-  double stored = system_.gravity_potential(point.q);
+  for (int f = 0; f < static_cast<int>(channels_.frames.size()); ++f) observe_frame(f, e, row);
+  double stored = system_.gravity_potential(e.q);
   for (const double potential : e.potential) stored += potential;
-  row[at(channels_.energy.kinetic)] = system_.kinetic_energy(point.v);
+  row[at(channels_.energy.kinetic)] = system_.kinetic_energy(e.v);
   row[at(channels_.energy.potential)] = stored;
   return true;
 }
 
-void Observer::observe_body(int index, const Point& point, std::span<double> row) const {
+void Observer::observe_body(int index, const Evaluation& e, std::span<double> row) const {
   double* to = &row[at(channels_.bodies[at(index)])];
+  const int place = system_.layout().place(index);
   if (system_.model().space == Space::planar) {
-    std::copy_n(&point.q[3 * at(index)], 3, to);
-    std::copy_n(&point.v[3 * at(index)], 3, to + 3);
+    std::copy_n(&e.q[3 * at(place)], 3, to);
+    std::copy_n(&e.v[3 * at(place)], 3, to + 3);
     return;
   }
-  std::copy_n(&point.q[7 * at(index)], 3, to);
-  std::ranges::copy(system_.frame_quaternion(index, point.q), to + 3);
-  system_.body_twist(index, point.q, point.v, to + 7);
+  std::copy_n(&e.q[7 * at(place)], 3, to);
+  std::ranges::copy(system_.frame_quaternion(place, e.q), to + 3);
+  system_.body_twist(place, e.q, e.v, to + 7);
 }
 
 // A wrench (6 numbers) in the columns from `to` on.
@@ -98,7 +99,9 @@ void Observer::observe_driver(int index, const Evaluation& e, std::span<const do
   // An angle from inverse kinematics is known up to whole turns; the joint counts them.
   const bool turns = r >= 0 && system_.motions().modulo_turns(index);
   const bool speed = system_.model().drivers[at(index)].kind == DriverKind::velocity;
-  row[at(columns.value)] = turns ? e.coordinate[joint] - e.phi[at(r)] : speed ? e.motion[at(index)].rate : prescribed;
+  row[at(columns.value)] = turns   ? e.coordinate[joint] - (r < system_.layout().nc() ? e.phi[at(r)] : 0.0)
+                           : speed ? e.motion[at(index)].rate
+                                   : prescribed;
   row[at(columns.effort)] = effort;
   row[at(columns.power)] = effort * e.coordinate_rate[joint];
 }
@@ -112,7 +115,7 @@ bool Observer::observe_path(int index, const Point& point, const Evaluation& e, 
   }
   const int marker = system_.model().kinematics[at(index)].marker;
   const PathColumns& columns = channels_.paths[at(index)];
-  const double turned = marker_angle(system_.model(), marker, point.q) - wanted[2].value;
+  const double turned = system_.marker_angle(marker, e.q) - wanted[2].value;
   row[at(columns.error_x)] = e.markers[at(marker)].position[0] - wanted[0].value;
   row[at(columns.error_y)] = e.markers[at(marker)].position[1] - wanted[1].value;
   row[at(columns.error_angle)] = turned - 2.0 * M_PI * std::round(turned / (2.0 * M_PI));
@@ -126,7 +129,7 @@ void Observer::observe_force(int index, const Evaluation& e, std::span<double> r
   row[at(columns.power)] = power(applied, e.markers[at(system_.model().forces[at(index)].marker)]);
 }
 
-void Observer::observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const {
+void Observer::observe_frame(int index, const Evaluation& e, std::span<double> row) const {
   const int marker = system_.model().settings.frames[at(index)];
   const MarkerKinematics& k = e.markers[at(marker)];
   if (system_.model().space == Space::spatial) {
@@ -139,7 +142,7 @@ void Observer::observe_frame(int index, const Point& point, const Evaluation& e,
     std::copy_n(k.angular_velocity, 3, to + 10);
     return;
   }
-  const double values[6] = {k.position[0], k.position[1], marker_angle(system_.model(), marker, point.q),
+  const double values[6] = {k.position[0], k.position[1], system_.marker_angle(marker, e.q),
                             k.velocity[0], k.velocity[1], k.angular_velocity[2]};
   std::copy_n(values, 6, row.begin() + channels_.frames[at(index)]);
 }

@@ -19,14 +19,14 @@ class Observer {
                Fault& fault) const;
 
  private:
-  void observe_body(int index, const Point& point, std::span<double> row) const;
+  void observe_body(int index, const Evaluation& e, std::span<double> row) const;
   void write_wrench(const double* wrench, double* to) const;
   bool observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
                      std::span<double> row, Fault& fault) const;
   void observe_driver(int index, const Evaluation& e, std::span<const double> lambda, std::span<double> row) const;
   bool observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault) const;
   void observe_force(int index, const Evaluation& e, std::span<double> row) const;
-  void observe_frame(int index, const Point& point, const Evaluation& e, std::span<double> row) const;
+  void observe_frame(int index, const Evaluation& e, std::span<double> row) const;
 
   const System& system_;
   const Channels& channels_;

@@ -10,6 +10,7 @@
 #include "component/declared.h"
 #include "component/joint_answer.h"
 #include "run/simulation_impl.h"
+#include "system/finite.h"
 
 namespace freeplay {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-constexpr double smallest_step = 1e-3;      // of the step asked for
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
@@ -61,59 +61,71 @@ StepLimits step_limits(const Settings& settings) {
           settings.accuracy > 0.0 ? largest_uninformed * settings.largest_step : settings.largest_step};
 }
 
+// Multipliers that are not determined come out with efforts of drivers as small as can be: these must be among the
+// unknowns.
+Unknowns unknowns_of(const ModelFacts& facts) {
+  const bool determined = facts.actual.redundant == 0 && facts.actual.driver_redundant == 0;
+  return determined ? Unknowns::free_bodies : Unknowns::all_bodies;
+}
+
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 
-Simulation::Impl::Impl(System& owner, const Start& start, const Channels& all_channels,
+Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& all_channels,
                        std::span<Sink* const> all_sinks)
-    : system(owner),
+    : system(owner.model(), Variant::released, unknowns_of(start.facts)),
       model(owner.model()),
       settings(model.settings),
       channels(all_channels),
       sinks(all_sinks.begin(), all_sinks.end()),
-      energy(owner),
-      integrator_layout(declare(owner, energy.flows())),
+      energy(system),
+      integrator_layout(declare(system, energy.flows())),
       adaptive(settings.adaptive || integrator_layout.always_adaptive != 0),
       flows(integrator_layout.explicit_stages != 0 ? energy.flows() : 0),
-      solver(owner, {integrator_layout.newton_tolerance, integrator_layout.newton_max_iterations}),
+      solver(system, {integrator_layout.newton_tolerance, integrator_layout.newton_max_iterations}),
       control(step_limits(settings),
               integrator_layout.error_order > 0 ? integrator_layout.error_order : integrator_layout.order + 1),
-      accepted(owner.layout(), integrator_layout.memory, flows),
-      trial(owner.layout(), integrator_layout.memory, flows),
-      between(owner.layout(), integrator_layout.memory, flows),
-      e_accepted(owner),
-      e_trial(owner),
-      own_between(adaptive ? std::optional<Evaluation>(std::in_place, owner) : std::nullopt),
+      accepted(system.layout(), integrator_layout.memory, flows),
+      trial(system.layout(), integrator_layout.memory, flows),
+      between(system.layout(), integrator_layout.memory, flows),
+      e_accepted(system),
+      e_trial(system),
+      own_between(adaptive ? std::optional<KeptEvaluation>(std::in_place, system) : std::nullopt),
       e_between(own_between ? *own_between : solver.evaluation()),
-      observer(owner, all_channels),
-      events(owner, adaptive, between, e_between),
+      observer(system, all_channels),
+      events(system, adaptive, between, e_between),
       statistics(model, all_channels),
       scratch(at(integrator_layout.scratch) + guard::marks),
       row(all_channels.all().size(), 0.0),
       row_between(all_channels.all().size(), 0.0),
-      residual(at(owner.layout().nc())),
-      z_rate(at(owner.layout().nz() + flows)),
+      residual(at(system.layout().nc())),
+      z_rate(at(system.layout().nz() + flows)),
       flow_half_way(at(energy.flows())),
-      defect(at(owner.layout().nv())),
+      defect(at(system.layout().nv())),
       joint_warnings(model.joints.size()),
       speed_jumps(model.drivers.size()),
       motion_before(model.drivers.size()),
-      motion_behind(model.drivers.size()) {
+      motion_behind(model.drivers.size()),
+      q_before(e_accepted->q.size()),
+      v_before(e_accepted->v.size()),
+      driven_change(e_accepted->driven_a.size()),
+      impulses(at(system.layout().all_rows())) {
   if (adaptive) {
-    allowed = local_tolerance(owner);
-    require_attainable_accuracy(owner);
+    allowed = local_tolerance(system);
+    require_attainable_accuracy(system);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
-    owner.end_steps_at_events(settings.per_contact);
+    system.end_steps_at_events(settings.per_contact);
   }
   if (flows > 0) solver.integrate_flows(energy);
-  accepted.assign_motion(start.state);
+  system.begin_at(owner, start.state, accepted);
   for (const StopCondition& stop : settings.stop) stop_columns.push_back(channels.find(stop.channel));
   std::size_t values = 0;
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const JointLayout& layout = owner.joint_layout(j);
+    const JointLayout& layout = system.joint_layout(j);
     if (layout.history > 0) with_history.push_back(j);
+    if (const int turn = system.layout().turn(j); turn >= 0) turns.push_back({at(turn), at(j)});
     joint_warnings[at(j)].values = values;
     values += layout.channels.size;
   }
@@ -194,7 +206,7 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
   double largest = 0.0;
   int suspect = -1;
   for (const ForceBlock& block : system.force_blocks()) {
-    const double* wrench = &e_accepted.wrench[12 * at(block.joint) + 6];
+    const double* wrench = &e_accepted->wrench[12 * at(block.joint) + 6];
     const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
     if (force > largest) largest = force, suspect = block.joint;
   }
@@ -206,8 +218,10 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
 
 bool Simulation::Impl::begin() {
   const Profile::Timer timer(system.profile(), Phase::start);
-  e_accepted.forget_motions();
-  if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted.fault, accepted.t());
+  e_accepted->forget_motions();
+  if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted->fault, accepted.t());
+  system.fill_driven_jacobian(e_accepted);
+  system.recover_loads(e_accepted, accepted.lambda());
   StateView view = accepted.view();
   Message message;
   solver.use_history(accepted.h());
@@ -237,14 +251,22 @@ bool Simulation::Impl::begin_steps(double dt, State& state) {
     system.marker_accelerations(j, e_accepted, accepted.a(), accelerations);
     const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
     if (!system.joint(j).begin_step(system.input(j, here, e_accepted), accelerations, dt, history,
-                                    e_trial.fault.message) ||
-        !keeps_finite({}, history, "begin_step", e_trial.fault.message)) {
-      e_trial.fault.kind = Fault::Kind::plugin;
-      e_trial.fault.joint = j;
-      return fail_with(e_trial.fault, accepted.t());
+                                    e_trial->fault.message) ||
+        !keeps_finite({}, history, "begin_step", e_trial->fault.message)) {
+      e_trial->fault.kind = Fault::Kind::plugin;
+      e_trial->fault.joint = j;
+      return fail_with(e_trial->fault, accepted.t());
     }
     if (!state.intact()) return fail_beside(j);
   }
+  return true;
+}
+
+// Everything about a state whose accelerations the solver knows, and the loads of driven bodies.
+bool Simulation::Impl::evaluate_all(State& state, KeptEvaluation& e) {
+  if (!system.evaluate(point(state), all_terms, solver.evaluation(), e)) return false;
+  system.fill_driven_jacobian(e);
+  system.recover_loads(e, state.lambda());
   return true;
 }
 
@@ -290,24 +312,21 @@ bool Simulation::Impl::check_step(double dt) {
     return fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
                                accepted.t(), integrator_words(model), expected, trial.t()));
   }
-  double sum = 0.0;  // finite only if every term is
-  for (const std::span<const double> part : {trial.q(), trial.v(), trial.a(), trial.lambda(), trial.z()}) {
-    for (const double x : part) sum += x;
-  }
-  if (std::isfinite(sum)) return true;
+  if (is_finite(Span<const double>(trial.before_history()))) return true;
   return fail(5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
                              accepted.t(), integrator_words(model)));
 }
 
-// Where the integrator does not carry the flows, forces are looked at once more in the middle of the step.
+// Where neither the integrator carries the flows nor the steps before tell how they go, forces are looked at once more
+// in the middle of the step.
 void Simulation::Impl::add_energy() {
   const double dt = trial.t() - accepted.t();
   if (flows > 0 || energy.flows() == 0) {
     return energy.take(dt, e_trial, trial.lambda(), std::span<const double>(trial.z()).last(at(flows)));
   }
-  DenseStep(system, accepted, e_accepted.internal_rate, trial, e_trial.internal_rate).at(0.5, between);
-  std::ranges::copy(trial.h(), between.h().begin());        // as the attempt had it
-  e_trial.lend_motions(between.t(), 1e-9 * dt, e_between);  // of a stage
+  if (energy.add_smooth(dt, e_trial, trial.lambda())) return;
+  DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate).at(0.5, between);
+  std::ranges::copy(trial.h(), between.h().begin());  // as the attempt had it
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.
   const bool seen = system.evaluate(point(between), term_force | only_asked, e_between);
   energy.flow(seen ? e_between : e_trial, between.lambda(), flow_half_way);
@@ -331,11 +350,14 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
       return fail_with(fault, trial.t());
     }
   }
+  const Point end = point(trial);
+  const Span<double> all_history(trial.h());
+  const double* const lambda = trial.lambda().data();
   for (const int j : with_history) {
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
-    const Span<double> history = Span<double>(trial.h()).part(at(h.offset), at(h.size));
-    if (!system.joint(j).commit(system.input(j, point(trial), e_trial),
-                                {trial.lambda().data() + rows.offset, at(rows.size)}, history, fault.message) ||
+    const Span<double> history = all_history.part(at(h.offset), at(h.size));
+    if (!system.joint(j).commit(system.input(j, end, e_trial), {lambda + rows.offset, at(rows.size)}, history,
+                                fault.message) ||
         !keeps_finite({}, history, "commit", fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
@@ -343,9 +365,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
     }
     if (!trial.intact()) return fail_beside(j);
   }
-  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    if (const int turn = system.layout().turn(j); turn >= 0) trial.h()[at(turn)] = e_trial.coordinate[at(j)];
-  }
+  for (const auto [turn, joint] : turns) all_history[turn] = e_trial->coordinate[joint];
   std::swap(accepted, trial);
   swap(e_accepted, e_trial);
   outcome.time = accepted.t();
@@ -375,9 +395,7 @@ bool Simulation::Impl::refresh() {
     return fail(5, fmt::format("t = {:.9g} s: {} failed: {} [plugin-failed]", accepted.t(), integrator_words(model),
                                message.text));
   }
-  if (!system.evaluate(point(accepted), all_terms, solver.evaluation(), e_accepted)) {
-    return fail_with(e_accepted.fault, accepted.t());
-  }
+  if (!evaluate_all(accepted, e_accepted)) return fail_with(e_accepted->fault, accepted.t());
   energy.renew(e_accepted, accepted.lambda());
   return true;
 }
@@ -401,8 +419,8 @@ bool Simulation::Impl::record_step() {
   double position = 0.0, velocity = 0.0;
   system.multiply(e_accepted, accepted.v(), residual);
   for (std::size_t r = 0; r < residual.size(); ++r) {
-    position = std::max(position, std::abs(e_accepted.phi[r]));
-    velocity = std::max(velocity, std::abs(residual[r] - e_accepted.nu[r]));
+    position = std::max(position, std::abs(e_accepted->phi[r]));
+    velocity = std::max(velocity, std::abs(residual[r] - e_accepted->nu[r]));
   }
   statistics.add(row, energy.driver_work(), energy.joint_loss(), position, velocity);
   return true;
@@ -410,12 +428,12 @@ bool Simulation::Impl::record_step() {
 
 // Once for each joint; the text is made when the run is over.
 bool Simulation::Impl::note_warnings() {
+  const Point here = point(accepted);
+  Fault fault;
   for (const ForceBlock& block : system.force_blocks()) {
     Warning& warning = joint_warnings[at(block.joint)];
     if (warning.text != nullptr) continue;
-    Fault fault;
-    if (!system.joint(block.joint)
-             .warning(system.input(block.joint, point(accepted), e_accepted), warning.text, fault.message)) {
+    if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = block.joint;
       return fail_with(fault, accepted.t());
@@ -494,44 +512,6 @@ bool Simulation::Impl::check_interrupt(const RunHooks& hooks) {
   return true;
 }
 
-// Fixed steps to an output instant. A step that does not converge is halved and resumed.
-bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
-  const double from = accepted.t(), size = settings.step;
-  const double smallest = smallest_step * size;
-  // Beyond this the time itself could not be advanced: t + dt would round to t.
-  if (!((target - from) / size < 1e15)) {
-    return fail(4, fmt::format("t = {:.9g} s: a step of {:.3g} s is too small to advance the time", from, size));
-  }
-  const long count = std::max(1L, std::lround(std::ceil((target - from) / size - 1e-6)));
-  for (long i = 1; i <= count; ++i) {
-    const double goal = i == count ? target : from + static_cast<double>(i) * size;
-    double dt = goal - accepted.t();
-    while (accepted.t() < goal) {
-      const bool last = accepted.t() + dt >= goal - 0.5 * smallest;
-      if (last) dt = goal - accepted.t();
-      bool converged = false;
-      if (!step(dt, converged)) return false;
-      if (!converged) {
-        ++outcome.rejected;
-        dt *= 0.5;
-        if (dt < smallest && plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());
-        if (dt < smallest) return fail(4, why_not_converged(dt));
-        continue;
-      }
-      if (last) trial.t() = goal;
-      if (!system.evaluate(point(trial), all_terms, solver.evaluation(), e_trial)) {
-        return fail_with(e_trial.fault, trial.t());
-      }
-      for (double kink = system.motions().next_kink(accepted.t()); kink <= trial.t();
-           kink = system.motions().next_kink(kink)) {
-        note_jumps(kink);
-      }
-      if (!accept({}) || !check_stop() || !check_interrupt(hooks)) return false;
-    }
-  }
-  return true;
-}
-
 bool Simulation::Impl::write_row() {
   const Profile::Timer timer(system.profile(), Phase::output);
   if (!know_row()) return false;
@@ -543,17 +523,6 @@ bool Simulation::Impl::write_row() {
 double Simulation::Impl::row_time(long index) const {
   const double t = settings.start + static_cast<double>(index) * settings.interval;
   return t > settings.end - 1e-9 * settings.interval ? settings.end : t;
-}
-
-bool Simulation::Impl::run_fixed(const RunHooks& hooks) {
-  while (accepted.t() < settings.end) {
-    const long before = outcome.steps;
-    const bool going = advance_to(row_time(next_row++), hooks);
-    // A run that was stopped keeps the state it stopped in.
-    if ((going || outcome.steps > before) && !write_row()) return false;
-    if (!going) return false;
-  }
-  return true;
 }
 
 Outcome Simulation::Impl::run(const RunHooks& hooks) {

@@ -1,4 +1,4 @@
-// The parts of a run. Private to simulation.cpp and adaptive_run.cpp.
+// The parts of a run. Private to simulation.cpp and the files named below.
 #pragma once
 
 #include <chrono>
@@ -14,16 +14,15 @@
 namespace freeplay {
 
 struct Simulation::Impl {
-  Impl(System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);
+  Impl(const System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);
 
   Outcome run(const RunHooks& hooks);
 
   // Each returns false when the run is over, with `outcome` filled.
   bool begin();
-  bool advance_to(double target, const RunHooks& hooks);
-  bool run_fixed(const RunHooks& hooks);
   bool step(double dt, bool& converged);
   bool check_step(double dt);
+  bool evaluate_all(State& state, KeptEvaluation& e);
   /// The numbers that an attempt may use as it likes; behind them stand marks.
   Span<double> scratch_space() { return {scratch.data(), scratch.size() - guard::marks}; }
   bool begin_steps(double dt, State& state);
@@ -37,11 +36,19 @@ struct Simulation::Impl {
   bool check_stop();
   bool check_interrupt(const RunHooks& hooks);
 
+  // Runs in fixed steps (fixed_run.cpp).
+  bool run_fixed(const RunHooks& hooks);
+  bool advance_to(double target, const RunHooks& hooks);
+
   // Kinks of prescribed motions (motion_kinks.cpp).
   double next_kink() const;
   static double before(double kink);
   bool pass_kink(double kink);
-  void note_jumps(double kink);
+  bool note_jumps(double kink);
+  void book_jump(double kink);
+  void note_driven(const Evaluation& e);
+  int row_that_jumps() const;
+  void book_impulses(Evaluation& behind);
   void format_jumps();
 
   // Runs with error control (adaptive_run.cpp).
@@ -66,15 +73,15 @@ struct Simulation::Impl {
   double row_time(long index) const;
 
   bool write_row();
-  bool fail(int exit_code, std::string reason);
-  bool fail_with(const Fault& fault, double t);
-  bool fail_beside(int joint);
+  [[gnu::cold]] bool fail(int exit_code, std::string reason);
+  [[gnu::cold]] bool fail_with(const Fault& fault, double t);
+  [[gnu::cold]] bool fail_beside(int joint);
   std::string why_not_converged(double dt) const;
   std::string row_name(int row_index) const;
   int hardest_joint(BodyId body) const;
   void format_warnings();
 
-  System& system;
+  System system;  ///< of the unknowns
   const Model& model;
   const Settings& settings;
   const Channels& channels;
@@ -86,14 +93,18 @@ struct Simulation::Impl {
   NewtonStageSolver solver;
   StepControl control;
   State accepted, trial, between;
-  Evaluation e_accepted, e_trial;
-  std::optional<Evaluation> own_between;  // with error control
-  Evaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
+  KeptEvaluation e_accepted, e_trial;
+  std::optional<KeptEvaluation> own_between;  // with error control
+  KeptEvaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
   Observer observer;
   StepEvents events;
   Statistics statistics;
   std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
   std::vector<int> stop_columns, with_history;
+  struct Turn {
+    std::size_t slot, joint;
+  };
+  std::vector<Turn> turns;  // into h
   struct Warning {
     const char* text = nullptr;
     double time = 0.0;
@@ -107,6 +118,7 @@ struct Simulation::Impl {
   };
   std::vector<SpeedJump> speed_jumps;  ///< by driver
   std::vector<TimeValue> motion_before, motion_behind;
+  std::vector<double> q_before, v_before, driven_change, impulses;
   std::vector<std::string> warnings;
   Outcome outcome;
   Fault plugin_fault;         // of the last attempt

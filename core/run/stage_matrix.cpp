@@ -170,9 +170,12 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
     }
   }
   const int* slot = slots_.rows.data();
-  for (const double entry : e.jacobian) {
-    values_[at(*slot++)] += entry;
-    values_[at(*slot++)] += entry;
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    const double* entry = &e.jacobian[at(block.offset)];
+    for (int i = 0; i < block.rows * system_.body_velocities(); ++i, ++entry) {
+      values_[at(*slot++)] += *entry;
+      values_[at(*slot++)] += *entry;
+    }
   }
   std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
               rest_.values().begin());

@@ -28,7 +28,7 @@ bool fields_make_sense(const Event& event, Span<const double> fields, Message& m
 }
 }  // namespace
 
-StepEvents::StepEvents(const System& system, bool located, State& between, Evaluation& e_between)
+StepEvents::StepEvents(const System& system, bool located, State& between, KeptEvaluation& e_between)
     : system_(system),
       located_(located),
       between_(between),
@@ -64,7 +64,8 @@ bool StepEvents::functions(int joint, const Point& point, const Evaluation& e, s
                            std::span<double> rate, Fault& fault) const {
   if (system_.joint(joint).events(system_.input(joint, point, e), {g.data(), g.size()}, {rate.data(), rate.size()},
                                   fault.message)) {
-    const auto wild = [&](std::size_t i) { return std::isinf(g[i]) || (!std::isnan(g[i]) && !std::isfinite(rate[i])); };
+    // What is not armed is NaN; a difference of a number from itself is zero unless it is not finite.
+    const auto wild = [&](std::size_t i) { return !std::isnan(g[i]) && (g[i] - g[i]) + (rate[i] - rate[i]) != 0.0; };
     std::size_t i = 0;
     while (i < g.size() && !wild(i)) ++i;
     if (i == g.size()) return true;
@@ -80,13 +81,16 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
                        Fault& fault) {
   happenings_.clear();
   values_.clear();
+  // A joint's present history decides what can happen next.
+  const Step step{before,      e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
+                  point(after)};
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const Span<const Event> events = system_.joint_layout(watched_[w]).events;
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
     if (inside_[at(watched_[w])] == 0) continue;
-    if (!apply_joint(w, before, e_before, after, e_after, fault)) return false;
+    if (!apply_joint(w, step, fault)) return false;
   }
   // Stable by hand: a handful of entries, and no allocation.
   for (std::size_t i = 1; i < happenings_.size(); ++i) {
@@ -97,22 +101,19 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
   return true;
 }
 
-bool StepEvents::apply_joint(std::size_t watched, const State& before, const Evaluation& e_before, State& after,
-                             const Evaluation& e_after, Fault& fault) {
+bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault) {
   const int joint = watched_[watched];
   const std::span armed = std::span(armed_).subspan(first_event_[watched]);
   const Span<const Event> events = system_.joint_layout(joint).events;
   const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
   const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
-  const double dt = after.t() - before.t();
+  const double dt = step.end.t - step.start.t;
   double reached = 0.0;
   const std::span told = std::span(happening_).first(events.size);  // at `reached`
   std::ranges::fill(told, 0);
   for (int count = 0; count < most_per_step; ++count) {
-    // The joint's present history decides what can happen next.
-    const Point start{before.t(), before.q(), before.v(), before.z(), after.h()};
-    if (!functions(joint, start, e_before, g0, r0, fault)) return false;
-    if (!functions(joint, point(after), e_after, g1, r1, fault)) return false;
+    if (!functions(joint, step.start, step.e_before, g0, r0, fault)) return false;
+    if (!functions(joint, step.end, step.e_after, g1, r1, fault)) return false;
     int next = -1;
     double earliest = 2.0;
     for (std::size_t i = 0; i < events.size; ++i) {
@@ -131,7 +132,7 @@ bool StepEvents::apply_joint(std::size_t watched, const State& before, const Eva
     if (earliest > reached + same_instant) std::ranges::fill(told, 0);
     reached = std::max(reached, earliest);
     told[at(next)] = 1;
-    if (!tell_inside(joint, next, earliest, before, after, fault)) return false;
+    if (!tell_inside(joint, next, earliest, step.before, step.after, fault)) return false;
   }
   return true;
 }
@@ -152,7 +153,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   std::ranges::copy(after.z(), between_.z().begin());
   std::ranges::copy(after.h(), between_.h().begin());
   if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
-    fault = e_between_.fault;
+    fault = e_between_->fault;
     return false;
   }
   return tell(joint, event, point(between_), e_between_, after, fault);
@@ -241,7 +242,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       if (!looked) {
         DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
         if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
-          fault = e_between_.fault;
+          fault = e_between_->fault;
           return false;
         }
       }
@@ -283,7 +284,7 @@ bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const 
   for (int step = 0; step < 2; ++step) {
     DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
     if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
-      fault = e_between_.fault;
+      fault = e_between_->fault;
       return false;
     }
     if (!functions(found.joint, point(between_), e_between_, g, rate, fault)) return false;

@@ -19,7 +19,7 @@ class StepEvents {
 
   /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `between` and `e_between`
   /// are lent for each call: what they hold does not matter, and is lost.
-  StepEvents(const System& system, bool located, State& between, Evaluation& e_between);
+  StepEvents(const System& system, bool located, State& between, KeptEvaluation& e_between);
 
   /// A crossing that a step passes or ends at.
   struct Passage {
@@ -64,8 +64,15 @@ class StepEvents {
   std::span<const double> fields(const Happening& h) const { return {values_.data() + h.fields, h.count}; }
 
  private:
-  bool apply_joint(std::size_t watched, const State& before, const Evaluation& e_before, State& after,
-                   const Evaluation& e_after, Fault& fault);
+  /// A step and its ends as joints see them: with the history that they have now.
+  struct Step {
+    const State& before;
+    const Evaluation& e_before;
+    State& after;
+    const Evaluation& e_after;
+    Point start, end;
+  };
+  bool apply_joint(std::size_t watched, const Step& step, Fault& fault);
   bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
                  Fault& fault) const;
   bool functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g, std::vector<double>& rate,
@@ -81,7 +88,7 @@ class StepEvents {
   const System& system_;
   bool located_;
   State& between_;
-  Evaluation& e_between_;
+  KeptEvaluation& e_between_;
   std::vector<int> watched_;
   std::vector<std::size_t> first_event_;  // by watched joint: where its events stand in the next two
   std::vector<char> armed_, seen_;        // could the event happen at the last look; the same for the step being tried

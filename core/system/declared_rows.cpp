@@ -10,12 +10,14 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double whole_turn = 2.0 * M_PI;
 
+}  // namespace
+
 /// The line of a slide: h the x axis of marker a, n = h turned by +90 degrees, d = P_b - P_a, and their rates.
 ///
 ///   (n.d)' = n.d' - w h.d,  (n.d)'' = n.d'' - h.d alpha - 2 w h.d' - w^2 n.d
 ///   (h.d)' = h.d' + w n.d,  (h.d)'' = h.d'' + n.d alpha + 2 w n.d' - w^2 h.d
-struct Slide {
-  Slide(const DeclaredRows::Ends& ends, const Point& point, std::span<const Mount> mounts, const Evaluation& e)
+struct DeclaredRows::Slide {
+  Slide(const DeclaredRows::Ends& ends, std::span<const Mount> mounts, const Evaluation& e)
       : a(e.arms[at(ends.marker_a)]), b(e.arms[at(ends.marker_b)]) {
     const Mount& mount = mounts[at(ends.marker_a)];
     const planar::Turn still, &turn = ends.body_a == ground ? still : e.turns[at(ends.body_a)];
@@ -23,7 +25,7 @@ struct Slide {
     h_y = turn.sine * mount.cosine + turn.cosine * mount.sine;
     d_x = b.at_x - a.at_x;
     d_y = b.at_y - a.at_y;
-    const auto speed = [&](BodyId body, std::size_t i) { return body == ground ? 0.0 : point.v[3 * at(body) + i]; };
+    const auto speed = [&](BodyId body, std::size_t i) { return body == ground ? 0.0 : e.v[3 * at(body) + i]; };
     rate_x = (speed(ends.body_b, 0) - b.y * b.w) - (speed(ends.body_a, 0) - a.y * a.w);
     rate_y = (speed(ends.body_b, 1) + b.x * b.w) - (speed(ends.body_a, 1) + a.x * a.w);
   }
@@ -35,8 +37,6 @@ struct Slide {
   const Arm &a, &b;
   double h_x, h_y, d_x, d_y, rate_x, rate_y;
 };
-
-}  // namespace
 
 void DeclaredRows::add_rows(Span<const PlanarRow> rows, const Ends& ends, int row, int block_a, int block_b) {
   for (const PlanarRow kind : rows) {
@@ -54,6 +54,7 @@ void DeclaredRows::add_rows(Span<const PlanarRow> rows, const Ends& ends, int ro
 
 void DeclaredRows::add_coordinate(Coordinate kind, const Ends& ends, int joint, unsigned terms, int turn) {
   (kind == Coordinate::angle ? angles_ : positions_).push_back({ends, joint, turn, terms});
+  terms_ |= terms;
 }
 
 void DeclaredRows::write_constants(Evaluation& e) const {
@@ -81,59 +82,81 @@ void DeclaredRows::write_constants(Evaluation& e) const {
   }
 }
 
-void DeclaredRows::fill_rows(const Point& point, std::span<const Mount> mounts, Evaluation& e) const {
-  double* const phi = e.phi.data();
-  double* const gamma = e.gamma.data();
+// The part of Phi_q that motions change.
+void DeclaredRows::fill(const RowPair& pair, Evaluation& e) {
   double* const jacobian = e.jacobian.data();
+  if (pair.block_a >= 0) {
+    const Arm& a = e.arms[at(pair.marker_a)];
+    jacobian[pair.block_a + 2] = a.y;
+    jacobian[pair.block_a + 5] = -a.x;
+  }
+  if (pair.block_b >= 0) {
+    const Arm& b = e.arms[at(pair.marker_b)];
+    jacobian[pair.block_b + 2] = -b.y;
+    jacobian[pair.block_b + 5] = b.x;
+  }
+}
+
+void DeclaredRows::fill(const Row& row, const Slide& s, Evaluation& e) {
+  double* const jacobian = e.jacobian.data();
+  if (row.block_a >= 0) {
+    jacobian[row.block_a] = s.h_y;
+    jacobian[row.block_a + 1] = -s.h_x;
+    jacobian[row.block_a + 2] = -s.along() - (s.h_x * s.a.x + s.h_y * s.a.y);
+  }
+  if (row.block_b >= 0) {
+    jacobian[row.block_b] = -s.h_y;
+    jacobian[row.block_b + 1] = s.h_x;
+    jacobian[row.block_b + 2] = s.h_x * s.b.x + s.h_y * s.b.y;
+  }
+}
+
+void DeclaredRows::fill_jacobian(std::span<const Mount> mounts, Evaluation& e) const {
+  for (const RowPair& pair : origins_) fill(pair, e);
+  for (const Row& row : across_) fill(row, Slide(row.ends, mounts, e), e);
+}
+
+void DeclaredRows::fill_rows(std::span<const Mount> mounts, Evaluation& e) const {
+  double* const phi = e.phi.data();
+  double* const nu = e.nu.data();
+  double* const gamma = e.gamma.data();
   for (const RowPair& pair : origins_) {
     const Arm &a = e.arms[at(pair.marker_a)], &b = e.arms[at(pair.marker_b)];
     phi[pair.row] = b.at_x - a.at_x;
     phi[pair.row + 1] = b.at_y - a.at_y;
+    nu[pair.row] = nu[pair.row + 1] = 0.0;
     gamma[pair.row] = b.x * b.w * b.w - a.x * a.w * a.w;
     gamma[pair.row + 1] = b.y * b.w * b.w - a.y * a.w * a.w;
-    if (pair.block_a >= 0) {
-      jacobian[pair.block_a + 2] = a.y;
-      jacobian[pair.block_a + 5] = -a.x;
-    }
-    if (pair.block_b >= 0) {
-      jacobian[pair.block_b + 2] = -b.y;
-      jacobian[pair.block_b + 5] = b.x;
-    }
+    fill(pair, e);
   }
   for (const Row& row : across_) {
-    const Slide s(row.ends, point, mounts, e);
+    const Slide s(row.ends, mounts, e);
     phi[row.row] = s.across();
+    nu[row.row] = 0.0;
     // Arms turn with their bodies: d'' has -arm w^2 besides the accelerations of the bodies.
     const double bias =
         (s.h_x * s.b.y - s.h_y * s.b.x) * s.b.w * s.b.w - (s.h_x * s.a.y - s.h_y * s.a.x) * s.a.w * s.a.w;
     gamma[row.row] = 2.0 * s.a.w * s.rate_along() + s.a.w * s.a.w * s.across() + bias;
-    if (row.block_a >= 0) {
-      jacobian[row.block_a] = s.h_y;
-      jacobian[row.block_a + 1] = -s.h_x;
-      jacobian[row.block_a + 2] = -s.along() - (s.h_x * s.a.x + s.h_y * s.a.y);
-    }
-    if (row.block_b >= 0) {
-      jacobian[row.block_b] = -s.h_y;
-      jacobian[row.block_b + 1] = s.h_x;
-      jacobian[row.block_b + 2] = s.h_x * s.b.x + s.h_y * s.b.y;
-    }
+    fill(row, s, e);
   }
   for (const Row& row : turns_) {
     const auto angle = [&](BodyId body, int marker) {
-      return (body == ground ? 0.0 : point.q[3 * at(body) + 2]) + mounts[at(marker)].angle;
+      return (body == ground ? 0.0 : e.q[3 * at(body) + 2]) + mounts[at(marker)].angle;
     };
     const double apart = angle(row.ends.body_b, row.ends.marker_b) - angle(row.ends.body_a, row.ends.marker_a);
     phi[row.row] = apart - whole_turn * std::round(apart / whole_turn);
+    nu[row.row] = gamma[row.row] = 0.0;
   }
 }
 
 void DeclaredRows::fill_coordinates(const Point& point, std::span<const Mount> mounts, unsigned terms,
                                     Evaluation& e) const {
+  if ((terms_ & terms) == 0) return;
   for (const JointCoordinate& angle : angles_) {
     if ((angle.terms & terms) == 0) continue;
     const Arm &a = e.arms[at(angle.ends.marker_a)], &b = e.arms[at(angle.ends.marker_b)];
     const auto turned = [&](BodyId body, int marker) {
-      return (body == ground ? 0.0 : point.q[3 * at(body) + 2]) + mounts[at(marker)].angle;
+      return (body == ground ? 0.0 : e.q[3 * at(body) + 2]) + mounts[at(marker)].angle;
     };
     double value = turned(angle.ends.body_b, angle.ends.marker_b) - turned(angle.ends.body_a, angle.ends.marker_a);
     // The turn nearest to the last accepted angle: a step never turns a joint by more than half a revolution.
@@ -144,7 +167,7 @@ void DeclaredRows::fill_coordinates(const Point& point, std::span<const Mount> m
   }
   for (const JointCoordinate& position : positions_) {
     if ((position.terms & terms) == 0) continue;
-    const Slide s(position.ends, point, mounts, e);
+    const Slide s(position.ends, mounts, e);
     CoordinateRow& row = e.coordinate_rows[at(position.joint)];
     e.coordinate[at(position.joint)] = row.value = s.along();
     e.coordinate_rate[at(position.joint)] = s.rate_along() + s.a.w * s.across();

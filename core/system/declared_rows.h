@@ -31,8 +31,10 @@ class DeclaredRows {
 
   /// Numbers that no motion changes.
   void write_constants(Evaluation& e) const;
-  /// At a point whose arms are filled in `e`; `mounts` by marker.
-  void fill_rows(const Point& point, std::span<const Mount> mounts, Evaluation& e) const;
+  /// Where `e` has bodies and arms; `mounts` by marker.
+  void fill_rows(std::span<const Mount> mounts, Evaluation& e) const;
+  /// Of these the part of Phi_q alone.
+  void fill_jacobian(std::span<const Mount> mounts, Evaluation& e) const;
   void fill_coordinates(const Point& point, std::span<const Mount> mounts, unsigned terms, Evaluation& e) const;
 
  private:
@@ -48,9 +50,13 @@ class DeclaredRows {
     int joint, turn;
     unsigned terms;
   };
+  struct Slide;
+  static void fill(const RowPair& pair, Evaluation& e);
+  static void fill(const Row& row, const Slide& slide, Evaluation& e);
   std::vector<RowPair> origins_;
   std::vector<Row> across_, turns_;
   std::vector<JointCoordinate> angles_, positions_;
+  unsigned terms_ = 0;  // evaluations in which any of them is wanted
 };
 
 }  // namespace freeplay::planar

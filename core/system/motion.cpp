@@ -151,14 +151,18 @@ bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailur
 
 bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept {
   PathPose frame;
-  int framed = -1;  // the entry that `frame` is of
+  PlatformTurn platform;
+  int framed = -1;  // the entry that both are of
   for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
     if (const int kinematics = model_.drivers[d].kinematics; kinematics >= 0) {
       out[d] = {};
       if (!legs_[d]) continue;
-      if (framed != kinematics && !path(kinematics, t, frame, fault)) return false;
+      if (framed != kinematics) {
+        if (!path(kinematics, t, frame, fault)) return false;
+        platform = platform_angle(static_cast<int>(d), frame);
+      }
       framed = kinematics;
-      const CrankPose pose = solve_crank(*legs_[d], frame[0], frame[1], platform_angle(static_cast<int>(d), frame));
+      const CrankPose pose = solve_crank(*legs_[d], frame[0], frame[1], platform);
       if (!reaches(static_cast<int>(d), t, pose, fault)) return false;
       out[d] = {pose.crank.value + legs_[d]->coordinate_offset, pose.crank.rate, pose.crank.acceleration};
       continue;

@@ -242,7 +242,7 @@ bool PathFollower::frame(int kinematics, double t, PathPose& pose, MotionFault& 
                               acceleration);
   pose[0] = {k.position[0], k.velocity[0], acceleration[0]};
   pose[1] = {k.position[1], k.velocity[1], acceleration[1]};
-  pose[2] = {marker_angle(model_, marker, work_->state.q()), k.angular_velocity[2], acceleration[5]};
+  pose[2] = {system_.marker_angle(marker, work_->state.q()), k.angular_velocity[2], acceleration[5]};
   return true;
 }
 

@@ -7,11 +7,6 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-double marker_angle(const Model& model, int marker, std::span<const double> q) {
-  const Marker& m = model.markers[at(marker)];
-  return m.angle + (m.body == ground ? 0.0 : q[3 * at(m.body) + 2]);
-}
-
 void PathRow::entries(const Evaluation& e, double* row) const {
   double g[6] = {};
   g[planar::components[component]] = 1.0;
@@ -20,7 +15,7 @@ void PathRow::entries(const Evaluation& e, double* row) const {
 
 double PathRow::residual(const System& system, const Point& point, const Evaluation& e, double path) const {
   if (component < 2) return e.markers[at(marker)].position[component] - path;
-  const double error = marker_angle(system.model(), marker, point.q) - path;
+  const double error = system.marker_angle(marker, point.q) - path;
   return error - 2.0 * M_PI * std::round(error / (2.0 * M_PI));
 }
 

@@ -24,7 +24,4 @@ struct PathRow {
 /// Rows of the given components of one entry.
 std::vector<PathRow> path_rows(const Model& model, int kinematics);
 
-/// Angle of a marker [rad].
-double marker_angle(const Model& model, int marker, std::span<const double> q);
-
 }  // namespace freeplay

@@ -11,7 +11,8 @@
 
 namespace freeplay {
 
-/// [t | q | v | a | lambda | z | h | integrator memory]. Copying it is the only rollback.
+/// [t | q | v | a | lambda | z | h | integrator memory]. Copying it is the only rollback. q, v and a are those of the
+/// unknowns; lambda has the loads of driven bodies behind theirs.
 class State {
  public:
   State() : block_(guard::marks) {}
@@ -20,10 +21,11 @@ class State {
       : nq_(size(layout.nq())),
         nv_(size(layout.nv())),
         nc_(size(layout.nc())),
+        rows_(size(layout.all_rows())),
         nz_(size(layout.nz() + flows)),
         nh_(size(layout.nh())),
         memory_(size(memory)),
-        block_(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_ + memory_ + guard::marks, 0.0) {
+        block_(1 + nq_ + 2 * nv_ + rows_ + nz_ + nh_ + memory_ + guard::marks, 0.0) {
     guard::set(end());
   }
 
@@ -48,23 +50,30 @@ class State {
   std::span<double> q() { return part(1, nq_); }
   std::span<double> v() { return part(1 + nq_, nv_); }
   std::span<double> a() { return part(1 + nq_ + nv_, nv_); }
-  std::span<double> lambda() { return part(1 + nq_ + 2 * nv_, nc_); }
-  std::span<double> z() { return part(1 + nq_ + 2 * nv_ + nc_, nz_); }
-  std::span<double> h() { return part(1 + nq_ + 2 * nv_ + nc_ + nz_, nh_); }
-  std::span<double> memory() { return part(1 + nq_ + 2 * nv_ + nc_ + nz_ + nh_, memory_); }
+  std::span<double> lambda() { return part(1 + nq_ + 2 * nv_, rows_); }
+  std::span<double> z() { return part(1 + nq_ + 2 * nv_ + rows_, nz_); }
+  std::span<double> h() { return part(1 + nq_ + 2 * nv_ + rows_ + nz_, nh_); }
+  std::span<double> memory() { return part(1 + nq_ + 2 * nv_ + rows_ + nz_ + nh_, memory_); }
   std::span<const double> q() const { return part(1, nq_); }
   std::span<const double> v() const { return part(1 + nq_, nv_); }
   std::span<const double> a() const { return part(1 + nq_ + nv_, nv_); }
-  std::span<const double> lambda() const { return part(1 + nq_ + 2 * nv_, nc_); }
-  std::span<const double> z() const { return part(1 + nq_ + 2 * nv_ + nc_, nz_); }
-  std::span<const double> h() const { return part(1 + nq_ + 2 * nv_ + nc_ + nz_, nh_); }
+  std::span<const double> lambda() const { return part(1 + nq_ + 2 * nv_, rows_); }
+  std::span<const double> z() const { return part(1 + nq_ + 2 * nv_ + rows_, nz_); }
+  std::span<const double> h() const { return part(1 + nq_ + 2 * nv_ + rows_ + nz_, nh_); }
+  /// t, q, v, a, lambda and z.
+  std::span<const double> before_history() const { return part(0, 1 + nq_ + 2 * nv_ + rows_ + nz_); }
   /// For checkpoints and hashes.
   std::span<const double> block() const { return std::span(block_).first(block_.size() - guard::marks); }
   /// False when somebody wrote past the end of the block.
   bool intact() const { return guard::intact(block_.data() + block().size()); }
   StateView view() {
-    return {&block_[0],        Span<double>(q()),     Span<double>(v()), Span<double>(a()), Span<double>(lambda()),
-            Span<double>(z()), Span<double>(memory())};
+    return {&block_[0],
+            Span<double>(q()),
+            Span<double>(v()),
+            Span<double>(a()),
+            Span<double>(lambda().first(nc_)),
+            Span<double>(z()),
+            Span<double>(memory())};
   }
 
  private:
@@ -72,7 +81,7 @@ class State {
   static std::size_t size(int n) { return static_cast<std::size_t>(n); }
   std::span<double> part(std::size_t offset, std::size_t count) { return {block_.data() + offset, count}; }
   std::span<const double> part(std::size_t offset, std::size_t count) const { return {block_.data() + offset, count}; }
-  std::size_t nq_ = 0, nv_ = 0, nc_ = 0, nz_ = 0, nh_ = 0, memory_ = 0;
+  std::size_t nq_ = 0, nv_ = 0, nc_ = 0, rows_ = 0, nz_ = 0, nh_ = 0, memory_ = 0;
   std::vector<double> block_;
 };
 

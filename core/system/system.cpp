@@ -31,6 +31,11 @@ spatial::Matrix principal_axes(const Body& body, spatial::Vector& moments) {
   return axes;
 }
 
+std::vector<planar::DrivenBody> driven(const Model& model, Variant variant, Unknowns unknowns) {
+  if (variant != Variant::released || unknowns != Unknowns::free_bodies) return {};
+  return planar::driven_bodies(model);
+}
+
 // Largest distance between anything that the model places: bodies are as far apart as their markers let them be.
 double model_size(const Model& model) {
   double size = 0.0;
@@ -49,15 +54,16 @@ double model_size(const Model& model) {
 
 }  // namespace
 
-System::System(const Model& model, Variant variant)
+System::System(const Model& model, Variant variant, Unknowns unknowns)
     : model_(model),
       variant_(variant),
-      layout_(model, variant),
+      layout_(model, variant, driven(model, variant, unknowns)),
       motions_(std::make_shared<Motions>(model)),
       offsets_(model.joints.size(), InitialOffset{}),
       size_(model_size(model)) {
   const bool planar = model.space == Space::planar;
-  for (const Body& body : model.bodies) {
+  for (int place = 0; place < bodies(); ++place) {
+    const Body& body = model.bodies[at(layout_.body_at(place))];
     const double m = body.mass;
     if (planar) {
       mass_.insert(mass_.end(), {m, m, body.inertia[8]});
@@ -70,6 +76,7 @@ System::System(const Model& model, Variant variant)
     weight_.insert(weight_.end(), {m * body.gravity[0], m * body.gravity[1], m * body.gravity[2], 0.0, 0.0, 0.0});
   }
   for (const Marker& marker : model.markers) {
+    marker_places_.push_back(layout_.place(marker.body));
     if (planar) {
       mounts_.push_back(planar::mount(model, marker));
       continue;
@@ -88,6 +95,10 @@ System::System(const Model& model, Variant variant)
   const auto add_block = [&](BodyId body, int row, int rows) {
     if (body == ground || rows == 0) return -1;
     blocks_.push_back({row, rows, body, offset});
+    if (row < layout_.nc() && unknown(body) != ground) unknown_blocks_.push_back(blocks_.back());
+    for (int r = 0; row < layout_.nc() && unknown(body) == ground && r < rows; ++r) {
+      couplings_.push_back({row + r, offset + r * body_velocities(), body});
+    }
     offset += rows * body_velocities();
     return static_cast<int>(blocks_.size()) - 1;
   };
@@ -104,8 +115,8 @@ System::System(const Model& model, Variant variant)
     r.index = j;
     r.marker_a = element.marker_a;
     r.marker_b = element.marker_b;
-    r.body_a = model.markers[at(element.marker_a)].body;
-    r.body_b = model.markers[at(element.marker_b)].body;
+    r.body_a = marker_places_[at(element.marker_a)];
+    r.body_b = marker_places_[at(element.marker_b)];
     r.stands_off = closed && element.has_play;
     r.rows = layout_.rows(j);
     r.internal = layout_.internal(j);
@@ -124,7 +135,8 @@ System::System(const Model& model, Variant variant)
       r.block_a = add_block(r.body_a, r.rows.offset, r.rows.size);
       r.block_b = add_block(r.body_b, r.rows.offset, r.rows.size);
       if (declares_rows) {
-        declared_.add_rows(layout.planar_rows, ends_of(r), r.rows.offset, offset_of(r.block_a), offset_of(r.block_b));
+        auto& rows = r.rows.offset < layout_.nc() ? declared_ : driven_rows_;
+        rows.add_rows(layout.planar_rows, ends_of(r), r.rows.offset, offset_of(r.block_a), offset_of(r.block_b));
       } else {
         r.row_space = static_cast<int>(row_blank_.size());
         for (const int count : {12 * r.rows.size, r.rows.size, r.rows.size, r.rows.size}) {
@@ -136,7 +148,7 @@ System::System(const Model& model, Variant variant)
     }
     if (layout.coordinate != Coordinate::none) (r.declares_coordinate ? declared : with_coordinate_).push_back(j);
     if (layout.forces != 0) {
-      force_blocks_.push_back({j, r.body_a, r.body_b, r.internal.size, internal_offset});
+      force_blocks_.push_back({j, unknown(r.body_a), unknown(r.body_b), r.internal.size, internal_offset});
       internal_offset += r.internal.size * (6 * body_velocities() + r.internal.size);
     }
     records_.push_back(r);
@@ -151,12 +163,17 @@ System::System(const Model& model, Variant variant)
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int joint = model.drivers[at(d)].joint;
     const int row = layout_.driver_row(d);
-    records_[at(joint)].coordinate_terms |= term_position | term_force;  // its rate makes the driver's power
-    if (row < 0) continue;
-    const JointRecord& r = records_[at(joint)];
-    const int block_a = add_block(r.body_a, row, 1), block_b = add_block(r.body_b, row, 1);
+    JointRecord& r = records_[at(joint)];
     const bool constant = r.declares_coordinate && r.layout->coordinate == Coordinate::angle;
-    driver_rows_.push_back({d, row, joint, offset_of(block_a), offset_of(block_b), constant});
+    // Its rate makes the driver's power, but for driven bodies, whose motion is that of time.
+    if (row < layout_.nc() || !constant) r.coordinate_terms |= term_position | term_force;
+    if (row < 0) {
+      effort_drivers_.push_back(d);
+      continue;
+    }
+    const int block_a = add_block(r.body_a, row, 1), block_b = add_block(r.body_b, row, 1);
+    auto& rows = row < layout_.nc() ? driver_rows_ : driven_driver_rows_;
+    rows.push_back({d, row, joint, offset_of(block_a), offset_of(block_b), constant});
   }
   for (const int j : declared) {
     const JointRecord& r = records_[at(j)];
@@ -164,18 +181,19 @@ System::System(const Model& model, Variant variant)
   }
   sort_markers();
   sort_rows();
+  for (const planar::DrivenBody& body : driven(model, variant, unknowns)) add_driven(body);
 }
 
 void System::sort_rows() {
   row_starts_.assign(at(layout_.nc()) + 1, 0);
-  for (const JacobianBlock& block : blocks_) {
+  for (const JacobianBlock& block : unknown_blocks_) {
     for (int r = block.row; r < block.row + block.rows; ++r) ++row_starts_[at(r) + 1];
   }
   std::partial_sum(row_starts_.begin(), row_starts_.end(), row_starts_.begin());
   row_pieces_.resize(row_starts_.back());
   std::vector<std::size_t> next(row_starts_.begin(), row_starts_.end() - 1);
   const int width = body_velocities();
-  for (const JacobianBlock& block : blocks_) {
+  for (const JacobianBlock& block : unknown_blocks_) {
     for (int r = 0; r < block.rows; ++r) {
       row_pieces_[next[at(block.row + r)]++] = {block.offset + r * width, width * block.body};
     }
@@ -197,14 +215,14 @@ void System::sort_markers() {
   }
   for (const AppliedForce& force : model_.forces) asked[at(force.marker)] = 1;
   for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
-    if (model_.markers[at(m)].body != ground) moving_markers_.push_back(m);
+    if (marker_places_[at(m)] != ground) moving_markers_.push_back(m);
   }
-  const auto order = [&](int m) { return 2 * model_.markers[at(m)].body + (asked[at(m)] != 0 ? 0 : 1); };
+  const auto order = [&](int m) { return 2 * marker_places_[at(m)] + (asked[at(m)] != 0 ? 0 : 1); };
   std::ranges::sort(moving_markers_, {}, [&](int m) { return std::pair(order(m), m); });
   const auto first_of = [&](int rank) {
     return static_cast<int>(std::ranges::lower_bound(moving_markers_, rank, {}, order) - moving_markers_.begin());
   };
-  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+  for (int b = 0; b < bodies(); ++b) {
     markers_of_body_.push_back({first_of(2 * b), first_of(2 * b + 1), first_of(2 * b + 2)});
   }
 }
@@ -258,7 +276,11 @@ Evaluation::Evaluation(const System& system) {
   phi.resize(at(layout.nc()));
   nu.resize(at(layout.nc()));
   gamma.resize(at(layout.nc()));
-  force.resize(at(layout.nv()));
+  force.resize(system.mass_.size());
+  q.resize(at(layout.body_coordinates()) * model.bodies.size());
+  v.resize(system.mass_.size());
+  driven_a.resize(3 * system.driven_.size());
+  driven_load.resize(driven_a.size());
   std::size_t jacobian_size = 0;
   for (const JacobianBlock& block : system.blocks_) jacobian_size += at(block.rows * layout.body_velocities());
   jacobian.resize(jacobian_size);
@@ -284,22 +306,26 @@ Evaluation::Evaluation(const System& system) {
   for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
   row_space = system.row_blank_;
   system.declared_.write_constants(*this);
-  for (const System::DriverRow& row : system.driver_rows_) {
-    if (!row.constant) continue;
-    if (row.block_a >= 0) jacobian[at(row.block_a) + 2] = -1.0;
-    if (row.block_b >= 0) jacobian[at(row.block_b) + 2] = 1.0;
+  system.driven_rows_.write_constants(*this);
+  for (const auto* rows : {&system.driver_rows_, &system.driven_driver_rows_}) {
+    for (const System::DriverRow& row : *rows) {
+      if (!row.constant) continue;
+      if (row.block_a >= 0) jacobian[at(row.block_a) + 2] = -1.0;
+      if (row.block_b >= 0) jacobian[at(row.block_b) + 2] = 1.0;
+    }
   }
   rate_space.resize(at(widest) + guard::marks);
   derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
   other_motion.resize(model.drivers.size());
   forget_motions();
-  place.resize(at(1 + layout.nq() + layout.nv() + layout.nz() + layout.nh()));
+  z.resize(at(layout.nz()));
+  h.resize(at(layout.nh()));
 }
 
 void System::add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const {
   by_space([&]<class Bodies>(Bodies) {
     constexpr int width = Bodies::velocities;
-    for (const JacobianBlock& block : blocks_) {
+    for (const JacobianBlock& block : unknown_blocks_) {
       const double* entries = &e.jacobian[at(block.offset)];
       double* to = &out[at(width * block.body)];
       double sum[width];
@@ -329,7 +355,7 @@ void System::multiply(const Evaluation& e, std::span<const double> v, std::span<
 void System::jacobian_entries(const Evaluation& e, std::vector<SparseEntry>& out) const {
   const int width = body_velocities();
   out.clear();
-  for (const JacobianBlock& block : blocks_) {
+  for (const JacobianBlock& block : unknown_blocks_) {
     const double* entry = &e.jacobian[at(block.offset)];
     for (int r = block.row; r < block.row + block.rows; ++r) {
       for (int c = 0; c < width; ++c) out.emplace_back(r, width * block.body + c, *entry++);
@@ -378,7 +404,11 @@ void System::marker_accelerations(int index, const Evaluation& e, std::span<cons
   const JointRecord& record = records_[at(index)];
   by_space([&]<class Bodies>(Bodies) {
     const double rest[Bodies::velocities] = {};
-    const auto of = [&](BodyId body) { return body == ground ? rest : &a[Bodies::velocities * at(body)]; };
+    const auto of = [&](BodyId body) {
+      if (body == ground) return rest;
+      const int driven = body - layout_.free_bodies();
+      return driven < 0 ? &a[Bodies::velocities * at(body)] : &e.driven_a[Bodies::velocities * at(driven)];
+    };
     marker_acceleration(of(record.body_a), e.arms_of<Bodies>()[at(record.marker_a)], out.a);
     marker_acceleration(of(record.body_b), e.arms_of<Bodies>()[at(record.marker_b)], out.b);
   });

@@ -3,7 +3,8 @@
 //   M a + Phi_q^T lambda = f(t, q, v, z),   Phi(q, t) = 0,   Phi_q v = nu,   Phi_q a = gamma
 //
 // Phi_q is nc x nv: the derivative along tangent increments of q. The force of the constraints on the bodies is
-// -Phi_q^T lambda.
+// -Phi_q^T lambda. Driven bodies may be left out of the unknowns: they move as time tells, nu and gamma hold what their
+// motion does to the rows, and the loads of the rows that hold them follow from everything else.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@
 
 namespace freeplay {
 
-/// Where the equations are evaluated. Views only.
+/// Where the equations are evaluated: values of the unknowns. Views only.
 struct Point {
   double t = 0.0;
   std::span<const double> q, v, z, h;
@@ -102,10 +103,14 @@ struct JointRecord {
 };
 
 struct Evaluation;
+class KeptEvaluation;
+
+/// What the equations of motion are solved for.
+enum class Unknowns { all_bodies, free_bodies };
 
 class System {
  public:
-  explicit System(const Model& model, Variant variant = Variant::released);
+  explicit System(const Model& model, Variant variant = Variant::released, Unknowns unknowns = Unknowns::all_bodies);
 
   const Model& model() const { return model_; }
   const Layout& layout() const { return layout_; }
@@ -116,6 +121,9 @@ class System {
   void share_motions(const System& other) { motions_ = other.motions_; }
   /// Start values of drivers of speeds and offsets of gears are those of another system of the same model.
   void take_start_of(const System& other);
+  /// Driven bodies go on from where they stand in `start`, a state of `whole`, which has all bodies of the same model
+  /// for its unknowns; motions and offsets of gears are its own. `own` gets the unknowns.
+  void begin_at(const System& whole, const State& start, State& own);
   /// Offset of a gear that keeps the one it finds at the start [rad or m].
   void set_gear_offset(int gear, double offset) { gear_offsets_[static_cast<std::size_t>(gear)] = offset; }
   int body_coordinates() const { return layout_.body_coordinates(); }
@@ -138,8 +146,12 @@ class System {
   /// Velocity of a body's centre of mass and its angular velocity [m/s, rad/s], 6 numbers in world axes; and v for it.
   void body_twist(BodyId body, std::span<const double> q, std::span<const double> v, double* twist) const;
   void set_body_twist(BodyId body, std::span<const double> q, const double* twist, std::span<double> v) const;
-  /// Diagonal of M: mass, mass, inertia of every body; in space mass three times and the principal inertias.
-  std::span<const double> mass() const { return mass_; }
+  /// Diagonal of M: mass, mass, inertia of every free body; in space mass three times and the principal inertias.
+  std::span<const double> mass() const { return std::span(mass_).first(static_cast<std::size_t>(layout_.nv())); }
+  /// Where the body of a marker stands among the unknowns (Layout::place); `ground` for driven bodies, too.
+  BodyId unknown_of(int marker) const { return unknown(marker_places_[static_cast<std::size_t>(marker)]); }
+  /// Angle of a marker [rad], for the coordinates of all bodies as in Evaluation::q.
+  double marker_angle(int marker, std::span<const double> q) const;
   /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
   void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
   /// Who is told where the time goes; null: nobody.
@@ -157,7 +169,7 @@ class System {
   bool evaluate(const Point& point, unsigned terms, Evaluation& out) const;
   /// The same where `known` may hold the terms at this very point already, but for the joints' coordinates: the two
   /// then change places.
-  bool evaluate(const Point& point, unsigned terms, Evaluation& known, Evaluation& out) const;
+  bool evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const;
 
   /// out += Phi_q^T lambda and out = Phi_q v.
   void add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
@@ -165,7 +177,7 @@ class System {
   /// Phi_q by its entries; `out` only grows the first time.
   void jacobian_entries(const Evaluation& e, std::vector<SparseEntry>& out) const;
 
-  std::span<const JacobianBlock> jacobian_blocks() const { return blocks_; }
+  std::span<const JacobianBlock> jacobian_blocks() const { return unknown_blocks_; }
   /// What a row has in the columns of one body: from `offset` of Evaluation::jacobian, for v from `velocity` on.
   struct RowPiece {
     int offset, velocity;
@@ -188,13 +200,33 @@ class System {
   /// Wrench (6 numbers) on the second body at its marker: constraint and applied parts together. Of a gear: what it
   /// exerts on the second body of its second joint at that joint.
   void reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const;
+  /// Adds the loads of driven bodies behind the multipliers of the unknowns: `lambda` has Layout::all_rows() numbers.
+  /// `e` holds all forces.
+  void recover_loads(Evaluation& e, std::span<double> lambda) const;
+  /// Their part of Phi_q: before it, reaction() says nothing of joints that hold driven bodies.
+  void fill_driven_jacobian(Evaluation& e) const;
+  /// The same for impulses: rows of free bodies have given `impulse`, and driven bodies changed their velocities (3
+  /// numbers each) by `change`.
+  void recover_impulses(Evaluation& e, std::span<const double> change, std::span<double> impulse) const;
+  /// Power of the rows of joints between free and driven bodies on the driven ones, turned round [W].
+  double power_from_driven(const Evaluation& e, std::span<const double> lambda) const;
+  /// The row that holds a driven body last: that of its driver, if it has one.
+  int row_of_driven(std::size_t driven) const { return driven_[driven].rows[2]; }
   /// Accelerations of a joint's two markers.
   void marker_accelerations(int index, const Evaluation& e, std::span<const double> a, MarkerAccelerations& out) const;
 
+  /// For the coordinates and velocities of all bodies, as in Evaluation::q and Evaluation::v.
   double kinetic_energy(std::span<const double> v) const;
   double gravity_potential(std::span<const double> q) const;
 
  private:
+  int bodies() const { return static_cast<int>(model_.bodies.size()); }
+  BodyId unknown(BodyId place) const { return place < layout_.free_bodies() ? place : ground; }
+  void add_driven(const planar::DrivenBody& body);
+  void place_driven(const Point& point, bool only_asked, Evaluation& e) const;
+  void turn_driven_markers(Evaluation& e) const;
+  void move_rows_with_driven(Evaluation& e) const;
+  void solve_for_loads(Evaluation& e, std::span<double> force, std::span<double> lambda) const;
   void sort_markers();
   void sort_rows();
   bool fill(const Point& point, unsigned terms, Evaluation& e) const;
@@ -204,8 +236,8 @@ class System {
   void place_markers(const Point& point, bool only_asked, Evaluation& e) const;
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
   static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
-  static bool refuse(int joint, const char* why, Evaluation& e);
-  static bool blame(int joint, Evaluation& e);
+  [[gnu::cold]] static bool refuse(int joint, const char* why, Evaluation& e);
+  [[gnu::cold]] static bool blame(int joint, Evaluation& e);
   static bool markers_are_finite(const JointRecord& record, const Evaluation& e);
   template <class Bodies>
   bool evaluate_rows(const Point& point, Evaluation& e) const;
@@ -213,10 +245,15 @@ class System {
   void write_coordinate_row(int index, const Evaluation& e, double* row, double& bias) const;
   template <class Bodies>
   void evaluate_gear_rows(Evaluation& e) const;
+  struct DriverRow;
+  template <class Bodies>
+  double fill_driver_row(const DriverRow& row, Evaluation& e) const;
   template <class Bodies>
   void evaluate_driver_rows(Evaluation& e) const;
   template <class Bodies>
   bool evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const;
+  template <class Bodies>
+  [[gnu::noinline]] bool take_forces(std::size_t block, const JointForces& out, bool derivatives, Evaluation& e) const;
   template <class Bodies>
   bool evaluate_applied(const Point& point, Evaluation& e) const;
   void add_gyroscopic(const Point& point, bool derivatives, Evaluation& e) const;
@@ -256,15 +293,41 @@ class System {
   };
   std::vector<MarkersOfBody> markers_of_body_;  // in moving_markers_
   std::vector<JacobianBlock> blocks_;
-  std::vector<RowPiece> row_pieces_;     // row by row
-  std::vector<std::size_t> row_starts_;  // in row_pieces_
-  std::vector<double> row_blank_;        // what Evaluation::row_space holds before joints fill it
+  std::vector<JacobianBlock> unknown_blocks_;  // of these: rows and bodies that are unknowns
+  std::vector<RowPiece> row_pieces_;           // row by row
+  std::vector<std::size_t> row_starts_;        // in row_pieces_
+  std::vector<double> row_blank_;              // what Evaluation::row_space holds before joints fill it
   /// Row of a driver: where it stands, and whether it is the same always, as of an angle that is declared.
   struct DriverRow {
     int driver, row, joint, block_a, block_b;
     bool constant;
   };
   std::vector<DriverRow> driver_rows_;
+  std::vector<int> effort_drivers_;    // which apply a force or a torque
+  std::vector<BodyId> marker_places_;  // Layout::place of each marker's body
+  /// How a driven body is held: one marker of its own at one of its parent.
+  struct Driven {
+    BodyId place = ground, parent = ground;
+    int joint = -1, driver = -1, own_marker = 0, parent_marker = 0;
+    double sign = 1.0;   // of the coordinate: 1 for the joint's second body
+    double angle = 0.0;  // of the body beyond its parent's and the coordinate [rad]
+    bool slides = false, modulo_turns = false;
+    int turn_row = 2;  // of a pin or a weld, in `rows`; the others are of its x and y
+    int turn = -1;     // into h
+    int rows[3] = {};
+    int blocks[3] = {};                   // of these rows in its own columns, into Evaluation::jacobian
+    int parent_blocks[3] = {-1, -1, -1};  // and in those of its parent, where that is driven, too
+  };
+  bool has_slides_ = false;           // among them
+  std::vector<Driven> driven_;        // in the order of their places
+  planar::DeclaredRows driven_rows_;  // that hold them
+  std::vector<DriverRow> driven_driver_rows_;
+  /// A row of unknowns in the columns of a driven body.
+  struct Coupling {
+    int row, offset;
+    BodyId place;
+  };
+  std::vector<Coupling> couplings_;
   std::vector<std::array<int, 4>> gear_blocks_;  // by gear: of the bodies of its first and of its second joint
   std::vector<double> gear_offsets_;
   std::vector<ForceBlock> force_blocks_;
@@ -280,7 +343,12 @@ struct Evaluation {
   std::vector<MarkerKinematics> markers;
   std::vector<planar::Arm> arms;           ///< by marker, in the plane
   std::vector<spatial::Arm> spatial_arms;  ///< by marker, in space
-  std::vector<double> phi, nu, gamma, jacobian, force;
+  std::vector<double> q, v;                ///< of all bodies, those of the unknowns first
+  std::vector<double> driven_a;            ///< accelerations of driven bodies
+  std::vector<double> driven_load;         ///< work space: on driven bodies
+  bool driven_asked = false;               ///< of their markers only those of Term::only_asked are placed
+  std::vector<double> phi, nu, gamma, jacobian;
+  std::vector<double> force;                        ///< on all bodies
   std::vector<double> force_q, force_v;             ///< of force blocks
   std::vector<double> gyroscopic_v;                 ///< in space, 3 x 3 by body: its gyroscopic moment by its w
   std::vector<double> internal_derivatives;         ///< of force blocks with internal variables
@@ -297,14 +365,7 @@ struct Evaluation {
   Fault fault;
 
   /// Prescribed motions are not those of their times any more.
-  void forget_motions() { motion_time = other_motion_time = std::numeric_limits<double>::quiet_NaN(); }
-  /// Gives the prescribed motions of the time `t` away where it keeps them, within `apart`; `t` is then that very time.
-  void lend_motions(double& t, double apart, Evaluation& to) {
-    if (!(std::abs(other_motion_time - t) <= apart)) return;
-    t = other_motion_time;
-    other_motion.swap(to.motion);
-    std::swap(other_motion_time, to.motion_time);
-  }
+  void forget_motions() { motion_time = other_motion_time = driven_time = std::numeric_limits<double>::quiet_NaN(); }
   /// Whether phi, Phi_q and nu are those of this time and these coordinates.
   bool has_rows_at(const Point& point) const;
   /// Whether these terms were filled at this very point.
@@ -329,26 +390,30 @@ struct Evaluation {
   std::vector<double> rate_space, derivative_space;
   std::vector<planar::Turn> turns;
   std::vector<spatial::Turn> spatial_turns;
+  double driven_time;  ///< that driven bodies are placed for
   double motion_time;
   /// Of the time before that one: methods come back to the middle of a step.
   std::vector<TimeValue> other_motion;
   double other_motion_time;
-  unsigned filled = 0;        ///< terms that `place` speaks of
-  std::vector<double> place;  ///< t, q, v, z, h of the last evaluation that did not fail
+  /// Terms that were filled for `time`, for the coordinates and velocities of unknowns above, and for these z and h;
+  /// none where the evaluation failed.
+  unsigned filled = 0;
+  double time = 0.0;
+  std::vector<double> z, h;
+};
 
-  /// Everything but the faults, which say nothing of evaluations that did not fail.
-  friend void swap(Evaluation& a, Evaluation& b) noexcept {
-    const auto numbers = [](Evaluation& e) {
-      // All members, so that a new one is not forgotten.
-      auto& [e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21, e31, e34,
-             faults, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33] = e;
-      return std::tie(e1, e2, e3, e4, e5, e6, e7, e8, e9, e10, e11, e12, e13, e14, e15, e16, e17, e18, e19, e20, e21,
-                      e31, e34, e22, e23, e24, e25, e26, e27, e28, e29, e30, e32, e33);
-    };
-    auto first = numbers(a), second = numbers(b);
-    first.swap(second);
-    a.fault.kind = b.fault.kind = Fault::Kind::none;
-  }
+/// An Evaluation that changes places with another one by its address.
+class KeptEvaluation {
+ public:
+  explicit KeptEvaluation(const System& system) : evaluation_(std::make_unique<Evaluation>(system)) {}
+  operator Evaluation&() { return *evaluation_; }
+  operator const Evaluation&() const { return *evaluation_; }
+  Evaluation* operator->() { return evaluation_.get(); }
+  const Evaluation* operator->() const { return evaluation_.get(); }
+  friend void swap(KeptEvaluation& a, KeptEvaluation& b) noexcept { a.evaluation_.swap(b.evaluation_); }
+
+ private:
+  std::unique_ptr<Evaluation> evaluation_;
 };
 
 /// Calls `body` with the bodies of the model's space, planar::Bodies{} or spatial::Bodies{}.

@@ -100,6 +100,11 @@ std::array<double, 4> System::frame_quaternion(BodyId body, std::span<const doub
   return out;
 }
 
+double System::marker_angle(int marker, std::span<const double> q) const {
+  const BodyId place = marker_places_[at(marker)];
+  return model_.markers[at(marker)].angle + (place == ground ? 0.0 : q[3 * at(place) + 2]);
+}
+
 void System::body_twist(BodyId body, std::span<const double> q, std::span<const double> v, double* twist) const {
   std::fill_n(twist, 6, 0.0);
   if (model_.space == Space::planar) {

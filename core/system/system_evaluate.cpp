@@ -28,27 +28,25 @@ bool same(std::span<const double> a, std::span<const double> b) {
 }  // namespace
 
 bool Evaluation::has_rows_at(const Point& point) const {
-  return (filled & term_position) != 0 && place[0] == point.t && same(std::span(place).subspan(1), point.q);
+  return (filled & term_position) != 0 && time == point.t && same(q, point.q);
 }
 
 bool Evaluation::is_at(const Point& point, unsigned terms) const {
-  if ((terms & ~filled) != 0 || place[0] != point.t) return false;
-  std::size_t next = 1;
-  for (const std::span<const double> part : {point.q, point.v, point.z.first(internal_rate.size()), point.h}) {
-    if (!same(std::span(place).subspan(next), part)) return false;
-    next += part.size();
-  }
-  return true;
+  return (terms & ~filled) == 0 && time == point.t && same(q, point.q) && same(v, point.v) &&
+         same(z, point.z.first(z.size())) && same(h, point.h);
 }
 
-bool System::evaluate(const Point& point, unsigned terms, Evaluation& known, Evaluation& e) const {
-  if (!known.is_at(point, terms & ~unsigned{term_coordinate})) return evaluate(point, terms, e);
-  swap(e, known);
+bool System::evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const {
+  if (!known->is_at(point, terms & ~unsigned{term_coordinate}))
+    return evaluate(point, terms, static_cast<Evaluation&>(out));
+  swap(out, known);
+  Evaluation& e = out;
   if ((e.filled & only_asked) != 0 && (terms & only_asked) == 0) {
-    for (std::size_t b = 0; b < e.turns.size(); ++b) {  // planar
+    if (e.driven_asked) turn_driven_markers(e);
+    for (std::size_t b = 0; b < at(layout_.free_bodies()) && !e.turns.empty(); ++b) {  // planar
       for (int i = markers_of_body_[b].end_asked; i < markers_of_body_[b].end; ++i) {
         const std::size_t m = at(moving_markers_[at(i)]);
-        planar::marker_kinematics(mounts_[m], &point.v[3 * b], e.turns[b], e.arms[m], e.markers[m]);
+        planar::marker_kinematics(mounts_[m], &e.v[3 * b], e.turns[b], e.arms[m], e.markers[m]);
       }
     }
     e.filled &= ~unsigned{only_asked};
@@ -61,12 +59,9 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   e.filled = 0;
   if (!fill(point, terms, e)) return false;
   e.filled = terms;
-  double* next = e.place.data();
-  *next++ = point.t;
-  // The integrator may carry integrals behind the internal variables.
-  for (const std::span<const double> part : {point.q, point.v, point.z.first(e.internal_rate.size()), point.h}) {
-    next = std::copy_n(part.data(), part.size(), next);
-  }
+  e.time = point.t;
+  std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals behind
+  std::ranges::copy(point.h, e.h.begin());
   return true;
 }
 
@@ -79,7 +74,9 @@ void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, 
   const planar::Mount* const mounts = mounts_.data();
   planar::Arm* const arms = e.arms.data();
   MarkerKinematics* const markers = e.markers.data();
-  for (std::size_t b = 0; b < e.turns.size(); ++b) {
+  std::ranges::copy(point.q, e.q.begin());
+  std::ranges::copy(point.v, e.v.begin());
+  for (std::size_t b = 0; b < at(layout_.free_bodies()); ++b) {
     // Numbers of their own, which no marker can change.
     const double q[3] = {point.q[3 * b], point.q[3 * b + 1], point.q[3 * b + 2]};
     const double v[3] = {point.v[3 * b], point.v[3 * b + 1], point.v[3 * b + 2]};
@@ -100,6 +97,8 @@ template <>
 void System::place_markers<spatial::Bodies>(const Point& point, bool, Evaluation& e) const {
   const auto q = [&](std::size_t body) { return &point.q[7 * body]; };
   const auto v = [&](std::size_t body) { return &point.v[6 * body]; };
+  std::ranges::copy(point.q, e.q.begin());
+  std::ranges::copy(point.v, e.v.begin());
   for (std::size_t b = 0; b < e.spatial_turns.size(); ++b) e.spatial_turns[b] = turn(spatial::Bodies{}, q(b), v(b));
   for (const int m : moving_markers_) {
     const std::size_t body = at(spatial_mounts_[at(m)].body);
@@ -122,7 +121,8 @@ bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
       }
     }
   }
-  if (!model_.drivers.empty() && (terms & (term_position | term_force)) != 0 && e.motion_time != point.t) {
+  const bool moves = !driven_.empty() || (terms & (term_position | term_force)) != 0;
+  if (!model_.drivers.empty() && moves && e.motion_time != point.t) {
     std::swap(e.motion, e.other_motion);
     std::swap(e.motion_time, e.other_motion_time);
     if (e.motion_time != point.t) {
@@ -134,17 +134,19 @@ bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
       e.motion_time = point.t;
     }
   }
+  if (!driven_.empty()) place_driven(point, (terms & only_asked) != 0, e);
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
-    declared_.fill_rows(point, mounts_, e);
-    if (!evaluate_rows<Bodies>(point, e)) return false;
-    evaluate_gear_rows<Bodies>(e);
-    evaluate_driver_rows<Bodies>(e);
+    declared_.fill_rows(mounts_, e);
+    if (!with_rows_.empty() && !evaluate_rows<Bodies>(point, e)) return false;
+    if (!model_.gears.empty()) evaluate_gear_rows<Bodies>(e);
+    if (!driver_rows_.empty()) evaluate_driver_rows<Bodies>(e);
+    if (!couplings_.empty()) move_rows_with_driven(e);
   }
   if ((terms & term_force) != 0) {
-    if (!evaluate_forces<Bodies>(point, (terms & term_derivative) != 0, e) || !evaluate_applied<Bodies>(point, e)) {
-      return false;
-    }
+    if (!evaluate_forces<Bodies>(point, (terms & term_derivative) != 0, e)) return false;
+    const bool applied = !effort_drivers_.empty() || !model_.forces.empty();
+    if (applied && !evaluate_applied<Bodies>(point, e)) return false;
     if (Bodies::velocities == spatial::velocities) add_gyroscopic(point, (terms & term_derivative) != 0, e);
   }
   return true;

@@ -1,6 +1,7 @@
 // System: the forces of joints, of drivers that apply them and of the model, and their derivatives.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "system/finite.h"
 #include "system/joint_derivatives.h"
@@ -17,11 +18,55 @@ void add_to_force(const double* wrench, const Arm& arm, double* force) {
 }
 }  // namespace
 
+// What a joint returned, besides `out` in the work space.
+template <class Bodies>
+bool System::take_forces(std::size_t f, const JointForces& out, bool derivatives, Evaluation& e) const {
+  const int j = force_blocks_[f].joint;
+  const JointRecord& record = records_[at(j)];
+  const std::size_t nz = at(record.internal.size);
+  const Span<const double> rate(e.rate_space.data(), nz), slopes(e.derivative_space.data(), (12 + nz) * (24 + nz));
+  std::copy(rate.begin(), rate.end(), e.internal_rate.begin() + record.internal.offset);
+  const double size = size_of(out);
+  const bool given = derivatives && record.layout->analytic_derivatives != 0;
+  if (!(std::isfinite(size + energy_of(out)) && is_finite(rate) && (!given || is_finite(slopes))) &&
+      markers_are_finite(record, e)) {
+    return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
+  }
+  const unsigned char acts = size != 0.0 ? 1 : 0, acted = e.acts[f];
+  e.acts[f] = acts;
+  e.acting = 31 * e.acting + acts;
+  e.potential[at(j)] = out.potential;
+  e.potential_rate[at(j)] = out.potential_rate;
+  if (acts != 0 || acted != 0) {
+    double* wrench = &e.wrench[12 * at(j)];
+    std::copy_n(out.wrench_a, 6, wrench);
+    std::copy_n(out.wrench_b, 6, wrench + 6);
+  }
+  if (acts != 0) {  // also where it is no number
+    const auto& arms = e.arms_of<Bodies>();
+    constexpr std::size_t width = Bodies::velocities;
+    if (record.body_a != ground) {
+      add_to_force(out.wrench_a, arms[at(record.marker_a)], &e.force[width * at(record.body_a)]);
+    }
+    if (record.body_b != ground) {
+      add_to_force(out.wrench_b, arms[at(record.marker_b)], &e.force[width * at(record.body_b)]);
+    }
+  }
+  if (derivatives) map_derivatives<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
+  if (derivatives && nz > 0) map_internal<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
+  return true;
+}
+
 template <class Bodies>
 bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const {
   const Profile::Timer timer(profile_, Phase::joints);
   std::ranges::copy(weight_, e.force.begin());
   e.acting = 0;
+  JointForces out;  // zeroed again behind those that wrote into it: most joints with play do not act
+  const auto clear = [&] {
+    for (int i = 0; i < 6; ++i) out.wrench_a[i] = out.wrench_b[i] = 0.0;
+  };
+  clear();
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
@@ -29,15 +74,16 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const JointInput in = input(record, point, e);
     const JointLayout& layout = *record.layout;
     const std::size_t nz = at(record.internal.size), table = (12 + nz) * (24 + nz);
-    JointForces out{};
+    out.potential = 0.0;
+    out.potential_rate = std::numeric_limits<double>::quiet_NaN();
+    out.derivatives = {};
     const Span<double> rate(e.rate_space.data(), nz);
     for (double& z : rate) z = 0.0;
     guard::set(rate.end());
     out.internal_rate = rate;
-    Span<double> slopes;
     if (derivatives && layout.analytic_derivatives != 0) {
       std::fill_n(e.derivative_space.begin(), table, 0.0);
-      out.derivatives = slopes = {e.derivative_space.data(), table};
+      out.derivatives = {e.derivative_space.data(), table};
     }
     bool good = record.joint.apply(in, out, e.fault.message);
     if (good && derivatives && layout.analytic_derivatives == 0) {
@@ -47,31 +93,15 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     }
     if (!good) return blame(j, e);
     if (!guard::intact(rate.end())) return refuse(j, beside, e);
-    if (nz > 0) std::ranges::copy(rate, e.internal_rate.begin() + record.internal.offset);
-    const double size = size_of(out);
-    if (!(std::isfinite(size + energy_of(out)) && (nz == 0 || is_finite(rate)) &&
-          (slopes.empty() || is_finite(slopes))) &&
-        markers_are_finite(record, e)) {
-      return refuse(j, "it returned a force, a rate or a derivative that is not a finite number", e);
+    // What neither acts nor did so before leaves everything as it was.
+    if (!derivatives && nz == 0 && e.acts[f] == 0 && rests(out) && std::isfinite(energy_of(out))) {
+      e.acting = 31 * e.acting;
+      e.potential[at(j)] = out.potential;
+      e.potential_rate[at(j)] = out.potential_rate;
+      continue;
     }
-    const bool rests = size == 0.0 && e.acts[f] == 0;  // its wrenches are zero, and were
-    e.acts[f] = size != 0.0 ? 1 : 0;
-    e.acting = 31 * e.acting + e.acts[f];
-    e.potential[at(j)] = out.potential;
-    e.potential_rate[at(j)] = out.potential_rate;
-    if (!rests) {
-      double* wrench = &e.wrench[12 * at(j)];
-      std::copy_n(out.wrench_a, 6, wrench);
-      std::copy_n(out.wrench_b, 6, wrench + 6);
-    }
-    if (size != 0.0) {  // also where it is no number
-      const auto& arms = e.arms_of<Bodies>();
-      constexpr std::size_t width = Bodies::velocities;
-      if (block.a != ground) add_to_force(out.wrench_a, arms[at(record.marker_a)], &e.force[width * at(block.a)]);
-      if (block.b != ground) add_to_force(out.wrench_b, arms[at(record.marker_b)], &e.force[width * at(block.b)]);
-    }
-    if (derivatives) map_derivatives<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
-    if (derivatives && nz > 0) map_internal<Bodies>(j, f, e.derivative_space.data(), static_cast<int>(24 + nz), e);
+    if (!take_forces<Bodies>(f, out, derivatives, e)) return false;
+    clear();
   }
   return true;
 }
@@ -216,8 +246,7 @@ void System::map_internal<spatial::Bodies>(int joint, std::size_t block, const d
 template <class Bodies>
 bool System::evaluate_applied(const Point& point, Evaluation& e) const {
   constexpr std::size_t width = Bodies::velocities;
-  for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
-    if (layout_.driver_row(d) >= 0) continue;
+  for (const int d : effort_drivers_) {
     const int j = model_.drivers[at(d)].joint;
     double row[2 * width], bias = 0.0;
     coordinate_row(j, e, row, bias);
@@ -257,14 +286,14 @@ bool System::evaluate_applied(const Point& point, Evaluation& e) const {
       std::copy_n(value, 3, part);
     }
     std::copy_n(wrench, 6, &e.applied[6 * f]);
-    const BodyId body = model_.markers[at(force.marker)].body;
+    const BodyId body = marker_places_[at(force.marker)];
     if (body != ground) add_to_force(wrench, e.arms_of<Bodies>()[at(force.marker)], &e.force[width * at(body)]);
   }
   return true;
 }
 
 void System::add_wrench(int marker, const double* wrench, const Evaluation& e, std::span<double> force) const {
-  const std::size_t body = at(model_.markers[at(marker)].body), width = at(body_velocities());
+  const std::size_t body = at(marker_places_[at(marker)]), width = at(body_velocities());
   by_space([&]<class Bodies>(Bodies) { add_to_force(wrench, e.arms_of<Bodies>()[at(marker)], &force[width * body]); });
 }
 

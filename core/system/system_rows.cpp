@@ -105,16 +105,21 @@ void System::evaluate_gear_rows(Evaluation& e) const {
   }
 }
 
+// Its part of Phi_q. Returns its bias.
+template <class Bodies>
+double System::fill_driver_row(const DriverRow& driver, Evaluation& e) const {
+  constexpr int width = Bodies::velocities;
+  double row[2 * width], bias = 0.0;
+  write_coordinate_row<Bodies>(driver.joint, e, row, bias);
+  if (driver.block_a >= 0) std::copy_n(row, width, &e.jacobian[at(driver.block_a)]);
+  if (driver.block_b >= 0) std::copy_n(row + width, width, &e.jacobian[at(driver.block_b)]);
+  return bias;
+}
+
 template <class Bodies>
 void System::evaluate_driver_rows(Evaluation& e) const {
-  constexpr int width = Bodies::velocities;
   for (const DriverRow& driver : driver_rows_) {
-    double row[2 * width], bias = 0.0;
-    if (!driver.constant) {
-      write_coordinate_row<Bodies>(driver.joint, e, row, bias);
-      if (driver.block_a >= 0) std::copy_n(row, width, &e.jacobian[at(driver.block_a)]);
-      if (driver.block_b >= 0) std::copy_n(row + width, width, &e.jacobian[at(driver.block_b)]);
-    }
+    const double bias = driver.constant ? 0.0 : fill_driver_row<Bodies>(driver, e);
     const TimeValue& f = e.motion[at(driver.driver)];
     double error = e.coordinate[at(driver.joint)] - f.value;
     if (std::abs(error) > M_PI && motions_->modulo_turns(driver.driver)) {
@@ -130,6 +135,7 @@ template bool System::evaluate_rows<planar::Bodies>(const Point&, Evaluation&) c
 template bool System::evaluate_rows<spatial::Bodies>(const Point&, Evaluation&) const;
 template void System::evaluate_gear_rows<planar::Bodies>(Evaluation&) const;
 template void System::evaluate_gear_rows<spatial::Bodies>(Evaluation&) const;
+template double System::fill_driver_row<planar::Bodies>(const DriverRow&, Evaluation&) const;
 template void System::evaluate_driver_rows<planar::Bodies>(Evaluation&) const;
 template void System::evaluate_driver_rows<spatial::Bodies>(Evaluation&) const;
 

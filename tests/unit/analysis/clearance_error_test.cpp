@@ -287,7 +287,7 @@ TEST(FeasibleSet, FarthestPointsOfKnownSets) {
   EXPECT_GE(farthest(ellipses, direction), scan);
 }
 
-TEST(PlaySamples, StayWithinTheExactWorstCase) {
+TEST(PlaySamplesLong, StayWithinTheExactWorstCase) {
   for (const char* name : {"3-rrr", "4-rrr"}) {
     Bench bench(platforms::legs_text(platforms::sizes(name), 1, {1e-4, 5e-5, 1e-4}));
     const VelocityMap map = bench.map(bench.reach(Bench::at(0.02, -0.03, 0.1)));

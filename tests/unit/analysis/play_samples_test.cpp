@@ -89,7 +89,7 @@ TEST(PlaySamples, OfOneJointHaveItsLawsMoments) {
   }
 }
 
-TEST(PlaySamples, HaveTheVarianceOfTheirLaw) {
+TEST(PlaySamplesLong, HaveTheVarianceOfTheirLaw) {
   Bench bench(platforms::legs_text(platforms::sizes("3-rrr"), 1, {1e-4, 5e-5, 1e-4}));
   const VelocityMap map = bench.map(bench.reach(Bench::at(0.02, -0.03, 0.1)));
   for (const PlayLaw& law : laws) {
@@ -103,7 +103,7 @@ TEST(PlaySamples, HaveTheVarianceOfTheirLaw) {
 }
 
 // With redundancy: independent plays are drawn, and those that happen to close nearly are kept.
-TEST(PlaySamples, OfARedundantMechanismAreThoseThatClose) {
+TEST(PlaySamplesLong, OfARedundantMechanismAreThoseThatClose) {
   Bench bench(platforms::legs_text(platforms::sizes("4-rrr"), 1, {1e-4, 6e-5, 1e-4}));
   const VelocityMap map = bench.map(bench.reach(Bench::at(0.06, -0.03, 0.1)));
   const auto error = clearance_error(bench.mechanism, map);

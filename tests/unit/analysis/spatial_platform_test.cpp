@@ -212,7 +212,7 @@ TEST(SpatialPlatform, ErrorsOfAStewartPlatformAreThoseOfItsLegLengths) {
   }
 }
 
-TEST(SpatialPlatform, SamplesStayWithinTheBoundAndComeNearIt) {
+TEST(SpatialPlatformLong, SamplesStayWithinTheBoundAndComeNearIt) {
   Stewart stewart;
   stewart.play = {1e-4, 2e-4, 0.5e-4, 1e-4, 3e-4, 1.5e-4};
   stewart.backlash = 4e-5;
@@ -291,7 +291,7 @@ TEST(SpatialPlatform, FirstOrderAgreesWithLegsThatAreChanged) {
 
 // A body on a bearing of length L with radial play c and axial play a, kept from turning by a rod of a slide: shift
 // (e+ + e-)/2 across and e_z along the axis, tilt (e+ - e-)/L.
-TEST(SpatialPlatform, PlayOfABearingWithLengthShiftsAndTilts) {
+TEST(SpatialPlatformLong, PlayOfABearingWithLengthShiftsAndTilts) {
   const double c = 1e-4, a = 3e-4, length = 0.05, arm = 0.2, input = 2e-4;
   const auto model = [&](double height) {
     return fmt::format(

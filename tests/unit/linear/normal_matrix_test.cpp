@@ -9,9 +9,10 @@
 namespace freeplay {
 namespace {
 
-/// A chain of bodies: row r holds bodies r and r + 1, the last row the last three.
+/// A chain of bodies: row r holds bodies r and r + 1, the last row the last three. Before it, `alone` bodies that have
+/// rows for themselves: 1, 2 ... as many as leave them a freedom, again 1 ..., in turn with each other.
 struct Chain {
-  Chain(int rows, int width) : rows_(rows), bodies_(rows + 2), width_(width) {
+  Chain(int rows, int width, int alone = 0) : rows_(rows), bodies_(rows + 2 + alone), width_(width) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(0.5, 2.0);
     for (int c = 0; c < columns(); ++c) mass.push_back(number(random));
@@ -24,7 +25,12 @@ struct Chain {
       add(r, r + 1, 0.3);  // else the condition grows with every row
     }
     for (int b = 1; b <= 3; ++b) add(rows - 1, bodies_ - b, 1.0);
-    for (int i = 0; i < rows + columns(); ++i) right.push_back(number(random));
+    for (int turn = 1; turn < width; ++turn) {
+      for (int b = 0; b < alone; ++b) {
+        if (turn <= 1 + b % (width - 1)) add(rows_++, rows + 2 + b, 1.0);
+      }
+    }
+    for (int i = 0; i < rows_ + columns(); ++i) right.push_back(number(random));
   }
   int columns() const { return bodies_ * width_; }
   /// By a dense LU of the whole system.
@@ -46,10 +52,10 @@ struct Chain {
 
 TEST(NormalMatrix, SolvesTheWholeSystem) {
   for (const int width : {3, 6}) {
-    for (const int rows : {1, 2, 7, 40}) {
-      const Chain chain(rows, width);
+    for (const auto& [rows, alone] : {std::pair(1, 0), {2, 0}, {7, 0}, {40, 0}, {1, 1}, {7, 5}, {2, 11}}) {
+      const Chain chain(rows, width, alone);
       NormalMatrix matrix;
-      ASSERT_TRUE(matrix.set_pattern(chain.mass, width, rows, chain.pieces));
+      ASSERT_TRUE(matrix.set_pattern(chain.mass, width, chain.rows_, chain.pieces));
       for (int again = 0; again < 2; ++again) {
         EXPECT_GT(matrix.factor(chain.numbers), 1e-3);
         const auto columns = static_cast<std::size_t>(chain.columns());
@@ -59,7 +65,8 @@ TEST(NormalMatrix, SolvesTheWholeSystem) {
         x.insert(x.end(), l.begin(), l.end());
         const Eigen::VectorXd expected = chain.solution();
         for (std::size_t i = 0; i < x.size(); ++i) {
-          EXPECT_NEAR(x[i], expected[static_cast<Eigen::Index>(i)], 1e-12 * expected.norm()) << rows << " " << i;
+          EXPECT_NEAR(x[i], expected[static_cast<Eigen::Index>(i)], 1e-12 * expected.norm())
+              << rows << " " << alone << " " << i;
         }
       }
     }

@@ -57,6 +57,23 @@ TEST(SparseRows, FindsTheRankAndAsManyDependentRows) {
   EXPECT_EQ(Eigen::FullPivLU<MatrixXd>(kept).rank(), 58);
 }
 
+TEST(NumericalRank, CountsNeitherEmptyNorDependentRows) {
+  for (const int empty : {0, 1, 4}) {
+    for (const int repeated : {0, 3}) {
+      const SparseMatrix full = chain(6, repeated, 2);
+      SparseMatrix j(full.rows() + empty, full.cols());
+      std::vector<SparseEntry> entries;
+      for (int c = 0; c < full.outerSize(); ++c) {
+        for (SparseMatrix::InnerIterator one(full, c); one; ++one) {
+          entries.emplace_back(static_cast<int>(one.row()) + empty / 2, c, one.value());
+        }
+      }
+      j.setFromTriplets(entries.begin(), entries.end());
+      EXPECT_EQ(numerical_rank(j), 10) << empty << " " << repeated;
+    }
+  }
+}
+
 TEST(SparseRows, SolutionsAreThoseOfLeastNorm) {
   const SparseMatrix j = chain(30, 5, 2);
   const VectorXd b = j * random_vector(j.cols(), 3);

@@ -1,0 +1,79 @@
+// AnchoredBody: the rows of a saddle-point system that hold one body and nothing else.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace freeplay {
+
+/// A body that joints with the ground or with given motions alone hold, all but freely: its part of S = G M^-1 G^T is a
+/// block of its own (see NormalMatrix). Loops have a known length here.
+struct AnchoredBody {
+  /// Rows that leave a body of `width` freedoms at least one.
+  static constexpr int most_rows(int width) { return width - 1; }
+
+  int body = 0, rows = 0;
+  std::array<int, 5> piece{}, row{};  // of each row: where its numbers and its multiplier are
+
+  /// Factors L D L^T. Returns the smallest pivot in parts of its diagonal entry.
+  template <int width, int count>
+  double factor(std::span<const double> numbers, std::span<const double> inverse_mass) {
+    const double* const inverse = &inverse_mass[width * static_cast<std::size_t>(body)];
+    double diagonal[count];
+    for (int r = 0; r < count; ++r) {
+      const double* const g = piece_of<width>(numbers, r);
+      for (int c = 0; c < width; ++c) weighted_[r][c] = g[c] * inverse[c];
+      for (int k = 0; k <= r; ++k) {
+        double sum = g[0] * weighted_[k][0];
+        for (int c = 1; c < width; ++c) sum += g[c] * weighted_[k][c];
+        s_[r][k] = sum;
+      }
+      diagonal[r] = s_[r][r];
+    }
+    double smallest = 1.0;
+    for (int c = 0; c < count; ++c) {
+      const double part = s_[c][c] / diagonal[c];
+      if (!(part >= smallest)) smallest = part;  // keeps a NaN
+      const double inverse_pivot = s_[c][c] = 1.0 / s_[c][c];
+      for (int a = c + 1; a < count; ++a) {
+        const double factor = s_[a][c] * inverse_pivot;
+        for (int b = a; b < count; ++b) s_[b][a] -= factor * s_[b][c];
+        s_[a][c] = factor;
+      }
+    }
+    return smallest;
+  }
+
+  /// From x = b and l = -c to the multipliers l and x = b - G^T l, not yet divided by the masses.
+  template <int width, int count>
+  void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+    double* const b = &x[width * static_cast<std::size_t>(body)];
+    double multiplier[count];
+    for (int r = 0; r < count; ++r) {
+      double sum = l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])];
+      for (int c = 0; c < width; ++c) sum += weighted_[r][c] * b[c];
+      for (int k = 0; k < r; ++k) sum -= s_[r][k] * multiplier[k];
+      multiplier[r] = sum;
+    }
+    for (int r = count; r-- > 0;) {
+      multiplier[r] *= s_[r][r];
+      for (int k = r + 1; k < count; ++k) multiplier[r] -= s_[k][r] * multiplier[k];
+    }
+    for (int r = 0; r < count; ++r) {
+      const double* const g = piece_of<width>(numbers, r);
+      for (int c = 0; c < width; ++c) b[c] -= g[c] * multiplier[r];
+      l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])] = multiplier[r];
+    }
+  }
+
+ private:
+  template <int width>
+  const double* piece_of(std::span<const double> numbers, int r) const {
+    return &numbers[width * static_cast<std::size_t>(piece[static_cast<std::size_t>(r)])];
+  }
+  double weighted_[5][6] = {};  // G M^-1
+  double s_[5][5] = {};         // L below the diagonal, which holds 1 / D
+};
+
+}  // namespace freeplay
