@@ -1,6 +1,7 @@
 #include "analysis/clearance_error.h"
 
 #include "analysis/singularity.h"
+#include "linear/singular_values.h"
 
 namespace freeplay {
 
@@ -14,10 +15,10 @@ std::vector<Generator> generators_of(const IdealMechanism& mechanism, const Velo
 std::optional<Eigen::MatrixXd> pseudo_inverse(const VelocityMap& map, double length) {
   const Eigen::MatrixXd scaled = map.scaled_outputs(length);
   if (scaled.rows() < scaled.cols()) return std::nullopt;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (!(svd.singularValues()[scaled.cols() - 1] >= singular_limit)) return std::nullopt;
+  const SingularValues svd = singular_values(scaled, SingularVectors::thin, SingularVectors::thin);
+  if (!(svd.sigma[scaled.cols() - 1] >= singular_limit)) return std::nullopt;
   // The least squares solution does not depend on the scale of its unknowns.
-  Eigen::MatrixXd out = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+  Eigen::MatrixXd out = svd.v * svd.sigma.cwiseInverse().asDiagonal() * svd.u.transpose();
   for (std::size_t k = 0; k < map.turns.size(); ++k) {
     if (map.turns[k]) out.row(static_cast<Eigen::Index>(k)) /= length;
   }

@@ -5,11 +5,10 @@
 #include <optional>
 #include <queue>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+
+#include "linear/singular_values.h"
 
 namespace freeplay {
 namespace {
@@ -172,10 +171,9 @@ WorstCase worst_vertex(const MatrixXd& a, const VectorXd& widths) {
 class Dual {
  public:
   Dual(const MatrixXd& a, const std::vector<Generator>& generators) : generators_(generators) {
-    const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    image_ =
-        svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal() * svd.matrixU().leftCols(a.cols()).transpose();
-    null_ = svd.matrixU().rightCols(a.rows() - a.cols());
+    const SingularValues svd = singular_values(a, SingularVectors::full, SingularVectors::full);
+    image_ = svd.v * svd.sigma.cwiseInverse().asDiagonal() * svd.u.leftCols(a.cols()).transpose();
+    null_ = svd.u.rightCols(a.rows() - a.cols());
     for (const Generator& generator : generators) reduced_.push_back(null_.transpose() * generator.columns);
   }
 

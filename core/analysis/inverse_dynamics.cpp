@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include "base/error.h"
+#include "linear/singular_values.h"
 
 namespace freeplay {
 namespace {
@@ -45,12 +45,13 @@ MatrixXd all_rows(const IdealMechanism& mechanism, const Evaluation& e) {
 /// directions that are left.
 MatrixXd shift(VectorXd& lambda, const MatrixXd& null, Index first, Index count) {
   if (null.cols() == 0 || count == 0) return null;
-  const Eigen::JacobiSVD<MatrixXd> svd(null.middleRows(first, count), Eigen::ComputeFullV | Eigen::ComputeFullU);
+  const SingularValues svd =
+      singular_values(null.middleRows(first, count), SingularVectors::full, SingularVectors::full);
   Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > rank_limit) ++rank;
-  const VectorXd wanted = -(svd.matrixU().leftCols(rank).transpose() * lambda.segment(first, count));
-  lambda += null * (svd.matrixV().leftCols(rank) * wanted.cwiseQuotient(svd.singularValues().head(rank)));
-  return null * svd.matrixV().rightCols(null.cols() - rank);
+  while (rank < svd.sigma.size() && svd.sigma[rank] > rank_limit) ++rank;
+  const VectorXd wanted = -(svd.u.leftCols(rank).transpose() * lambda.segment(first, count));
+  lambda += null * (svd.v.leftCols(rank) * wanted.cwiseQuotient(svd.sigma.head(rank)));
+  return null * svd.v.rightCols(null.cols() - rank);
 }
 
 }  // namespace
@@ -84,9 +85,9 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
   if (preload != 0.0) {
     if (null.cols() == left.cols()) return Found::no_preload;
     if (null.cols() - left.cols() > 1) return Found::many_preloads;
-    const Eigen::JacobiSVD<MatrixXd> svd(null.middleRows(first_driver, drivers),
-                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
-    VectorXd tension = null * svd.matrixV().col(0) / svd.singularValues()[0];
+    const SingularValues svd =
+        singular_values(null.middleRows(first_driver, drivers), SingularVectors::none, SingularVectors::thin);
+    VectorXd tension = null * svd.v.col(0) / svd.sigma[0];
     Index largest = 0;
     tension.tail(inputs).cwiseAbs().maxCoeff(&largest);
     // The effort is -lambda.

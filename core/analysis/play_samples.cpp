@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "analysis/closed_play.h"
 #include "base/error.h"
+#include "linear/singular_values.h"
 
 namespace freeplay {
 namespace {
@@ -36,19 +35,19 @@ class Sampler {
     image_ = inverse * all;
     plays_ = VectorXd::Zero(width);
     if (width == 0 || a.rows() == a.cols()) return;
-    const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU);
-    const MatrixXd closure = svd.matrixU().rightCols(a.rows() - a.cols()).transpose() * all;
-    const Eigen::JacobiSVD<MatrixXd> free(closure, Eigen::ComputeFullV);
+    const SingularValues svd = singular_values(a, SingularVectors::full);
+    const MatrixXd closure = svd.u.rightCols(a.rows() - a.cols()).transpose() * all;
+    const SingularValues free = singular_values(closure, SingularVectors::none, SingularVectors::full);
     const double limit = 1e-12 * std::max(1e-300, all.cwiseAbs().maxCoeff());
     Index rank = 0;
-    while (rank < free.singularValues().size() && free.singularValues()[rank] > limit) ++rank;
+    while (rank < free.sigma.size() && free.sigma[rank] > limit) ++rank;
     if (rank == 0) return;
     const bool balls = std::ranges::any_of(rooms_, [](const PlayRoom& one) { return one.size == 3; });
     if (law_.kind == PlayLaw::Kind::rim && balls) {
       throw Error(Error::Category::usage, "bad-value",
                   "play of balls that touch their sockets can be drawn only in mechanisms without redundancy");
     }
-    const MatrixXd& v = free.matrixV();
+    const MatrixXd& v = free.v;
     closed_.emplace(v.leftCols(rank), v.rightCols(width - rank), rooms_, law_, random_);
   }
   Sampler(const Sampler&) = delete;

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "linear/singular_values.h"
+
 namespace freeplay {
 
 const char* word(SingularityKind kind) {
@@ -14,7 +16,7 @@ Singularity singularity_of(const VelocityMap& map, double length) {
   Singularity out;
   out.inverse_min = map.inverse_min;
   if (a.rows() >= a.cols() && a.cols() > 0) {
-    const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+    const Eigen::VectorXd sigma = singular_values(a).sigma;
     out.sigma_min = sigma[sigma.size() - 1];
     out.sigma_max = sigma[0];
     out.manipulability = sigma.prod();

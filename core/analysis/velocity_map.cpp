@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/singular_values.h"
+
 namespace freeplay {
 namespace {
 
@@ -232,10 +234,10 @@ void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows
   }
   MatrixXd a = rows.leftCols(kept_);
   scale_turns(a);
-  const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullU);
-  rows.applyOnTheLeft(svd.matrixU().transpose());
-  for (Index r = 0; r < svd.singularValues().size(); ++r) {
-    if (svd.singularValues()[r] > nothing) rows.row(r) /= svd.singularValues()[r];
+  const SingularValues svd = singular_values(a, SingularVectors::full);
+  rows.applyOnTheLeft(svd.u.transpose());
+  for (Index r = 0; r < svd.sigma.size(); ++r) {
+    if (svd.sigma[r] > nothing) rows.row(r) /= svd.sigma[r];
   }
 }
 
@@ -247,13 +249,13 @@ Index VelocityMapper::separate(const Group& group, Eigen::Ref<MatrixXd> rows) co
   for (Index i = 0; i < inputs; ++i) {
     scaled.col(kept_ + i) /= mechanism_.crank_length(group.inputs[static_cast<std::size_t>(i)]);
   }
-  const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeFullU);
+  const SingularValues svd = singular_values(scaled, SingularVectors::full);
   Index moving = 0;
-  while (moving < svd.singularValues().size() && svd.singularValues()[moving] > row_limit_) ++moving;
+  while (moving < svd.sigma.size() && svd.sigma[moving] > row_limit_) ++moving;
   if (moving == rows.rows() && kept_ > 1) return moving;
-  rows.applyOnTheLeft(svd.matrixU().transpose());
+  rows.applyOnTheLeft(svd.u.transpose());
   rows.bottomRows(rows.rows() - moving).leftCols(kept_ + inputs).setZero();
-  for (Index r = 0; r < moving && kept_ == 1; ++r) rows.row(r) /= svd.singularValues()[r];
+  for (Index r = 0; r < moving && kept_ == 1; ++r) rows.row(r) /= svd.sigma[r];
   return moving;
 }
 
@@ -263,7 +265,7 @@ double VelocityMapper::smallest_input(const Group& group, const Eigen::Ref<const
   for (Index i = 0; i < b.cols(); ++i) b.col(i) /= mechanism_.crank_length(group.inputs[static_cast<std::size_t>(i)]);
   if (b.rows() == 1 && b.cols() == 1) return std::abs(b(0, 0));
   if (b.rows() < b.cols()) return 0.0;
-  return Eigen::JacobiSVD<MatrixXd>(b).singularValues().minCoeff();
+  return singular_values(b).sigma.minCoeff();
 }
 
 Eigen::Index VelocityMapper::take(Group& group, const Evaluation& e, Index first, VelocityMap& out) {

@@ -6,7 +6,6 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include "analysis/ideal_mechanism.h"
 #include "analysis/platform_frame.h"

@@ -6,7 +6,6 @@
 #include <memory>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "analysis/branches.h"
@@ -535,34 +534,28 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_analyze_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("analyze", "Kinematics, errors by clearance and drive forces of a platform");
+  CLI::App* app = add_command(program, "analyze", "Kinematics, errors by clearance and drive forces of a platform");
   const auto options = std::make_shared<AnalyzeOptions>();
-  app->add_option("KIND", options->kind, "ik, workspace, singularity, error or inverse-dynamics")->type_name("");
-  app->add_option("MODEL", options->model, "Model file")->type_name("");
-  app->add_option("--frame", options->frame, "The platform: BODY or BODY/FRAME")->type_name("FRAME");
+  add_option(*app, "KIND", options->kind, "ik, workspace, singularity, error or inverse-dynamics");
+  add_option(*app, "MODEL", options->model, "Model file");
+  add_option(*app, "--frame", options->frame, "The platform: BODY or BODY/FRAME", "FRAME");
   add_repeatable(*app, "--pose", options->pose,
-                 "Pose: x,y,angle or x=5cm,y=0 (in space x,y,z,roll,pitch,yaw); repeatable")
-      ->type_name("POSE");
-  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y and so on); repeatable")
-      ->type_name("GRID");
-  app->add_option("--time", options->time, "Instants on the path: FROM:TO:COUNT")->type_name("TIMES");
-  add_repeatable(*app, "--input", options->input, "Coordinates of driven joints: JOINT=VALUE,...; repeatable")
-      ->type_name("INPUTS");
-  app->add_option("--elbow", options->elbow, "Working modes of the legs: 1 or -1, or a list")->type_name("S[,S...]");
-  app->add_flag("--sensitivity", options->sensitivity, "error: sensitivity to the clearance of each joint");
-  app->add_option("--samples", options->samples, "error: columns of N samples of random play")->type_name("N");
-  app->add_option("--seed", options->seed, "Of the samples (0)")->type_name("S");
-  app->add_option("--distribution", options->distribution, "Of the samples: uniform (default), rim or normal[:SIGMA]")
-      ->type_name("LAW");
-  app->add_flag("--branches", options->branches, "ik: all working modes of a --pose, all assemblies of an --input");
-  app->add_option("--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers")
-      ->type_name("VALUE");
-  app->add_option("--out", options->out, "Write the CSV into a file instead of stdout")
-      ->type_name("FILE")
-      ->check(not_empty());
-  app->add_option("--svg", options->svg, "Draw the map of a grid of x and y into a file")
-      ->type_name("FILE")
-      ->check(not_empty());
+                 "Pose: x,y,angle or x=5cm,y=0 (in space x,y,z,roll,pitch,yaw); repeatable", "POSE");
+  add_repeatable(*app, "--grid", options->grid, "Poses on a grid: x=FROM:TO:COUNT (also y and so on); repeatable",
+                 "GRID");
+  add_option(*app, "--time", options->time, "Instants on the path: FROM:TO:COUNT", "TIMES");
+  add_repeatable(*app, "--input", options->input, "Coordinates of driven joints: JOINT=VALUE,...; repeatable",
+                 "INPUTS");
+  add_option(*app, "--elbow", options->elbow, "Working modes of the legs: 1 or -1, or a list", "S[,S...]");
+  add_flag(*app, "--sensitivity", options->sensitivity, "error: sensitivity to the clearance of each joint");
+  add_option(*app, "--samples", options->samples, "error: columns of N samples of random play", "N");
+  add_option(*app, "--seed", options->seed, "Of the samples (0)", "S");
+  add_option(*app, "--distribution", options->distribution, "Of the samples: uniform (default), rim or normal[:SIGMA]",
+             "LAW");
+  add_flag(*app, "--branches", options->branches, "ik: all working modes of a --pose, all assemblies of an --input");
+  add_option(*app, "--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers", "VALUE");
+  add_file_option(*app, "--out", options->out, "Write the CSV into a file instead of stdout", "FILE");
+  add_file_option(*app, "--svg", options->svg, "Draw the map of a grid of x and y into a file", "FILE");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return analyze(*options, common); }};

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -163,13 +162,12 @@ int check_plugin(const CheckOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_check_plugin_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("check-plugin", "Check that the types of a plugin keep their contracts");
+  CLI::App* app = add_command(program, "check-plugin", "Check that the types of a plugin keep their contracts");
   const auto options = std::make_shared<CheckOptions>();
-  app->add_option("LIB", options->library,
-                  "Library: a path, a name in FREEPLAY_PLUGIN_PATH, or 'built-in' for the types of the program itself")
-      ->type_name("");
-  app->add_option("--seed", options->seed, "Seed of the random states (1)")->type_name("N");
-  app->add_option("--time-limit", options->time_limit, "Time for all types together (60 s)")->type_name("TIME");
+  add_option(*app, "LIB", options->library,
+             "Library: a path, a name in FREEPLAY_PLUGIN_PATH, or 'built-in' for the types of the program itself");
+  add_option(*app, "--seed", options->seed, "Seed of the random states (1)", "N");
+  add_option(*app, "--time-limit", options->time_limit, "Time for all types together (60 s)", "TIME");
   add_common_options(*app, common);
   return {app, [options, &common] { return check_plugin(*options, common); }};
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -92,17 +91,16 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
 }  // namespace
 
 Command add_compare_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("compare", "Tell how far two results agree");
+  CLI::App* app = add_command(program, "compare", "Tell how far two results agree");
   const auto options = std::make_shared<CompareOptions>();
-  app->add_option("A", options->a, "Result directory or CSV file")->type_name("");
-  app->add_option("B", options->b, "Another; it is interpolated where its times differ")->type_name("");
-  app->add_option("--tolerance", options->tolerance, "Part of the largest |a| that may differ (1e-6)")
-      ->type_name("REL");
-  app->add_option("--absolute", options->absolute, "What may differ besides (1e-12)")->type_name("ABS");
-  add_repeatable(*app, "--channels", options->channels, "Channels to compare, a name or pattern with *; repeatable")
-      ->type_name("PATTERN");
-  app->add_option("--from", options->from, "First time: \"10 ms\"")->type_name("T");
-  app->add_option("--until", options->until, "Last time")->type_name("T");
+  add_option(*app, "A", options->a, "Result directory or CSV file");
+  add_option(*app, "B", options->b, "Another; it is interpolated where its times differ");
+  add_option(*app, "--tolerance", options->tolerance, "Part of the largest |a| that may differ (1e-6)", "REL");
+  add_option(*app, "--absolute", options->absolute, "What may differ besides (1e-12)", "ABS");
+  add_repeatable(*app, "--channels", options->channels, "Channels to compare, a name or pattern with *; repeatable",
+                 "PATTERN");
+  add_option(*app, "--from", options->from, "First time: \"10 ms\"", "T");
+  add_option(*app, "--until", options->until, "Last time", "T");
   add_common_options(*app, common);
   return {app, [options, &common] { return compare_results(*options, common); }};
 }

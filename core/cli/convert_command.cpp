@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "cli/facts.h"
@@ -200,11 +199,11 @@ int convert(const ConvertOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_convert_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("convert", "Write a URDF file as YAML, or a model as URDF with a side-car");
+  CLI::App* app = add_command(program, "convert", "Write a URDF file as YAML, or a model as URDF with a side-car");
   const auto options = std::make_shared<ConvertOptions>();
-  app->add_option("IN", options->in, "Model file")->type_name("");
-  app->add_option("OUT", options->out, "File to write: .yaml, .yml or .urdf")->type_name("");
-  app->add_flag("--force", options->force, "Overwrite");
+  add_option(*app, "IN", options->in, "Model file");
+  add_option(*app, "OUT", options->out, "File to write: .yaml, .yml or .urdf");
+  add_flag(*app, "--force", options->force, "Overwrite");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return convert(*options, common); }};

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -119,9 +118,9 @@ int describe(const std::string& name, const CommonOptions& common) {
 }  // namespace
 
 Command add_describe_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("describe", "Describe a joint, law or integrator");
+  CLI::App* app = add_command(program, "describe", "Describe a joint, law or integrator");
   const auto name = std::make_shared<std::string>();
-  app->add_option("NAME", *name, "Name of a type, as `freeplay list` shows it")->type_name("");
+  add_option(*app, "NAME", *name, "Name of a type, as `freeplay list` shows it");
   add_common_options(*app, common);
   return {app, [name, &common] { return describe(*name, common); }};
 }

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -155,7 +154,7 @@ int examine(const CommonOptions& common) {
 }  // namespace
 
 Command add_doctor_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("doctor", "Say what is installed, found and writable");
+  CLI::App* app = add_command(program, "doctor", "Say what is installed, found and writable");
   add_common_options(*app, common);
   return {app, [&common] { return examine(common); }};
 }

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <system_error>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -198,13 +197,13 @@ int init(const InitOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_init_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("init", "Write a model or a plugin project to start from");
+  CLI::App* app = add_command(program, "init", "Write a model or a plugin project to start from");
   const auto options = std::make_shared<InitOptions>();
-  app->add_option("NAME", options->name, "Model file or folder to write")->type_name("");
-  app->add_option("--kind", options->kind, "model (the default) or plugin")->type_name("KIND");
-  app->add_option("--type", options->type, "Of a plugin: joint, contact, friction or integrator")->type_name("TYPE");
-  app->add_option("--from", options->from, "Of a model: the mechanism to copy (four-bar); `--from list` names them")
-      ->type_name("MECHANISM");
+  add_option(*app, "NAME", options->name, "Model file or folder to write");
+  add_option(*app, "--kind", options->kind, "model (the default) or plugin", "KIND");
+  add_option(*app, "--type", options->type, "Of a plugin: joint, contact, friction or integrator", "TYPE");
+  add_option(*app, "--from", options->from, "Of a model: the mechanism to copy (four-bar); `--from list` names them",
+             "MECHANISM");
   add_common_options(*app, common);
   return {app, [options, &common] { return init(*options, common); }};
 }

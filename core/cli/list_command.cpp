@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "cli/component_entry.h"
@@ -120,11 +119,10 @@ int list(const ListOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_list_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("list", "List joints, laws, integrators, plugins, or the columns of a model");
+  CLI::App* app = add_command(program, "list", "List joints, laws, integrators, plugins, or the columns of a model");
   const auto options = std::make_shared<ListOptions>();
-  app->add_option("KIND", options->kind, "joints, laws, forces, integrators, plugins or channels; all but channels")
-      ->type_name("");
-  app->add_option("MODEL", options->model, "Model file, for channels")->type_name("");
+  add_option(*app, "KIND", options->kind, "joints, laws, forces, integrators, plugins or channels; all but channels");
+  add_option(*app, "MODEL", options->model, "Model file, for channels");
   add_common_options(*app, common);
   return {app, [options, &common] { return list(*options, common); }};
 }

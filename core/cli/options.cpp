@@ -28,12 +28,46 @@ class NoParameters : public Scope {
   std::vector<std::string> names() const override { return {}; }
 };
 
+// One value for each mention; by default the parser would also take the words that follow.
+CLI::Option* repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
+                        const std::string& help) {
+  return app.add_option(name, values, help)->allow_extra_args(false);
+}
+
 }  // namespace
 
-CLI::Option* add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
-                            const std::string& help) {
-  // One value for each mention; by default the parser would also take the words that follow.
-  return app.add_option(name, values, help)->allow_extra_args(false);
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help) {
+  return program.add_subcommand(name, help);
+}
+
+void add_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
+                const std::string& value_name) {
+  app.add_option(name, value, help)->type_name(value_name);
+}
+
+void add_option(CLI::App& app, const std::string& name, std::uint64_t& value, const std::string& help,
+                const std::string& value_name) {
+  app.add_option(name, value, help)->type_name(value_name);
+}
+
+void add_file_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
+                     const std::string& value_name) {
+  app.add_option(name, value, help)->type_name(value_name)->check([](const std::string& text) {
+    return text.empty() ? std::string("it must not be empty") : std::string();
+  });
+}
+
+void add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values, const std::string& help,
+                    const std::string& value_name) {
+  repeatable(app, name, values, help)->type_name(value_name);
+}
+
+void add_arguments(CLI::App& app, const std::string& name, std::vector<std::string>& values, const std::string& help) {
+  app.add_option(name, values, help)->type_name("");
+}
+
+void add_flag(CLI::App& app, const std::string& name, bool& value, const std::string& help) {
+  app.add_flag(name, value, help);
 }
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
@@ -48,17 +82,16 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
       })
       ->group(common_group);
   app.add_flag("--strict", options.strict, "Warnings in input files are errors")->group(common_group);
-  add_repeatable(app, "--plugin", options.plugins, "Load one more plugin, a path or a name; repeatable")
+  repeatable(app, "--plugin", options.plugins, "Load one more plugin, a path or a name; repeatable")
       ->type_name("LIB")
       ->group(common_group);
 }
 
 void add_model_options(CLI::App& app, ModelOptions& options) {
-  add_repeatable(app, "--set", options.set, "Replace a parameter: --set c=\"50 um\"; repeatable")
+  repeatable(app, "--set", options.set, "Replace a parameter: --set c=\"50 um\"; repeatable")
       ->type_name("NAME=VALUE")
       ->group(model_group);
-  add_repeatable(app, "--ideal", options.ideal,
-                 "Close the clearance of a joint: name, pattern with * or all; repeatable")
+  repeatable(app, "--ideal", options.ideal, "Close the clearance of a joint: name, pattern with * or all; repeatable")
       ->type_name("JOINT")
       ->group(model_group);
 }
@@ -96,10 +129,6 @@ void require_word(const std::string& what, const std::string& word, const std::v
   throw Error(
       Error::Category::usage, "unknown-name", fmt::format("there is no {} '{}'", what, word), {},
       nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(allowed, ", ")));
-}
-
-std::function<std::string(const std::string&)> not_empty() {
-  return [](const std::string& text) { return text.empty() ? std::string("it must not be empty") : std::string(); };
 }
 
 void not_in_this_release(const std::string& what) {

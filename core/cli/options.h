@@ -1,6 +1,7 @@
 // Options: what commands share on the command line.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -9,9 +10,9 @@
 #include "base/unit.h"
 #include "model/build_options.h"
 
+// The library's header is of options.cpp and of those who parse: it takes longer to compile than a command.
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
 namespace freeplay {
@@ -34,12 +35,24 @@ struct Command {
   std::function<int()> execute;
 };
 
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help);
 void add_common_options(CLI::App& app, CommonOptions& options);
 void add_model_options(CLI::App& app, ModelOptions& options);
 
+/// An option ("--end") or an argument ("MODEL"); `value_name` stands for its value in the help.
+void add_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
+                const std::string& value_name = "");
+void add_option(CLI::App& app, const std::string& name, std::uint64_t& value, const std::string& help,
+                const std::string& value_name);
+/// A file or directory to write, which has a name.
+void add_file_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
+                     const std::string& value_name);
 /// An option that may be given several times, one value each.
-CLI::Option* add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
-                            const std::string& help);
+void add_repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values, const std::string& help,
+                    const std::string& value_name);
+/// An argument that takes all words.
+void add_arguments(CLI::App& app, const std::string& name, std::vector<std::string>& values, const std::string& help);
+void add_flag(CLI::App& app, const std::string& name, bool& value, const std::string& help);
 
 /// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
 BuildOptions build_options(const ModelOptions& options);
@@ -51,9 +64,6 @@ double signed_quantity(const std::string& option, const std::string& text, const
 
 /// Throws Error{usage} "unknown-name" with a suggestion unless `word` is one of `allowed`; `what` is what it names.
 void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed);
-
-/// For CLI11: refuses an empty text.
-std::function<std::string(const std::string&)> not_empty();
 
 [[noreturn]] void not_in_this_release(const std::string& what);
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/text.h"
@@ -311,21 +310,21 @@ int run(const RunOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_run_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("run", "Simulate a model and write its results");
+  CLI::App* app = add_command(program, "run", "Simulate a model and write its results");
   const auto options = std::make_shared<RunOptions>();
-  app->add_option("MODEL", options->model, "Model file")->type_name("");
-  app->add_option("--end", options->end, "End time: \"0.5 s\"")->type_name("T");
-  app->add_option("--step", options->step, "Step: 2us")->type_name("H");
-  app->add_option("--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um")->type_name("L");
-  app->add_option("--integrator", options->integrator, "Integrator, with its default parameters")->type_name("NAME");
-  app->add_flag("--verify", options->verify, "Run again finer, and tell the observed error of each channel");
-  app->add_flag("--profile", options->profile,
-                "Tell where the time went: assembly, factorization, joints, events, output");
-  app->add_option("--out", options->out, "Result directory (results/NAME)")->type_name("DIR")->check(not_empty());
-  app->add_flag("--force", options->force, "Write into a directory that holds other files");
-  app->add_option("--format", options->format, "csv; hdf5 and both are not in this release")->type_name("FORMAT");
-  app->add_flag("--resume", options->resume, "Go on from a checkpoint (not in this release)");
-  app->add_flag("--dry-run", options->dry_run, "Load, assemble, print the facts, write nothing");
+  add_option(*app, "MODEL", options->model, "Model file");
+  add_option(*app, "--end", options->end, "End time: \"0.5 s\"", "T");
+  add_option(*app, "--step", options->step, "Step: 2us", "H");
+  add_option(*app, "--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um", "L");
+  add_option(*app, "--integrator", options->integrator, "Integrator, with its default parameters", "NAME");
+  add_flag(*app, "--verify", options->verify, "Run again finer, and tell the observed error of each channel");
+  add_flag(*app, "--profile", options->profile,
+           "Tell where the time went: assembly, factorization, joints, events, output");
+  add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");
+  add_flag(*app, "--force", options->force, "Write into a directory that holds other files");
+  add_option(*app, "--format", options->format, "csv; hdf5 and both are not in this release", "FORMAT");
+  add_flag(*app, "--resume", options->resume, "Go on from a checkpoint (not in this release)");
+  add_flag(*app, "--dry-run", options->dry_run, "Load, assemble, print the facts, write nothing");
   add_model_options(*app, options->model_options);
   add_common_options(*app, common);
   return {app, [options, &common] { return run(*options, common); }};

@@ -2,8 +2,6 @@
 
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/plugins.h"
 #include "cli/terminal.h"
 #include "contract/sample_layout.h"
@@ -27,9 +25,9 @@ int schema(const std::string& of, const CommonOptions& common) {
 }  // namespace
 
 Command add_schema_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("schema", "Print the JSON Schema of the model file or of summary.json");
+  CLI::App* app = add_command(program, "schema", "Print the JSON Schema of the model file or of summary.json");
   const auto of = std::make_shared<std::string>("model");
-  app->add_option("KIND", *of, "model (the default), summary or sweep")->type_name("");
+  add_option(*app, "KIND", *of, "model (the default), summary or sweep");
   add_common_options(*app, common);
   return {app, [of, &common] { return schema(*of, common); }};
 }

@@ -2,8 +2,6 @@
 
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/failure.h"
 #include "cli/load_model.h"
 #include "cli/output_file.h"
@@ -48,12 +46,12 @@ int show(ShowOptions options, const CommonOptions& common) {
 }  // namespace
 
 Command add_show_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("show", "Print or draw a model after everything in it is expanded");
+  CLI::App* app = add_command(program, "show", "Print or draw a model after everything in it is expanded");
   const auto options = std::make_shared<ShowOptions>();
-  app->add_option("MODEL", options->model, "Model file")->type_name("");
-  app->add_option("--format", options->format, "text (default), json, dot for Graphviz, svg: a drawing of the start")
-      ->type_name("FORMAT");
-  app->add_option("--out", options->out, "Write into a file instead of stdout")->type_name("FILE")->check(not_empty());
+  add_option(*app, "MODEL", options->model, "Model file");
+  add_option(*app, "--format", options->format, "text (default), json, dot for Graphviz, svg: a drawing of the start",
+             "FORMAT");
+  add_file_option(*app, "--out", options->out, "Write into a file instead of stdout", "FILE");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return show(*options, common); }};

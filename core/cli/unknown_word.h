@@ -1,7 +1,9 @@
 // UnknownWord: commands, options and arguments that the program does not know.
 #pragma once
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace freeplay {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/text.h"
@@ -76,10 +75,10 @@ int validate(const ValidateOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command add_validate_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = program.add_subcommand("validate", "Check model files, assemble them and print their facts");
+  CLI::App* app = add_command(program, "validate", "Check model files, assemble them and print their facts");
   const auto options = std::make_shared<ValidateOptions>();
-  app->add_option("MODEL", options->models, "Model files")->type_name("");
-  app->add_flag("--no-assemble", options->no_assemble, "Check the text only: rank and dof stay unknown");
+  add_arguments(*app, "MODEL", options->models, "Model files");
+  add_flag(*app, "--no-assemble", options->no_assemble, "Check the text only: rank and dof stay unknown");
   add_model_options(*app, options->model);
   add_common_options(*app, common);
   return {app, [options, &common] { return validate(*options, common); }};

@@ -2,9 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include "linear/row_rank.h"
+#include "linear/singular_values.h"
 #include "linear/sparse_rows.h"
 
 namespace freeplay {
@@ -69,7 +69,7 @@ int numerical_rank(const SparseMatrix& j) {
   const Eigen::ArrayXd pivots = qr.matrixR().diagonal().cwiseAbs();
   const bool clear = (pivots == 0.0 || pivots > full_rank * pivots.maxCoeff()).all();
   if (clear || a.rows() > most_rows_for_singular_values) return static_cast<int>(qr.rank());
-  const VectorXd sigma = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
+  const VectorXd sigma = singular_values(a).sigma;
   int count = 0;
   while (count < sigma.size() && sigma[count] > rank_threshold * sigma[0] && sigma[count] > 0.0) ++count;
   return count;

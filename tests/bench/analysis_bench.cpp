@@ -17,6 +17,7 @@
 #include "component/registry.h"
 #include "io/yaml_document.h"
 #include "model/model_builder.h"
+#include "source_folder.h"
 
 namespace freeplay {
 namespace {
@@ -25,7 +26,7 @@ constexpr Components whole{true, true, true};
 constexpr int threads = 2;
 
 std::unique_ptr<Model> mechanism_model(const std::string& name) {
-  const std::string file = std::string(FREEPLAY_SOURCE_DIR) + "/mechanisms/" + name + ".yaml";
+  const std::string file = std::string(test::source_folder()) + "/mechanisms/" + name + ".yaml";
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   static const Registry registry = Registry::with_builtins();  // models point into it

@@ -20,6 +20,7 @@
 #include "model/model_builder.h"
 #include "run/assembly.h"
 #include "run/simulation.h"
+#include "source_folder.h"
 #include "system/system.h"
 
 namespace freeplay::test {
@@ -34,7 +35,7 @@ inline std::string read_text(const std::string& file) {
 
 /// Text of one of the models that come with the program.
 inline std::string mechanism(const std::string& name) {
-  return read_text(std::string(FREEPLAY_SOURCE_DIR) + "/mechanisms/" + name + ".yaml");
+  return read_text(std::string(source_folder()) + "/mechanisms/" + name + ".yaml");
 }
 
 /// `text` with every `from` replaced; a `from` that is not there is a mistake of the test.
@@ -171,7 +172,7 @@ struct Table {
   std::vector<std::vector<double>> rows;
 };
 inline Table read_table(const std::string& name) {
-  std::istringstream in(read_text(std::string(FREEPLAY_SOURCE_DIR) + "/tests/data/" + name));
+  std::istringstream in(read_text(std::string(source_folder()) + "/tests/data/" + name));
   Table table;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || line[0] == '#') continue;

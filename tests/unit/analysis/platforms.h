@@ -11,13 +11,14 @@
 #include "analysis/posture.h"
 #include "analysis/singularity.h"
 #include "io/json_text.h"
+#include "source_folder.h"
 #include "validation/run_model.h"
 
 namespace freeplay::platforms {
 
 inline const Json& numbers() {
   static const Json all =
-      Json::parse(test::read_text(std::string(FREEPLAY_SOURCE_DIR) + "/tests/data/platform_numbers.json"));
+      Json::parse(test::read_text(std::string(test::source_folder()) + "/tests/data/platform_numbers.json"));
   return all;
 }
 
