@@ -58,8 +58,10 @@ class Bathe final : public Integrator {
     if (!solve(n.t + dt, q2_ * dt, n, to, solver)) return {.converged = 0, .error = 0.0};
     history.solved(1, to);
     history.finish();
-    const double beta_q = q2_ * dt * q2_ * dt;
-    for (std::size_t i = 0; i < n.v.size; ++i) n.increment_known[i] += beta_q * to.a[i];  // now the whole increment
+    if (solver.estimates()) {
+      const double beta_q = q2_ * dt * q2_ * dt;
+      for (std::size_t i = 0; i < n.v.size; ++i) n.increment_known[i] += beta_q * to.a[i];  // now the whole increment
+    }
     solver.project_velocity(to);
     const Span<double> z_rate = to.memory.part(0, to.z.size);
     solver.accelerate(to, z_rate);

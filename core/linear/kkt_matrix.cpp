@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include <Eigen/Core>
 #include <klu.h>
 
 namespace freeplay {
@@ -54,31 +55,29 @@ double invert(double* a, int size, const int* order, int* place) {
   return std::isfinite(largest) ? smallest / largest : 0.0;
 }
 
-/// y += a x with so many columns of `size` numbers.
-template <int columns>
-void add_columns(const double* __restrict a, int size, const double* __restrict x, double* __restrict y) {
-  for (int r = 0; r < size; ++r) {
-    double sum = a[r] * x[0];
-    for (int c = 1; c < columns; ++c) sum += a[c * size + r] * x[c];
-    y[r] += sum;
-  }
+/// So many numbers of y = a x: they stay in registers while x is gone through.
+template <int rows>
+void multiply_rows(const double* a, int size, const double* x, double* y) {
+  using Rows = Eigen::Matrix<double, rows, 1>;
+  Rows sum = Rows::Zero();
+  for (int c = 0; c < size; ++c, a += size) sum += Eigen::Map<const Rows>(a) * x[c];
+  Eigen::Map<Rows> out(y);
+  out = sum;
 }
 
 /// y = a x with a square matrix by columns.
 void multiply(const double* a, int size, const double* x, double* y) {
-  std::fill_n(y, size, 0.0);
-  int c = 0;
-  for (; c + 4 <= size; c += 4) add_columns<4>(a + c * size, size, x + c, y);
-  switch (size - c) {
-    case 1:
-      return add_columns<1>(a + c * size, size, x + c, y);
-    case 2:
-      return add_columns<2>(a + c * size, size, x + c, y);
-    case 3:
-      return add_columns<3>(a + c * size, size, x + c, y);
-    default:
-      return;
+  int r = 0;
+  for (; r + 8 <= size; r += 8) multiply_rows<8>(a + r, size, x, y + r);
+  if (size - r >= 4) {
+    multiply_rows<4>(a + r, size, x, y + r);
+    r += 4;
   }
+  if (size - r >= 2) {
+    multiply_rows<2>(a + r, size, x, y + r);
+    r += 2;
+  }
+  if (r < size) multiply_rows<1>(a + r, size, x, y + r);
 }
 
 }  // namespace

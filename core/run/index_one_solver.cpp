@@ -281,7 +281,11 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
 bool IndexOneSolver::project_velocity(StateView& state) {
   if (state.lambda.size == 0) return true;
   const Point here{*state.t, state.q, state.v, state.z, h_};
-  if (!e_->has_rows_at(here) && !evaluate(state, rows)) return false;
+  if (!e_->has_rows_at(here)) {
+    if (!evaluate(state, rows)) return false;
+  } else {
+    system_.complete_rates(e_);
+  }
   std::ranges::fill(multipliers_, 0.0);
   if (velocities_hold(state.v)) return true;
   const double speed = norm(state.v);
@@ -291,7 +295,8 @@ bool IndexOneSolver::project_velocity(StateView& state) {
     if (!(norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
     for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
     for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += update_[increment_.size() + r];
-    if (velocities_hold(state.v)) return true;
+    // Factors of a regular matrix leave so little of a small change that it is less than v rounds to.
+    if (matrix_.is_well_conditioned() || velocities_hold(state.v)) return true;
   }
   std::ranges::fill(right_a_, 0.0);
   std::ranges::fill(increment_, 0.0);

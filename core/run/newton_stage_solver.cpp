@@ -201,7 +201,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
     follow_accelerations(stage, out);
     // Without rows what is looked at here may be the end of the step already, see below.
-    const unsigned terms = term_position | term_velocity | term_force | (nc == 0 ? term_acceleration : 0u);
+    const unsigned terms = term_position | term_force | (nc == 0 ? term_velocity | term_acceleration : 0u) |
+                           (position ? 0u : term_velocity);
     const bool renew = !factor.valid || (!fresh && ratio > IndexOneSolver::slow_contraction && iteration > 1);
     if (!index_one_.evaluate(out, terms | (renew ? term_derivative : 0u))) return false;
     if (renew) {
@@ -226,8 +227,10 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       system_.multiply(e_, out.v, std::span(work_).first(at(nc)));
       for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_->nu[r] - work_[r]) / beta_v;
     }
-    for (std::size_t r = 0; r < at(nc); ++r) {
-      if (dependent_[r]) right_[at(nv) + r] = 0.0;
+    if (index_one_.any_dependent()) {
+      for (std::size_t r = 0; r < at(nc); ++r) {
+        if (dependent_[r]) right_[at(nv) + r] = 0.0;
+      }
     }
     if (!factor.matrix.internal().empty()) {
       factor.matrix.internal().add_to_right(e_->internal_rate, z_rate_, std::span(right_).first(at(nv)));

@@ -262,9 +262,11 @@ bool Simulation::Impl::begin_steps(double dt, State& state) {
   return true;
 }
 
-// Everything about a state whose accelerations the solver knows, and the loads of driven bodies.
+// Everything about a state whose accelerations the solver knows, and the loads of driven bodies; at the end of a fixed
+// step only what joints ask for: the rest is completed for a row.
 bool Simulation::Impl::evaluate_all(State& state, KeptEvaluation& e) {
-  if (!system.evaluate(point(state), all_terms, solver.evaluation(), e)) return false;
+  const unsigned terms = adaptive ? all_terms : of_equations | term_event | term_turn | only_asked;
+  if (!system.evaluate(point(state), terms, solver.evaluation(), e)) return false;
   system.fill_driven_jacobian(e);
   system.recover_loads(e, state.lambda());
   return true;
@@ -405,6 +407,7 @@ bool Simulation::Impl::refresh() {
 bool Simulation::Impl::know_row() {
   if (row_is_known) return true;
   Fault fault;
+  if (!adaptive && !system.complete(point(accepted), e_accepted)) return fail_with(e_accepted->fault, accepted.t());
   if (!observer.observe(point(accepted), e_accepted, accepted.lambda(), row, fault)) {
     return fail_with(fault, accepted.t());
   }

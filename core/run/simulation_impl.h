@@ -129,7 +129,8 @@ struct Simulation::Impl {
   long next_row = 1;
   std::chrono::steady_clock::time_point started;
   double last_progress = 0.0;
-  static constexpr unsigned all_terms = term_position | term_velocity | term_force | term_coordinate;
+  static constexpr unsigned of_equations = term_position | term_velocity | term_force;
+  static constexpr unsigned all_terms = of_equations | term_coordinate;
 };
 
 }  // namespace freeplay

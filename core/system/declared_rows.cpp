@@ -118,25 +118,15 @@ void DeclaredRows::fill_jacobian(std::span<const Mount> mounts, Evaluation& e) c
 
 void DeclaredRows::fill_rows(std::span<const Mount> mounts, Evaluation& e) const {
   double* const phi = e.phi.data();
-  double* const nu = e.nu.data();
-  double* const gamma = e.gamma.data();
   for (const RowPair& pair : origins_) {
     const Arm &a = e.arms[at(pair.marker_a)], &b = e.arms[at(pair.marker_b)];
     phi[pair.row] = b.at_x - a.at_x;
     phi[pair.row + 1] = b.at_y - a.at_y;
-    nu[pair.row] = nu[pair.row + 1] = 0.0;
-    gamma[pair.row] = b.x * b.w * b.w - a.x * a.w * a.w;
-    gamma[pair.row + 1] = b.y * b.w * b.w - a.y * a.w * a.w;
     fill(pair, e);
   }
   for (const Row& row : across_) {
     const Slide s(row.ends, mounts, e);
     phi[row.row] = s.across();
-    nu[row.row] = 0.0;
-    // Arms turn with their bodies: d'' has -arm w^2 besides the accelerations of the bodies.
-    const double bias =
-        (s.h_x * s.b.y - s.h_y * s.b.x) * s.b.w * s.b.w - (s.h_x * s.a.y - s.h_y * s.a.x) * s.a.w * s.a.w;
-    gamma[row.row] = 2.0 * s.a.w * s.rate_along() + s.a.w * s.a.w * s.across() + bias;
     fill(row, s, e);
   }
   for (const Row& row : turns_) {
@@ -145,8 +135,27 @@ void DeclaredRows::fill_rows(std::span<const Mount> mounts, Evaluation& e) const
     };
     const double apart = angle(row.ends.body_b, row.ends.marker_b) - angle(row.ends.body_a, row.ends.marker_a);
     phi[row.row] = apart - whole_turn * std::round(apart / whole_turn);
-    nu[row.row] = gamma[row.row] = 0.0;
   }
+}
+
+void DeclaredRows::fill_rates(std::span<const Mount> mounts, Evaluation& e) const {
+  double* const nu = e.nu.data();
+  double* const gamma = e.gamma.data();
+  for (const RowPair& pair : origins_) {
+    const Arm &a = e.arms[at(pair.marker_a)], &b = e.arms[at(pair.marker_b)];
+    nu[pair.row] = nu[pair.row + 1] = 0.0;
+    gamma[pair.row] = b.x * b.w * b.w - a.x * a.w * a.w;
+    gamma[pair.row + 1] = b.y * b.w * b.w - a.y * a.w * a.w;
+  }
+  for (const Row& row : across_) {
+    const Slide s(row.ends, mounts, e);
+    nu[row.row] = 0.0;
+    // Arms turn with their bodies: d'' has -arm w^2 besides the accelerations of the bodies.
+    const double bias =
+        (s.h_x * s.b.y - s.h_y * s.b.x) * s.b.w * s.b.w - (s.h_x * s.a.y - s.h_y * s.a.x) * s.a.w * s.a.w;
+    gamma[row.row] = 2.0 * s.a.w * s.rate_along() + s.a.w * s.a.w * s.across() + bias;
+  }
+  for (const Row& row : turns_) nu[row.row] = gamma[row.row] = 0.0;
 }
 
 void DeclaredRows::fill_coordinates(const Point& point, std::span<const Mount> mounts, unsigned terms,

@@ -125,7 +125,7 @@ System::System(const Model& model, Variant variant, Unknowns unknowns)
     const bool may_declare = planar && !r.stands_off;
     const bool declares_rows = may_declare && layout.planar_rows.size > 0;
     r.declares_coordinate = may_declare && layout.planar_coordinate != 0;
-    r.coordinate_terms = term_coordinate;
+    r.coordinate_terms = r.turn < 0 ? term_coordinate : term_coordinate | term_turn;
     if (layout.constraint_rows > 0 && layout.rows_without_coordinate == 0) r.coordinate_terms |= term_position;
     if (layout.forces_without_coordinate == 0) {
       if (layout.forces != 0) r.coordinate_terms |= term_force;

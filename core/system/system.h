@@ -38,13 +38,14 @@ inline Point point(const State& state) { return {state.t(), state.q(), state.v()
 /// Which terms of the equations are wanted.
 enum Term : unsigned {
   term_position = 1,      ///< phi and Phi_q
-  term_velocity = 2,      ///< nu (with phi)
+  term_velocity = 2,      ///< nu (with phi); with it comes gamma
   term_acceleration = 4,  ///< gamma (with phi)
   term_force = 8,         ///< f
   term_derivative = 16,   ///< derivatives of f (with f)
   term_coordinate = 32,   ///< coordinates of all joints
   term_event = 64,        ///< what JointRef::events() and on_event() read
   only_asked = 128,       ///< of Evaluation::markers only those of joints and forces that are asked in every step
+  term_turn = 256,        ///< coordinates of joints whose turns are counted
 };
 
 /// Element that failed, and why.
@@ -167,9 +168,14 @@ class System {
 
   /// Fills the wanted terms; false with `Evaluation::fault` when an element fails. Does not allocate.
   bool evaluate(const Point& point, unsigned terms, Evaluation& out) const;
-  /// The same where `known` may hold the terms at this very point already, but for the joints' coordinates: the two
+  /// The same where `known` may hold the terms at this very point already, but for coordinates of joints: the two
   /// then change places.
   bool evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const;
+
+  /// Of an evaluation at a point the markers that Term::only_asked left out, and the coordinates of all joints.
+  bool complete(const Point& point, Evaluation& e) const;
+  /// nu and gamma of an evaluation that has phi.
+  void complete_rates(Evaluation& e) const;
 
   /// out += Phi_q^T lambda and out = Phi_q v.
   void add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
@@ -225,6 +231,7 @@ class System {
   void add_driven(const planar::DrivenBody& body);
   void place_driven(const Point& point, bool only_asked, Evaluation& e) const;
   void turn_driven_markers(Evaluation& e) const;
+  void complete_markers(Evaluation& e) const;
   void move_rows_with_driven(Evaluation& e) const;
   void solve_for_loads(Evaluation& e, std::span<double> force, std::span<double> lambda) const;
   void sort_markers();
@@ -366,7 +373,7 @@ struct Evaluation {
 
   /// Prescribed motions are not those of their times any more.
   void forget_motions() { motion_time = other_motion_time = driven_time = std::numeric_limits<double>::quiet_NaN(); }
-  /// Whether phi, Phi_q and nu are those of this time and these coordinates.
+  /// Whether phi and Phi_q are those of this time and these coordinates.
   bool has_rows_at(const Point& point) const;
   /// Whether these terms were filled at this very point.
   bool is_at(const Point& point, unsigned terms) const;

@@ -36,22 +36,38 @@ bool Evaluation::is_at(const Point& point, unsigned terms) const {
          same(z, point.z.first(z.size())) && same(h, point.h);
 }
 
+void System::complete_rates(Evaluation& e) const {
+  if ((e.filled & (term_velocity | term_acceleration)) != 0) return;
+  declared_.fill_rates(mounts_, e);
+  if (!couplings_.empty()) move_rows_with_driven(e);
+  e.filled |= term_velocity | term_acceleration;
+}
+
 bool System::evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const {
-  if (!known->is_at(point, terms & ~unsigned{term_coordinate}))
+  constexpr unsigned of_joints = term_coordinate | term_event | term_turn;
+  if (!known->is_at(point, terms & ~(of_joints | only_asked))) {
     return evaluate(point, terms, static_cast<Evaluation&>(out));
-  swap(out, known);
-  Evaluation& e = out;
-  if ((e.filled & only_asked) != 0 && (terms & only_asked) == 0) {
-    if (e.driven_asked) turn_driven_markers(e);
-    for (std::size_t b = 0; b < at(layout_.free_bodies()) && !e.turns.empty(); ++b) {  // planar
-      for (int i = markers_of_body_[b].end_asked; i < markers_of_body_[b].end; ++i) {
-        const std::size_t m = at(moving_markers_[at(i)]);
-        planar::marker_kinematics(mounts_[m], &e.v[3 * b], e.turns[b], e.arms[m], e.markers[m]);
-      }
-    }
-    e.filled &= ~unsigned{only_asked};
   }
-  return (terms & term_coordinate) == 0 || evaluate_coordinates(point, term_coordinate, e);
+  swap(out, known);
+  if ((terms & only_asked) == 0) complete_markers(out);
+  return (terms & of_joints) == 0 || evaluate_coordinates(point, terms & of_joints, out);
+}
+
+bool System::complete(const Point& point, Evaluation& e) const {
+  complete_markers(e);
+  return evaluate_coordinates(point, term_coordinate, e);
+}
+
+void System::complete_markers(Evaluation& e) const {
+  if ((e.filled & only_asked) == 0) return;
+  if (e.driven_asked) turn_driven_markers(e);
+  for (std::size_t b = 0; b < at(layout_.free_bodies()) && !e.turns.empty(); ++b) {  // planar
+    for (int i = markers_of_body_[b].end_asked; i < markers_of_body_[b].end; ++i) {
+      const std::size_t m = at(moving_markers_[at(i)]);
+      planar::marker_kinematics(mounts_[m], &e.v[3 * b], e.turns[b], e.arms[m], e.markers[m]);
+    }
+  }
+  e.filled &= ~unsigned{only_asked};
 }
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
@@ -138,10 +154,12 @@ bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
     declared_.fill_rows(mounts_, e);
+    const bool rates = (terms & (term_velocity | term_acceleration)) != 0;
+    if (rates) declared_.fill_rates(mounts_, e);
     if (!with_rows_.empty() && !evaluate_rows<Bodies>(point, e)) return false;
     if (!model_.gears.empty()) evaluate_gear_rows<Bodies>(e);
     if (!driver_rows_.empty()) evaluate_driver_rows<Bodies>(e);
-    if (!couplings_.empty()) move_rows_with_driven(e);
+    if (rates && !couplings_.empty()) move_rows_with_driven(e);
   }
   if ((terms & term_force) != 0) {
     if (!evaluate_forces<Bodies>(point, (terms & term_derivative) != 0, e)) return false;

@@ -1,6 +1,7 @@
 // Driven bodies: found where time alone places them, and the equations of the others are those of the whole mechanism.
 #include "system/driven_bodies.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -164,6 +165,25 @@ TEST_F(Reduced, EveryConstraintOfTheWholeHolds) {
   for (std::size_t r = 0; r < rate.size(); ++r) {
     EXPECT_NEAR(e.phi[r], 0.0, 1e-14) << r;
     EXPECT_NEAR(rate[r], e.nu[r], 1e-13) << r;
+  }
+}
+
+TEST_F(Reduced, WhatIsCompletedLaterIsWhatAWholeLookGives) {
+  Evaluation whole(free_), part(free_);
+  ASSERT_TRUE(free_.evaluate(point(state_), term_position | term_velocity | term_force | term_coordinate, whole));
+  ASSERT_TRUE(free_.evaluate(point(state_), term_position | term_force | only_asked, part));
+  free_.complete_rates(part);
+  ASSERT_TRUE(free_.complete(point(state_), part));
+  EXPECT_EQ(part.nu, whole.nu);
+  EXPECT_EQ(part.gamma, whole.gamma);
+  EXPECT_EQ(part.coordinate, whole.coordinate);
+  EXPECT_EQ(part.coordinate_rate, whole.coordinate_rate);
+  for (std::size_t m = 0; m < whole.markers.size(); ++m) {
+    const MarkerKinematics &a = part.markers[m], &b = whole.markers[m];
+    EXPECT_TRUE(std::ranges::equal(a.position, b.position)) << m;
+    EXPECT_TRUE(std::ranges::equal(a.rotation, b.rotation)) << m;
+    EXPECT_TRUE(std::ranges::equal(a.velocity, b.velocity)) << m;
+    EXPECT_TRUE(std::ranges::equal(a.angular_velocity, b.angular_velocity)) << m;
   }
 }
 
