@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <new>
 #include <thread>
 
@@ -27,6 +28,16 @@ namespace {
 constexpr rlim_t most_memory = rlim_t{4} << 30, most_output = rlim_t{16} << 20;
 // A call that takes this long does not belong into a time loop, however busy the machine [s].
 constexpr double longest_call = 1.0;
+constexpr double recently = 5.0;     // [s]
+constexpr double busy_factor = 5.0;  // by the clock, of the time that a child may take on a busy machine
+
+// Of a child that has not been collected [s].
+double processor_time(int process) {
+  clockid_t clock{};
+  timespec time{};
+  if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0.0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -176,9 +187,13 @@ void ChildProcess::collect() {
   end_.printed = read_all(printed_);
 }
 
+bool ChildProcess::goes_on(double seconds) const {
+  return now() - unchanged_since_ < recently && processor_time(process_) < seconds;
+}
+
 void ChildProcess::wait(const std::vector<std::unique_ptr<ChildProcess>>& children, double seconds) {
   const std::atomic<int>& interrupts = watch_interrupts();
-  const double deadline = now() + seconds;
+  const double started = now();
   for (;;) {
     bool all = true;
     for (const auto& child : children) all = child->look() && all;
@@ -190,11 +205,12 @@ void ChildProcess::wait(const std::vector<std::unique_ptr<ChildProcess>>& childr
       std::fflush(nullptr);
       _exit(130);
     }
-    if (now() >= deadline) break;
+    const double spent = now() - started;
+    for (const auto& child : children) {
+      if (spent < seconds || child->ended_ || (spent < busy_factor * seconds && child->goes_on(seconds))) continue;
+      child->give_up(std::min(longest_call, 0.5 * seconds));
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  for (const auto& child : children) {
-    if (!child->ended_) child->give_up(std::min(longest_call, 0.5 * seconds));
   }
 }
 

@@ -45,7 +45,9 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Waits until all have ended, at most `seconds`; then kills the rest. Ctrl-C kills all and ends the program (130).
+  /// Waits until all have ended, at most `seconds`; then kills the rest. Children that still note calls and have not
+  /// had so much processor time get up to five times as long: what else a machine does is not their fault. Ctrl-C kills
+  /// all and ends the program (130).
   static void wait(const std::vector<std::unique_ptr<ChildProcess>>& children, double seconds);
 
   /// After wait().
@@ -56,6 +58,7 @@ class ChildProcess {
   struct Shared;  // seen by both processes
   [[noreturn]] void live(const Work& work, int parent);
   bool look();  // true once it has ended
+  bool goes_on(double seconds) const;
   void give_up(double long_call);
   void kill_group();
   void collect();

@@ -238,7 +238,7 @@ class ProbesTest(ProgramTest):
         self.assertIsNone(running.poll())
         running.send_signal(signal.SIGINT)
         self.assertEqual("freeplay: interrupted at once, the result directory is unfinished\n",
-                         running.communicate(timeout=10)[1])
+                         running.communicate(timeout=60)[1])
         self.assertEqual(130, running.returncode)
         _, err = self.freeplay("run", model, "--plugin", probe("never_returns"), "--out", "r", code=6)
         self.assertIn("'r' holds the result of a run that did not end: it has no summary.json", err)
