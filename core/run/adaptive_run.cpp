@@ -161,7 +161,7 @@ bool Simulation::Impl::settle_between() {
          solver.accelerate(view, {z_rate.data(), z_rate.size()});
 }
 
-// A consistent state inside the step that was just made, in `between` and e_between->
+// A consistent state inside the step that was just made, in `between` and e_between.
 bool Simulation::Impl::look_inside(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
   DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate).at(s, between);
