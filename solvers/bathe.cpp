@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "freeplay/pairs.h"
 #include "freeplay/plugin.h"
 #include "stage_history.h"
 #include "step_error.h"
@@ -87,12 +88,16 @@ class Bathe final : public Integrator {
       increment_known = take(state.v.size);
       z_known = take(state.z.size);
       z_rate = take(state.z.size);
-      std::copy(state.q.begin(), state.q.end(), q.begin());
-      std::copy(state.v.begin(), state.v.end(), v.begin());
-      std::copy(state.a.begin(), state.a.end(), a.begin());
-      std::copy(state.lambda.begin(), state.lambda.end(), lambda.begin());
-      std::copy(state.z.begin(), state.z.end(), z.begin());
-      std::copy_n(state.memory.begin(), state.z.size, z_rate.begin());
+      in_pairs(q.size, [&](auto at) { at(q) = at(state.q); });
+      in_pairs(v.size, [&](auto at) {
+        at(v) = at(state.v);
+        at(a) = at(state.a);
+      });
+      in_pairs(lambda.size, [&](auto at) { at(lambda) = at(state.lambda); });
+      in_pairs(z.size, [&](auto at) {
+        at(z) = at(state.z);
+        at(z_rate) = at(state.memory);
+      });
     }
     double t;
     std::size_t used = 0;
@@ -101,10 +106,10 @@ class Bathe final : public Integrator {
 
   bool trapezoid(double dt, Start& n, StateView& to, StageSolver& solver) const {
     const double b = 0.5 * split_ * dt;
-    for (std::size_t i = 0; i < n.v.size; ++i) {
-      n.v_known[i] = n.v[i] + b * n.a[i];
-      n.increment_known[i] = b * (n.v[i] + n.v_known[i]);
-    }
+    in_pairs(n.v.size, [&](auto at) {
+      at(n.v_known) = at(n.v) + b * at(n.a);
+      at(n.increment_known) = b * (at(n.v) + at(n.v_known));
+    });
     for (std::size_t i = 0; i < n.z.size; ++i) n.z_known[i] = n.z[i] + b * to.memory[i];
     return solve(n.t + split_ * dt, b, n, to, solver);
   }
@@ -116,10 +121,10 @@ class Bathe final : public Integrator {
   /// The known terms of backward Euler; `to` holds the stage at t + s h.
   void prepare_end(double dt, Start& n, const StateView& to) const {
     const double b = q2_ * dt, b_first = 0.5 * split_ * dt;
-    for (std::size_t i = 0; i < n.v.size; ++i) {
-      n.v_known[i] = n.v[i] + dt * (q0_ * n.a[i] + q1_ * to.a[i]);
-      n.increment_known[i] = dt * (q0_ * n.v[i] + q1_ * to.v[i]) + b * n.v_known[i];
-    }
+    in_pairs(n.v.size, [&](auto at) {
+      at(n.v_known) = at(n.v) + dt * (q0_ * at(n.a) + q1_ * at(to.a));
+      at(n.increment_known) = dt * (q0_ * at(n.v) + q1_ * at(to.v)) + b * at(n.v_known);
+    });
     for (std::size_t i = 0; i < n.z.size; ++i) {
       const double rate = (to.z[i] - n.z_known[i]) / b_first;
       n.z_known[i] = n.z[i] + dt * (q0_ * to.memory[i] + q1_ * rate);

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "freeplay/integrator.h"
+#include "freeplay/pairs.h"
 
 namespace freeplay {
 
@@ -47,42 +47,47 @@ class StageHistory {
     const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0;
     const double of_now = 1.0 + linear + square, of_previous = -linear - 2.0 * square;
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
-    double *off = of_stage(stage, off_), *guess = of_stage(stage, guess_);
-    const double *previous = previous_.data, *older = older_.data;
-    for (const auto& [now, out] : {std::pair(a_, to.a), std::pair(lambda_, to.lambda)}) {
-      for (std::size_t i = 0; i < now.size; ++i) {
-        const double sum = of_now * now[i] + of_previous * *previous++ + square * *older++;
-        *guess = sum + *off;
-        if (good) out[i] = *guess;
-        *off++ = sum;
-        ++guess;
-      }
-    }
+    const auto extrapolate = [&](Span<const double> now, std::size_t first, Span<double> out) {
+      const Span<double> previous = previous_.part(first, now.size), older = older_.part(first, now.size),
+                         off = of_stage(stage, off_).part(first, now.size),
+                         guess = of_stage(stage, guess_).part(first, now.size);
+      in_pairs(now.size, [&](auto at) {
+        const auto sum = of_now * at(now) + of_previous * at(previous) + square * at(older);
+        at(guess) = sum + at(off);
+        if (good) at(out) = at(guess);
+        at(off) = sum;
+      });
+    };
+    extrapolate(a_, 0, to.a);
+    extrapolate(lambda_, a_.size, to.lambda);
   }
   /// What it came out as.
   [[gnu::noinline]] void solved(int stage, const StateView& to) {
-    double* const off = of_stage(stage, off_);
-    const double* const guess = of_stage(stage, guess_);
+    const Span<double> off = of_stage(stage, off_), guess = of_stage(stage, guess_);
     double missed = 0.0, moved = 0.0;
     for (std::size_t i = 0; i < a_.size; ++i) {
       missed = std::max(missed, std::abs(to.a[i] - guess[i]));
       moved = std::max(moved, std::abs(to.a[i] - a_[i]));
-      off[i] = to.a[i] - off[i];
     }
-    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] = to.lambda[r] - off[a_.size + r];
+    in_pairs(a_.size, [&](auto at) { at(off) = at(to.a) - at(off); });
+    const Span<double> off_lambda = off.part(a_.size, lambda_.size);
+    in_pairs(lambda_.size, [&](auto at) { at(off_lambda) = at(to.lambda) - at(off_lambda); });
     good_[static_cast<std::size_t>(stage)] = steps_ > 1.0 && missed <= 0.5 * moved ? 1.0 : 0.0;
   }
   /// After the last stage.
   void finish() {
     count_ = std::min(steps_ + 1.0, 2.0);
-    std::copy(previous_.begin(), previous_.end(), older_.begin());
-    std::copy(a_.begin(), a_.end(), previous_.begin());
-    std::copy(lambda_.begin(), lambda_.end(), previous_.begin() + a_.size);
+    in_pairs(count(), [&](auto at) { at(older_) = at(previous_); });
+    in_pairs(a_.size, [&](auto at) { at(previous_) = at(a_); });
+    const Span<double> previous_lambda = previous_.part(a_.size, lambda_.size);
+    in_pairs(lambda_.size, [&](auto at) { at(previous_lambda) = at(lambda_); });
   }
 
  private:
   std::size_t count() const { return a_.size + lambda_.size; }
-  double* of_stage(int stage, Span<double> all) const { return all.data + static_cast<std::size_t>(stage) * count(); }
+  Span<double> of_stage(int stage, Span<double> all) const {
+    return all.part(static_cast<std::size_t>(stage) * count(), count());
+  }
 
   Span<const double> a_, lambda_;
   double steps_;

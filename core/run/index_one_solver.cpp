@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "freeplay/pairs.h"
+
 namespace freeplay {
 namespace {
 
@@ -254,11 +256,11 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!is_factored_here() && !factor()) return false;
   // Nothing of the past enters, so that the same state always has the same accelerations.
   const std::size_t nv = state.a.size, nc = state.lambda.size;
-  for (std::size_t i = 0; i < nv; ++i) right_[i] = e_->force[i];
+  in_pairs(nv, [&](auto at) { at(right_) = at(e_->force); });
   for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : e_->gamma[r];
   matrix_.solve(right_, update_);
-  for (std::size_t i = 0; i < nv; ++i) state.a[i] = update_[i];
-  for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = update_[nv + r];
+  in_pairs(nv, [&](auto at) { at(state.a) = at(update_); });
+  in_pairs(nc, [&](auto at) { at(state.lambda) = at(std::span(update_).subspan(nv)); });
   if (!matrix_.is_well_conditioned()) {
     std::copy_n(e_->force.begin(), nv, right_a_.begin());
     std::ranges::copy(e_->gamma, right_c_.begin());
@@ -293,8 +295,9 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   for (int pass = 0; pass < quick_passes; ++pass) {
     solve_rows(right_c_);
     if (!(norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
-    for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
-    for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += update_[increment_.size() + r];
+    in_pairs(increment_.size(), [&](auto at) { at(state.v) += at(update_); });
+    in_pairs(multipliers_.size(),
+             [&](auto at) { at(multipliers_) += at(std::span(update_).subspan(increment_.size())); });
     // Factors of a regular matrix leave so little of a small change that it is less than v rounds to.
     if (matrix_.is_well_conditioned() || velocities_hold(state.v)) return true;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "freeplay/pairs.h"
+
 namespace freeplay {
 namespace {
 
@@ -174,10 +176,10 @@ void NewtonStageSolver::follow_choice_of_rows() {
 }
 
 void NewtonStageSolver::follow_accelerations(const Stage& stage, StateView& out) {
-  for (std::size_t i = 0; i < increment_.size(); ++i) {
-    out.v[i] = stage.v_known[i] + stage.beta_v * out.a[i];
-    increment_[i] = stage.increment_known[i] + stage.beta_q * out.a[i];
-  }
+  in_pairs(increment_.size(), [&](auto at) {
+    at(out.v) = at(stage.v_known) + stage.beta_v * at(out.a);
+    at(increment_) = at(stage.increment_known) + stage.beta_q * at(out.a);
+  });
   system_.retract(stage.q_base, increment_, out.q);
   for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
 }
@@ -218,9 +220,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
 
     std::fill(right_.begin(), right_.end(), 0.0);
     system_.add_transposed(e_, out.lambda, std::span(right_).first(at(nv)));
-    for (std::size_t i = 0; i < at(nv); ++i) {
-      right_[i] = e_->force[i] - system_.mass()[i] * out.a[i] - right_[i];
-    }
+    in_pairs(at(nv), [&](auto at) { at(right_) = at(e_->force) - at(system_.mass()) * at(out.a) - at(right_); });
     if (position) {
       for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = -beyond(e_->phi[r], quiet_phi_[r]) / beta_q;
     } else {
@@ -245,8 +245,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const bool there =
         nc == 0 && iteration > 0 && factor.matrix.internal().empty() && change * way <= immaterial * allowed;
     if (there) std::ranges::fill(update_, 0.0);
-    for (std::size_t i = 0; i < at(nv); ++i) out.a[i] += update_[i];
-    for (std::size_t r = 0; r < at(nc); ++r) out.lambda[r] += update_[at(nv) + r];
+    in_pairs(at(nv), [&](auto at) { at(out.a) += at(update_); });
+    in_pairs(at(nc), [&](auto row) { row(out.lambda) += row(std::span(update_).subspan(at(nv))); });
     bool internal_settled = true;
     if (!factor.matrix.internal().empty()) {
       internal_settled = factor.matrix.internal().advance(std::span(update_).first(at(nv)), stage.beta_z, out.z,

@@ -52,6 +52,13 @@ inline void marker_arm(const Mount& m, const double* q, const double* v, const T
   arm = {x, y, v[2], q[0] + x, q[1] + y};
 }
 
+/// Twist of a marker whose arm is known.
+inline void marker_velocity(const double* v, const Arm& arm, MarkerKinematics& k) {
+  k.velocity[0] = v[0] - arm.y * v[2];
+  k.velocity[1] = v[1] + arm.x * v[2];
+  k.angular_velocity[2] = v[2];
+}
+
 /// Pose and twist of a marker whose arm is known. Entries that a planar motion never changes are left as they are
 /// (zero, and 1 in the rotation's last place).
 inline void marker_kinematics(const Mount& m, const double* v, const Turn& turn, const Arm& arm, MarkerKinematics& k) {
@@ -62,9 +69,7 @@ inline void marker_kinematics(const Mount& m, const double* v, const Turn& turn,
   k.rotation[1] = -s;
   k.rotation[3] = s;
   k.rotation[4] = c;
-  k.velocity[0] = v[0] - arm.y * v[2];
-  k.velocity[1] = v[1] + arm.x * v[2];
-  k.angular_velocity[2] = v[2];
+  marker_velocity(v, arm, k);
 }
 
 /// Row g of a marker's twist (6 numbers) as a row of the body's velocities (3 numbers): g J.

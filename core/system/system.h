@@ -236,11 +236,12 @@ class System {
   void solve_for_loads(Evaluation& e, std::span<double> force, std::span<double> lambda) const;
   void sort_markers();
   void sort_rows();
-  bool fill(const Point& point, unsigned terms, Evaluation& e) const;
+  /// `still`: bodies have moved neither since `e` was filled last, nor do more markers count than then.
+  bool fill(const Point& point, unsigned terms, bool still, Evaluation& e) const;
   template <class Bodies>
-  bool fill_in(const Point& point, unsigned terms, Evaluation& e) const;
+  bool fill_in(const Point& point, unsigned terms, bool still, Evaluation& e) const;
   template <class Bodies>
-  void place_markers(const Point& point, bool only_asked, Evaluation& e) const;
+  void place_markers(const Point& point, bool only_asked, bool still, Evaluation& e) const;
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
   static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
   [[gnu::cold]] static bool refuse(int joint, const char* why, Evaluation& e);

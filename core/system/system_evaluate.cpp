@@ -72,8 +72,11 @@ void System::complete_markers(Evaluation& e) const {
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   const Profile::Timer timer(profile_, Phase::assembly);
+  // At the end of a step velocities are projected where everything else stays.
+  const bool all_placed = (e.filled & ~terms & only_asked) == 0 && (driven_.empty() || e.driven_time == point.t);
+  const bool still = all_placed && e.has_rows_at(point);
   e.filled = 0;
-  if (!fill(point, terms, e)) return false;
+  if (!fill(point, terms, still, e)) return false;
   e.filled = terms;
   e.time = point.t;
   std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals behind
@@ -81,17 +84,29 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   return true;
 }
 
-bool System::fill(const Point& point, unsigned terms, Evaluation& e) const {
-  return by_space([&]<class Bodies>(Bodies) { return fill_in<Bodies>(point, terms, e); });
+bool System::fill(const Point& point, unsigned terms, bool still, Evaluation& e) const {
+  return by_space([&]<class Bodies>(Bodies) { return fill_in<Bodies>(point, terms, still, e); });
 }
 
 template <>
-void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, Evaluation& e) const {
+void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, bool still, Evaluation& e) const {
   const planar::Mount* const mounts = mounts_.data();
   planar::Arm* const arms = e.arms.data();
   MarkerKinematics* const markers = e.markers.data();
-  std::ranges::copy(point.q, e.q.begin());
   std::ranges::copy(point.v, e.v.begin());
+  if (still) {
+    for (std::size_t b = 0; b < at(layout_.free_bodies()); ++b) {
+      const double v[3] = {point.v[3 * b], point.v[3 * b + 1], point.v[3 * b + 2]};
+      const MarkersOfBody own = markers_of_body_[b];
+      for (int i = own.first; i < own.end; ++i) {
+        const int m = moving_markers_[at(i)];
+        arms[m].w = v[2];
+        if (i < own.end_asked || !only_asked) planar::marker_velocity(v, arms[m], markers[m]);
+      }
+    }
+    return;
+  }
+  std::ranges::copy(point.q, e.q.begin());
   for (std::size_t b = 0; b < at(layout_.free_bodies()); ++b) {
     // Numbers of their own, which no marker can change.
     const double q[3] = {point.q[3 * b], point.q[3 * b + 1], point.q[3 * b + 2]};
@@ -110,7 +125,7 @@ void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, 
 }
 
 template <>
-void System::place_markers<spatial::Bodies>(const Point& point, bool, Evaluation& e) const {
+void System::place_markers<spatial::Bodies>(const Point& point, bool, bool, Evaluation& e) const {
   const auto q = [&](std::size_t body) { return &point.q[7 * body]; };
   const auto v = [&](std::size_t body) { return &point.v[6 * body]; };
   std::ranges::copy(point.q, e.q.begin());
@@ -124,9 +139,9 @@ void System::place_markers<spatial::Bodies>(const Point& point, bool, Evaluation
 }
 
 template <class Bodies>
-bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
+bool System::fill_in(const Point& point, unsigned terms, bool still, Evaluation& e) const {
   e.fault.kind = Fault::Kind::none;
-  place_markers<Bodies>(point, (terms & only_asked) != 0, e);
+  place_markers<Bodies>(point, (terms & only_asked) != 0, still, e);
   if (variant_ == Variant::closed) {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
       if (!model_.joints[j].has_play) continue;
@@ -153,7 +168,7 @@ bool System::fill_in(const Point& point, unsigned terms, Evaluation& e) const {
   if (!driven_.empty()) place_driven(point, (terms & only_asked) != 0, e);
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
-    declared_.fill_rows(mounts_, e);
+    if (!still) declared_.fill_rows(mounts_, e);
     const bool rates = (terms & (term_velocity | term_acceleration)) != 0;
     if (rates) declared_.fill_rates(mounts_, e);
     if (!with_rows_.empty() && !evaluate_rows<Bodies>(point, e)) return false;
