@@ -166,6 +166,10 @@ class RevoluteClearance final : public Joint {
     }
     return impact_step(in);
   }
+  double free_distance(const JointInput& in) const override {
+    if (in.history[phase] != flight) return 0.0;
+    return std::max(0.0, radii_.clearance - (position(*in.b) - position(*in.a)).norm());
+  }
   const char* warning(const JointInput& in) const override {
     if (in.history[phase] == flight || !reaches(in)) return nullptr;
     const Gap gap(in, radii_);

@@ -124,6 +124,10 @@ class SphericalClearance final : public Joint {
     const double speed = (space::velocity(*in.b) - space::velocity(*in.a)).norm();
     return speed > 0.0 ? play_.radii.clearance / speed : unbounded;
   }
+  double free_distance(const JointInput& in) const override {
+    if (in.history[phase] != flight) return 0.0;
+    return std::max(0.0, play_.radii.clearance - (space::position(*in.b) - space::position(*in.a)).norm());
+  }
   const char* warning(const JointInput& in) const override {
     const Approach gap = approach(in);
     if (in.history[phase] == flight || !touches(in, gap)) return nullptr;

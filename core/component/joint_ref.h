@@ -57,6 +57,9 @@ class JointRef {
   bool warning(const JointInput& in, const char*& text, Message& m) const {
     return ok(table_->warning(self_, &in, &text, &m));
   }
+  bool free_distance(const JointInput& in, double& distance, Message& m) const {
+    return ok(table_->free_distance(self_, &in, &distance, &m));
+  }
 
  private:
   static bool ok(Status status) { return status == Status::ok; }

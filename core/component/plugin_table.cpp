@@ -39,6 +39,10 @@ abi::JointTable defaults<abi::JointTable>() {
     *text = nullptr;
     return Status::ok;
   };
+  table.free_distance = [](const void*, const JointInput*, double* distance, Message*) noexcept {
+    *distance = 0.0;
+    return Status::ok;
+  };
   return table;
 }
 

@@ -37,6 +37,7 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
       }
       if (last) trial.t() = goal;
       if (!evaluate_all(trial, e_trial)) return fail_with(e_trial->fault, trial.t());
+      if (!resting.held(dt, e_trial)) continue;
       for (double kink = system.motions().next_kink(accepted.t()); kink <= trial.t();
            kink = system.motions().next_kink(kink)) {
         if (note_jumps(kink)) book_jump(kink);

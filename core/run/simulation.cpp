@@ -95,6 +95,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       e_between(own_between ? *own_between : solver.evaluation()),
       observer(system, all_channels),
       events(system, adaptive, between, e_between),
+      resting(system),
       statistics(model, all_channels),
       scratch(at(integrator_layout.scratch) + guard::marks),
       row(all_channels.all().size(), 0.0),
@@ -245,7 +246,11 @@ bool Simulation::Impl::begin_steps(double dt, State& state) {
   const Profile::Timer timer(system.profile(), Phase::joints);
   std::ranges::copy(accepted.h(), state.h().begin());
   const Point here{accepted.t(), accepted.q(), accepted.v(), accepted.z(), accepted.h()};
+  if (!adaptive && !resting.begin(dt, here, e_accepted, e_trial->fault)) {
+    return fail_with(e_trial->fault, accepted.t());
+  }
   for (const int j : with_history) {
+    if (system.rest(j).now) continue;
     const Slice h = system.layout().history(j);
     MarkerAccelerations accelerations;
     system.marker_accelerations(j, e_accepted, accepted.a(), accelerations);
@@ -356,6 +361,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const Span<double> all_history(trial.h());
   const double* const lambda = trial.lambda().data();
   for (const int j : with_history) {
+    if (system.rest(j).now) continue;
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
     const Span<double> history = all_history.part(at(h.offset), at(h.size));
     if (!system.joint(j).commit(system.input(j, end, e_trial), {lambda + rows.offset, at(rows.size)}, history,
@@ -435,7 +441,7 @@ bool Simulation::Impl::note_warnings() {
   Fault fault;
   for (const ForceBlock& block : system.force_blocks()) {
     Warning& warning = joint_warnings[at(block.joint)];
-    if (warning.text != nullptr) continue;
+    if (warning.text != nullptr || system.rest(block.joint).now) continue;
     if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = block.joint;

@@ -7,6 +7,7 @@
 #include "run/energy_account.h"
 #include "run/newton_stage_solver.h"
 #include "run/observer.h"
+#include "run/resting_joints.h"
 #include "run/simulation.h"
 #include "run/step_control.h"
 #include "run/step_events.h"
@@ -98,6 +99,7 @@ struct Simulation::Impl {
   KeptEvaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
   Observer observer;
   StepEvents events;
+  RestingJoints resting;
   Statistics statistics;
   std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
   std::vector<int> stop_columns, with_history;

@@ -89,7 +89,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
-    if (inside_[at(watched_[w])] == 0) continue;
+    if (inside_[at(watched_[w])] == 0 || system_.rest(watched_[w]).now) continue;
     if (!apply_joint(w, step, fault)) return false;
   }
   // Stable by hand: a handful of entries, and no allocation.

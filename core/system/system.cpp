@@ -105,6 +105,7 @@ System::System(const Model& model, Variant variant, Unknowns unknowns)
   const auto offset_of = [&](int block) { return block < 0 ? -1 : blocks_[at(block)].offset; };
   std::vector<int> declared;  // joints that declare their coordinate
   records_.reserve(model.joints.size());
+  rests_.resize(model.joints.size());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
     const bool closed = variant == Variant::closed;

@@ -103,6 +103,23 @@ struct JointRecord {
   int turn = -1;  ///< Layout::turn
 };
 
+/// A joint that nobody asks for forces while the origin of its second marker stays within `radius` of `from`, both seen
+/// from the origin of the first in world axes [m] (Joint::free_distance).
+struct Rest {
+  bool now = false;
+  double radius = 0.0, from[3] = {};
+  mutable bool left = false;  ///< set by evaluations that found it elsewhere, and asked it
+
+  bool holds(const MarkerKinematics& a, const MarkerKinematics& b) const {
+    double squared = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double moved = b.position[i] - a.position[i] - from[i];
+      squared += moved * moved;
+    }
+    return squared < radius * radius;
+  }
+};
+
 struct Evaluation;
 class KeptEvaluation;
 
@@ -155,6 +172,9 @@ class System {
   double marker_angle(int marker, std::span<const double> q) const;
   /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
   void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
+  /// By joint; a run decides who rests (run/resting_joints.h).
+  Rest& rest(int joint) { return rests_[static_cast<std::size_t>(joint)]; }
+  const Rest& rest(int joint) const { return rests_[static_cast<std::size_t>(joint)]; }
   /// Who is told where the time goes; null: nobody.
   void set_profile(Profile* profile) { profile_ = profile; }
   Profile* profile() const { return profile_; }
@@ -293,6 +313,7 @@ class System {
   std::vector<spatial::Matrix> principal_;  // by body: body axes from principal axes; in space
   std::vector<InitialOffset> offsets_;
   std::vector<JointRecord> records_;              // by joint
+  std::vector<Rest> rests_;                       // by joint
   std::vector<int> with_coordinate_, with_rows_;  // joints that are asked; gears have no rows of their own here
   planar::DeclaredRows declared_;                 // of joints that are not
   std::vector<int> moving_markers_;  // not on ground: body after body, of each first those of Term::only_asked

@@ -178,6 +178,12 @@ class Joint {
   /// A static sentence when the joint or one of its laws is used outside its range here, else null. Asked at accepted
   /// states; the host reports the first answer of each joint.
   virtual const char* warning(const JointInput&) const { return nullptr; }
+  /// How far the origin of b may move from here against that of a, in any direction and however else the markers move,
+  /// while the joint certainly leaves everything alone [m]: no wrench, no stored energy, z' = 0, no event past its
+  /// zero, no warning, and commit() changes nothing that a later call reads. begin_step() may then be left out, too. In
+  /// steps of fixed size the host does not ask a joint for anything of that until its markers have used up the
+  /// distance, nearly. 0: no promise.
+  virtual double free_distance(const JointInput&) const { return 0.0; }
 };
 
 namespace abi {
@@ -200,6 +206,7 @@ struct JointTable {
   Status (*place)(const void*, double, Pose*, std::int32_t*, Message*) noexcept;
   Status (*initial_offset)(const void*, Span<const double>, InitialOffset*, Message*) noexcept;
   Status (*warning)(const void*, const JointInput*, const char** text, Message*) noexcept;
+  Status (*free_distance)(const void*, const JointInput*, double*, Message*) noexcept;
 };
 
 /// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
@@ -248,6 +255,9 @@ inline constexpr JointTable joint_table{
     },
     [](const void* s, const JointInput* in, const char** text, Message* m) noexcept {
       return guarded(m, [&] { *text = static_cast<const J*>(s)->warning(*in); });
+    },
+    [](const void* s, const JointInput* in, double* distance, Message* m) noexcept {
+      return guarded(m, [&] { *distance = static_cast<const J*>(s)->free_distance(*in); });
     }};
 
 template <class J>

@@ -1,0 +1,73 @@
+#include "run/resting_joints.h"
+
+#include <cmath>
+
+namespace freeplay {
+namespace {
+
+constexpr double rounding_off = 1e-9;  // of the promised distance
+// Cubics that begin and end with so many steps to go, at the speeds there, stay within the distance between.
+constexpr double steps_left = 2.0, steps_to_begin = 4.0;
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+RestingJoints::RestingJoints(System& system) : system_(system) {
+  const std::span<const ForceBlock> blocks = system.force_blocks();
+  for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {
+    const int j = blocks[at(f)].joint;
+    const JointElement& element = system.model().joints[at(j)];
+    if (blocks[at(f)].internal == 0) candidates_.push_back({j, f, element.marker_a, element.marker_b});
+  }
+}
+
+// Lengths are never more than the sums of their parts.
+void RestingJoints::look(Candidate& candidate, const Evaluation& e) const {
+  const Rest& rest = system_.rest(candidate.joint);
+  const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
+  double moved = 0.0, speed = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    moved += std::abs(b.position[i] - a.position[i] - rest.from[i]);
+    speed += std::abs(b.velocity[i] - a.velocity[i]);
+  }
+  candidate.room = rest.radius - moved;
+  candidate.speed = speed;
+}
+
+bool RestingJoints::begin(double dt, const Point& start, const Evaluation& e, Fault& fault) {
+  for (Candidate& candidate : candidates_) {
+    Rest& rest = system_.rest(candidate.joint);
+    rest.left = false;
+    const double way = steps_to_begin * dt;
+    if (rest.now && !all_awake_ && candidate.room > way * candidate.speed) continue;
+    rest.now = false;
+    if (all_awake_ || e.acts[at(candidate.block)] != 0) continue;
+    double distance = 0.0;
+    if (!system_.joint(candidate.joint)
+             .free_distance(system_.input(candidate.joint, start, e), distance, fault.message)) {
+      fault.kind = Fault::Kind::plugin;
+      fault.joint = candidate.joint;
+      return false;
+    }
+    if (!(distance > 0.0)) continue;
+    rest.radius = (1.0 - rounding_off) * distance;
+    const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
+    for (int i = 0; i < 3; ++i) rest.from[i] = b.position[i] - a.position[i];
+    look(candidate, e);
+    rest.now = candidate.room > way * candidate.speed;
+  }
+  all_awake_ = false;
+  return true;
+}
+
+bool RestingJoints::held(double dt, const Evaluation& e) {
+  for (Candidate& candidate : candidates_) {
+    const Rest& rest = system_.rest(candidate.joint);
+    if (!rest.now) continue;
+    look(candidate, e);
+    if (rest.left || !(candidate.room > steps_left * dt * candidate.speed)) all_awake_ = true;
+  }
+  return !all_awake_;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,37 @@
+// RestingJoints: whom a run in steps of fixed size leaves alone, because nothing can come of asking.
+#pragma once
+
+#include <vector>
+
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Most joints with play fly most of the time, far from what they could touch. Such a joint tells once how far it may
+/// move (Joint::free_distance); until it has used that up, a step neither begins it nor asks it for forces, events,
+/// warnings and commits. All numbers come out as if it had been asked: a step in which one moved too far is thrown away
+/// and taken again with all of them awake.
+class RestingJoints {
+ public:
+  explicit RestingJoints(System& system);
+
+  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (System::rest). False, with
+  /// `fault`, when a joint fails.
+  bool begin(double dt, const Point& start, const Evaluation& e, Fault& fault);
+  /// At the end of the step, evaluated in `e`: whether they could. If not, all are awake in the next attempt.
+  bool held(double dt, const Evaluation& e);
+
+ private:
+  struct Candidate {
+    int joint, block;  ///< into System::force_blocks()
+    int marker_a, marker_b;
+    double room = 0.0, speed = 0.0;  ///< of one that rests: distance that is left [m], relative speed [m/s]
+  };
+  void look(Candidate& candidate, const Evaluation& e) const;
+
+  System& system_;
+  std::vector<Candidate> candidates_;
+  bool all_awake_ = false;
+};
+
+}  // namespace freeplay
