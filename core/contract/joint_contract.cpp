@@ -187,6 +187,7 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   check_forces(probe, subject.passive, moments, findings);
   check_cycle(probe, subject.passive, random, findings);
   check_memory(probe, twin, moments, random, findings);
+  check_rest(probe, moments, random, findings);
   check_place(probe, random, findings);
   check_offset(probe, findings);
   return findings;

@@ -30,6 +30,7 @@ struct JointSubject {
 ///   pin                               where it is set, origins coincide in the plane and the turn is free
 ///   initial-offset                    of a joint with play is a finite place within reach
 ///   no-hidden-state, same-twin        answers depend on the input alone, bit for bit, and not on the object
+///   free-distance                     within it nothing acts, happens or is remembered
 ///   rollback                          history and internal variables are all there is to put back
 ///   answers, finite, stays-in-span, step-limit, allocation, declares-sanely    of every call
 Findings check_joint(const JointSubject& subject, const Conditions& conditions);
@@ -41,5 +42,7 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
 void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, Findings& findings);
 void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
                   RandomNumbers& random, Findings& findings);
+void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
+                Findings& findings);
 
 }  // namespace freeplay

@@ -180,6 +180,22 @@ double JointProbe::step_limit(const JointMoment& moment) const {
   return limit;
 }
 
+double JointProbe::free_distance(const JointMoment& moment) const {
+  Fed fed(*this, moment);
+  double distance = 0.0;
+  if (!run("free_distance", &moment, [&](Message& m) { return joint_.free_distance(fed.in, distance, m); })) return 0.0;
+  findings_.expect("free-distance", distance >= 0.0 && std::isfinite(distance),
+                   [&] { return fmt::format("free_distance() gives {} m", distance); });
+  return std::isfinite(distance) ? distance : 0.0;
+}
+
+bool JointProbe::warns(const JointMoment& moment) const {
+  Fed fed(*this, moment);
+  const char* text = nullptr;
+  run("warning", &moment, [&](Message& m) { return joint_.warning(fed.in, text, m); });
+  return text != nullptr;
+}
+
 bool JointProbe::place(double coordinate, Pose& b_in_a) const {
   Fenced<Pose> fenced;
   bool can = false;
@@ -265,7 +281,7 @@ std::vector<double> JointProbe::all(const JointMoment& moment) const {
   add(e.g);
   add(e.rate);
   add(observe(moment));
-  add({step_limit(moment)});
+  add({step_limit(moment), free_distance(moment)});
   return numbers;
 }
 

@@ -55,6 +55,9 @@ class JointProbe {
   EventValues events(const JointMoment& at) const;
   std::vector<double> observe(const JointMoment& at) const;
   double step_limit(const JointMoment& at) const;
+  double free_distance(const JointMoment& at) const;
+  /// False when there is nothing to warn of.
+  bool warns(const JointMoment& at) const;
   /// False when the type cannot place a body.
   bool place(double coordinate, Pose& b_in_a) const;
   InitialOffset initial_offset(Span<const double> reaction) const;

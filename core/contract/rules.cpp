@@ -105,6 +105,10 @@ constexpr Rule rules[] = {
      "that "
      "was given up. Look for numbers that are kept in members."},
     {"step-limit", joints, "step_limit() gives a time above zero."},
+    {"free-distance", joints,
+     "Wherever the origins of the markers move within free_distance(), the joint exerts and stores nothing, no event "
+     "is "
+     "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it tells later."},
     {"initial-offset", joints, "A joint with play starts at a finite place with a finite speed, for any load."},
     // Contact laws.
     {"no-tension", contact_laws,

@@ -58,6 +58,7 @@ enum class Flaw {
   writes_beside_rates,
   writes_beside_history,
   step_limit_zero,
+  free_too_far,
   offset_nowhere,
   negative_rows
 };
@@ -208,6 +209,10 @@ class Cage final : public Joint {
     channels[0] = flaw_ == Flaw::keeps_contact ? deepest_ : Gap(in).delta;
   }
   double step_limit(const JointInput&) const override { return flaw_ == Flaw::step_limit_zero ? 0.0 : unbounded; }
+  double free_distance(const JointInput& in) const override {
+    const double left = clearance_ - Gap(in).distance;
+    return !(left > 0.0) || relaxing_ ? 0.0 : flaw_ == Flaw::free_too_far ? 2.0 * left : left;
+  }
   void initial_offset(Span<const double>, InitialOffset& out) const override {
     out.position[0] = flaw_ == Flaw::offset_nowhere ? std::numeric_limits<double>::quiet_NaN() : 0.001;
   }

@@ -168,6 +168,7 @@ TEST(JointContract, FindsWrongCalls) {
                       {Flaw::writes_beside_rates, "stays-in-span"},
                       {Flaw::writes_beside_history, "stays-in-span"},
                       {Flaw::step_limit_zero, "step-limit"},
+                      {Flaw::free_too_far, "free-distance"},
                       {Flaw::offset_nowhere, "initial-offset"}});
 }
 

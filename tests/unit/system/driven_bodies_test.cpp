@@ -187,6 +187,32 @@ TEST_F(Reduced, WhatIsCompletedLaterIsWhatAWholeLookGives) {
   }
 }
 
+TEST_F(Reduced, AfterVelocitiesAloneHaveChangedALookGivesWhatAFreshOneGives) {
+  constexpr unsigned equations = term_position | term_velocity | term_force | term_coordinate;
+  for (const unsigned before : {equations, term_position | only_asked}) {
+    Evaluation again(free_), fresh(free_);
+    ASSERT_TRUE(free_.evaluate(point(state_), before, again));
+    State moved = state_;
+    for (std::size_t i = 0; i < moved.v().size(); ++i) moved.v()[i] += 0.1 + 0.01 * static_cast<double>(i);
+    for (const unsigned terms : {equations | only_asked, equations}) {
+      ASSERT_TRUE(free_.evaluate(point(moved), terms, again));
+      ASSERT_TRUE(free_.evaluate(point(moved), equations, fresh));
+      EXPECT_EQ(again.phi, fresh.phi);
+      EXPECT_EQ(again.jacobian, fresh.jacobian);
+      EXPECT_EQ(again.nu, fresh.nu);
+      EXPECT_EQ(again.gamma, fresh.gamma);
+      EXPECT_EQ(again.force, fresh.force);
+    }
+    EXPECT_EQ(again.coordinate_rate, fresh.coordinate_rate);
+    for (std::size_t m = 0; m < fresh.markers.size(); ++m) {
+      EXPECT_TRUE(std::ranges::equal(again.markers[m].position, fresh.markers[m].position)) << m;
+      EXPECT_TRUE(std::ranges::equal(again.markers[m].rotation, fresh.markers[m].rotation)) << m;
+      EXPECT_TRUE(std::ranges::equal(again.markers[m].velocity, fresh.markers[m].velocity)) << m;
+      EXPECT_TRUE(std::ranges::equal(again.markers[m].angular_velocity, fresh.markers[m].angular_velocity)) << m;
+    }
+  }
+}
+
 TEST_F(Reduced, AccelerationsAndLoadsAreThoseOfTheWhole) {
   const int first = free_.layout().free_bodies();
   for (int b = 0; b < static_cast<int>(model_->bodies.size()); ++b) {

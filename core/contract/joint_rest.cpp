@@ -1,0 +1,62 @@
+// The rule of free_distance(): what a joint promises to leave alone.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "contract/joint_contract.h"
+#include "contract/joint_words.h"
+
+namespace freeplay {
+namespace {
+
+/// The markers elsewhere, turned and moving otherwise, with their origins moved against each other by `way` at most.
+MarkerPair strayed(const MarkerPair& from, Space space, double way, RandomNumbers& random) {
+  Twelve by = random_twelve(space, random, 0.3);
+  Twelve direction = random_twelve(space, random, 1.0);
+  const double length = std::hypot(direction[0], direction[1], direction[2]);
+  if (!(length > 0.0)) direction[0] = 1.0;
+  const double size = random.between(0.0, 1.0) * way / (length > 0.0 ? length : 1.0);
+  for (std::size_t i = 0; i < 3; ++i) by[6 + i] = by[i] + size * direction[i];
+  return with_twists(moved(from, by), random_twelve(space, random, 2.0));
+}
+
+bool all_zero(const std::vector<double>& numbers) {
+  return std::ranges::all_of(numbers, [](double x) { return x == 0.0; });
+}
+
+}  // namespace
+
+void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
+                Findings& findings) {
+  constexpr int tries = 4;
+  constexpr double inside = 1.0 - 1e-6;  // rounding of where the markers are put
+  for (const JointMoment& moment : moments) {
+    const double distance = probe.free_distance(moment);
+    if (!(distance > 0.0)) continue;
+    for (int i = 0; i < tries; ++i) {
+      JointMoment there = moment;
+      there.markers = strayed(moment.markers, probe.space(), inside * distance, random);
+      const auto expect = [&](bool held, const char* what) {
+        findings.expect("free-distance", held, [&] {
+          return fmt::format("within the {:.6g} m that free_distance() gives {}, {}", distance, what, words_of(there));
+        });
+      };
+      const ForceValues f = probe.forces(there);
+      const bool stores = f.potential != 0.0 || (!std::isnan(f.potential_rate) && f.potential_rate != 0.0);
+      expect(all_zero(f.wrench) && all_zero(f.z_rate) && !stores, "it exerts or stores something");
+      const EventValues events = probe.events(there);
+      for (std::size_t e = 0; e < events.g.size(); ++e) {
+        const double sign = probe.layout().events[e].crossing == Crossing::rising ? 1.0 : -1.0;
+        expect(!(sign * events.g[e] > 0.0), "an event is past its zero");
+      }
+      expect(!probe.warns(there), "it warns");
+      JointMoment behind = there;
+      probe.begin_step(there, random_twelve(probe.space(), random, 10.0), 1e-4, behind);
+      probe.commit(behind);
+      expect(same_bits(probe.all(there), probe.all(behind)), "begin_step() and commit() change what it tells");
+    }
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,158 @@
+#include "run/resting_joints.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "freeplay/plugin.h"
+#include "validation/run_model.h"
+
+namespace freeplay {
+namespace {
+
+using test::ModelRun;
+using test::replaced;
+
+long asked = 0;  // for forces, by all cages since a test began
+
+/// A ball in a cage, in the plane, e = P_b - P_a: F_b = -k (|e| - r) e/|e| where |e| > r. Remembers its contacts and
+/// what the last step was like that it was told of.
+class Cage final : public Joint {
+ public:
+  explicit Cage(const Parameters& p) : radius_(p.number("radius")), tells_(p.word("promise") == 0) {}
+  void declare(JointLayout& layout) const override {
+    layout.forces = 1;
+    layout.history = 3;
+    layout.channels = channels;
+    layout.events = events_;
+  }
+  void apply(const JointInput& in, JointForces& out) const override {
+    ++asked;
+    out.potential_rate = 0.0;
+    const double distance = eccentricity(in), delta = distance - radius_;
+    if (!(delta > 0.0)) return;
+    out.potential = 0.5 * stiffness * delta * delta;
+    out.potential_rate = stiffness * delta * rate(in);
+    for (int i = 0; i < 2; ++i) {
+      out.wrench_b[i] = -stiffness * delta * (in.b->position[i] - in.a->position[i]) / distance;
+      out.wrench_a[i] = -out.wrench_b[i];
+    }
+  }
+  void begin_step(const JointInput& in, const MarkerAccelerations&, double dt, Span<double> history) const override {
+    history[2] = in.t + dt;
+  }
+  void events(const JointInput& in, Span<double> g, Span<double> r) const override {
+    g[0] = eccentricity(in) - radius_;
+    r[0] = rate(in);
+  }
+  void on_event(int, const JointInput& in, Span<double>, Span<double> history, Span<double> fields) const override {
+    history[0] += 1.0;
+    fields[0] = history[0];
+    fields[1] = history[2] - in.t;
+  }
+  void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
+    history[1] = std::max(history[1], eccentricity(in) - radius_);
+  }
+  void observe(const JointInput& in, Span<const double>, Span<double> values) const override {
+    values[0] = in.history[1];
+    values[1] = eccentricity(in);
+  }
+  double free_distance(const JointInput& in) const override {
+    return tells_ ? std::max(0.0, radius_ - eccentricity(in)) : 0.0;
+  }
+
+ private:
+  static constexpr double stiffness = 1e5;
+  static constexpr Channel channels[] = {{"deepest", "m"}, {"out", "m"}}, fields_[] = {{"count", "1"}, {"left", "s"}};
+  static constexpr Event events_[] = {{"touch", Crossing::rising, 0, fields_}};
+  static double eccentricity(const JointInput& in) {
+    return std::hypot(in.b->position[0] - in.a->position[0], in.b->position[1] - in.a->position[1]);
+  }
+  static double rate(const JointInput& in) {
+    double sum = 0.0;
+    for (int i = 0; i < 2; ++i) {
+      sum += (in.b->position[i] - in.a->position[i]) * (in.b->velocity[i] - in.a->velocity[i]);
+    }
+    return eccentricity(in) > 0.0 ? sum / eccentricity(in) : 0.0;
+  }
+  double radius_;
+  bool tells_;
+};
+
+const Registry& types_with_cage() {
+  static constexpr Parameter parameters[] = {
+      {.name = "radius", .unit = "m"},
+      {.name = "promise", .kind = ParameterKind::choice, .default_value = 0, .choices = "told|silent"}};
+  static const Component components[] = {
+      joint<Cage>({.name = "cage", .space = Space::planar, .parameters = parameters})};
+  static const Registry registry = [] {
+    Registry all = Registry::with_builtins();
+    all.add([](const Host* host,
+               Manifest* manifest) noexcept { return publish(*host, *manifest, "cage", "1", components); },
+            "test");
+    return all;
+  }();
+  return registry;
+}
+
+struct Asked {
+  explicit Asked(const std::string& text) : run(text, {}, {}, types_with_cage()), times(asked) {}
+  ModelRun run;
+  long times;
+};
+Asked ask(const std::string& text) {
+  asked = 0;
+  return Asked(text);
+}
+
+void expect_same(const ModelRun& a, const ModelRun& b) {
+  EXPECT_EQ(a.outcome().status, RunStatus::completed) << a.outcome().reason;
+  EXPECT_EQ(a.kept().numbers(), b.kept().numbers());
+  ASSERT_EQ(a.events().size(), b.events().size());
+  for (std::size_t i = 0; i < a.events().size(); ++i) {
+    EXPECT_EQ(a.events()[i].time, b.events()[i].time) << i;
+    EXPECT_EQ(a.events()[i].fields, b.events()[i].fields) << i;
+  }
+}
+
+// It falls, jumps and rattles in its cage.
+constexpr const char* ball = R"(
+freeplay: 1
+name: ball
+bodies: {ball: {mass: 2 kg, inertia: 1e-2, velocity: {linear: [0.3, 0.1], angular: 3}}}
+joints: {cage: {type: cage, between: [ground, ball], radius: 20 mm, promise: told}}
+simulation: {end: 0.4 s, step: 20 us, integrator: bathe, output: {interval: 1 ms}}
+)";
+
+TEST(RestingJoints, AreAskedSeldomAndNothingElseChanges) {
+  const Asked told = ask(ball), silent = ask(replaced(ball, "told", "silent"));
+  expect_same(told.run, silent.run);
+  EXPECT_GT(told.run.events().size(), 4u);
+  EXPECT_GT(told.run.last("joint.cage.deepest"), 1e-4);
+  EXPECT_LT(told.times, silent.times / 2);
+}
+
+TEST(RestingJoints, GiveTheSameNumbersWithEveryIntegrator) {
+  for (const char* integrator : {"newmark", "generalized-alpha", "hht", "dopri5", "verner6"}) {
+    const std::string text = replaced(ball, "bathe", integrator);
+    SCOPED_TRACE(integrator);
+    expect_same(ask(text).run, ask(replaced(text, "told", "silent")).run);
+  }
+}
+
+// A blow moves the ball through all of its room within one step.
+TEST(RestingJoints, AStepInWhichOneMovesTooFarIsTakenAgain) {
+  const std::string text =
+      replaced(replaced(ball, "velocity: {linear: [0.3, 0.1], angular: 3}", "frames: {middle: [0, 0]}"),
+               "simulation: {end: 0.4 s, step: 20 us",
+               "gravity: [0, 0]\n"
+               "forces: {blow: {type: force, at: ball, value: [\"2e9*exp(-((t - 0.01)/1e-5)^2)\", 0]}}\n"
+               "simulation: {end: 12 ms, step: 20 us");
+  const Asked told = ask(text), silent = ask(replaced(text, "told", "silent"));
+  expect_same(told.run, silent.run);
+  EXPECT_LT(told.times, silent.times / 2);
+  EXPECT_GT(told.run.last("joint.cage.deepest"), 0.0);
+}
+
+}  // namespace
+}  // namespace freeplay
