@@ -29,6 +29,7 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
       bool converged = false;
       if (!step(dt, converged)) return false;
       if (!converged) {
+        if (!resting.stayed()) continue;
         ++outcome.rejected;
         dt *= 0.5;
         if (dt < smallest && plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());

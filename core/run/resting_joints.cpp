@@ -60,6 +60,14 @@ bool RestingJoints::begin(double dt, const Point& start, const Evaluation& e, Fa
   return true;
 }
 
+bool RestingJoints::stayed() {
+  for (const Candidate& candidate : candidates_) {
+    const Rest& rest = system_.rest(candidate.joint);
+    if (rest.now && rest.left) all_awake_ = true;
+  }
+  return !all_awake_;
+}
+
 bool RestingJoints::held(double dt, const Evaluation& e) {
   for (Candidate& candidate : candidates_) {
     const Rest& rest = system_.rest(candidate.joint);

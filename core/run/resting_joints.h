@@ -9,8 +9,8 @@ namespace freeplay {
 
 /// Most joints with play fly most of the time, far from what they could touch. Such a joint tells once how far it may
 /// move (Joint::free_distance); until it has used that up, a step neither begins it nor asks it for forces, events,
-/// warnings and commits. All numbers come out as if it had been asked: a step in which one moved too far is thrown away
-/// and taken again with all of them awake.
+/// warnings and commits. All numbers come out as if it had been asked. A step in which one moved too far is thrown
+/// away and taken again with all of them awake.
 class RestingJoints {
  public:
   explicit RestingJoints(System& system);
@@ -18,7 +18,9 @@ class RestingJoints {
   /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (System::rest). False, with
   /// `fault`, when a joint fails.
   bool begin(double dt, const Point& start, const Evaluation& e, Fault& fault);
-  /// At the end of the step, evaluated in `e`: whether they could. If not, all are awake in the next attempt.
+  /// After an attempt, and at the end of a step, evaluated in `e`: whether they could. If not, all are awake in the
+  /// next attempt.
+  bool stayed();
   bool held(double dt, const Evaluation& e);
 
  private:

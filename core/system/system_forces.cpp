@@ -71,13 +71,14 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
     const JointRecord& record = records_[at(j)];
-    if (const Rest& rest = rests_[at(j)]; rest.now && !derivatives && e.acts[f] == 0) {
-      if (rest.holds(e.markers[at(record.marker_a)], e.markers[at(record.marker_b)])) {
+    if (const Rest& rest = rests_[at(j)]; rest.now) {
+      if (!rest.holds(e.markers[at(record.marker_a)], e.markers[at(record.marker_b)])) {
+        rest.left = true;
+      } else if (!derivatives && e.acts[f] == 0) {
         e.acting = 31 * e.acting;
         e.potential[at(j)] = e.potential_rate[at(j)] = 0.0;
         continue;
       }
-      rest.left = true;
     }
     const JointInput in = input(record, point, e);
     const JointLayout& layout = *record.layout;

@@ -15,8 +15,8 @@ using test::replaced;
 
 long asked = 0;  // for forces, by all cages since a test began
 
-/// A ball in a cage, in the plane, e = P_b - P_a: F_b = -k (|e| - r) e/|e| where |e| > r. Remembers its contacts and
-/// what the last step was like that it was told of.
+/// A ball in a cage, in the plane, e = P_b - P_a: F_b = -k (|e| - r) e/|e| where |e| > r, and twice as much in a step
+/// that it was not told of. Remembers its contacts, the deepest, and when the step ends.
 class Cage final : public Joint {
  public:
   explicit Cage(const Parameters& p) : radius_(p.number("radius")), tells_(p.word("promise") == 0) {}
@@ -31,10 +31,11 @@ class Cage final : public Joint {
     out.potential_rate = 0.0;
     const double distance = eccentricity(in), delta = distance - radius_;
     if (!(delta > 0.0)) return;
-    out.potential = 0.5 * stiffness * delta * delta;
-    out.potential_rate = stiffness * delta * rate(in);
+    const double k = in.t > in.history[2] + 1e-12 ? 2.0 * stiffness : stiffness;
+    out.potential = 0.5 * k * delta * delta;
+    out.potential_rate = k * delta * rate(in);
     for (int i = 0; i < 2; ++i) {
-      out.wrench_b[i] = -stiffness * delta * (in.b->position[i] - in.a->position[i]) / distance;
+      out.wrench_b[i] = -k * delta * (in.b->position[i] - in.a->position[i]) / distance;
       out.wrench_a[i] = -out.wrench_b[i];
     }
   }
@@ -127,7 +128,7 @@ simulation: {end: 0.4 s, step: 20 us, integrator: bathe, output: {interval: 1 ms
 TEST(RestingJoints, AreAskedSeldomAndNothingElseChanges) {
   const Asked told = ask(ball), silent = ask(replaced(ball, "told", "silent"));
   expect_same(told.run, silent.run);
-  EXPECT_GT(told.run.events().size(), 4u);
+  EXPECT_GT(told.run.events().size(), 2u);
   EXPECT_GT(told.run.last("joint.cage.deepest"), 1e-4);
   EXPECT_LT(told.times, silent.times / 2);
 }
@@ -152,6 +153,26 @@ TEST(RestingJoints, AStepInWhichOneMovesTooFarIsTakenAgain) {
   expect_same(told.run, silent.run);
   EXPECT_LT(told.times, silent.times / 2);
   EXPECT_GT(told.run.last("joint.cage.deepest"), 0.0);
+}
+
+// The cage goes through all of the ball's room and back within every step: at its end nothing shows.
+TEST(RestingJoints, AStepIsTakenAgainWhereAStageWasTooFar) {
+  const std::string text = R"(
+freeplay: 1
+name: shaken
+gravity: [0, 0]
+bodies: {shaker: {mass: 1 kg, inertia: 1e-2}, ball: {mass: 2 kg, inertia: 1e-2}}
+joints:
+  rail: {type: prismatic, between: [ground, shaker]}
+  cage: {type: cage, between: [shaker, ball], radius: 20 mm, promise: told}
+drivers: {shake: {joint: rail, kind: position, value: "0.03*sin(pi*t/2e-5)^2"}}
+simulation: {end: 1 ms, step: 20 us, integrator: bathe, output: {interval: 0.1 ms}}
+)";
+  const Asked told = ask(text), silent = ask(replaced(text, "told", "silent"));
+  const double x = silent.run.last("body.ball.x");
+  EXPECT_GT(std::abs(x), 1e-9);
+  // The attempt that was thrown away has left other factors: the iterations end elsewhere within their tolerance.
+  EXPECT_NEAR(told.run.last("body.ball.x"), x, 1e-8 * std::abs(x));
 }
 
 }  // namespace
