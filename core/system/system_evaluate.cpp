@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "freeplay/pairs.h"
 #include "system/finite.h"
 #include "system/system.h"
 
@@ -80,7 +81,7 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   e.filled = terms;
   e.time = point.t;
   std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals behind
-  std::ranges::copy(point.h, e.h.begin());
+  in_pairs(e.h.size(), [&](auto at) { at(e.h) = at(point.h); });
   return true;
 }
 

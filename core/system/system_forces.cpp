@@ -62,11 +62,8 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
   const Profile::Timer timer(profile_, Phase::joints);
   std::ranges::copy(weight_, e.force.begin());
   e.acting = 0;
-  JointForces out;  // zeroed again behind those that wrote into it: most joints with play do not act
-  const auto clear = [&] {
-    for (int i = 0; i < 6; ++i) out.wrench_a[i] = out.wrench_b[i] = 0.0;
-  };
-  clear();
+  JointForces out;
+  bool clean = false;  // zeroed for the first that is asked, and behind those that wrote into it
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
@@ -83,6 +80,10 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const JointInput in = input(record, point, e);
     const JointLayout& layout = *record.layout;
     const std::size_t nz = at(record.internal.size), table = (12 + nz) * (24 + nz);
+    if (!clean) {
+      for (int i = 0; i < 6; ++i) out.wrench_a[i] = out.wrench_b[i] = 0.0;
+      clean = true;
+    }
     out.potential = 0.0;
     out.potential_rate = std::numeric_limits<double>::quiet_NaN();
     out.derivatives = {};
@@ -110,7 +111,7 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
       continue;
     }
     if (!take_forces<Bodies>(f, out, derivatives, e)) return false;
-    clear();
+    clean = false;
   }
   return true;
 }
