@@ -68,10 +68,9 @@ class StageHistory {
     for (std::size_t i = 0; i < a_.size; ++i) {
       missed = std::max(missed, std::abs(to.a[i] - guess[i]));
       moved = std::max(moved, std::abs(to.a[i] - a_[i]));
+      off[i] = to.a[i] - off[i];
     }
-    in_pairs(a_.size, [&](auto at) { at(off) = at(to.a) - at(off); });
-    const Span<double> off_lambda = off.part(a_.size, lambda_.size);
-    in_pairs(lambda_.size, [&](auto at) { at(off_lambda) = at(to.lambda) - at(off_lambda); });
+    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] = to.lambda[r] - off[a_.size + r];
     good_[static_cast<std::size_t>(stage)] = steps_ > 1.0 && missed <= 0.5 * moved ? 1.0 : 0.0;
   }
   /// After the last stage.

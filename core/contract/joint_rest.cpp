@@ -13,10 +13,8 @@ namespace {
 /// The markers elsewhere, turned and moving otherwise, with their origins moved against each other by `way` at most.
 MarkerPair strayed(const MarkerPair& from, Space space, double way, RandomNumbers& random) {
   Twelve by = random_twelve(space, random, 0.3);
-  Twelve direction = random_twelve(space, random, 1.0);
-  const double length = std::hypot(direction[0], direction[1], direction[2]);
-  if (!(length > 0.0)) direction[0] = 1.0;
-  const double size = random.between(0.0, 1.0) * way / (length > 0.0 ? length : 1.0);
+  const Twelve direction = random_twelve(space, random, 1.0);
+  const double size = random.between(0.0, way) / std::hypot(direction[0], direction[1], direction[2]);
   for (std::size_t i = 0; i < 3; ++i) by[6 + i] = by[i] + size * direction[i];
   return with_twists(moved(from, by), random_twelve(space, random, 2.0));
 }
