@@ -16,15 +16,19 @@ namespace freeplay {
 /// with d what the same sum was off in the step before: the error falls with h^4 where the motion is smooth, so that
 /// one iteration does. Where such a guess would have been no better than a_n, as behind an impact, and in steps of
 /// another length than those before, it is not used. A guess changes what a stage costs, not what it solves.
+///
+/// Where guesses miss by a small part of what the iteration of a stage may leave, the first stage of a step may also be
+/// left as it was guessed, unlooked at: for as many steps as this part, growing by itself in each, stays small. The end
+/// of the same steps is looked at; what its guess misses tells when the motion is no longer that of the steps before.
 class StageHistory {
  public:
-  static int size(const Sizes& n, int stages) { return 2 + stages + (2 + 2 * stages) * (n.nv + n.nc); }
+  static int size(const Sizes& n, int stages) { return 3 + stages + (2 + 2 * stages) * (n.nv + n.nc); }
   static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
 
   /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
   StageHistory(double dt, int stages, Span<const double> a, Span<const double> lambda, Span<double> memory)
-      : a_(a), lambda_(lambda), steps_(memory[0]), count_(memory.data[0]) {
-    std::size_t used = 2;
+      : a_(a), lambda_(lambda), steps_(memory[0]), count_(memory.data[0]), foreseen_(memory.data[2]) {
+    std::size_t used = 3;
     const auto take = [&](std::size_t size) {
       used += size;
       return memory.part(used - size, size);
@@ -35,7 +39,7 @@ class StageHistory {
     off_ = take(static_cast<std::size_t>(stages) * count());
     guess_ = take(static_cast<std::size_t>(stages) * count());
     if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
-      steps_ = 0.0;
+      steps_ = foreseen_ = 0.0;
       std::fill(good_.begin(), good_.end(), 0.0);
     }
     memory[1] = dt;
@@ -55,24 +59,41 @@ class StageHistory {
         const auto sum = of_now * at(now) + of_previous * at(previous) + square * at(older);
         at(guess) = sum + at(off);
         if (good) at(out) = at(guess);
-        at(off) = sum;
       });
     };
     extrapolate(a_, 0, to.a);
     extrapolate(lambda_, a_.size, to.lambda);
   }
-  /// What it came out as.
-  [[gnu::noinline]] void solved(int stage, const StateView& to) {
+  /// The guess for a stage once more, where another stage has been solved meanwhile.
+  void recall(int stage, StateView& to) const {
+    const Span<double> guess = of_stage(stage, guess_);
+    std::copy_n(guess.begin(), a_.size, to.a.begin());
+    std::copy_n(guess.begin() + a_.size, lambda_.size, to.lambda.begin());
+  }
+  /// What it came out as, `error` (StageSolver::guess_error) off the guess.
+  [[gnu::noinline]] void solved(int stage, const StateView& to, double error) {
     const Span<double> off = of_stage(stage, off_), guess = of_stage(stage, guess_);
     double missed = 0.0, moved = 0.0;
     for (std::size_t i = 0; i < a_.size; ++i) {
-      missed = std::max(missed, std::abs(to.a[i] - guess[i]));
+      const double miss = to.a[i] - guess[i];
+      missed = std::max(missed, std::abs(miss));
       moved = std::max(moved, std::abs(to.a[i] - a_[i]));
-      off[i] = to.a[i] - off[i];
+      off[i] += miss;
     }
-    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] = to.lambda[r] - off[a_.size + r];
-    good_[static_cast<std::size_t>(stage)] = steps_ > 1.0 && missed <= 0.5 * moved ? 1.0 : 0.0;
+    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] += to.lambda[r] - guess[a_.size + r];
+    const bool good = steps_ > 1.0 && missed <= 0.5 * moved;
+    good_[static_cast<std::size_t>(stage)] = good ? 1.0 : 0.0;
+    const double steps = good ? std::floor(small_part / std::max(error, small_part / most_foreseen)) : 0.0;
+    foreseen_ = stage == 0 ? steps : std::min(steps, foreseen_);
   }
+  /// Whether the first stage may be left at its guess(). Counts.
+  bool foresees() {
+    if (!(foreseen_ > 0.0)) return false;
+    foreseen_ -= 1.0;
+    return true;
+  }
+  /// Whether the guess for the end of a step tells that such a stage is not as foreseen.
+  static bool is_surprise(double error) { return !(error <= 1.0); }
   /// After the last stage.
   void finish() {
     count_ = std::min(steps_ + 1.0, 2.0);
@@ -83,6 +104,9 @@ class StageHistory {
   }
 
  private:
+  static constexpr double small_part = 0.1;      // of what a stage may leave
+  static constexpr double most_foreseen = 15.0;  // steps
+
   std::size_t count() const { return a_.size + lambda_.size; }
   Span<double> of_stage(int stage, Span<double> all) const {
     return all.part(static_cast<std::size_t>(stage) * count(), count());
@@ -90,7 +114,7 @@ class StageHistory {
 
   Span<const double> a_, lambda_;
   double steps_;
-  double& count_;
+  double &count_, &foreseen_;  // foreseen_: first stages to come that nobody needs to look at
   Span<double> good_, previous_, older_, off_, guess_;
 };
 

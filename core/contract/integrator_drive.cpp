@@ -96,6 +96,10 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
              [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
                const auto& me = *static_cast<FailingStageSolver*>(self);
                me.inner_.increment_rate(me.inner_.self, increment, v, rate);
+             },
+             [](void* self) noexcept {
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               return me.inner_.guess_error(me.inner_.self);
              }},
       good_stages_(good_stages) {}
 

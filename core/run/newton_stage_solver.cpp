@@ -77,7 +77,8 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              },
              [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
                static_cast<NewtonStageSolver*>(self)->system_.increment_rate(increment, v, rate);
-             }},
+             },
+             [](void* self) noexcept { return static_cast<NewtonStageSolver*>(self)->guess_error_; }},
       index_one_(system, options.max_iterations),
       e_(index_one_.evaluation()),
       dependent_(index_one_.dependent()),
@@ -240,6 +241,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (iteration == 0) {
       const double most = options_.tolerance * std::max(1.0, 1.0 / (many_steps * beta_v));
       allowed = std::clamp(small_part * change * beta_v, options_.tolerance, most);
+      guess_error_ = change * way / allowed;
     }
     // What moves nothing any more is left as it was looked at: the accelerations there cost no other look.
     const bool there =

@@ -127,6 +127,7 @@ class NewtonStageSolver {
   std::vector<double> quiet_phi_;                                      // by row: below, Phi is rounding
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
+  double guess_error_ = 0.0;  // first update of the last stage, in parts of what it may leave
   double allowed_ = 0.0, allowed_slow_ = 0.0, allowed_part_ = 0.0, allowed_rate_ = 0.0;
   int worst_row_ = -1, worst_component_ = -1;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "freeplay/parameter.h"
@@ -51,6 +52,7 @@ struct StageSolverTable {
   std::uint32_t estimates;
   double (*internal_error_norm)(void*, double dt, const StateView* end, Span<const double> error) noexcept;
   void (*increment_rate)(void*, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept;
+  double (*guess_error)(void*) noexcept;
 };
 }  // namespace abi
 
@@ -66,6 +68,11 @@ class StageSolver {
     Message message;
     abi::require(table_->solve(table_->self, &stage, &out, &result, &message), message);
     return result;
+  }
+  /// How far the starting guess of the last solve() was off: the first update of the iteration, in parts of what a
+  /// stage may leave (newton_tolerance). Infinite where the host does not tell.
+  double guess_error() const {
+    return table_->guess_error != nullptr ? table_->guess_error(table_->self) : std::numeric_limits<double>::infinity();
   }
   /// v <- v - M^-1 Phi_q^T mu with Phi_q v = nu: returns v to the constraints, least in the mass norm.
   void project_velocity(StateView& state) {
