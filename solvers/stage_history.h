@@ -22,7 +22,7 @@ namespace freeplay {
 /// of the same steps is looked at; what its guess misses tells when the motion is no longer that of the steps before.
 class StageHistory {
  public:
-  static int size(const Sizes& n, int stages) { return 3 + stages + (2 + 2 * stages) * (n.nv + n.nc); }
+  static int size(const Sizes& n, int stages) { return 3 + stages + (3 + 2 * stages) * (n.nv + n.nc); }
   static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
 
   /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
@@ -36,6 +36,7 @@ class StageHistory {
     good_ = take(static_cast<std::size_t>(stages));
     previous_ = take(count());
     older_ = take(count());
+    oldest_ = take(count());
     off_ = take(static_cast<std::size_t>(stages) * count());
     guess_ = take(static_cast<std::size_t>(stages) * count());
     if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
@@ -48,15 +49,18 @@ class StageHistory {
   /// The guess for a stage, in `to`, which is left as it is where there is none. One copy of it in a step's code: a
   /// step of few bodies takes more time to fetch its instructions than to make them.
   [[gnu::noinline]] void guess(int stage, double c, StateView& to) {
-    const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0;
-    const double of_now = 1.0 + linear + square, of_previous = -linear - 2.0 * square;
+    const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0,
+                 cube = steps_ > 2.0 ? c * (c + 1.0) * (c + 2.0) / 6.0 : 0.0;
+    const double of_now = 1.0 + linear + square + cube, of_previous = -linear - 2.0 * square - 3.0 * cube,
+                 of_older = square + 3.0 * cube;
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
     const auto extrapolate = [&](Span<const double> now, std::size_t first, Span<double> out) {
       const Span<double> previous = previous_.part(first, now.size), older = older_.part(first, now.size),
+                         oldest = oldest_.part(first, now.size),
                          off = of_stage(stage, off_).part(first, now.size),
                          guess = of_stage(stage, guess_).part(first, now.size);
       in_pairs(now.size, [&](auto at) {
-        const auto sum = of_now * at(now) + of_previous * at(previous) + square * at(older);
+        const auto sum = of_now * at(now) + of_previous * at(previous) + of_older * at(older) - cube * at(oldest);
         at(guess) = sum + at(off);
         if (good) at(out) = at(guess);
       });
@@ -81,7 +85,7 @@ class StageHistory {
       off[i] += miss;
     }
     for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] += to.lambda[r] - guess[a_.size + r];
-    const bool good = steps_ > 1.0 && missed <= 0.5 * moved;
+    const bool good = steps_ > 1.0 && (!is_surprise(error) || missed <= 0.5 * moved);
     good_[static_cast<std::size_t>(stage)] = good ? 1.0 : 0.0;
     const double steps = good ? std::floor(small_part / std::max(error, small_part / most_foreseen)) : 0.0;
     foreseen_ = stage == 0 ? steps : std::min(steps, foreseen_);
@@ -96,7 +100,8 @@ class StageHistory {
   static bool is_surprise(double error) { return !(error <= 1.0); }
   /// After the last stage.
   void finish() {
-    count_ = std::min(steps_ + 1.0, 2.0);
+    count_ = std::min(steps_ + 1.0, 3.0);
+    in_pairs(count(), [&](auto at) { at(oldest_) = at(older_); });
     in_pairs(count(), [&](auto at) { at(older_) = at(previous_); });
     in_pairs(a_.size, [&](auto at) { at(previous_) = at(a_); });
     const Span<double> previous_lambda = previous_.part(a_.size, lambda_.size);
@@ -104,7 +109,7 @@ class StageHistory {
   }
 
  private:
-  static constexpr double small_part = 0.1;      // of what a stage may leave
+  static constexpr double small_part = 0.5;      // of what a stage may leave
   static constexpr double most_foreseen = 15.0;  // steps
 
   std::size_t count() const { return a_.size + lambda_.size; }
@@ -115,7 +120,7 @@ class StageHistory {
   Span<const double> a_, lambda_;
   double steps_;
   double &count_, &foreseen_;  // foreseen_: first stages to come that nobody needs to look at
-  Span<double> good_, previous_, older_, off_, guess_;
+  Span<double> good_, previous_, older_, oldest_, off_, guess_;
 };
 
 }  // namespace freeplay

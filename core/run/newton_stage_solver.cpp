@@ -22,12 +22,10 @@ constexpr int kept_factors = 4;
 constexpr std::size_t few_unknowns = 100;
 constexpr double unknown_contraction = 0.5;  // at most, while factors are those of the same forces
 constexpr double roundings_of_phi = 16.0;    // of its largest terms: what is left of Phi then says nothing
+constexpr double drift = 4.0;                // times as much may come of the steps before
 constexpr double small_part = 1e-4;          // of the first update: much less than what the step itself errs
 constexpr double many_steps = 5000.0;        // that together may move by the tolerance
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// By how much x leaves the band, so that a correction sets in without a jump.
-double beyond(double x, double band) { return std::abs(x) <= band ? 0.0 : x - std::copysign(band, x); }
 
 double largest(std::span<const double> numbers) {
   double size = 0.0;
@@ -88,6 +86,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   right_.resize(at(nv + nc));
   update_.resize(at(nv + nc));
   increment_.resize(at(nv));
+  drift_.resize(at(nv));
   z_rate_.resize(at(system.layout().nz()));
   work_.resize(at(nv + nc));
   quiet_phi_.resize(at(nc));
@@ -198,7 +197,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   std::ranges::fill(z_rate_, 0.0);
   Factor& factor = factor_for(beta_q, beta_v);
   factor.beta_z = stage.beta_z;
-  bool fresh = false;
+  bool fresh = false, drifted = false;
   double previous = std::numeric_limits<double>::infinity(), ratio = 1.0;
   int diverging = 0;
   for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
@@ -223,7 +222,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     system_.add_transposed(e_, out.lambda, std::span(right_).first(at(nv)));
     in_pairs(at(nv), [&](auto at) { at(right_) = at(e_->force) - at(system_.mass()) * at(out.a) - at(right_); });
     if (position) {
-      for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = -beyond(e_->phi[r], quiet_phi_[r]) / beta_q;
+      if (iteration == 0) drifted = is_drift(factor);
+      ask_for_rows(beta_q, drifted);
     } else {
       system_.multiply(e_, out.v, std::span(work_).first(at(nc)));
       for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_->nu[r] - work_[r]) / beta_v;
@@ -242,6 +242,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       const double most = options_.tolerance * std::max(1.0, 1.0 / (many_steps * beta_v));
       allowed = std::clamp(small_part * change * beta_v, options_.tolerance, most);
       guess_error_ = change * way / allowed;
+      if (drifted) learn_drift(factor, out);
     }
     // What moves nothing any more is left as it was looked at: the accelerations there cost no other look.
     const bool there =
@@ -286,7 +287,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const bool quiet = iteration == 0 && tiny && change <= 2.0 * factor.noise && ++factor.since_noise <= noise_for;
     const bool noise = stays || quiet || (iteration > 0 && change * beta_q <= rounding);
     const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
-    if (internal_settled && (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way)))) {
+    if (internal_settled && (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way, drifted)))) {
       follow_accelerations(stage, out);
       if (index_one_.any_dependent()) {
         // Rows that were left out must hold by themselves.
@@ -304,6 +305,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
           continue;
         }
       }
+      if (drifted) system_.retract(out.q, drift_, out.q);
       result.converged = 1;
       return true;
     }
@@ -319,13 +321,46 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   return true;
 }
 
-bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double way) {
+void NewtonStageSolver::ask_for_rows(double beta_q, bool drifted) {
+  const double* const phi = e_->phi.data();
+  double* const right = &right_[unit_.size()];
+  const double quiet = drifted ? drift : 1.0;
+  for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
+    right[r] = std::abs(phi[r]) <= quiet * quiet_phi_[r] || dependent_[r] ? 0.0 : -phi[r] / beta_q;
+  }
+}
+
+bool NewtonStageSolver::is_drift(Factor& factor) const {
+  int off = 0, far = 0;
+  for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
+    const double phi = std::abs(e_->phi[r]);
+    off += phi <= quiet_phi_[r] || dependent_[r] ? 0 : 1;
+    far += phi <= drift * quiet_phi_[r] || dependent_[r] ? 0 : 1;
+  }
+  ++factor.held;
+  if (far > 0) factor.held = 0;
+  return off > 0 && far == 0;
+}
+
+void NewtonStageSolver::learn_drift(Factor& factor, StateView& out) {
+  const std::size_t nv = unit_.size(), nc = e_->phi.size();
+  const double part = 1.0 / factor.held;
+  factor.held = 0;
+  std::fill(right_.begin(), right_.end(), 0.0);
+  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : -e_->phi[r] / factor.beta_q;
+  factor.matrix.solve(right_, work_);
+  in_pairs(nv, [&](auto at) {
+    at(out.a) += part * at(work_);
+    at(drift_) = (1.0 - part) * factor.beta_q * at(work_);
+  });
+  for (std::size_t r = 0; r < nc; ++r) out.lambda[r] += part * work_[nv + r];
+}
+
+bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double way, bool drifted) {
   if (!(largest(e_->phi) <= 8.0 * rounding * system_.size())) return false;
   const std::size_t nv = unit_.size();
   std::fill(right_.begin(), right_.end(), 0.0);
-  for (std::size_t r = 0; r < e_->phi.size(); ++r) {
-    if (!dependent_[r]) right_[nv + r] = -beyond(e_->phi[r], quiet_phi_[r]) / factor.beta_q;
-  }
+  ask_for_rows(factor.beta_q, drifted);
   factor.matrix.solve(right_, work_);
   for (std::size_t i = 0; i < nv; ++i) work_[i] = update_[i] - work_[i];
   return index_one_.norm(std::span(work_).first(nv)) * way <= options_.tolerance;

@@ -93,6 +93,7 @@ class NewtonStageSolver {
     double noise = 0.0;        // of accelerations, with new factors
     int since_noise = 0;       // stages
     std::uint64_t acting = 0;  // Evaluation::acting
+    int held = 0;              // stages since a guess was off the rows
   };
 
   Factor& factor_for(double beta_q, double beta_v);
@@ -111,7 +112,14 @@ class NewtonStageSolver {
   void follow_accelerations(const Stage& stage, StateView& out);
   /// Whether the last update of a stage is what the rounding of Phi makes of itself: close to a singular position it
   /// grows without bound, and nothing more can be won.
-  bool is_rounding_of_phi(const Factor& factor, double way);
+  bool is_rounding_of_phi(const Factor& factor, double way, bool drifted);
+  /// right_ of the rows: what of Phi is more than rounding, and not drift.
+  void ask_for_rows(double beta_q, bool drifted);
+  /// Positions leave the constraints by some roundings more in every stage, until more than roundings have come
+  /// together. Accelerations that mend all of it would be large in short steps, and wrong in the next: they learn the
+  /// part of one stage, and once the stage is solved positions alone are moved back by the rest (drift_).
+  bool is_drift(Factor& factor) const;
+  void learn_drift(Factor& factor, StateView& out);
 
   const System& system_;
   StageOptions options_;
@@ -123,7 +131,7 @@ class NewtonStageSolver {
   std::span<const double> unit_;
   std::vector<Factor> factors_;  // one for each pair of betas
   int choice_of_rows_ = 0;       // that they were made with
-  std::vector<double> right_, update_, increment_, z_rate_, work_;
+  std::vector<double> right_, update_, increment_, drift_, z_rate_, work_;
   std::vector<double> quiet_phi_;                                      // by row: below, Phi is rounding
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
