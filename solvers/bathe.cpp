@@ -138,14 +138,14 @@ class Bathe final : public Integrator {
 
   /// The known terms of backward Euler; `to` holds the stage at t + s h.
   void prepare_end(double dt, Start& n, const StateView& to) const {
-    const double b = q2_ * dt, b_first = 0.5 * split_ * dt;
+    const double q0 = q0_, q1 = q1_, b = q2_ * dt, b_first = 0.5 * split_ * dt;
     in_pairs(n.v.size, [&](auto at) {
-      at(n.v_known) = at(n.v) + dt * (q0_ * at(n.a) + q1_ * at(to.a));
-      at(n.increment_known) = dt * (q0_ * at(n.v) + q1_ * at(to.v)) + b * at(n.v_known);
+      at(n.v_known) = at(n.v) + dt * (q0 * at(n.a) + q1 * at(to.a));
+      at(n.increment_known) = dt * (q0 * at(n.v) + q1 * at(to.v)) + b * at(n.v_known);
     });
     for (std::size_t i = 0; i < n.z.size; ++i) {
       const double rate = (to.z[i] - n.z_known[i]) / b_first;
-      n.z_known[i] = n.z[i] + dt * (q0_ * to.memory[i] + q1_ * rate);
+      n.z_known[i] = n.z[i] + dt * (q0 * to.memory[i] + q1 * rate);
     }
   }
 

@@ -22,21 +22,19 @@ namespace freeplay {
 /// of the same steps is looked at; what its guess misses tells when the motion is no longer that of the steps before.
 class StageHistory {
  public:
-  static int size(const Sizes& n, int stages) { return 3 + stages + (3 + 2 * stages) * (n.nv + n.nc); }
+  static int size(const Sizes& n, int stages) { return 4 + stages + (3 + 2 * stages) * (n.nv + n.nc); }
   static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
 
   /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
   StageHistory(double dt, int stages, Span<const double> a, Span<const double> lambda, Span<double> memory)
-      : a_(a), lambda_(lambda), steps_(memory[0]), count_(memory.data[0]), foreseen_(memory.data[2]) {
-    std::size_t used = 3;
+      : a_(a), lambda_(lambda), steps_(memory[0]), count_(memory.data[0]), foreseen_(memory.data[2]), last_(memory.data[3]) {
+    std::size_t used = 4;
     const auto take = [&](std::size_t size) {
       used += size;
       return memory.part(used - size, size);
     };
     good_ = take(static_cast<std::size_t>(stages));
-    previous_ = take(count());
-    older_ = take(count());
-    oldest_ = take(count());
+    for (int i = 0; i < 3; ++i) past_[(i + static_cast<int>(last_)) % 3] = take(count());
     off_ = take(static_cast<std::size_t>(stages) * count());
     guess_ = take(static_cast<std::size_t>(stages) * count());
     if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
@@ -55,8 +53,8 @@ class StageHistory {
                  of_older = square + 3.0 * cube;
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
     const auto extrapolate = [&](Span<const double> now, std::size_t first, Span<double> out) {
-      const Span<double> previous = previous_.part(first, now.size), older = older_.part(first, now.size),
-                         oldest = oldest_.part(first, now.size),
+      const Span<double> previous = past_[0].part(first, now.size), older = past_[1].part(first, now.size),
+                         oldest = past_[2].part(first, now.size),
                          off = of_stage(stage, off_).part(first, now.size),
                          guess = of_stage(stage, guess_).part(first, now.size);
       in_pairs(now.size, [&](auto at) {
@@ -101,11 +99,10 @@ class StageHistory {
   /// After the last stage.
   void finish() {
     count_ = std::min(steps_ + 1.0, 3.0);
-    in_pairs(count(), [&](auto at) { at(oldest_) = at(older_); });
-    in_pairs(count(), [&](auto at) { at(older_) = at(previous_); });
-    in_pairs(a_.size, [&](auto at) { at(previous_) = at(a_); });
-    const Span<double> previous_lambda = previous_.part(a_.size, lambda_.size);
-    in_pairs(lambda_.size, [&](auto at) { at(previous_lambda) = at(lambda_); });
+    last_ = last_ < 2.0 ? last_ + 1.0 : 0.0;
+    const Span<double> past = past_[2], past_lambda = past.part(a_.size, lambda_.size);
+    in_pairs(a_.size, [&](auto at) { at(past) = at(a_); });
+    in_pairs(lambda_.size, [&](auto at) { at(past_lambda) = at(lambda_); });
   }
 
  private:
@@ -120,7 +117,9 @@ class StageHistory {
   Span<const double> a_, lambda_;
   double steps_;
   double &count_, &foreseen_;  // foreseen_: first stages to come that nobody needs to look at
-  Span<double> good_, previous_, older_, oldest_, off_, guess_;
+  double& last_;               // how far the places of past_ have turned
+  Span<double> past_[3];       // (a, lambda) at the starts of the steps before, the last one first
+  Span<double> good_, off_, guess_;
 };
 
 }  // namespace freeplay

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "freeplay/pairs.h"
 #include "run/block_inverse.h"
 
 namespace freeplay {
@@ -86,6 +87,7 @@ void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
   has_normal_ = std::ranges::all_of(mass, [](double m) { return m > 0.0; }) &&
                 normal_.set_pattern(mass, width, static_cast<int>(free_rows_.size()), free_pieces);
   multipliers_.assign(free_rows_.size(), 0.0);
+  all_free_ = free_rows_.size() == dependent.size();
 }
 
 void AccelerationMatrix::sort_couplings(std::span<const int> owner_of_row, std::span<const int> owner_of_body) {
@@ -181,6 +183,11 @@ void AccelerationMatrix::substitute(std::span<double> right, std::span<double> u
     Eigen::Map<Vector>(a + width * body.who.body) = Eigen::Map<const Square>(body.inverse) * b;
   }
   move_rows(first_free_part_, by_row_.size());
+  if (all_free_) {
+    const std::span<double> multipliers = update.subspan(nv);
+    in_pairs(multipliers.size(), [&](auto at) { at(multipliers) = -at(multipliers); });
+    return normal_.solve(numbers_, update.first(nv), multipliers);
+  }
   for (std::size_t r = 0; r < free_rows_.size(); ++r) multipliers_[r] = -lambda[free_rows_[r]];
   normal_.solve(numbers_, update.first(nv), multipliers_);
   for (std::size_t r = 0; r < free_rows_.size(); ++r) lambda[free_rows_[r]] = multipliers_[r];

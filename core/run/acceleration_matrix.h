@@ -75,6 +75,7 @@ class AccelerationMatrix {
   std::vector<int> free_rows_;
   NormalMatrix normal_;
   bool has_normal_ = false, by_normal_ = false;
+  bool all_free_ = false;  ///< no row is one of prescribed bodies or left out
   double smallest_ = 0.0;  // pivot of the normal matrix and of the blocks that prescribe bodies
   static constexpr double well_conditioned = 1e-2;
   std::unique_ptr<StageMatrix> whole_;

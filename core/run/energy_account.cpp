@@ -23,7 +23,7 @@ EnergyAccount::EnergyAccount(const System& system)
       joint_loss_(system.model().joints.size(), 0.0),
       stored_start_(system.model().joints.size(), 0.0) {
   const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
-  for (auto* numbers : {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &integral_inside_})
+  for (auto* numbers : {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &power_end_, &integral_inside_})
     numbers->resize(count);
 }
 
@@ -53,6 +53,7 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
 
 /// -lambda^T nu over the rows of joints: what the force of a row that moves by itself puts in.
 double EnergyAccount::row_power(const Evaluation& e, std::span<const double> lambda) const {
+  if (!system_.rows_move()) return 0.0;
   // What driven bodies move in a row is not its own motion.
   double power = -system_.power_from_driven(e, lambda);
   for (std::size_t r = 0; r < at(system_.layout().first_driver_row()); ++r) power -= lambda[r] * e.nu[r];
@@ -68,12 +69,21 @@ void EnergyAccount::start(const Evaluation& e, std::span<const double> lambda, c
 
 void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double> lambda,
                          std::span<const double> integrals) {
+  flow(e, lambda, power_end_);
+  take(dt, e, lambda, power_end_, integrals);
+}
+
+void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> powers,
+                         std::span<const double> integrals) {
   steps_alike_ = is_like_last(dt, e) ? steps_alike_ + 1 : 1;
   dt_ = dt;
   std::swap(power_earlier_, power_before_);
-  std::ranges::copy(power_, power_before_.begin());
-  std::ranges::copy(integral_, integral_before_.begin());
-  std::ranges::copy(integrals, integral_.begin());
+  for (std::size_t i = 0; i < power_.size(); ++i) {
+    power_before_[i] = power_[i];
+    power_[i] = powers[i];
+    integral_before_[i] = integral_[i];
+    integral_[i] = integrals[i];
+  }
   row_power_before_ = row_power_;
   row_work_before_ = row_work_;
   look(e, lambda);
@@ -86,17 +96,17 @@ bool EnergyAccount::is_like_last(double dt, const Evaluation& e) const {
 
 bool EnergyAccount::add_smooth(double dt, const Evaluation& e, std::span<const double> lambda) {
   if (steps_alike_ < 2 || !is_like_last(dt, e)) return false;
-  flow(e, lambda, integral_inside_);
+  flow(e, lambda, power_end_);
   double third = 0.0, size = 0.0;  // of their differences
   for (std::size_t i = 0; i < power_.size(); ++i) {
-    const double end = integral_inside_[i], start = power_[i];
+    const double end = power_end_[i], start = power_[i];
     third += std::abs(end - power_earlier_[i] - 3.0 * (start - power_before_[i]));
     size += std::abs(end) + std::abs(start);
     integral_inside_[i] =
         integral_[i] + dt / 24.0 * (9.0 * end + 19.0 * start - 5.0 * power_before_[i] + power_earlier_[i]);
   }
   if (!(third <= bends_little * size)) return false;
-  take(dt, e, lambda, integral_inside_);
+  take(dt, e, lambda, power_end_, integral_inside_);
   return true;
 }
 

@@ -56,6 +56,7 @@ class EnergyAccount {
                    std::span<double> row);
   /// An event changed what acts at the end of the last step.
   void renew(const Evaluation& e, std::span<const double> lambda) {
+    flow(e, lambda, power_);
     look(e, lambda);
     steps_alike_ = 0;
   }
@@ -71,8 +72,10 @@ class EnergyAccount {
             double row_work);
   double row_power(const Evaluation& e, std::span<const double> lambda) const;
   bool is_like_last(double dt, const Evaluation& e) const;
+  void take(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> powers,
+            std::span<const double> integrals);
+  /// With the powers of joints, drivers and forces in `power_`.
   void look(const Evaluation& e, std::span<const double> lambda) {
-    flow(e, lambda, power_);
     row_power_ = row_power(e, lambda);
     acting_ = e.acting;
   }
@@ -90,7 +93,7 @@ class EnergyAccount {
   std::vector<double> power_earlier_;                                     // at the start of the step before that
   int steps_alike_ = 0;                                                   // in length and forces, the last ones
   std::uint64_t acting_ = 0;                                              // Evaluation::acting at the end of the last
-  std::vector<double> power_before_, integral_before_, integral_inside_;  // of the last step
+  std::vector<double> power_before_, integral_before_, power_end_, integral_inside_;  // of the last step
 };
 
 }  // namespace freeplay

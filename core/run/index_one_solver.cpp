@@ -59,12 +59,8 @@ bool IndexOneSolver::evaluate(const StateView& s, unsigned terms) {
 }
 
 double IndexOneSolver::norm(std::span<const double> increment) const {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < unit_.size(); ++i) {
-    const double scaled = std::abs(increment[i]) * per_unit_[i];
-    if (!(scaled <= largest)) largest = scaled;  // keeps a NaN
-  }
-  return largest;
+  const std::span<const double> per_unit = per_unit_;
+  return largest_in_pairs(unit_.size(), [&](auto at) { return at(increment) * at(per_unit); });
 }
 
 void IndexOneSolver::know_rows() {
@@ -245,7 +241,11 @@ bool IndexOneSolver::is_factored_here() const {
 }
 
 bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
-  if (!e_->is_at({*state.t, state.q, state.v, state.z, h_}, index_one) && !evaluate(state, index_one)) return false;
+  if (e_->is_at({*state.t, state.q, state.v, state.z, h_}, index_one & ~unsigned{term_acceleration})) {
+    system_.complete_rates(term_acceleration, e_);
+  } else if (!evaluate(state, index_one)) {
+    return false;
+  }
   if (any_dependent_) {
     const Profile::Timer timer(system_.profile(), Phase::factorization);
     system_.jacobian_entries(e_, entries_);
@@ -286,7 +286,7 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   if (!e_->has_rows_at(here)) {
     if (!evaluate(state, rows)) return false;
   } else {
-    system_.complete_rates(e_);
+    system_.complete_rates(term_velocity, e_);
   }
   std::ranges::fill(multipliers_, 0.0);
   if (velocities_hold(state.v)) return true;

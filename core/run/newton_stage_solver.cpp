@@ -222,8 +222,9 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     system_.add_transposed(e_, out.lambda, std::span(right_).first(at(nv)));
     in_pairs(at(nv), [&](auto at) { at(right_) = at(e_->force) - at(system_.mass()) * at(out.a) - at(right_); });
     if (position) {
-      if (iteration == 0) drifted = is_drift(factor);
-      ask_for_rows(beta_q, drifted);
+      const bool held = rows_hold();
+      if (iteration == 0) drifted = is_drift(factor, held);
+      if (!held) ask_for_rows(beta_q, drifted);
     } else {
       system_.multiply(e_, out.v, std::span(work_).first(at(nc)));
       for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_->nu[r] - work_[r]) / beta_v;
@@ -330,16 +331,20 @@ void NewtonStageSolver::ask_for_rows(double beta_q, bool drifted) {
   }
 }
 
-bool NewtonStageSolver::is_drift(Factor& factor) const {
-  int off = 0, far = 0;
+bool NewtonStageSolver::rows_hold(double times) const {
+  int off = 0;
   for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
-    const double phi = std::abs(e_->phi[r]);
-    off += phi <= quiet_phi_[r] || dependent_[r] ? 0 : 1;
-    far += phi <= drift * quiet_phi_[r] || dependent_[r] ? 0 : 1;
+    off += std::abs(e_->phi[r]) <= times * quiet_phi_[r] || dependent_[r] ? 0 : 1;
   }
+  return off == 0;
+}
+
+bool NewtonStageSolver::is_drift(Factor& factor, bool held) const {
   ++factor.held;
-  if (far > 0) factor.held = 0;
-  return off > 0 && far == 0;
+  if (held) return false;
+  const bool drifted = rows_hold(drift);
+  if (!drifted) factor.held = 0;
+  return drifted;
 }
 
 void NewtonStageSolver::learn_drift(Factor& factor, StateView& out) {

@@ -113,12 +113,14 @@ class NewtonStageSolver {
   /// Whether the last update of a stage is what the rounding of Phi makes of itself: close to a singular position it
   /// grows without bound, and nothing more can be won.
   bool is_rounding_of_phi(const Factor& factor, double way, bool drifted);
+  /// Whether Phi is no more than its roundings, or so many times as much.
+  bool rows_hold(double times = 1.0) const;
   /// right_ of the rows: what of Phi is more than rounding, and not drift.
   void ask_for_rows(double beta_q, bool drifted);
   /// Positions leave the constraints by some roundings more in every stage, until more than roundings have come
   /// together. Accelerations that mend all of it would be large in short steps, and wrong in the next: they learn the
   /// part of one stage, and once the stage is solved positions alone are moved back by the rest (drift_).
-  bool is_drift(Factor& factor) const;
+  bool is_drift(Factor& factor, bool held) const;
   void learn_drift(Factor& factor, StateView& out);
 
   const System& system_;

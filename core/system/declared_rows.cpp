@@ -138,24 +138,28 @@ void DeclaredRows::fill_rows(std::span<const Mount> mounts, Evaluation& e) const
   }
 }
 
-void DeclaredRows::fill_rates(std::span<const Mount> mounts, Evaluation& e) const {
+void DeclaredRows::fill_nu(Evaluation& e) const {
   double* const nu = e.nu.data();
+  for (const RowPair& pair : origins_) nu[pair.row] = nu[pair.row + 1] = 0.0;
+  for (const Row& row : across_) nu[row.row] = 0.0;
+  for (const Row& row : turns_) nu[row.row] = 0.0;
+}
+
+void DeclaredRows::fill_gamma(std::span<const Mount> mounts, Evaluation& e) const {
   double* const gamma = e.gamma.data();
   for (const RowPair& pair : origins_) {
     const Arm &a = e.arms[at(pair.marker_a)], &b = e.arms[at(pair.marker_b)];
-    nu[pair.row] = nu[pair.row + 1] = 0.0;
     gamma[pair.row] = b.x * b.w * b.w - a.x * a.w * a.w;
     gamma[pair.row + 1] = b.y * b.w * b.w - a.y * a.w * a.w;
   }
   for (const Row& row : across_) {
     const Slide s(row.ends, mounts, e);
-    nu[row.row] = 0.0;
     // Arms turn with their bodies: d'' has -arm w^2 besides the accelerations of the bodies.
     const double bias =
         (s.h_x * s.b.y - s.h_y * s.b.x) * s.b.w * s.b.w - (s.h_x * s.a.y - s.h_y * s.a.x) * s.a.w * s.a.w;
     gamma[row.row] = 2.0 * s.a.w * s.rate_along() + s.a.w * s.a.w * s.across() + bias;
   }
-  for (const Row& row : turns_) nu[row.row] = gamma[row.row] = 0.0;
+  for (const Row& row : turns_) gamma[row.row] = 0.0;
 }
 
 void DeclaredRows::fill_coordinates(const Point& point, std::span<const Mount> mounts, unsigned terms,

@@ -33,8 +33,8 @@ class DeclaredRows {
   void write_constants(Evaluation& e) const;
   /// phi and Phi_q where `e` has bodies and arms; `mounts` by marker.
   void fill_rows(std::span<const Mount> mounts, Evaluation& e) const;
-  /// nu and gamma.
-  void fill_rates(std::span<const Mount> mounts, Evaluation& e) const;
+  void fill_nu(Evaluation& e) const;
+  void fill_gamma(std::span<const Mount> mounts, Evaluation& e) const;
   /// Of Phi_q the part that motions change.
   void fill_jacobian(std::span<const Mount> mounts, Evaluation& e) const;
   void fill_coordinates(const Point& point, std::span<const Mount> mounts, unsigned terms, Evaluation& e) const;

@@ -38,7 +38,7 @@ inline Point point(const State& state) { return {state.t(), state.q(), state.v()
 /// Which terms of the equations are wanted.
 enum Term : unsigned {
   term_position = 1,      ///< phi and Phi_q
-  term_velocity = 2,      ///< nu (with phi); with it comes gamma
+  term_velocity = 2,      ///< nu (with phi)
   term_acceleration = 4,  ///< gamma (with phi)
   term_force = 8,         ///< f
   term_derivative = 16,   ///< derivatives of f (with f)
@@ -194,8 +194,10 @@ class System {
 
   /// Of an evaluation at a point the markers that Term::only_asked left out, and the coordinates of all joints.
   bool complete(const Point& point, Evaluation& e) const;
-  /// nu and gamma of an evaluation that has phi.
-  void complete_rates(Evaluation& e) const;
+  /// Whether rows of joints may have a nu of their own, besides what driven bodies move in them.
+  bool rows_move() const { return !with_rows_.empty(); }
+  /// Of an evaluation that has phi the wanted ones of nu (term_velocity) and gamma (term_acceleration).
+  void complete_rates(unsigned terms, Evaluation& e) const;
 
   /// out += Phi_q^T lambda and out = Phi_q v.
   void add_transposed(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
@@ -252,14 +254,16 @@ class System {
   void place_driven(const Point& point, bool only_asked, Evaluation& e) const;
   void turn_driven_markers(Evaluation& e) const;
   void complete_markers(Evaluation& e) const;
-  void move_rows_with_driven(Evaluation& e) const;
+  /// `moved`: rates that end with those of driven bodies.
+  void move_rows_with_driven(std::span<const double> moved, std::span<double> right, const Evaluation& e) const;
+  void fill_rates(unsigned terms, Evaluation& e) const;
   void solve_for_loads(Evaluation& e, std::span<double> force, std::span<double> lambda) const;
   void sort_markers();
   void sort_rows();
-  /// `still`: bodies have moved neither since `e` was filled last, nor do more markers count than then.
-  bool fill(const Point& point, unsigned terms, bool still, Evaluation& e) const;
+  /// `kept`: what `e` still holds; where it is any, bodies have not moved, and no more markers count than before.
+  bool fill(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const;
   template <class Bodies>
-  bool fill_in(const Point& point, unsigned terms, bool still, Evaluation& e) const;
+  bool fill_in(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const;
   template <class Bodies>
   void place_markers(const Point& point, bool only_asked, bool still, Evaluation& e) const;
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;

@@ -165,14 +165,11 @@ void System::turn_driven_markers(Evaluation& e) const {
 }
 
 // What a driven body moves in a row of unknowns goes to the right side.
-void System::move_rows_with_driven(Evaluation& e) const {
+void System::move_rows_with_driven(std::span<const double> moved, std::span<double> right, const Evaluation& e) const {
+  const double* const of_driven = moved.data() + moved.size() - e.driven_a.size();
   for (const Coupling& c : couplings_) {
-    const double* row = &e.jacobian[at(c.offset)];
-    const double *v = &e.v[at(width * c.place)], *a = &e.driven_a[at(width * (c.place - layout_.free_bodies()))];
-    for (int i = 0; i < width; ++i) {
-      e.nu[at(c.row)] -= row[i] * v[i];
-      e.gamma[at(c.row)] -= row[i] * a[i];
-    }
+    const double *row = &e.jacobian[at(c.offset)], *rate = of_driven + width * (c.place - layout_.free_bodies());
+    right[at(c.row)] = right[at(c.row)] - row[0] * rate[0] - row[1] * rate[1] - row[2] * rate[2];
   }
 }
 

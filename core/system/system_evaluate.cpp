@@ -37,11 +37,21 @@ bool Evaluation::is_at(const Point& point, unsigned terms) const {
          same(z, point.z.first(z.size())) && same(h, point.h);
 }
 
-void System::complete_rates(Evaluation& e) const {
-  if ((e.filled & (term_velocity | term_acceleration)) != 0) return;
-  declared_.fill_rates(mounts_, e);
-  if (!couplings_.empty()) move_rows_with_driven(e);
-  e.filled |= term_velocity | term_acceleration;
+void System::complete_rates(unsigned terms, Evaluation& e) const {
+  fill_rates(terms & ~e.filled, e);
+  e.filled |= terms;
+}
+
+// What rows that are made one by one have written of nu and gamma already stays.
+void System::fill_rates(unsigned terms, Evaluation& e) const {
+  if ((terms & term_velocity) != 0) {
+    declared_.fill_nu(e);
+    move_rows_with_driven(e.v, e.nu, e);
+  }
+  if ((terms & term_acceleration) != 0) {
+    declared_.fill_gamma(mounts_, e);
+    move_rows_with_driven(e.driven_a, e.gamma, e);
+  }
 }
 
 bool System::evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const {
@@ -75,9 +85,12 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   const Profile::Timer timer(profile_, Phase::assembly);
   // At the end of a step velocities are projected where everything else stays.
   const bool all_placed = (e.filled & ~terms & only_asked) == 0 && (driven_.empty() || e.driven_time == point.t);
-  const bool still = all_placed && e.has_rows_at(point);
+  // nu depends on time and coordinates alone; rows that are made one by one are made anew.
+  const bool all_declared = with_rows_.empty() && model_.gears.empty() && driver_rows_.empty();
+  const unsigned placed = term_position | (all_declared ? term_velocity : 0u);
+  const unsigned kept = all_placed && e.has_rows_at(point) ? e.filled & placed : 0u;
   e.filled = 0;
-  if (!fill(point, terms, still, e)) return false;
+  if (!fill(point, terms, kept, e)) return false;
   e.filled = terms;
   e.time = point.t;
   std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals behind
@@ -85,8 +98,8 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   return true;
 }
 
-bool System::fill(const Point& point, unsigned terms, bool still, Evaluation& e) const {
-  return by_space([&]<class Bodies>(Bodies) { return fill_in<Bodies>(point, terms, still, e); });
+bool System::fill(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const {
+  return by_space([&]<class Bodies>(Bodies) { return fill_in<Bodies>(point, terms, kept, e); });
 }
 
 template <>
@@ -140,8 +153,9 @@ void System::place_markers<spatial::Bodies>(const Point& point, bool, bool, Eval
 }
 
 template <class Bodies>
-bool System::fill_in(const Point& point, unsigned terms, bool still, Evaluation& e) const {
+bool System::fill_in(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const {
   e.fault.kind = Fault::Kind::none;
+  const bool still = kept != 0;
   place_markers<Bodies>(point, (terms & only_asked) != 0, still, e);
   if (variant_ == Variant::closed) {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
@@ -170,12 +184,10 @@ bool System::fill_in(const Point& point, unsigned terms, bool still, Evaluation&
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
     if (!still) declared_.fill_rows(mounts_, e);
-    const bool rates = (terms & (term_velocity | term_acceleration)) != 0;
-    if (rates) declared_.fill_rates(mounts_, e);
     if (!with_rows_.empty() && !evaluate_rows<Bodies>(point, e)) return false;
     if (!model_.gears.empty()) evaluate_gear_rows<Bodies>(e);
     if (!driver_rows_.empty()) evaluate_driver_rows<Bodies>(e);
-    if (rates && !couplings_.empty()) move_rows_with_driven(e);
+    fill_rates(terms & ~kept, e);
   }
   if ((terms & term_force) != 0) {
     if (!evaluate_forces<Bodies>(point, (terms & term_derivative) != 0, e)) return false;

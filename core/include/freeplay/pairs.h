@@ -37,4 +37,25 @@ inline void in_pairs(std::size_t size, Body&& body) {
   if (i < size) body(OneNumber{i});
 }
 
+/// Largest absolute value of the `size` numbers that `term(at)` gives; no number where one is infinite or none.
+///
+///   largest_in_pairs(v.size, [&](auto at) { return at(scale) * at(v); });
+template <class Term>
+inline double largest_in_pairs(std::size_t size, Term&& term) {
+  Pair most{}, nothing{};  // nothing: x - x
+  std::size_t i = 0;
+  for (; i + 2 <= size; i += 2) {
+    const Pair x = term(TwoNumbers{i}), other = -x, magnitude = x < other ? other : x;
+    nothing += x - x;
+    most = most < magnitude ? magnitude : most;
+  }
+  double largest = most[0] < most[1] ? most[1] : most[0], none = nothing[0] + nothing[1];
+  if (i < size) {
+    const double x = term(OneNumber{i}), magnitude = x < 0.0 ? -x : x;
+    none += x - x;
+    if (largest < magnitude) largest = magnitude;
+  }
+  return largest + none;
+}
+
 }  // namespace freeplay

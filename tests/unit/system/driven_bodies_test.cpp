@@ -170,9 +170,11 @@ TEST_F(Reduced, EveryConstraintOfTheWholeHolds) {
 
 TEST_F(Reduced, WhatIsCompletedLaterIsWhatAWholeLookGives) {
   Evaluation whole(free_), part(free_);
-  ASSERT_TRUE(free_.evaluate(point(state_), term_position | term_velocity | term_force | term_coordinate, whole));
+  ASSERT_TRUE(free_.evaluate(
+      point(state_), term_position | term_velocity | term_acceleration | term_force | term_coordinate, whole));
   ASSERT_TRUE(free_.evaluate(point(state_), term_position | term_force | only_asked, part));
-  free_.complete_rates(part);
+  free_.complete_rates(term_velocity, part);
+  free_.complete_rates(term_acceleration, part);
   ASSERT_TRUE(free_.complete(point(state_), part));
   EXPECT_EQ(part.nu, whole.nu);
   EXPECT_EQ(part.gamma, whole.gamma);
@@ -188,7 +190,7 @@ TEST_F(Reduced, WhatIsCompletedLaterIsWhatAWholeLookGives) {
 }
 
 TEST_F(Reduced, AfterVelocitiesAloneHaveChangedALookGivesWhatAFreshOneGives) {
-  constexpr unsigned equations = term_position | term_velocity | term_force | term_coordinate;
+  constexpr unsigned equations = term_position | term_velocity | term_acceleration | term_force | term_coordinate;
   for (const unsigned before : {equations, term_position | only_asked}) {
     Evaluation again(free_), fresh(free_);
     ASSERT_TRUE(free_.evaluate(point(state_), before, again));
