@@ -27,7 +27,12 @@ class StageHistory {
 
   /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
   StageHistory(double dt, int stages, Span<const double> a, Span<const double> lambda, Span<double> memory)
-      : a_(a), lambda_(lambda), steps_(memory[0]), count_(memory.data[0]), foreseen_(memory.data[2]), last_(memory.data[3]) {
+      : a_(a),
+        lambda_(lambda),
+        steps_(memory[0]),
+        count_(memory.data[0]),
+        foreseen_(memory.data[2]),
+        last_(memory.data[3]) {
     std::size_t used = 4;
     const auto take = [&](std::size_t size) {
       used += size;
@@ -54,8 +59,7 @@ class StageHistory {
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
     const auto extrapolate = [&](Span<const double> now, std::size_t first, Span<double> out) {
       const Span<double> previous = past_[0].part(first, now.size), older = past_[1].part(first, now.size),
-                         oldest = past_[2].part(first, now.size),
-                         off = of_stage(stage, off_).part(first, now.size),
+                         oldest = past_[2].part(first, now.size), off = of_stage(stage, off_).part(first, now.size),
                          guess = of_stage(stage, guess_).part(first, now.size);
       in_pairs(now.size, [&](auto at) {
         const auto sum = of_now * at(now) + of_previous * at(previous) + of_older * at(older) - cube * at(oldest);

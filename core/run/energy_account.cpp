@@ -23,7 +23,8 @@ EnergyAccount::EnergyAccount(const System& system)
       joint_loss_(system.model().joints.size(), 0.0),
       stored_start_(system.model().joints.size(), 0.0) {
   const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
-  for (auto* numbers : {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &power_end_, &integral_inside_})
+  for (auto* numbers :
+       {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &power_end_, &integral_inside_})
     numbers->resize(count);
 }
 

@@ -89,10 +89,10 @@ class EnergyAccount {
   double row_power_ = 0.0, row_work_ = 0.0;                // at the end of the last step
   double row_power_before_ = 0.0, row_work_before_ = 0.0;  // at its start
   std::vector<double> driver_work_, joint_loss_, stored_start_;
-  std::vector<double> power_, integral_;                                  // at the end of the last step
-  std::vector<double> power_earlier_;                                     // at the start of the step before that
-  int steps_alike_ = 0;                                                   // in length and forces, the last ones
-  std::uint64_t acting_ = 0;                                              // Evaluation::acting at the end of the last
+  std::vector<double> power_, integral_;  // at the end of the last step
+  std::vector<double> power_earlier_;     // at the start of the step before that
+  int steps_alike_ = 0;                   // in length and forces, the last ones
+  std::uint64_t acting_ = 0;              // Evaluation::acting at the end of the last
   std::vector<double> power_before_, integral_before_, power_end_, integral_inside_;  // of the last step
 };
 

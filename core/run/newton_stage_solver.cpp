@@ -288,7 +288,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const bool quiet = iteration == 0 && tiny && change <= 2.0 * factor.noise && ++factor.since_noise <= noise_for;
     const bool noise = stays || quiet || (iteration > 0 && change * beta_q <= rounding);
     const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
-    if (internal_settled && (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way, drifted)))) {
+    if (internal_settled &&
+        (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way, drifted)))) {
       follow_accelerations(stage, out);
       if (index_one_.any_dependent()) {
         // Rows that were left out must hold by themselves.

@@ -116,6 +116,98 @@ TEST(Bathe, GuessesStagesFromThoseOfTheStepsBefore) {
   }
 }
 
+// What smooth steps may leave: half of what is allowed in the first stage's velocity, in each.
+constexpr double allowed = 1e-8, short_step = 1e-3;
+
+struct Foreseen : ::testing::Test {
+  explicit Foreseen(Oscillator model = {.zeta = 0.05, .internal = false})
+      : told([&] {
+          Oscillator telling = model;
+          telling.allowed = allowed;
+          return telling;
+        }()),
+        run(0.5, 0.0, told, 1.0, 0.0),
+        full(0.5, 0.0, model, 1.0, 0.0) {}
+  /// Stages that either solves in one more step.
+  std::size_t step() {
+    const std::size_t before = run.oscillator.stages.size();
+    run.step(short_step);
+    full.step(short_step);
+    ++steps;
+    return run.oscillator.stages.size() - before;
+  }
+  void expect_alike() const {
+    const double v = 0.5 * allowed * steps;
+    EXPECT_NEAR(run.v[0], full.v[0], v);
+    EXPECT_NEAR(run.q[0], full.q[0], v * short_step * steps);
+  }
+  Oscillator told;
+  Trial run, full;
+  int steps = 0;
+};
+
+TEST_F(Foreseen, FirstStageOfSmoothStepsIsLookedAtOnceInSixteen) {
+  for (int i = 0; i < 10; ++i) step();
+  std::size_t stages = 0;
+  for (int i = 0; i < 320; ++i) stages += step();
+  EXPECT_EQ(stages, 320u + 320u / 16u);
+  expect_alike();
+  EXPECT_NE(run.v[0], full.v[0]);
+}
+
+TEST_F(Foreseen, WhereTheEndOfAStepIsASurpriseItsFirstStageIsSolvedAfterAll) {
+  int i = 0;
+  while (step() != 1 && i < 100) ++i;
+  ASSERT_EQ(step(), 1u);
+  for (Trial* both : {&run, &full}) {
+    both->oscillator.push = 3.0;
+    both->oscillator.push_from = both->t + 0.3 * short_step;
+  }
+  EXPECT_EQ(step(), 3u);  // the end, the first stage, the end again
+  expect_alike();
+  EXPECT_EQ(step(), 2u);  // and for a while nothing is foreseen
+  EXPECT_EQ(step(), 2u);
+  expect_alike();
+}
+
+TEST_F(Foreseen, OtherStepsAndRestartsForgetWhatWasForeseen) {
+  for (int i = 0; i < 40; ++i) step();
+  std::size_t before = run.oscillator.stages.size();
+  run.step(0.9 * short_step);
+  EXPECT_EQ(run.oscillator.stages.size(), before + 2);
+  for (int i = 0; i < 40; ++i) step();
+  StateView state = run.state();
+  const abi::StageSolverTable table = run.oscillator.table();
+  run.integrator.call(&abi::IntegratorTable::restart, &state, &table);
+  EXPECT_EQ(step(), 2u);
+}
+
+TEST(Bathe, EveryStageIsSolvedWhereInternalVariablesOrErrorsNeedIt) {
+  for (const bool errors : {false, true}) {
+    Trial run(0.5, 0.0, {.estimates = errors, .allowed = allowed, .internal = !errors}, 1.0, 0.0);
+    for (int i = 0; i < 50; ++i) run.step(short_step);
+    EXPECT_EQ(run.oscillator.stages.size(), 100u) << errors;
+  }
+}
+
+// The stiff part of what is foreseen grows until the end of a step tells; it stays below what a stage may leave.
+TEST(Bathe, StiffMotionsStayDampedWhereStagesAreForeseen) {
+  Trial run(0.5, 0.0,
+            {.omega = 1e4, .zeta = 0.01, .allowed = allowed, .push = 1.0, .push_from = 0.0, .internal = false}, 1e-8,
+            0.0);
+  std::size_t skipped = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const std::size_t before = run.oscillator.stages.size();
+    run.step(0.05);
+    skipped += run.oscillator.stages.size() - before == 1 ? 1 : 0;
+    if (i > 20) {
+      ASSERT_NEAR(run.v[0], 0.0, allowed) << i;
+      ASSERT_NEAR(run.q[0], 1e-8, 0.05 * allowed) << i;
+    }
+  }
+  EXPECT_GT(skipped, 100u);
+}
+
 TEST(Bathe, OptimalSplitGivesBothStagesOneMatrix) {
   for (const double rho : {0.0, 0.3, 1.0}) {
     Trial run(optimal, rho, {}, 1.0, 0.0);
@@ -165,7 +257,7 @@ TEST(Bathe, DeclaresWhatItNeedsAndPassesTheNewtonParameters) {
   IntegratorLayout layout;
   layout.sizes = {7, 6, 2, 3};
   integrator.call(&abi::IntegratorTable::declare, &layout);
-  EXPECT_EQ(layout.memory, 3 + 2 + 2 + 6 * (6 + 2));  // z', and what guesses of two stages need
+  EXPECT_EQ(layout.memory, 3 + 4 + 2 + 7 * (6 + 2));  // z', and what guesses of two stages need
   EXPECT_EQ(layout.order, 2);
   EXPECT_EQ(layout.newton_tolerance, 1e-8);
   EXPECT_EQ(layout.newton_max_iterations, 7);

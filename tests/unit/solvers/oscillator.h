@@ -23,11 +23,16 @@ struct Oscillator {
   double post_solve = 0.0;
   bool bent = false;
   bool estimates = false;  ///< the run asks for errors, in units of 1 m and 1 m/s
+  double allowed = 0.0;    ///< error in velocity that a stage may leave [m/s]; 0: the host tells nothing of guesses
+  double push = 0.0, push_from = 1e300;  ///< further acceleration [m/s2], and since when [s]
+  bool internal = true;                  ///< there is z
   int projections = 0, accelerations = 0;
   std::vector<Stage> stages{};
   std::vector<double> guesses{}, solutions{};
 
-  double acceleration(double q, double v) const { return -omega * omega * q - 2.0 * zeta * omega * v; }
+  double acceleration(double q, double v, double t = 0.0) const {
+    return -omega * omega * q - 2.0 * zeta * omega * v + (t >= push_from ? push : 0.0);
+  }
 
   abi::StageSolverTable table() {
     return {sizeof(abi::StageSolverTable),
@@ -38,9 +43,10 @@ struct Oscillator {
             accelerate,
             error_norm,
             retract,
-            0,
+            estimates ? 1u : 0u,
             nullptr,
-            nullptr};
+            nullptr,
+            allowed > 0.0 ? guess_error : nullptr};
   }
   static Oscillator& self(void* s) { return *static_cast<Oscillator*>(s); }
   static Status solve(void* s, const Stage* stage, StateView* out, StageResult* result, Message*) noexcept {
@@ -52,8 +58,8 @@ struct Oscillator {
       return Status::ok;
     }
     const double q = stage->q_base[0] + stage->increment_known[0], v = stage->v_known[0];
-    const double a =
-        o.acceleration(q, v) / (1.0 + o.omega * o.omega * stage->beta_q + 2.0 * o.zeta * o.omega * stage->beta_v);
+    const double a = o.acceleration(q, v, stage->t) /
+                     (1.0 + o.omega * o.omega * stage->beta_q + 2.0 * o.zeta * o.omega * stage->beta_v);
     *out->t = stage->t;
     o.solutions.push_back(a);
     out->a[0] = a;
@@ -62,6 +68,10 @@ struct Oscillator {
     if (!out->z.empty()) out->z[0] = stage->z_known[0] / (1.0 + o.decay * stage->beta_z);
     *result = {1, 1};
     return Status::ok;
+  }
+  static double guess_error(void* s) noexcept {
+    const Oscillator& o = self(s);
+    return std::abs(o.solutions.back() - o.guesses.back()) * o.stages.back().beta_v / o.allowed;
   }
   static Status project_velocity(void* s, StateView*, Message*) noexcept {
     ++self(s).projections;
@@ -76,7 +86,7 @@ struct Oscillator {
   }
   static Status accelerate(void* s, StateView* state, Span<double> z_rate, Message*) noexcept {
     ++self(s).accelerations;
-    state->a[0] = self(s).acceleration(state->q[0], state->v[0]) + self(s).post_solve;
+    state->a[0] = self(s).acceleration(state->q[0], state->v[0], *state->t) + self(s).post_solve;
     if (self(s).bent) state->a[0] += 2.0 * state->q[0] * state->v[0];
     if (!state->z.empty()) z_rate[0] = -self(s).decay * state->z[0];
     return Status::ok;
@@ -88,7 +98,7 @@ struct OscillatorRun {
   OscillatorRun(const std::string& name, const ParameterStub& parameters, Oscillator model, double q0, double v0,
                 double z0 = 0.0)
       : integrator(component(freeplay_plugin_v1_solvers, name), parameters), oscillator(model) {
-    layout.sizes = {1, 1, 0, 1};
+    layout.sizes = {1, 1, 0, oscillator.internal ? 1 : 0};
     integrator.call(&abi::IntegratorTable::declare, &layout);
     memory.resize(static_cast<std::size_t>(layout.memory));
     scratch.assign(static_cast<std::size_t>(layout.scratch), std::numeric_limits<double>::quiet_NaN());
@@ -100,7 +110,7 @@ struct OscillatorRun {
     const abi::StageSolverTable table = oscillator.table();
     integrator.call(&abi::IntegratorTable::restart, &s, &table);
   }
-  StateView state() { return {&t, q, v, a, {}, z, {memory.data(), memory.size()}}; }
+  StateView state() { return {&t, q, v, a, {}, {z, oscillator.internal ? 1u : 0u}, {memory.data(), memory.size()}}; }
   Attempt step(double dt) {
     Attempt result{};
     StateView s = state();

@@ -170,8 +170,8 @@ TEST_F(Reduced, EveryConstraintOfTheWholeHolds) {
 
 TEST_F(Reduced, WhatIsCompletedLaterIsWhatAWholeLookGives) {
   Evaluation whole(free_), part(free_);
-  ASSERT_TRUE(free_.evaluate(
-      point(state_), term_position | term_velocity | term_acceleration | term_force | term_coordinate, whole));
+  ASSERT_TRUE(free_.evaluate(point(state_),
+                             term_position | term_velocity | term_acceleration | term_force | term_coordinate, whole));
   ASSERT_TRUE(free_.evaluate(point(state_), term_position | term_force | only_asked, part));
   free_.complete_rates(term_velocity, part);
   free_.complete_rates(term_acceleration, part);
