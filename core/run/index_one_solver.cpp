@@ -63,11 +63,6 @@ double IndexOneSolver::norm(std::span<const double> increment) const {
   return largest_in_pairs(unit_.size(), [&](auto at) { return at(increment) * at(per_unit); });
 }
 
-double IndexOneSolver::norm_by_forces(std::span<const double> force) const {
-  const std::span<const double> per_unit = per_unit_, mass = system_.mass();
-  return largest_in_pairs(unit_.size(), [&](auto at) { return at(force) / at(mass) * at(per_unit); });
-}
-
 void IndexOneSolver::know_rows() {
   if (rank_ >= 0) return;
   const Profile::Timer start(system_.profile(), Phase::start);

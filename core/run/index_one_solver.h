@@ -67,8 +67,6 @@ class IndexOneSolver {
 
   /// Largest increment, lengths in model sizes; keeps a NaN.
   double norm(std::span<const double> increment) const;
-  /// The same of the accelerations that forces on the coordinates make where no row holds the bodies.
-  double norm_by_forces(std::span<const double> force) const;
   std::span<const double> units() const { return unit_; }  ///< of increments: 1 for angles, else the model's size
 
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.

@@ -17,7 +17,6 @@ constexpr int seen_for = 8;
 constexpr double most_foreseen = 100.0;  // size of a first update that may be the only one, in tolerances
 constexpr int most_stays = 3;            // iterations that roundings alone could have kept large, with old factors
 constexpr int noise_for = 64;            // stages, until noise is looked at again
-constexpr double good_guess = 0.05;      // of the tolerance: left as it is
 constexpr double immaterial = 0.1;       // part of the tolerance, or of a rounding
 constexpr int kept_factors = 4;
 constexpr std::size_t few_unknowns = 100;
@@ -199,7 +198,6 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   Factor& factor = factor_for(beta_q, beta_v);
   factor.beta_z = stage.beta_z;
   bool fresh = false, drifted = false;
-  const bool plain = factor.matrix.internal().empty() && !index_one_.any_dependent();
   double previous = std::numeric_limits<double>::infinity(), ratio = 1.0;
   int diverging = 0;
   for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
@@ -223,8 +221,8 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     std::fill(right_.begin(), right_.end(), 0.0);
     system_.add_transposed(e_, out.lambda, std::span(right_).first(at(nv)));
     in_pairs(at(nv), [&](auto at) { at(right_) = at(e_->force) - at(system_.mass()) * at(out.a) - at(right_); });
-    const bool held = position && rows_hold();
     if (position) {
+      const bool held = rows_hold();
       if (iteration == 0) drifted = is_drift(factor, held);
       if (!held) ask_for_rows(beta_q, drifted);
     } else {
@@ -238,14 +236,6 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     }
     if (!factor.matrix.internal().empty()) {
       factor.matrix.internal().add_to_right(e_->internal_rate, z_rate_, std::span(right_).first(at(nv)));
-    }
-    // What forces leave over moves bodies that rows hold less than free ones.
-    if (iteration == 0 && held && same_forces && plain) {
-      guess_error_ = index_one_.norm_by_forces(std::span(right_).first(at(nv))) * way / options_.tolerance;
-      if (guess_error_ <= good_guess) {
-        result.converged = 1;
-        return true;
-      }
     }
     factor.matrix.solve(right_, update_);
     const double change = index_one_.norm(std::span(update_).first(at(nv)));
