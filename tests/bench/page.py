@@ -44,7 +44,8 @@ def growth_table(found):
     rows = [[run["windows"], "%.3g" % run["seconds_per_step"], "%.3g" % run["seconds_of_start"],
              "%.3g" % run["process_seconds"], "%.0f" % (run["peak_bytes"] / 1e6)] for run in found["runs"]]
     return markdown(["N", "seconds per step", "start of the run [s]", "process of two steps [s]", "peak memory [MB]"], rows) + \
-        "\nTime per step grows as N^%.2f, between neighbours at most as N^%.2f.\n" % (found["exponent"], found["steepest"])
+        "\nTime per step grows as N^%.2f from the first N to the last; fitted to all as N^%.2f, between neighbours at most as N^%.2f.\n" % (
+            found["from_first_to_last"], found["exponent"], found["steepest"])
 
 
 def of_start(found):

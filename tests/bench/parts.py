@@ -83,10 +83,11 @@ def growth_of(bench, model, most):
         points.append((n, per_step))
         rows.append([n, "%.4g" % per_step, "%.3g" % (1e6 * per_step / n), "%.3g" % record["seconds_of_start"],
                      "%.3g" % best[few].seconds, "%.0f" % (record["peak_bytes"] / 1e6)])
-    slope, steepest = growth(points)
+    whole, slope, steepest = growth(points)
     bench.print(table(["N", "s per step", "us per step, N", "start [s]", "process [s]", "peak [MB]"], rows))
-    bench.print("time per step grows as N^%.2f (between neighbours at most N^%.2f)" % (slope, steepest))
-    return {"exponent": slope, "steepest": steepest, "runs": found}
+    bench.print("time per step grows as N^%.2f from first to last (fitted N^%.2f, between neighbours at most N^%.2f)" %
+                (whole, slope, steepest))
+    return {"from_first_to_last": whole, "exponent": slope, "steepest": steepest, "runs": found}
 
 
 def start(bench):

@@ -117,8 +117,10 @@ def largest_distance(rows, reference):
 
 
 def growth(points):
-    """Exponent p of y = c x^p, least squares in logarithms, and the largest between neighbours."""
+    """Exponent p of y = c x^p: from the first point to the last, by least squares in logarithms, and the largest
+    between neighbours."""
     logs = [(math.log(x), math.log(y)) for x, y in points]
     mx, my = (sum(column) / len(logs) for column in zip(*logs))
     slope = sum((x - mx) * (y - my) for x, y in logs) / sum((x - mx) ** 2 for x, _ in logs)
-    return slope, max((b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(logs, logs[1:]))
+    steep = lambda a, b: (b[1] - a[1]) / (b[0] - a[0])
+    return steep(logs[0], logs[-1]), slope, max(map(steep, logs, logs[1:]))

@@ -92,8 +92,9 @@ class Bench(ProgramTest):
         import timing
         self.assertEqual((2.0, 2.5), (timing.median([3.0, 1.0, 2.0]), timing.median([1.0, 2.0, 3.0, 4.0])))
         self.assertEqual(2.0, timing.ratio([2.0, 8.0, 3.0], [1.0, 2.0, 3.0]))
-        slope, steepest = timing.growth([(1.0, 3.0), (10.0, 30.0), (100.0, 3000.0)])
-        self.assertAlmostEqual(1.5, slope)
+        whole, slope, steepest = timing.growth([(1.0, 3.0), (10.0, 30.0), (100.0, 3000.0), (1000.0, 300000.0)])
+        self.assertAlmostEqual(5.0 / 3.0, whole)
+        self.assertAlmostEqual(1.7, slope)
         self.assertAlmostEqual(2.0, steepest)
         rates = iter([3.0, 1.0, 2.0])
         self.assertEqual(1.0, timing.fastest(lambda: types.SimpleNamespace(rate=next(rates)), 3, 0.0).rate)
