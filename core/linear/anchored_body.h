@@ -1,20 +1,23 @@
-// AnchoredBody: the rows of a saddle-point system that hold one body and nothing else.
+// AnchoredBody: the rows of a saddle-point system that hold one body and nothing else, eliminated with that body.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
 namespace freeplay {
 
-/// A body that joints with the ground or with given motions alone hold, all but freely: its part of S = G M^-1 G^T is a
-/// block of its own (see NormalMatrix). Loops have a known length here.
+/// A body that joints with the ground or with given motions hold, all but wholly. What other rows, g, still move of it
+/// has the inverse mass  W' = W - W G^T S^-1 G W  with W = M^-1, its own rows G and S = G W G^T (see NormalMatrix).
+/// Loops have a known length here.
 struct AnchoredBody {
   /// Rows that leave a body of `width` freedoms at least one.
   static constexpr int most_rows(int width) { return width - 1; }
 
   int body = 0, rows = 0;
-  std::array<int, 5> piece{}, row{};  // of each row: where its numbers and its multiplier are
+  std::array<int, 5> piece{}, row{};           // of each row: where its numbers and its multiplier are
+  std::size_t first_other = 0, end_other = 0;  // the range of pieces of other rows that hold the body, too
 
   /// Factors L D L^T. Returns the smallest pivot in parts of its diagonal entry.
   template <int width, int count>
@@ -34,7 +37,7 @@ struct AnchoredBody {
     double smallest = 1.0;
     for (int c = 0; c < count; ++c) {
       const double part = s_[c][c] / diagonal[c];
-      if (!(part >= smallest)) smallest = part;  // keeps a NaN
+      if (part < smallest || std::isnan(part)) smallest = part;
       const double inverse_pivot = s_[c][c] = 1.0 / s_[c][c];
       for (int a = c + 1; a < count; ++a) {
         const double factor = s_[a][c] * inverse_pivot;
@@ -45,7 +48,23 @@ struct AnchoredBody {
     return smallest;
   }
 
-  /// From x = b and l = -c to the multipliers l and x = b - G^T l, not yet divided by the masses.
+  /// Of another row, with the numbers g: from W g^T to W' g^T, and in `shares` S^-1 G W g^T.
+  template <int width, int count>
+  void reduce(const double* g, double* weighted, double* shares) const {
+    for (int r = 0; r < count; ++r) {
+      double sum = 0.0;
+      for (int c = 0; c < width; ++c) sum += weighted_[r][c] * g[c];
+      for (int k = 0; k < r; ++k) sum -= s_[r][k] * shares[k];
+      shares[r] = sum;
+    }
+    back_substitute<count>(shares);
+    for (int r = 0; r < count; ++r) {
+      for (int c = 0; c < width; ++c) weighted[c] -= weighted_[r][c] * shares[r];
+    }
+  }
+
+  /// From x = b and l = -c to the multipliers l and x = b - G^T l, not yet divided by the masses; b holds the forces of
+  /// all other rows.
   template <int width, int count>
   void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
     double* const b = &x[width * static_cast<std::size_t>(body)];
@@ -56,10 +75,7 @@ struct AnchoredBody {
       for (int k = 0; k < r; ++k) sum -= s_[r][k] * multiplier[k];
       multiplier[r] = sum;
     }
-    for (int r = count; r-- > 0;) {
-      multiplier[r] *= s_[r][r];
-      for (int k = r + 1; k < count; ++k) multiplier[r] -= s_[k][r] * multiplier[k];
-    }
+    back_substitute<count>(multiplier);
     for (int r = 0; r < count; ++r) {
       const double* const g = piece_of<width>(numbers, r);
       for (int c = 0; c < width; ++c) b[c] -= g[c] * multiplier[r];
@@ -68,6 +84,13 @@ struct AnchoredBody {
   }
 
  private:
+  template <int count>
+  void back_substitute(double* l) const {
+    for (int r = count; r-- > 0;) {
+      l[r] *= s_[r][r];
+      for (int k = r + 1; k < count; ++k) l[r] -= s_[k][r] * l[k];
+    }
+  }
   template <int width>
   const double* piece_of(std::span<const double> numbers, int r) const {
     return &numbers[width * static_cast<std::size_t>(piece[static_cast<std::size_t>(r)])];

@@ -1,6 +1,7 @@
 #include "linear/normal_matrix.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -51,23 +52,17 @@ auto by_rows(int rows, Call&& call) {
 
 }  // namespace
 
-// Takes out the bodies that have all their rows for themselves; returns the rows that are left.
+// Takes out the rows that hold one body alone, where they leave it a freedom; returns the rows that are left.
 std::vector<int> NormalMatrix::find_anchored(int width, int rows, std::span<const Piece> pieces) {
-  std::vector<int> bodies_of_row(at(rows), 0), rows_of_body(inverse_mass_.size() / at(width), 0);
-  for (const Piece& piece : pieces) {
-    ++bodies_of_row[at(piece.row)];
-    ++rows_of_body[at(piece.body)];
-  }
-  for (const Piece& piece : pieces) {
-    int& count = rows_of_body[at(piece.body)];
-    if (bodies_of_row[at(piece.row)] > 1 || count > AnchoredBody::most_rows(width)) count = 0;  // not anchored
-  }
+  std::vector<int> bodies_of_row(at(rows), 0), own_rows(inverse_mass_.size() / at(width), 0);
+  for (const Piece& piece : pieces) ++bodies_of_row[at(piece.row)];
+  for (const Piece& piece : pieces) own_rows[at(piece.body)] += bodies_of_row[at(piece.row)] == 1 ? 1 : 0;
   anchored_.clear();
-  std::vector<int> index(rows_of_body.size(), -1);  // in anchored_
+  std::vector<int> index(own_rows.size(), -1);  // in anchored_
   std::vector<char> taken(at(rows), 0);
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const auto& [row, body] = pieces[p];
-    if (rows_of_body[at(body)] == 0) continue;
+    if (bodies_of_row[at(row)] > 1 || own_rows[at(body)] > AnchoredBody::most_rows(width)) continue;
     if (index[at(body)] < 0) {
       index[at(body)] = static_cast<int>(anchored_.size());
       anchored_.emplace_back().body = body;
@@ -93,12 +88,12 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
   pieces_.clear();
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const int row = number[at(pieces[p].row)];
-    if (row >= 0) pieces_.push_back({{row, pieces[p].body}, static_cast<int>(p)});
+    if (row >= 0) pieces_.push_back({row, width * pieces[p].body, width * static_cast<int>(p)});
   }
   // Pieces of one body, behind each other.
   std::vector<int> by_body(pieces_.size());
   std::iota(by_body.begin(), by_body.end(), 0);
-  const auto body_of = [&](int i) { return pieces_[at(i)].where.body; };
+  const auto body_of = [&](int i) { return pieces_[at(i)].column / width; };
   std::ranges::sort(by_body, {}, [&](int i) { return std::pair(body_of(i), i); });
   std::vector<std::pair<int, int>> pairs;  // of pieces
   for (std::size_t i = 0, first = 0; i < by_body.size(); ++i) {
@@ -110,7 +105,7 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
     std::vector<std::pair<int, int>> out;
     out.reserve(pairs.size());
     for (const auto& [a, b] : pairs) {
-      const auto [low, high] = std::minmax({pieces_[at(a)].where.row, pieces_[at(b)].where.row});
+      const auto [low, high] = std::minmax({pieces_[at(a)].row, pieces_[at(b)].row});
       out.emplace_back(high, low);
     }
     std::ranges::sort(out);
@@ -119,7 +114,7 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
   };
   const int between = static_cast<int>(left.size());
   const std::vector<int> order = sparse_order(between, places());
-  for (Numbered& piece : pieces_) piece.where.row = order[at(piece.where.row)];
+  for (Other& piece : pieces_) piece.row = order[at(piece.row)];
   if (!factors_.set_pattern(between, places(), most_filled * pieces_.size())) return false;
 
   width_ = width;
@@ -128,9 +123,17 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
   products_.clear();
   products_.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
-    const auto [low, high] = std::minmax({pieces_[at(a)].where.row, pieces_[at(b)].where.row});
-    products_.push_back({factors_.place(high, low), pieces_[at(a)].piece, b});
+    const auto [low, high] = std::minmax({pieces_[at(a)].row, pieces_[at(b)].row});
+    products_.push_back({factors_.place(high, low), pieces_[at(a)].numbers, width * b});
   }
+  others_.clear();
+  for (AnchoredBody& own : anchored_) {
+    const auto of_body = std::ranges::equal_range(by_body, own.body, {}, body_of);
+    own.first_other = others_.size();
+    others_.insert(others_.end(), of_body.begin(), of_body.end());
+    own.end_other = others_.size();
+  }
+  shares_.assign(at(AnchoredBody::most_rows(width)) * others_.size(), 0.0);
   weighted_.assign(at(width) * pieces_.size(), 0.0);
   diagonal_.assign(left.size(), 0.0);
   multipliers_.assign(left.size(), 0.0);
@@ -138,15 +141,45 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
 }
 
 template <int width>
-void NormalMatrix::multiply(std::span<const double> numbers) {
-  for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    const double* inverse = &inverse_mass_[width * at(pieces_[p].where.body)];
-    const double* g = &numbers[width * at(pieces_[p].piece)];
-    for (std::size_t c = 0; c < width; ++c) weighted_[width * p + c] = g[c] * inverse[c];
+void NormalMatrix::weigh(std::span<const double> numbers) {
+  std::ranges::fill(diagonal_, 0.0);
+  double* weighted = weighted_.data();
+  for (const Other& piece : pieces_) {
+    const double *inverse = &inverse_mass_[at(piece.column)], *g = &numbers[at(piece.numbers)];
+    double sum = 0.0;
+    for (int c = 0; c < width; ++c) {
+      weighted[c] = g[c] * inverse[c];
+      sum += g[c] * weighted[c];
+    }
+    diagonal_[at(piece.row)] += sum;
+    weighted += width;
   }
+}
+
+template <int width>
+double NormalMatrix::eliminate_anchored(std::span<const double> numbers) {
+  double smallest = 1.0;
+  for (AnchoredBody& own : anchored_) {
+    const double part = by_rows<width>(own.rows, [&]<int count>() {
+      const double pivot = own.factor<width, count>(numbers, inverse_mass_);
+      for (std::size_t i = own.first_other; i < own.end_other; ++i) {
+        const std::size_t p = at(others_[i]);
+        own.reduce<width, count>(&numbers[at(pieces_[p].numbers)], &weighted_[width * p],
+                                 &shares_[AnchoredBody::most_rows(width) * i]);
+      }
+      return pivot;
+    });
+    if (part < smallest || std::isnan(part)) smallest = part;
+  }
+  return smallest;
+}
+
+template <int width>
+void NormalMatrix::multiply(std::span<const double> numbers) {
   double* const s = factors_.values().data();
+  std::ranges::fill(factors_.values(), 0.0);
   for (const Product& product : products_) {
-    const double *a = &numbers[width * at(product.a)], *b = &weighted_[width * at(product.b)];
+    const double *a = &numbers[at(product.a)], *b = &weighted_[at(product.b)];
     double sum = a[0] * b[0];
     for (int c = 1; c < width; ++c) sum += a[c] * b[c];
     s[product.target] += sum;
@@ -154,51 +187,60 @@ void NormalMatrix::multiply(std::span<const double> numbers) {
 }
 
 template <int width>
-double NormalMatrix::factor_anchored(std::span<const double> numbers) {
-  double smallest = 1.0;
-  for (AnchoredBody& own : anchored_) {
-    const double part =
-        by_rows<width>(own.rows, [&]<int count>() { return own.factor<width, count>(numbers, inverse_mass_); });
-    if (!(part >= smallest)) smallest = part;  // keeps a NaN
-  }
-  return smallest;
-}
-
-double NormalMatrix::factor(std::span<const double> numbers) {
-  double smallest = width_ == 3 ? factor_anchored<3>(numbers) : factor_anchored<6>(numbers);
-  const std::span<double> s = factors_.values();
-  std::ranges::fill(s, 0.0);
-  width_ == 3 ? multiply<3>(numbers) : multiply<6>(numbers);
-  for (std::size_t r = 0; r < diagonal_.size(); ++r) diagonal_[r] = s[at(factors_.diagonal(static_cast<int>(r)))];
+double NormalMatrix::factor_in(std::span<const double> numbers) {
+  weigh<width>(numbers);
+  double smallest = eliminate_anchored<width>(numbers);
+  multiply<width>(numbers);
   factors_.factor();
+  const std::span<const double> s = factors_.values();
   for (std::size_t r = 0; r < diagonal_.size(); ++r) {
-    const double part = s[at(factors_.diagonal(static_cast<int>(r)))] / diagonal_[r];
-    if (!(part >= smallest)) smallest = part;
+    const double pivot = s[at(factors_.diagonal(static_cast<int>(r)))];
+    if (pivot < smallest * diagonal_[r] || std::isnan(pivot)) smallest = pivot / diagonal_[r];
   }
   return smallest > 0.0 ? smallest : 0.0;
 }
 
+double NormalMatrix::factor(std::span<const double> numbers) {
+  return width_ == 3 ? factor_in<3>(numbers) : factor_in<6>(numbers);
+}
+
 template <int width>
 void NormalMatrix::substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+  if (!rows_.empty()) solve_others<width>(numbers, x, l);
   for (const AnchoredBody& own : anchored_) {
     by_rows<width>(own.rows, [&]<int count>() { own.substitute<width, count>(numbers, x, l); });
   }
-  for (std::size_t r = 0; r < rows_.size(); ++r) multipliers_[r] = l[at(rows_[r])];
-  for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    const double *g = &weighted_[width * p], *b = &x[width * at(pieces_[p].where.body)];
-    double sum = g[0] * b[0];
-    for (int c = 1; c < width; ++c) sum += g[c] * b[c];
-    multipliers_[at(pieces_[p].where.row)] += sum;
+  for (std::size_t i = 0; i < inverse_mass_.size(); ++i) x[i] *= inverse_mass_[i];
+}
+
+// The multipliers of the rows in S, and from x = b to b - G^T l with these alone.
+template <int width>
+void NormalMatrix::solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+  double* const multipliers = multipliers_.data();
+  for (std::size_t r = 0; r < rows_.size(); ++r) multipliers[r] = l[at(rows_[r])];
+  const double* weighted = weighted_.data();
+  for (const Other& piece : pieces_) {
+    const double* b = &x[at(piece.column)];
+    double sum = weighted[0] * b[0];
+    for (int c = 1; c < width; ++c) sum += weighted[c] * b[c];
+    multipliers[piece.row] += sum;
+    weighted += width;
+  }
+  for (const AnchoredBody& own : anchored_) {
+    for (std::size_t i = own.first_other; i < own.end_other; ++i) {
+      const double* shares = &shares_[AnchoredBody::most_rows(width) * i];
+      double& multiplier = multipliers[pieces_[at(others_[i])].row];
+      for (int r = 0; r < own.rows; ++r) multiplier -= shares[r] * l[at(own.row[at(r)])];
+    }
   }
   factors_.solve(multipliers_);
-  for (const Numbered& piece : pieces_) {
-    const double* g = &numbers[width * at(piece.piece)];
-    const double multiplier = multipliers_[at(piece.where.row)];
-    double* b = &x[width * at(piece.where.body)];
+  for (const Other& piece : pieces_) {
+    const double* g = &numbers[at(piece.numbers)];
+    const double multiplier = multipliers[piece.row];
+    double* b = &x[at(piece.column)];
     for (int c = 0; c < width; ++c) b[c] -= g[c] * multiplier;
   }
-  for (std::size_t i = 0; i < inverse_mass_.size(); ++i) x[i] *= inverse_mass_[i];
-  for (std::size_t r = 0; r < rows_.size(); ++r) l[at(rows_[r])] = multipliers_[r];
+  for (std::size_t r = 0; r < rows_.size(); ++r) l[at(rows_[r])] = multipliers[r];
 }
 
 void NormalMatrix::solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {

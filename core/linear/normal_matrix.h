@@ -12,7 +12,7 @@ namespace freeplay {
 /// [ M  G^T ] [ x ]   [ b ]
 /// [ G   0  ] [ l ] = [ c ]   with M diagonal and positive, by  S = G M^-1 G^T,  S l = G M^-1 b - c,
 ///                            M x = b - G^T l  and S = L D L^T in an order that keeps L sparse
-/// Rows that hold one body alone are blocks of S, which are factored by themselves.
+/// Rows that hold one body alone are eliminated with that body (see AnchoredBody); S is of the others, then.
 /// G comes in pieces: `width` numbers of one row in the columns of one body. The condition of S is the square of that
 /// of G: a solution wants to be refined where factor() returns little.
 class NormalMatrix {
@@ -31,7 +31,7 @@ class NormalMatrix {
   void solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
 
  private:
-  /// S[target] += G_a M^-1 G_b^T, `a` of all pieces, `b` of pieces_
+  /// S[target] += G_a W G_b^T: where the numbers of G_a and those of G_b W begin.
   struct Product {
     int target, a, b;
   };
@@ -39,22 +39,30 @@ class NormalMatrix {
   template <int width>
   void multiply(std::span<const double> numbers);
   template <int width>
-  double factor_anchored(std::span<const double> numbers);
+  void weigh(std::span<const double> numbers);
+  template <int width>
+  double eliminate_anchored(std::span<const double> numbers);
+  template <int width>
+  double factor_in(std::span<const double> numbers);
   template <int width>
   void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
+  template <int width>
+  void solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
 
   int width_ = 3;
   std::vector<AnchoredBody> anchored_;
   std::vector<int> rows_;  // all others, by their place in S
   std::vector<double> inverse_mass_;
-  struct Numbered {
-    Piece where;  // `row` is a place in S
-    int piece;    // among all
+  struct Other {
+    int row;              // its place in S
+    int column, numbers;  // where the numbers of its body begin, and its own
   };
-  std::vector<Numbered> pieces_;
+  std::vector<Other> pieces_;  // of rows that are not eliminated with a body
   std::vector<Product> products_;
-  std::vector<double> weighted_;  // G M^-1, as pieces_
-  std::vector<double> diagonal_;  // of S
+  std::vector<double> weighted_;  // G W, as pieces_: W is M^-1, of anchored bodies their W'
+  std::vector<int> others_;       // of pieces_, those of anchored bodies, one body after the other
+  std::vector<double> shares_;    // as others_: S^-1 G W g^T of the body's own rows
+  std::vector<double> diagonal_;  // of G M^-1 G^T
   ListedCholesky factors_;
   mutable std::vector<double> multipliers_;
 };

@@ -49,6 +49,7 @@ IndexOneSolver::IndexOneSolver(const System& system, int max_iterations)
   first_multipliers_.resize(at(nc));
   dependent_.assign(at(nc), 0);
   loads_.resize(at(system.layout().all_rows()));
+  set_pattern();
 }
 
 bool IndexOneSolver::evaluate(const StateView& s, unsigned terms) {
@@ -69,12 +70,14 @@ void IndexOneSolver::know_rows() {
   if (!rows_are_independent()) find_dependent_rows();
 }
 
-double IndexOneSolver::factor_once() {
-  if (!has_pattern_) {
-    const Profile::Timer start(system_.profile(), Phase::start);
-    matrix_.set_pattern(dependent_);
-  }
+void IndexOneSolver::set_pattern() {
+  const Profile::Timer start(system_.profile(), Phase::start);
+  matrix_.set_pattern(dependent_);
   has_pattern_ = true;
+}
+
+double IndexOneSolver::factor_once() {
+  if (!has_pattern_) set_pattern();
   ++factorizations_;
   return matrix_.factor(e_);
 }

@@ -76,6 +76,7 @@ class IndexOneSolver {
   long factorizations() const { return factorizations_; }
 
  private:
+  void set_pattern();
   bool factor();
   double factor_once();
   bool rows_are_independent();

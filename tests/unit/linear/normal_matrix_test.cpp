@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
@@ -9,10 +10,12 @@
 namespace freeplay {
 namespace {
 
-/// A chain of bodies: row r holds bodies r and r + 1, the last row the last three. Before it, `alone` bodies that have
-/// rows for themselves: 1, 2 ... as many as leave them a freedom, again 1 ..., in turn with each other.
+/// A chain of bodies: row r holds bodies r and r + 1, the last row the last three. Behind them come rows that hold one
+/// body alone, 1, 2 ... as many as leave it a freedom, again 1 ..., in turn with each other: those of every other body
+/// of the chain where it is `anchored`, and of `alone` more bodies.
 struct Chain {
-  Chain(int rows, int width, int alone = 0) : rows_(rows), bodies_(rows + 2 + alone), width_(width) {
+  Chain(int rows, int width, int alone = 0, bool anchored = false)
+      : rows_(rows), bodies_(rows + 2 + alone), width_(width) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(0.5, 2.0);
     for (int c = 0; c < columns(); ++c) mass.push_back(number(random));
@@ -26,9 +29,11 @@ struct Chain {
     }
     for (int b = 1; b <= 3; ++b) add(rows - 1, bodies_ - b, 1.0);
     for (int turn = 1; turn < width; ++turn) {
-      for (int b = 0; b < alone; ++b) {
-        if (turn <= 1 + b % (width - 1)) add(rows_++, rows + 2 + b, 1.0);
-      }
+      const auto hold = [&](int body) {
+        if (turn <= 1 + body % (width - 1)) add(rows_++, body, 1.0);
+      };
+      for (int b = 0; anchored && b < rows + 2; b += 2) hold(b);
+      for (int b = rows + 2; b < bodies_; ++b) hold(b);
     }
     for (int i = 0; i < rows_ + columns(); ++i) right.push_back(number(random));
   }
@@ -52,8 +57,18 @@ struct Chain {
 
 TEST(NormalMatrix, SolvesTheWholeSystem) {
   for (const int width : {3, 6}) {
-    for (const auto& [rows, alone] : {std::pair(1, 0), {2, 0}, {7, 0}, {40, 0}, {1, 1}, {7, 5}, {2, 11}}) {
-      const Chain chain(rows, width, alone);
+    using Case = std::tuple<int, int, bool>;
+    for (const auto& [rows, alone, anchored] : {Case(1, 0, false),
+                                                {2, 0, false},
+                                                {7, 0, false},
+                                                {40, 0, false},
+                                                {1, 1, false},
+                                                {7, 5, false},
+                                                {2, 11, false},
+                                                {2, 0, true},
+                                                {11, 0, true},
+                                                {40, 3, true}}) {
+      const Chain chain(rows, width, alone, anchored);
       NormalMatrix matrix;
       ASSERT_TRUE(matrix.set_pattern(chain.mass, width, chain.rows_, chain.pieces));
       for (int again = 0; again < 2; ++again) {
@@ -66,7 +81,7 @@ TEST(NormalMatrix, SolvesTheWholeSystem) {
         const Eigen::VectorXd expected = chain.solution();
         for (std::size_t i = 0; i < x.size(); ++i) {
           EXPECT_NEAR(x[i], expected[static_cast<Eigen::Index>(i)], 1e-12 * expected.norm())
-              << rows << " " << alone << " " << i;
+              << rows << " " << alone << " " << anchored << " " << i;
         }
       }
     }
@@ -85,6 +100,21 @@ TEST(NormalMatrix, PivotFallsWithTheSquareOfTheDistanceFromASingularPosition) {
   };
   EXPECT_NEAR(pivot(1e-2) / pivot(1e-3), 100.0, 0.1);
   EXPECT_LT(pivot(0.0), 1e-15);
+}
+
+TEST(NormalMatrix, WhatIsNoNumberIsNotRegular) {
+  // One body with a row of its own, two with a row between them, two more with another.
+  const std::vector<double> mass(15, 1.0);
+  NormalMatrix matrix;
+  const NormalMatrix::Piece pieces[] = {{0, 0}, {1, 1}, {1, 2}, {2, 3}, {2, 4}};
+  ASSERT_TRUE(matrix.set_pattern(mass, 3, 3, pieces));
+  std::vector<double> numbers(15, 1.0);
+  EXPECT_EQ(matrix.factor(numbers), 1.0);
+  for (std::size_t i = 0; i < numbers.size(); i += 3) {
+    std::vector<double> wrong = numbers;
+    wrong[i] = std::nan("");
+    EXPECT_EQ(matrix.factor(wrong), 0.0) << i;
+  }
 }
 
 TEST(NormalMatrix, RefusesABodyThatMakesItDense) {
