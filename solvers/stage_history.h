@@ -17,12 +17,14 @@ namespace freeplay {
 /// one iteration does. Where such a guess would have been no better than a_n, as behind an impact, and in steps of
 /// another length than those before, it is not used. A guess changes what a stage costs, not what it solves.
 ///
-/// Where guesses miss by a small part of what the iteration of a stage may leave, the first stage of a step may also be
-/// left as it was guessed, unlooked at: for as many steps as this part, growing by itself in each, stays small. The end
-/// of the same steps is looked at; what its guess misses tells when the motion is no longer that of the steps before.
+/// Where guesses miss by a small part of what the iteration of a stage may leave, all stages of a step may be left as
+/// they were guessed, for as many steps as this part, growing by itself in each, stays small. What the accelerations at
+/// the end of such a step come out otherwise tells when the motion is no longer that of the steps before: then the step
+/// is made with its stages solved. Of motions for which that is so again and again, more and more are before the next
+/// try.
 class StageHistory {
  public:
-  static int size(const Sizes& n, int stages) { return 4 + stages + (3 + 2 * stages) * (n.nv + n.nc); }
+  static int size(const Sizes& n, int stages) { return scalars + stages + (3 + 2 * stages) * (n.nv + n.nc) + n.nv; }
   static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
 
   /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
@@ -32,8 +34,10 @@ class StageHistory {
         steps_(memory[0]),
         count_(memory.data[0]),
         foreseen_(memory.data[2]),
-        last_(memory.data[3]) {
-    std::size_t used = 4;
+        last_(memory.data[3]),
+        pause_(memory.data[4]),
+        next_pause_(memory.data[5]) {
+    std::size_t used = scalars;
     const auto take = [&](std::size_t size) {
       used += size;
       return memory.part(used - size, size);
@@ -42,6 +46,7 @@ class StageHistory {
     for (int i = 0; i < 3; ++i) past_[(i + static_cast<int>(last_)) % 3] = take(count());
     off_ = take(static_cast<std::size_t>(stages) * count());
     guess_ = take(static_cast<std::size_t>(stages) * count());
+    beside_ = take(a.size);
     if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
       steps_ = foreseen_ = 0.0;
       std::fill(good_.begin(), good_.end(), 0.0);
@@ -52,31 +57,22 @@ class StageHistory {
   /// The guess for a stage, in `to`, which is left as it is where there is none. One copy of it in a step's code: a
   /// step of few bodies takes more time to fetch its instructions than to make them.
   [[gnu::noinline]] void guess(int stage, double c, StateView& to) {
-    const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0,
-                 cube = steps_ > 2.0 ? c * (c + 1.0) * (c + 2.0) / 6.0 : 0.0;
-    const double of_now = 1.0 + linear + square + cube, of_previous = -linear - 2.0 * square - 3.0 * cube,
-                 of_older = square + 3.0 * cube;
+    const Weights w = weights(c);
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
     const auto extrapolate = [&](Span<const double> now, std::size_t first, Span<double> out) {
       const Span<double> previous = past_[0].part(first, now.size), older = past_[1].part(first, now.size),
                          oldest = past_[2].part(first, now.size), off = of_stage(stage, off_).part(first, now.size),
                          guess = of_stage(stage, guess_).part(first, now.size);
       in_pairs(now.size, [&](auto at) {
-        const auto sum = of_now * at(now) + of_previous * at(previous) + of_older * at(older) - cube * at(oldest);
-        at(guess) = sum + at(off);
+        at(guess) = w.now * at(now) + w.previous * at(previous) + w.older * at(older) - w.oldest * at(oldest) + at(off);
         if (good) at(out) = at(guess);
       });
     };
     extrapolate(a_, 0, to.a);
     extrapolate(lambda_, a_.size, to.lambda);
   }
-  /// The guess for a stage once more, where another stage has been solved meanwhile.
-  void recall(int stage, StateView& to) const {
-    const Span<double> guess = of_stage(stage, guess_);
-    std::copy_n(guess.begin(), a_.size, to.a.begin());
-    std::copy_n(guess.begin() + a_.size, lambda_.size, to.lambda.begin());
-  }
-  /// What it came out as, `error` (StageSolver::guess_error) off the guess.
+  /// What it came out as, `error` (StageSolver::guess_error) off the guess; the last one is that at the end of the
+  /// step.
   [[gnu::noinline]] void solved(int stage, const StateView& to, double error) {
     const Span<double> off = of_stage(stage, off_), guess = of_stage(stage, guess_);
     double missed = 0.0, moved = 0.0;
@@ -85,33 +81,83 @@ class StageHistory {
       missed = std::max(missed, std::abs(miss));
       moved = std::max(moved, std::abs(to.a[i] - a_[i]));
       off[i] += miss;
+      beside_[i] = to.a[i];
     }
     for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] += to.lambda[r] - guess[a_.size + r];
-    const bool good = steps_ > 1.0 && (!is_surprise(error) || missed <= 0.5 * moved);
+    const bool good = steps_ > 1.0 && (!(error > 1.0) || missed <= 0.5 * moved);
     good_[static_cast<std::size_t>(stage)] = good ? 1.0 : 0.0;
-    const double steps = good ? std::floor(small_part / std::max(error, small_part / most_foreseen)) : 0.0;
+    const double steps = good ? steps_of(error) : 0.0;
     foreseen_ = stage == 0 ? steps : std::min(steps, foreseen_);
   }
-  /// Whether the first stage may be left at its guess(). Counts.
+  /// After a step whose stages were solved; `to` has the accelerations at its end.
+  void finish(const StateView& to) {
+    in_pairs(a_.size, [&](auto at) { at(beside_) -= at(to.a); });
+    if (pause_ > 0.0) pause_ -= 1.0, foreseen_ = 0.0;
+    keep_start();
+  }
+
+  /// Whether the two stages of a step may be left at their guesses. Counts.
   bool foresees() {
     if (!(foreseen_ > 0.0)) return false;
     foreseen_ -= 1.0;
     return true;
   }
-  /// Whether the guess for the end of a step tells that such a stage is not as foreseen.
-  static bool is_surprise(double error) { return !(error <= 1.0); }
-  /// After the last stage.
-  void finish() {
+  /// These guesses of a: calls use(at, first, end) with the numbers at all places.
+  template <class Use>
+  void foresee(double c_first, double c_end, Use&& use) {
+    const Weights first = weights(c_first), end = weights(c_end);
+    const Span<const double> now = a_;
+    const Span<double> previous = past_[0], older = past_[1], oldest = past_[2], off_first = of_stage(0, off_),
+                       off_end = of_stage(1, off_), guess = of_stage(1, guess_);
+    in_pairs(now.size, [&](auto at) {
+      const auto x = at(now), x1 = at(previous), x2 = at(older), x3 = at(oldest);
+      const auto at_first = first.now * x + first.previous * x1 + first.older * x2 - first.oldest * x3 + at(off_first),
+                 at_end = end.now * x + end.previous * x1 + end.older * x2 - end.oldest * x3 + at(off_end);
+      at(guess) = at_end;
+      use(at, at_first, at_end);
+    });
+  }
+  /// What the accelerations at the end of such a step, in `to`, came out otherwise.
+  void miss(const StateView& to, Span<double> missed) const {
+    const Span<double> guess = of_stage(1, guess_);
+    in_pairs(a_.size, [&](auto at) { at(missed) = at(to.a) + at(beside_) - at(guess); });
+  }
+  /// Whether it stands, with such an error (StageSolver::unsolved_error). If so, it is over.
+  bool stands(double error) {
+    if (!(error <= 1.0)) {
+      foreseen_ = 0.0;
+      pause_ = next_pause_;
+      next_pause_ = std::min(2.0 * next_pause_ + 1.0, longest_pause);
+      return false;
+    }
+    foreseen_ = std::min(foreseen_, steps_of(error));
+    if (!(foreseen_ > 0.0)) next_pause_ = 0.0;
+    keep_start();
+    return true;
+  }
+
+ private:
+  static constexpr int scalars = 6;
+  static constexpr double small_part = 0.5;      // of what a stage may leave
+  static constexpr double most_foreseen = 15.0;  // steps
+  static constexpr double longest_pause = 1023.0;
+
+  struct Weights {
+    double now, previous, older, oldest;
+  };
+  Weights weights(double c) const {
+    const double linear = steps_ > 0.0 ? c : 0.0, square = steps_ > 1.0 ? 0.5 * c * (c + 1.0) : 0.0,
+                 cube = steps_ > 2.0 ? c * (c + 1.0) * (c + 2.0) / 6.0 : 0.0;
+    return {1.0 + linear + square + cube, -linear - 2.0 * square - 3.0 * cube, square + 3.0 * cube, cube};
+  }
+  static double steps_of(double error) { return std::floor(small_part / std::max(error, small_part / most_foreseen)); }
+  void keep_start() {
     count_ = std::min(steps_ + 1.0, 3.0);
     last_ = last_ < 2.0 ? last_ + 1.0 : 0.0;
     const Span<double> past = past_[2], past_lambda = past.part(a_.size, lambda_.size);
     in_pairs(a_.size, [&](auto at) { at(past) = at(a_); });
     in_pairs(lambda_.size, [&](auto at) { at(past_lambda) = at(lambda_); });
   }
-
- private:
-  static constexpr double small_part = 0.5;      // of what a stage may leave
-  static constexpr double most_foreseen = 15.0;  // steps
 
   std::size_t count() const { return a_.size + lambda_.size; }
   Span<double> of_stage(int stage, Span<double> all) const {
@@ -120,10 +166,12 @@ class StageHistory {
 
   Span<const double> a_, lambda_;
   double steps_;
-  double &count_, &foreseen_;  // foreseen_: first stages to come that nobody needs to look at
-  double& last_;               // how far the places of past_ have turned
-  Span<double> past_[3];       // (a, lambda) at the starts of the steps before, the last one first
+  double &count_, &foreseen_;    // foreseen_: steps to come whose stages nobody needs to solve
+  double& last_;                 // how far the places of past_ have turned
+  double &pause_, &next_pause_;  // steps that are solved whatever is foreseen, and after the next surprise
+  Span<double> past_[3];         // (a, lambda) at the starts of the steps before, the last one first
   Span<double> good_, off_, guess_;
+  Span<double> beside_;  // a of the last stage less that at the end of the step, where it was solved last
 };
 
 }  // namespace freeplay

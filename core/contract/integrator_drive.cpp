@@ -100,6 +100,10 @@ FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int g
              [](void* self) noexcept {
                const auto& me = *static_cast<FailingStageSolver*>(self);
                return me.inner_.guess_error(me.inner_.self);
+             },
+             [](void* self, double beta_q, double beta_v, Span<const double> missed) noexcept {
+               const auto& me = *static_cast<FailingStageSolver*>(self);
+               return me.inner_.unsolved_error(me.inner_.self, beta_q, beta_v, missed);
              }},
       good_stages_(good_stages) {}
 

@@ -63,14 +63,14 @@ struct AnchoredBody {
     }
   }
 
-  /// From x = b and l = -c to the multipliers l and x = b - G^T l, not yet divided by the masses; b holds the forces of
+  /// From x = b and l = c to the multipliers l and x = b - G^T l, not yet divided by the masses; b holds the forces of
   /// all other rows.
   template <int width, int count>
   void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
     double* const b = &x[width * static_cast<std::size_t>(body)];
     double multiplier[count];
     for (int r = 0; r < count; ++r) {
-      double sum = l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])];
+      double sum = -l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])];
       for (int c = 0; c < width; ++c) sum += weighted_[r][c] * b[c];
       for (int k = 0; k < r; ++k) sum -= s_[r][k] * multiplier[k];
       multiplier[r] = sum;

@@ -217,7 +217,7 @@ void NormalMatrix::substitute(std::span<const double> numbers, std::span<double>
 template <int width>
 void NormalMatrix::solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
   double* const multipliers = multipliers_.data();
-  for (std::size_t r = 0; r < rows_.size(); ++r) multipliers[r] = l[at(rows_[r])];
+  for (std::size_t r = 0; r < rows_.size(); ++r) multipliers[r] = -l[at(rows_[r])];
   const double* weighted = weighted_.data();
   for (const Other& piece : pieces_) {
     const double* b = &x[at(piece.column)];
@@ -230,7 +230,7 @@ void NormalMatrix::solve_others(std::span<const double> numbers, std::span<doubl
     for (std::size_t i = own.first_other; i < own.end_other; ++i) {
       const double* shares = &shares_[AnchoredBody::most_rows(width) * i];
       double& multiplier = multipliers[pieces_[at(others_[i])].row];
-      for (int r = 0; r < own.rows; ++r) multiplier -= shares[r] * l[at(own.row[at(r)])];
+      for (int r = 0; r < own.rows; ++r) multiplier += shares[r] * l[at(own.row[at(r)])];
     }
   }
   factors_.solve(multipliers_);

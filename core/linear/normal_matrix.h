@@ -27,7 +27,7 @@ class NormalMatrix {
   /// Takes the numbers of the pieces, one after the other. Returns the smallest pivot of S in parts of its diagonal
   /// entry: 1 for rows that have nothing to do with each other, 0 where S is not positive definite to rounding.
   double factor(std::span<const double> numbers);
-  /// Starts with x = b and l = -c; leaves the solution. `numbers` as they were factored.
+  /// Starts with x = b and l = c; leaves the solution. `numbers` as they were factored.
   void solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
 
  private:

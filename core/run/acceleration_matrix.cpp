@@ -6,7 +6,6 @@
 
 #include <Eigen/LU>
 
-#include "freeplay/pairs.h"
 #include "run/block_inverse.h"
 
 namespace freeplay {
@@ -87,6 +86,9 @@ void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
   has_normal_ = std::ranges::all_of(mass, [](double m) { return m > 0.0; }) &&
                 normal_.set_pattern(mass, width, static_cast<int>(free_rows_.size()), free_pieces);
   multipliers_.assign(free_rows_.size(), 0.0);
+  forces_.assign(at(width) * prescribed_.size(), 0.0);
+  right_.assign(at(nv) + dependent.size(), 0.0);
+  update_.assign(right_.size(), 0.0);
   all_free_ = free_rows_.size() == dependent.size();
 }
 
@@ -162,13 +164,11 @@ double AccelerationMatrix::invert_blocks() {
 }
 
 template <int width>
-void AccelerationMatrix::substitute(std::span<double> right, std::span<double> update) const {
+void AccelerationMatrix::substitute(std::span<double> x, std::span<double> l) const {
   using Square = Eigen::Matrix<double, width, width>;
   using Vector = Eigen::Matrix<double, width, 1>;
-  const std::size_t nv = system_.mass().size();
-  std::ranges::copy(right, update.begin());
-  double* const a = update.data();
-  double* const lambda = a + nv;  // of free rows gamma, until they are solved for
+  double* const a = x.data();
+  double* const lambda = l.data();  // gamma, until it is solved for
   const auto move_rows = [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const Coupling& c = by_row_[i];
@@ -176,41 +176,47 @@ void AccelerationMatrix::substitute(std::span<double> right, std::span<double> u
       for (int k = 0; k < width; ++k) lambda[c.row] -= g[k] * rate[k];
     }
   };
+  double* force = forces_.data();
   for (const Prescribed& body : prescribed_) {
     move_rows(body.first_row_part, body.end_row_part);
     Vector b;
     for (int r = 0; r < width; ++r) b[r] = lambda[body.who.rows[at(r)]];
-    Eigen::Map<Vector>(a + width * body.who.body) = Eigen::Map<const Square>(body.inverse) * b;
+    const Eigen::Map<Vector> own(a + width * body.who.body);
+    Eigen::Map<Vector>{force} = own;
+    Eigen::Map<Vector>{a + width* body.who.body} = Eigen::Map<const Square>(body.inverse) * b;
+    force += width;
   }
   move_rows(first_free_part_, by_row_.size());
-  if (all_free_) {
-    const std::span<double> multipliers = update.subspan(nv);
-    in_pairs(multipliers.size(), [&](auto at) { at(multipliers) = -at(multipliers); });
-    return normal_.solve(numbers_, update.first(nv), multipliers);
-  }
-  for (std::size_t r = 0; r < free_rows_.size(); ++r) multipliers_[r] = -lambda[free_rows_[r]];
-  normal_.solve(numbers_, update.first(nv), multipliers_);
+  for (std::size_t r = 0; r < free_rows_.size(); ++r) multipliers_[r] = lambda[free_rows_[r]];
+  normal_.solve(numbers_, x, multipliers_);
   for (std::size_t r = 0; r < free_rows_.size(); ++r) lambda[free_rows_[r]] = multipliers_[r];
   for (std::size_t p = prescribed_.size(); p-- > 0;) {
     const Prescribed& body = prescribed_[p];
     const std::size_t first = width * at(body.who.body);
-    Vector force;
-    for (std::size_t c = 0; c < width; ++c) {
-      force[static_cast<int>(c)] = right[first + c] - system_.mass()[first + c] * a[first + c];
-    }
+    Vector left = Eigen::Map<const Vector>(&forces_[width * p]);
+    for (std::size_t c = 0; c < width; ++c) left[static_cast<int>(c)] -= system_.mass()[first + c] * a[first + c];
     for (std::size_t i = body.first_motion_part; i < body.end_motion_part; ++i) {
       const double* g = &numbers_[width * by_body_[i].piece];
-      for (int k = 0; k < width; ++k) force[k] -= g[k] * lambda[by_body_[i].row];
+      for (int k = 0; k < width; ++k) left[k] -= g[k] * lambda[by_body_[i].row];
     }
-    const Vector multipliers = Eigen::Map<const Square>(body.inverse).transpose() * force;
+    const Vector multipliers = Eigen::Map<const Square>(body.inverse).transpose() * left;
     for (int r = 0; r < width; ++r) lambda[body.who.rows[at(r)]] = multipliers[r];
   }
 }
 
-void AccelerationMatrix::solve(std::span<double> right, std::span<double> update) const {
-  if (!by_normal_) return whole_->solve(right, update);
+void AccelerationMatrix::solve_whole(std::span<double> x, std::span<double> l) const {
+  std::ranges::copy(x, right_.begin());
+  std::copy(l.begin(), l.end(), right_.begin() + static_cast<std::ptrdiff_t>(x.size()));
+  whole_->solve(right_, update_);
+  std::copy_n(update_.begin(), x.size(), x.begin());
+  std::copy_n(update_.begin() + static_cast<std::ptrdiff_t>(x.size()), l.size(), l.begin());
+}
+
+void AccelerationMatrix::solve(std::span<double> x, std::span<double> l) const {
   const Profile::Timer timer(system_.profile(), Phase::solution);
-  system_.body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
+  if (!by_normal_) return solve_whole(x, l);
+  if (all_free_) return normal_.solve(numbers_, x, l);
+  system_.body_velocities() == 3 ? substitute<3>(x, l) : substitute<6>(x, l);
 }
 
 }  // namespace freeplay

@@ -29,8 +29,8 @@ class AccelerationMatrix {
   void set_pattern(std::span<const char> dependent);
   /// Factors at `e`, which holds Phi_q. Returns the smallest pivot over the largest.
   double factor(Evaluation& e);
-  /// The solution (a, lambda) for a right side (f, gamma), which is used up.
-  void solve(std::span<double> right, std::span<double> update) const;
+  /// Takes x = f and l = gamma for the solution a and lambda.
+  void solve(std::span<double> x, std::span<double> l) const;
   /// After factor(): a solution satisfies all equations as well as its forces and accelerations are rounded.
   bool is_well_conditioned() const { return by_normal_ && smallest_ > well_conditioned; }
   /// After factor(): the rows are far from depending on each other. False says nothing.
@@ -56,7 +56,8 @@ class AccelerationMatrix {
   template <int width>
   double invert_blocks();
   template <int width>
-  void substitute(std::span<double> right, std::span<double> update) const;
+  void substitute(std::span<double> x, std::span<double> l) const;
+  void solve_whole(std::span<double> x, std::span<double> l) const;
 
   const System& system_;
   std::vector<char> dependent_;
@@ -80,7 +81,9 @@ class AccelerationMatrix {
   static constexpr double well_conditioned = 1e-2;
   std::unique_ptr<StageMatrix> whole_;
   double unit_ = 0.0;  // pivot of whole_ over that of normal_, where both were asked last; 0: not yet
-  mutable std::vector<double> multipliers_;
+  mutable std::vector<double> multipliers_;  // of free rows
+  mutable std::vector<double> forces_;       // on prescribed bodies
+  mutable std::vector<double> right_, update_;
 };
 
 }  // namespace freeplay

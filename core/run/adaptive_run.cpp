@@ -183,7 +183,7 @@ bool Simulation::Impl::write_row_at(double t) {
   energy.fill_inside(s, e_between, between.lambda(), channels, row_between);
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row_between);
-  return true;
+  return sinks_are_well();
 }
 
 std::string Simulation::Impl::why_singular() {

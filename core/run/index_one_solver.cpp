@@ -38,7 +38,6 @@ IndexOneSolver::IndexOneSolver(const System& system, int max_iterations)
   for (int i = 0; i < nv; ++i) unit_.push_back(system.is_turn(i) ? 1.0 : system.size());
   for (const double unit : unit_) per_unit_.push_back(1.0 / unit);
   factored_at_.resize(at(system.layout().nq()));
-  right_.resize(at(nv + nc));
   update_.resize(at(nv + nc));
   increment_.resize(at(nv));
   right_a_.resize(at(nv));
@@ -133,6 +132,7 @@ int IndexOneSolver::weakest_row() {
 
 bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
   const std::size_t nv = x_a.size(), nc = x_c.size();
+  const std::span<double> motion = std::span(update_).first(nv), pressure = std::span(update_).subspan(nv);
   bool fresh = false;
   if (!valid_) {
     if (!factor()) return false;
@@ -140,15 +140,15 @@ bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double
   }
   double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < refinement_limit; ++iteration) {
-    std::fill(right_.begin(), right_.end(), 0.0);
-    system_.add_transposed(e_, x_c, std::span(right_).first(nv));
-    system_.multiply(e_, x_a, std::span(work_).first(nc));
-    for (std::size_t i = 0; i < nv; ++i) right_[i] = right_a_[i] - system_.mass()[i] * x_a[i] - right_[i];
-    for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : right_c_[r] - work_[r];
-    matrix_.solve(right_, update_);
-    for (std::size_t i = 0; i < nv; ++i) x_a[i] += update_[i];
-    for (std::size_t r = 0; r < nc; ++r) x_c[r] += update_[nv + r];
-    const double moved = norm(std::span(update_).first(nv)), pressed = largest(std::span(update_).subspan(nv));
+    std::ranges::fill(motion, 0.0);
+    system_.add_transposed(e_, x_c, motion);
+    system_.multiply(e_, x_a, pressure);
+    for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.mass()[i] * x_a[i] - motion[i];
+    for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent_[r] ? 0.0 : right_c_[r] - pressure[r];
+    matrix_.solve(motion, pressure);
+    for (std::size_t i = 0; i < nv; ++i) x_a[i] += motion[i];
+    for (std::size_t r = 0; r < nc; ++r) x_c[r] += pressure[r];
+    const double moved = norm(motion), pressed = largest(pressure);
     if (!std::isfinite(moved) || !std::isfinite(pressed)) {
       trouble_ = "a number in the state is not finite";
       return false;
@@ -203,25 +203,28 @@ bool IndexOneSolver::equations_hold(std::span<const double> x_a, std::span<const
   return failing == 0;
 }
 
-// Leaves what is missing in `left`, by row.
+// Leaves what is missing in `left`, by row. One row that does not hold is enough.
 template <int width>
 bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
                                   std::span<double> left) {
-  int failing = 0;
-  for (std::size_t r = 0; r < right.size(); ++r) {
-    double gap = right[r], size = std::abs(right[r]);
+  const auto each_number = [&](std::size_t r, auto&& use) {
     for (const System::RowPiece& piece : system_.row_pieces(r)) {
       const double *entry = &e_->jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
-      for (int c = 0; c < width; ++c) {
-        const double moved = entry[c] * rate[c];
-        gap -= moved;
-        size += std::abs(moved);
-      }
+      for (int c = 0; c < width; ++c) use(entry[c] * rate[c]);
     }
+  };
+  for (std::size_t r = 0; r < right.size(); ++r) {
+    double gap = right[r];
+    each_number(r, [&](double moved) { gap -= moved; });
     left[r] = gap;
-    failing += std::abs(gap) <= tolerance * rounding * size || dependent_[r] != 0 ? 0 : 1;
   }
-  return failing == 0;
+  for (std::size_t r = 0; r < right.size(); ++r) {
+    if (dependent_[r] != 0) continue;
+    double size = std::abs(right[r]);
+    each_number(r, [&](double moved) { size += std::abs(moved); });
+    if (!(std::abs(left[r]) <= tolerance * rounding * size)) return false;
+  }
+  return true;
 }
 
 bool IndexOneSolver::rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance,
@@ -259,11 +262,9 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!is_factored_here() && !factor()) return false;
   // Nothing of the past enters, so that the same state always has the same accelerations.
   const std::size_t nv = state.a.size, nc = state.lambda.size;
-  in_pairs(nv, [&](auto at) { at(right_) = at(e_->force); });
-  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : e_->gamma[r];
-  matrix_.solve(right_, update_);
-  in_pairs(nv, [&](auto at) { at(state.a) = at(update_); });
-  in_pairs(nc, [&](auto at) { at(state.lambda) = at(std::span(update_).subspan(nv)); });
+  in_pairs(nv, [&](auto at) { at(state.a) = at(e_->force); });
+  for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = dependent_[r] ? 0.0 : e_->gamma[r];
+  matrix_.solve(state.a, state.lambda);
   if (!matrix_.is_well_conditioned()) {
     std::copy_n(e_->force.begin(), nv, right_a_.begin());
     std::ranges::copy(e_->gamma, right_c_.begin());
@@ -318,9 +319,9 @@ bool IndexOneSolver::project_velocity(StateView& state) {
 /// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
 void IndexOneSolver::solve_rows(std::span<const double> gap) {
   const std::size_t nv = increment_.size();
-  std::fill_n(right_.begin(), nv, 0.0);
-  for (std::size_t r = 0; r < gap.size(); ++r) right_[nv + r] = dependent_[r] ? 0.0 : gap[r];
-  matrix_.solve(right_, update_);
+  std::fill_n(update_.begin(), nv, 0.0);
+  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
+  matrix_.solve(std::span(update_).first(nv), std::span(update_).subspan(nv));
 }
 
 bool IndexOneSolver::project_position(StateView& state) {
@@ -346,10 +347,10 @@ bool IndexOneSolver::project_position(StateView& state) {
 
 bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<double> along) {
   if (!(regularity_ < near_singular && valid_ && !right_c_.empty())) return false;
-  for (std::size_t i = 0; i < error.size(); ++i) right_[i] = system_.mass()[i] * error[i];
-  std::fill(right_.begin() + static_cast<std::ptrdiff_t>(error.size()), right_.end(), 0.0);
-  matrix_.solve(right_, update_);
-  std::copy_n(update_.begin(), along.size(), along.begin());
+  for (std::size_t i = 0; i < error.size(); ++i) along[i] = system_.mass()[i] * error[i];
+  const std::span<double> multipliers = std::span(update_).subspan(error.size());
+  std::ranges::fill(multipliers, 0.0);
+  matrix_.solve(along, multipliers);
   return true;
 }
 
@@ -393,10 +394,10 @@ bool IndexOneSolver::move_by_forces() {
     std::ranges::fill(multipliers_, 0.0);
     return refine(increment_, multipliers_, 0.0);
   }
-  std::ranges::copy(right_a_, right_.begin());
-  std::fill(right_.begin() + static_cast<std::ptrdiff_t>(right_a_.size()), right_.end(), 0.0);
-  matrix_.solve(right_, update_);
-  std::copy_n(update_.begin(), increment_.size(), increment_.begin());
+  const std::span<double> multipliers = std::span(update_).subspan(increment_.size());
+  std::ranges::copy(right_a_, increment_.begin());
+  std::ranges::fill(multipliers, 0.0);
+  matrix_.solve(increment_, multipliers);
   return true;
 }
 

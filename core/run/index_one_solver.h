@@ -109,7 +109,7 @@ class IndexOneSolver {
   bool valid_ = false, has_pattern_ = false;  // its factors, its pattern
   double factored_time_ = 0.0;                // of its factors
   std::vector<double> factored_at_;           // their coordinates
-  std::vector<double> unit_, per_unit_, right_, update_, increment_, right_a_, right_c_, work_, size_;
+  std::vector<double> unit_, per_unit_, update_, increment_, right_a_, right_c_, work_, size_;
   std::vector<double> multipliers_, first_multipliers_;
   std::vector<double> loads_;  // multipliers with those of driven bodies
   std::vector<SparseEntry> entries_;

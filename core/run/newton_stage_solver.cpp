@@ -76,7 +76,10 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
                static_cast<NewtonStageSolver*>(self)->system_.increment_rate(increment, v, rate);
              },
-             [](void* self) noexcept { return static_cast<NewtonStageSolver*>(self)->guess_error_; }},
+             [](void* self) noexcept { return static_cast<NewtonStageSolver*>(self)->guess_error_; },
+             [](void* self, double beta_q, double beta_v, Span<const double> missed) noexcept {
+               return static_cast<NewtonStageSolver*>(self)->unsolved_error(beta_q, beta_v, missed);
+             }},
       index_one_(system, options.max_iterations),
       e_(index_one_.evaluation()),
       dependent_(index_one_.dependent()),
@@ -321,6 +324,13 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (std::abs(e_->phi[at(r)]) > farthest) farthest = std::abs(e_->phi[at(r)]), worst_row_ = r;
   }
   return true;
+}
+
+double NewtonStageSolver::unsolved_error(double beta_q, double beta_v, std::span<const double> missed) {
+  Factor& factor = factor_for(beta_q, beta_v);
+  if (!rows_hold(drift)) return std::numeric_limits<double>::infinity();
+  ++factor.held;
+  return index_one_.norm(missed) * std::max(beta_q, beta_v) / options_.tolerance;
 }
 
 void NewtonStageSolver::ask_for_rows(double beta_q, bool drifted) {

@@ -18,6 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
@@ -131,6 +132,8 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
     values += layout.channels.size;
   }
   warning_values.resize(values);
+  if (system.angles_follow_bodies())
+    angle_then.assign(e_accepted->q.size() / 3, std::numeric_limits<double>::quiet_NaN());
 }
 
 bool Simulation::Impl::fail(int exit_code, std::string reason) {
@@ -270,11 +273,29 @@ bool Simulation::Impl::begin_steps(double dt, State& state) {
 // Everything about a state whose accelerations the solver knows, and the loads of driven bodies; at the end of a fixed
 // step only what joints ask for: the rest is completed for a row.
 bool Simulation::Impl::evaluate_all(State& state, KeptEvaluation& e) {
-  const unsigned terms = adaptive ? all_terms : of_equations | term_event | term_turn | only_asked;
+  turns_are_due = adaptive || have_turned(solver.evaluation());
+  const unsigned in_step = of_equations | term_event | (turns_are_due ? term_turn : 0u) | only_asked;
+  const unsigned terms = adaptive ? all_terms : in_step;
   if (!system.evaluate(point(state), terms, solver.evaluation(), e)) return false;
   system.fill_driven_jacobian(e);
   system.recover_loads(e, state.lambda());
   return true;
+}
+
+// In fixed steps angles of joints that follow those of bodies are looked at where one has turned a little: the next
+// look finds the turn nearest to the last.
+bool Simulation::Impl::have_turned(const Evaluation& e) const {
+  if (angle_then.empty()) return true;
+  int turned = 0;
+  for (std::size_t b = 0; b < angle_then.size(); ++b) {
+    turned += std::abs(e.q[3 * b + 2] - angle_then[b]) <= unnoticed_turn ? 0 : 1;
+  }
+  return turned != 0;
+}
+
+void Simulation::Impl::note_turns(const Evaluation& e, std::span<double> history) {
+  for (const auto [turn, joint] : turns) history[turn] = e.coordinate[joint];
+  for (std::size_t b = 0; b < angle_then.size(); ++b) angle_then[b] = e.q[3 * b + 2];
 }
 
 bool Simulation::Impl::step(double dt, bool& converged) {
@@ -373,7 +394,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
     }
     if (!trial.intact()) return fail_beside(j);
   }
-  for (const auto [turn, joint] : turns) all_history[turn] = e_trial->coordinate[joint];
+  if (turns_are_due) note_turns(e_trial, trial.h());
   std::swap(accepted, trial);
   swap(e_accepted, e_trial);
   outcome.time = accepted.t();
@@ -437,11 +458,11 @@ bool Simulation::Impl::record_step() {
 
 // Once for each joint; the text is made when the run is over.
 bool Simulation::Impl::note_warnings() {
-  const Point here = point(accepted);
-  Fault fault;
   for (const ForceBlock& block : system.force_blocks()) {
     Warning& warning = joint_warnings[at(block.joint)];
     if (warning.text != nullptr || system.rest(block.joint).now) continue;
+    const Point here = point(accepted);
+    Fault fault;
     if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = block.joint;
@@ -483,7 +504,12 @@ bool Simulation::Impl::tell_sinks() {
       sink->event({happening.time, happening.joint, happening.event, events.fields(happening)});
     }
   }
-  for (Sink* sink : sinks) {
+  return events.happenings().empty() || sinks_are_well();
+}
+
+// What a sink was told may fail later, beside the run: a row or an event to come finds it.
+bool Simulation::Impl::sinks_are_well() {
+  for (const Sink* sink : sinks) {
     if (!sink->ok()) return fail(6, "a result file could not be written");
   }
   return true;
@@ -526,7 +552,7 @@ bool Simulation::Impl::write_row() {
   if (!know_row()) return false;
   ++outcome.rows;
   for (Sink* sink : sinks) sink->row(row);
-  return true;
+  return sinks_are_well();
 }
 
 double Simulation::Impl::row_time(long index) const {

@@ -74,6 +74,9 @@ struct Simulation::Impl {
   double row_time(long index) const;
 
   bool write_row();
+  bool sinks_are_well();
+  bool have_turned(const Evaluation& e) const;
+  void note_turns(const Evaluation& e, std::span<double> history);
   [[gnu::cold]] bool fail(int exit_code, std::string reason);
   [[gnu::cold]] bool fail_with(const Fault& fault, double t);
   [[gnu::cold]] bool fail_beside(int joint);
@@ -106,7 +109,9 @@ struct Simulation::Impl {
   struct Turn {
     std::size_t slot, joint;
   };
-  std::vector<Turn> turns;  // into h
+  std::vector<Turn> turns;         // into h
+  std::vector<double> angle_then;  // of bodies, when turns were noted last; empty where they are in every step
+  bool turns_are_due = true;       // in the step that is being accepted
   struct Warning {
     const char* text = nullptr;
     double time = 0.0;

@@ -81,15 +81,15 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
                        Fault& fault) {
   happenings_.clear();
   values_.clear();
-  // A joint's present history decides what can happen next.
-  const Step step{before,      e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
-                  point(after)};
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const Span<const Event> events = system_.joint_layout(watched_[w]).events;
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
     if (inside_[at(watched_[w])] == 0 || system_.rest(watched_[w]).now) continue;
+    // A joint's present history decides what can happen next.
+    const Step step{before,      e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
+                    point(after)};
     if (!apply_joint(w, step, fault)) return false;
   }
   // Stable by hand: a handful of entries, and no allocation.

@@ -431,4 +431,9 @@ double System::gravity_potential(std::span<const double> q) const {
   return energy;
 }
 
+bool System::angles_follow_bodies() const {
+  const auto tells_angle = [&](int j) { return records_[at(j)].turn >= 0; };
+  return model_.space == Space::planar && std::ranges::none_of(with_coordinate_, tells_angle);
+}
+
 }  // namespace freeplay

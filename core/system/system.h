@@ -172,6 +172,8 @@ class System {
   double marker_angle(int marker, std::span<const double> q) const;
   /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
   void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
+  /// Angles of joints are differences of those of bodies, which do not jump: in the plane, where joints declare them.
+  bool angles_follow_bodies() const;
   /// By joint; a run decides who rests (run/resting_joints.h).
   Rest& rest(int joint) { return rests_[static_cast<std::size_t>(joint)]; }
   const Rest& rest(int joint) const { return rests_[static_cast<std::size_t>(joint)]; }

@@ -53,6 +53,7 @@ struct StageSolverTable {
   double (*internal_error_norm)(void*, double dt, const StateView* end, Span<const double> error) noexcept;
   void (*increment_rate)(void*, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept;
   double (*guess_error)(void*) noexcept;
+  double (*unsolved_error)(void*, double beta_q, double beta_v, Span<const double> missed) noexcept;
 };
 }  // namespace abi
 
@@ -73,6 +74,13 @@ class StageSolver {
   /// stage may leave (newton_tolerance). Infinite where the host does not tell.
   double guess_error() const {
     return table_->guess_error != nullptr ? table_->guess_error(table_->self) : std::numeric_limits<double>::infinity();
+  }
+  /// The same for a stage with these betas that was left at its guess, unsolved, where accelerate() has looked at it
+  /// last: `missed` [m/s^2, rad/s^2] is what its accelerations came out otherwise, nv numbers. Infinite where positions
+  /// are off the constraints by more than roundings, and where the host does not tell.
+  double unsolved_error(double beta_q, double beta_v, Span<const double> missed) const {
+    if (table_->unsolved_error == nullptr) return std::numeric_limits<double>::infinity();
+    return table_->unsolved_error(table_->self, beta_q, beta_v, missed);
   }
   /// v <- v - M^-1 Phi_q^T mu with Phi_q v = nu: returns v to the constraints, least in the mass norm.
   void project_velocity(StateView& state) {

@@ -75,7 +75,7 @@ TEST(NormalMatrix, SolvesTheWholeSystem) {
         EXPECT_GT(matrix.factor(chain.numbers), 1e-3);
         const auto columns = static_cast<std::size_t>(chain.columns());
         std::vector<double> x(chain.right.begin(), chain.right.begin() + chain.columns()), l;
-        for (std::size_t r = columns; r < chain.right.size(); ++r) l.push_back(-chain.right[r]);
+        for (std::size_t r = columns; r < chain.right.size(); ++r) l.push_back(chain.right[r]);
         matrix.solve(chain.numbers, x, l);
         x.insert(x.end(), l.begin(), l.end());
         const Eigen::VectorXd expected = chain.solution();

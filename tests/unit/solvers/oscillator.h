@@ -24,6 +24,7 @@ struct Oscillator {
   bool bent = false;
   bool estimates = false;  ///< the run asks for errors, in units of 1 m and 1 m/s
   double allowed = 0.0;    ///< error in velocity that a stage may leave [m/s]; 0: the host tells nothing of guesses
+  double off_rows = 0.0;   ///< what is told of unsolved stages besides
   double push = 0.0, push_from = 1e300;  ///< further acceleration [m/s2], and since when [s]
   bool internal = true;                  ///< there is z
   int projections = 0, accelerations = 0;
@@ -46,7 +47,8 @@ struct Oscillator {
             estimates ? 1u : 0u,
             nullptr,
             nullptr,
-            allowed > 0.0 ? guess_error : nullptr};
+            allowed > 0.0 ? guess_error : nullptr,
+            allowed > 0.0 ? unsolved_error : nullptr};
   }
   static Oscillator& self(void* s) { return *static_cast<Oscillator*>(s); }
   static Status solve(void* s, const Stage* stage, StateView* out, StageResult* result, Message*) noexcept {
@@ -72,6 +74,9 @@ struct Oscillator {
   static double guess_error(void* s) noexcept {
     const Oscillator& o = self(s);
     return std::abs(o.solutions.back() - o.guesses.back()) * o.stages.back().beta_v / o.allowed;
+  }
+  static double unsolved_error(void* s, double beta_q, double beta_v, Span<const double> missed) noexcept {
+    return std::abs(missed[0]) * std::max(beta_q, beta_v) / self(s).allowed + self(s).off_rows;
   }
   static Status project_velocity(void* s, StateView*, Message*) noexcept {
     ++self(s).projections;
