@@ -11,21 +11,22 @@ namespace freeplay {
 /// A body that joints with the ground or with given motions hold, all but wholly. What other rows, g, still move of it
 /// has the inverse mass  W' = W - W G^T S^-1 G W  with W = M^-1, its own rows G and S = G W G^T (see NormalMatrix).
 /// Loops have a known length here.
+template <int width>
 struct AnchoredBody {
   /// Rows that leave a body of `width` freedoms at least one.
-  static constexpr int most_rows(int width) { return width - 1; }
+  static constexpr int most_rows = width - 1;
 
   int body = 0, rows = 0;
-  std::array<int, 5> piece{}, row{};           // of each row: where its numbers and its multiplier are
+  std::array<int, most_rows> piece{}, row{};   // of each row: where its numbers and its multiplier are
   std::size_t first_other = 0, end_other = 0;  // the range of pieces of other rows that hold the body, too
 
   /// Factors L D L^T. Returns the smallest pivot in parts of its diagonal entry.
-  template <int width, int count>
+  template <int count>
   double factor(std::span<const double> numbers, std::span<const double> inverse_mass) {
     const double* const inverse = &inverse_mass[width * static_cast<std::size_t>(body)];
     double diagonal[count];
     for (int r = 0; r < count; ++r) {
-      const double* const g = piece_of<width>(numbers, r);
+      const double* const g = piece_of(numbers, r);
       for (int c = 0; c < width; ++c) weighted_[r][c] = g[c] * inverse[c];
       for (int k = 0; k <= r; ++k) {
         double sum = g[0] * weighted_[k][0];
@@ -49,7 +50,7 @@ struct AnchoredBody {
   }
 
   /// Of another row, with the numbers g: from W g^T to W' g^T, and in `shares` S^-1 G W g^T.
-  template <int width, int count>
+  template <int count>
   void reduce(const double* g, double* weighted, double* shares) const {
     for (int r = 0; r < count; ++r) {
       double sum = 0.0;
@@ -65,7 +66,7 @@ struct AnchoredBody {
 
   /// From x = b and l = c to the multipliers l and x = b - G^T l, not yet divided by the masses; b holds the forces of
   /// all other rows.
-  template <int width, int count>
+  template <int count>
   void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
     double* const b = &x[width * static_cast<std::size_t>(body)];
     double multiplier[count];
@@ -77,7 +78,7 @@ struct AnchoredBody {
     }
     back_substitute<count>(multiplier);
     for (int r = 0; r < count; ++r) {
-      const double* const g = piece_of<width>(numbers, r);
+      const double* const g = piece_of(numbers, r);
       for (int c = 0; c < width; ++c) b[c] -= g[c] * multiplier[r];
       l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])] = multiplier[r];
     }
@@ -91,12 +92,11 @@ struct AnchoredBody {
       for (int k = r + 1; k < count; ++k) l[r] -= s_[k][r] * l[k];
     }
   }
-  template <int width>
   const double* piece_of(std::span<const double> numbers, int r) const {
     return &numbers[width * static_cast<std::size_t>(piece[static_cast<std::size_t>(r)])];
   }
-  double weighted_[5][6] = {};  // G M^-1
-  double s_[5][5] = {};         // L below the diagonal, which holds 1 / D
+  double weighted_[most_rows][width] = {};  // G M^-1
+  double s_[most_rows][most_rows] = {};     // L below the diagonal, which holds 1 / D
 };
 
 }  // namespace freeplay

@@ -176,7 +176,7 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
   }
   std::partial_sum(m.starts.begin(), m.starts.end(), m.starts.begin());
   m.values.assign(m.rows.size(), 0.0);
-  m.factored.assign(m.rows.size(), 0.0);
+  m.factored.assign(m.is_dense() ? m.rows.size() : 0, 0.0);
   m.has_factors = false;
   if (m.is_dense()) {
     m.inverse.assign(at(size * size), 0.0);
@@ -195,8 +195,8 @@ std::span<double> KktMatrix::values() { return impl_->values; }
 double KktMatrix::factor() {
   Impl& m = *impl_;
   if (m.size == 0) return 1.0;
-  // What does not change, as the masses of bodies without rows, costs a look.
-  if (m.has_factors && m.values == m.factored) return m.pivots;
+  // What does not change, as the masses of bodies without rows, costs a look; of large matrices a copy would cost more.
+  if (m.has_factors && m.is_dense() && m.values == m.factored) return m.pivots;
   m.has_factors = false;
   if (m.is_dense()) {
     m.pivots = m.invert();
@@ -206,8 +206,6 @@ double KktMatrix::factor() {
   }
   if (!m.symbolic) m.symbolic = klu_analyze(m.size, m.starts.data(), m.rows.data(), &m.common);
   if (!m.symbolic || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
-  std::ranges::copy(m.values, m.factored.begin());
-  m.has_factors = true;
   m.pivots = klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
   return m.pivots;
 }

@@ -53,21 +53,23 @@ auto by_rows(int rows, Call&& call) {
 }  // namespace
 
 // Takes out the rows that hold one body alone, where they leave it a freedom; returns the rows that are left.
-std::vector<int> NormalMatrix::find_anchored(int width, int rows, std::span<const Piece> pieces) {
+template <int width>
+std::vector<int> NormalMatrix::find_anchored(int rows, std::span<const Piece> pieces) {
   std::vector<int> bodies_of_row(at(rows), 0), own_rows(inverse_mass_.size() / at(width), 0);
   for (const Piece& piece : pieces) ++bodies_of_row[at(piece.row)];
   for (const Piece& piece : pieces) own_rows[at(piece.body)] += bodies_of_row[at(piece.row)] == 1 ? 1 : 0;
-  anchored_.clear();
-  std::vector<int> index(own_rows.size(), -1);  // in anchored_
+  std::vector<AnchoredBody<width>>& bodies = anchored<width>(*this);
+  bodies.clear();
+  std::vector<int> index(own_rows.size(), -1);  // in `bodies`
   std::vector<char> taken(at(rows), 0);
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const auto& [row, body] = pieces[p];
-    if (bodies_of_row[at(row)] > 1 || own_rows[at(body)] > AnchoredBody::most_rows(width)) continue;
+    if (bodies_of_row[at(row)] > 1 || own_rows[at(body)] > AnchoredBody<width>::most_rows) continue;
     if (index[at(body)] < 0) {
-      index[at(body)] = static_cast<int>(anchored_.size());
-      anchored_.emplace_back().body = body;
+      index[at(body)] = static_cast<int>(bodies.size());
+      bodies.emplace_back().body = body;
     }
-    AnchoredBody& own = anchored_[at(index[at(body)])];
+    AnchoredBody<width>& own = bodies[at(index[at(body)])];
     own.row[at(own.rows)] = row;
     own.piece[at(own.rows++)] = static_cast<int>(p);
     taken[at(row)] = 1;
@@ -80,9 +82,15 @@ std::vector<int> NormalMatrix::find_anchored(int width, int rows, std::span<cons
 }
 
 bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows, std::span<const Piece> pieces) {
+  width_ = width;
+  return width == 3 ? set_pattern_in<3>(mass, rows, pieces) : set_pattern_in<6>(mass, rows, pieces);
+}
+
+template <int width>
+bool NormalMatrix::set_pattern_in(std::span<const double> mass, int rows, std::span<const Piece> pieces) {
   inverse_mass_.clear();
   for (const double m : mass) inverse_mass_.push_back(1.0 / m);
-  const std::vector<int> left = find_anchored(width, rows, pieces);
+  const std::vector<int> left = find_anchored<width>(rows, pieces);
   std::vector<int> number(at(rows), -1);
   for (std::size_t i = 0; i < left.size(); ++i) number[at(left[i])] = static_cast<int>(i);
   pieces_.clear();
@@ -117,7 +125,6 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
   for (Other& piece : pieces_) piece.row = order[at(piece.row)];
   if (!factors_.set_pattern(between, places(), most_filled * pieces_.size())) return false;
 
-  width_ = width;
   rows_.resize(left.size());
   for (std::size_t i = 0; i < left.size(); ++i) rows_[at(order[i])] = left[i];
   products_.clear();
@@ -127,13 +134,13 @@ bool NormalMatrix::set_pattern(std::span<const double> mass, int width, int rows
     products_.push_back({factors_.place(high, low), pieces_[at(a)].numbers, width * b});
   }
   others_.clear();
-  for (AnchoredBody& own : anchored_) {
+  for (AnchoredBody<width>& own : anchored<width>(*this)) {
     const auto of_body = std::ranges::equal_range(by_body, own.body, {}, body_of);
     own.first_other = others_.size();
     others_.insert(others_.end(), of_body.begin(), of_body.end());
     own.end_other = others_.size();
   }
-  shares_.assign(at(AnchoredBody::most_rows(width)) * others_.size(), 0.0);
+  shares_.assign(at(AnchoredBody<width>::most_rows) * others_.size(), 0.0);
   weighted_.assign(at(width) * pieces_.size(), 0.0);
   diagonal_.assign(left.size(), 0.0);
   multipliers_.assign(left.size(), 0.0);
@@ -159,13 +166,13 @@ void NormalMatrix::weigh(std::span<const double> numbers) {
 template <int width>
 double NormalMatrix::eliminate_anchored(std::span<const double> numbers) {
   double smallest = 1.0;
-  for (AnchoredBody& own : anchored_) {
+  for (AnchoredBody<width>& own : anchored<width>(*this)) {
     const double part = by_rows<width>(own.rows, [&]<int count>() {
-      const double pivot = own.factor<width, count>(numbers, inverse_mass_);
+      const double pivot = own.template factor<count>(numbers, inverse_mass_);
       for (std::size_t i = own.first_other; i < own.end_other; ++i) {
         const std::size_t p = at(others_[i]);
-        own.reduce<width, count>(&numbers[at(pieces_[p].numbers)], &weighted_[width * p],
-                                 &shares_[AnchoredBody::most_rows(width) * i]);
+        own.template reduce<count>(&numbers[at(pieces_[p].numbers)], &weighted_[width * p],
+                                   &shares_[AnchoredBody<width>::most_rows * i]);
       }
       return pivot;
     });
@@ -207,8 +214,8 @@ double NormalMatrix::factor(std::span<const double> numbers) {
 template <int width>
 void NormalMatrix::substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
   if (!rows_.empty()) solve_others<width>(numbers, x, l);
-  for (const AnchoredBody& own : anchored_) {
-    by_rows<width>(own.rows, [&]<int count>() { own.substitute<width, count>(numbers, x, l); });
+  for (const AnchoredBody<width>& own : anchored<width>(*this)) {
+    by_rows<width>(own.rows, [&]<int count>() { own.template substitute<count>(numbers, x, l); });
   }
   for (std::size_t i = 0; i < inverse_mass_.size(); ++i) x[i] *= inverse_mass_[i];
 }
@@ -226,9 +233,9 @@ void NormalMatrix::solve_others(std::span<const double> numbers, std::span<doubl
     multipliers[piece.row] += sum;
     weighted += width;
   }
-  for (const AnchoredBody& own : anchored_) {
+  for (const AnchoredBody<width>& own : anchored<width>(*this)) {
     for (std::size_t i = own.first_other; i < own.end_other; ++i) {
-      const double* shares = &shares_[AnchoredBody::most_rows(width) * i];
+      const double* shares = &shares_[AnchoredBody<width>::most_rows * i];
       double& multiplier = multipliers[pieces_[at(others_[i])].row];
       for (int r = 0; r < own.rows; ++r) multiplier += shares[r] * l[at(own.row[at(r)])];
     }

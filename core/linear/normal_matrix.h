@@ -35,7 +35,19 @@ class NormalMatrix {
   struct Product {
     int target, a, b;
   };
-  std::vector<int> find_anchored(int width, int rows, std::span<const Piece> pieces);
+  /// Those of bodies with `width` velocities; the others are none.
+  template <int width, class Matrix>
+  static auto& anchored(Matrix& of) {
+    if constexpr (width == 3) {
+      return of.anchored_in_plane_;
+    } else {
+      return of.anchored_in_space_;
+    }
+  }
+  template <int width>
+  bool set_pattern_in(std::span<const double> mass, int rows, std::span<const Piece> pieces);
+  template <int width>
+  std::vector<int> find_anchored(int rows, std::span<const Piece> pieces);
   template <int width>
   void multiply(std::span<const double> numbers);
   template <int width>
@@ -50,7 +62,8 @@ class NormalMatrix {
   void solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
 
   int width_ = 3;
-  std::vector<AnchoredBody> anchored_;
+  std::vector<AnchoredBody<3>> anchored_in_plane_;
+  std::vector<AnchoredBody<6>> anchored_in_space_;
   std::vector<int> rows_;  // all others, by their place in S
   std::vector<double> inverse_mass_;
   struct Other {

@@ -19,7 +19,11 @@ constexpr int largest_whole = 20;  // unknowns: taking some of them out costs mo
 // Every entry that factor() fills, in its order, at its place in the whole system.
 std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) const {
   const int nv = system_.layout().nv(), nc = system_.layout().nc(), width = system_.body_velocities();
+  std::size_t of_rows = 0;
+  for (const JacobianBlock& block : system_.jacobian_blocks()) of_rows += at(2 * width * block.rows);
   std::vector<MatrixEntry> all;
+  all.reserve(at(nv + nc) + (forces_ ? at(4 * width * width) * system_.force_blocks().size() + at(3 * nv) : 0) +
+              of_rows);
   for (int i = 0; i < nv; ++i) all.push_back({i, i});
   for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
   if (forces_) {
@@ -78,7 +82,9 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
 
   std::vector<int> slots(all.size(), left_out);
   std::vector<MatrixEntry> factored;
-  std::vector<std::size_t> factored_entry, alone_entry;
+  std::vector<int> factored_entry, alone_entry;
+  factored.reserve(all.size());
+  factored_entry.reserve(all.size());
   // Couplings in the order in which they are used: by kind and body.
   struct Sorted {
     int kind, body;
@@ -92,9 +98,9 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
     if (row_owner < 0 && column_owner < 0) {
       if (coupled[at(row)]) {
         factored.push_back({place[at(row)], place[at(column)]});
-        factored_entry.push_back(i);
+        factored_entry.push_back(static_cast<int>(i));
       } else {
-        alone_entry.push_back(i);
+        alone_entry.push_back(static_cast<int>(i));
       }
     } else if (row_owner == column_owner && (row < nv) != (column < nv)) {
       if (row < nv) continue;  // the transposed block
@@ -129,10 +135,11 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
   }
   first_free_part_ = first_of(2, 0);
   first_alone_ = first_coupling_ + couplings_.size();
-  for (const std::size_t i : alone_entry) slots[i] = static_cast<int>(first_alone_) + place[at(all[i].row)];
+  for (const int i : alone_entry) slots[at(i)] = static_cast<int>(first_alone_) + place[at(all[at(i)].row)];
   first_rest_ = first_alone_ + alone_.size();
   const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
-  for (std::size_t i = 0; i < found.size(); ++i) slots[factored_entry[i]] = static_cast<int>(first_rest_) + found[i];
+  for (std::size_t i = 0; i < found.size(); ++i)
+    slots[at(factored_entry[i])] = static_cast<int>(first_rest_) + found[i];
   rest_right_.assign(unknowns_.size(), 0.0);
   rest_update_.assign(unknowns_.size(), 0.0);
 
@@ -144,15 +151,15 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
             {first_forces, first_turning},
             {first_turning, first_rows},
             {first_rows, slots.end()}};
-  constants_.assign(first_rest_ + rest_.values().size(), 0.0);
-  values_ = constants_;
-  for (int i = 0; i < size; ++i) {
-    constants_[at(slots_.constant[at(i)])] += i < nv ? system_.mass()[at(i)] : 1.0;
-  }
+  values_.assign(first_rest_ + rest_.values().size(), 0.0);
 }
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
-  std::ranges::copy(constants_, values_.begin());
+  std::ranges::fill(values_, 0.0);
+  const std::span<const double> mass = system_.mass();
+  for (std::size_t i = 0; i < slots_.constant.size(); ++i) {
+    values_[at(slots_.constant[i])] += i < mass.size() ? mass[i] : 1.0;
+  }
   if (forces_) {
     const int* slot = slots_.forces.data();
     if (!internal_.empty()) {

@@ -69,9 +69,8 @@ class StageMatrix {
   std::vector<int> alone_;           // places of unknowns that are divided out
   std::vector<int> unknowns_;        // places of the unknowns of rest_ in the whole system
   Slots slots_;
-  // A number for what is left out, Phi_q of each prescribed body by columns, then couplings_, alone_, rest_: present
-  // values, and those that stay.
-  std::vector<double> values_, constants_;
+  // A number for what is left out, Phi_q of each prescribed body by columns, then couplings_, alone_, rest_.
+  std::vector<double> values_;
   std::size_t first_coupling_ = 0, first_alone_ = 0, first_rest_ = 0;
   mutable std::vector<double> rest_right_, rest_update_;
 };

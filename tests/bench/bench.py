@@ -55,6 +55,10 @@ def help_of_parts():
     return "parts:\n" + "\n".join("  %-*s  %s" % (width, name, words) for name, (words, _) in PARTS.items())
 
 
+def usual_parts(quick):
+    return [name for name in PARTS if not (quick and name in PROBLEMS and PROBLEMS[name].once)]
+
+
 def parser():
     words = argparse.ArgumentParser(prog="./dev bench", description=__doc__, epilog=help_of_parts(), allow_abbrev=False,
                                     formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -102,7 +106,7 @@ def main(arguments):
         if options.vs:
             results["vs"] = versus.compare(bench, options.vs, options.names or list(PROBLEMS))
         else:
-            for name in options.names or PARTS:
+            for name in options.names or usual_parts(options.quick):
                 bench.print("\n== %s: %s ==" % (name, PARTS[name][0]))
                 results[name] = PARTS[name][1](bench)
     except Failed as failure:

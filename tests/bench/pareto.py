@@ -64,8 +64,10 @@ def measure(bench, problem):
         record = {"integrator": name, "kind": kind, "value": value, "options": options}
         records.append(record)
         try:
-            error = largest_distance(bench.program.run(problem.file(), options).columns(problem.points), points)
-            run = fastest(lambda: bench.program.run(timed, options), *TRIED)
+            run = bench.program.run(problem.file(), options)
+            error = largest_distance(run.columns(problem.points), points)
+            if not problem.once:
+                run = fastest(lambda: bench.program.run(timed, options), *TRIED)
             record.update(error=error, rate=run.rate, steps=run.steps)
         except Failed as failure:
             record["failure"] = str(failure)

@@ -26,6 +26,7 @@ class Problem:
     hand: str = ""         # name at the hand-written programs
     hand_options: tuple = ()
     between: tuple = ()    # further accuracies of those that always choose their steps: close to the target
+    once: bool = False     # each integrator once, with its own kind of step, and the run that tells the error is timed
     timed_interval: str = ""  # of rows of runs that are timed, where the model asks for more that only the error needs
 
     def file(self):
@@ -46,6 +47,8 @@ class Problem:
             if name not in ADAPTIVE:
                 for step in self.steps[:2] if quick else self.steps:
                     yield name, "step", step, self.options("--integrator", name, "--step", repr(step))
+            if self.once and name not in ADAPTIVE:
+                continue
             # What is of second order does not go as far.
             accuracies = sorted(self.accuracies + self.between, reverse=True) if name in ADAPTIVE else self.accuracies[:5]
             for accuracy in accuracies[:2] if quick else accuracies:
@@ -76,6 +79,10 @@ def four_bar(n):
                    trajectory="p2_fourbar_n%d.csv" % n, columns=("B0_x", "B0_y"), hand="p2", hand_options=("--n", str(n)))
 
 
+def long_four_bar(n):
+    return dataclasses.replace(four_bar(n), steps=(2e-3 if n < 10000 else 1e-2,), accuracies=(1e-1,), between=(), best=1e-6, once=True, hand="")
+
+
 PROBLEMS = {
     "slider-crank": Problem(
         "slider-crank", "slider-crank", 8e-3, ("body.slider.x", "body.slider.y"), 1e-6,
@@ -96,5 +103,6 @@ PROBLEMS = {
         "squeezer", "validation/squeezer", 0.03, ("body.K3.x", "body.K3.y"), 1e-6, (1e-4, 5e-5, 2e-5, 1e-5, 5e-6),
         (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), best=1e-13),
     **{"four-bar-%d" % n: four_bar(n) for n in (5, 40, 320)},
+    **{"four-bar-%d" % n: long_four_bar(n) for n in (1000, 10000)},
 }
 WINDOWS = (5, 10, 40, 100, 320, 1000, 3200, 10000)

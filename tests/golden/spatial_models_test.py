@@ -182,7 +182,8 @@ class PlanarInSpace(SpatialTest):
         self.assert_same("", "integrator: bathe, step: 10 us", 1e-13)
 
     def test_a_mechanism_with_clearance_moves_as_in_the_plane(self):
-        self.assert_same(CLEARANCE, "integrator: bathe, step: 2 us", 1e-9)
+        # Iterated to rounding: impacts make of what an iteration may leave ten times as much as this.
+        self.assert_same(CLEARANCE, "integrator: {type: bathe, newton: {tolerance: 1e-14}}, step: 2 us", 2e-10)
         self.assert_same(CLEARANCE, "accuracy: 1e-10", 1e-9)
 
     def test_friction_with_memory_acts_as_in_the_plane(self):
