@@ -17,9 +17,10 @@ namespace {
 ///   v_1 = v_n + h (q0 a_n + q1 a_s + q2 a_1)     d_1 = h (q0 v_n + q1 v_s + q2 v_1)
 ///   q1 = (rho + 1)/(2 s (rho - 1) + 4)    q0 = 1/2 - (1 - s) q1    q2 = 1/2 - s q1 = (1 - s)/(2 + s (rho - 1))
 ///
-/// Internal variables z follow the rule of v. Constraints hold at position level in both stages; then v is projected
-/// and a, lambda are solved again at the accepted state, which makes every quantity of order 2, without drift. Bathe
-/// and Baig 2005; Bathe 2007; Noh and Bathe 2018 (rho).
+/// Internal variables z follow the rule of v. Constraints hold at position level in stages that are solved, and at the
+/// end of those that are left as guessed (StageHistory); then v is projected and a, lambda are solved again at the
+/// accepted state, which makes every quantity of order 2, without drift. Bathe and Baig 2005; Bathe 2007; Noh and Bathe
+/// 2018 (rho).
 class Bathe final : public Integrator {
  public:
   explicit Bathe(const Parameters& p)
@@ -52,7 +53,9 @@ class Bathe final : public Integrator {
     Start n(to, scratch);
     StageHistory history(dt, 2, n.a, n.lambda, history_of(to));
     const Span<double> z_rate = to.memory.part(0, to.z.size);
-    if (n.z.empty() && !solver.estimates() && history.foresees()) {
+    const bool foreseen = n.z.empty() && !solver.estimates() && history.foresees();
+    const bool first_alone = foreseen && history.foresees_first_alone();
+    if (foreseen && !first_alone) {
       follow_guesses(dt, n, to, solver, history);
       end_step(to, z_rate, solver);
       history.miss(to, n.increment_known);
@@ -60,13 +63,11 @@ class Bathe final : public Integrator {
         return {.converged = 1, .error = 0.0};
       }
     }
-    history.guess(0, split_, to);
-    prepare_trapezoid(dt, n, to);
-    if (!solve(n.t + split_ * dt, 0.5 * split_ * dt, n, to, solver)) return {.converged = 0, .error = 0.0};
-    history.solved(0, to, solver.guess_error());
-    prepare_end(dt, n, to);
-    history.guess(1, 1.0, to);
-    if (!solve(n.t + dt, q2_ * dt, n, to, solver)) return {.converged = 0, .error = 0.0};
+    if (!solve_stages(dt, n, to, solver, history, first_alone)) return {.converged = 0, .error = 0.0};
+    if (first_alone && StageHistory::is_surprise(solver.guess_error()) &&
+        !solve_stages(dt, n, to, solver, history, false)) {
+      return {.converged = 0, .error = 0.0};
+    }
     history.solved(1, to, solver.guess_error());
     if (solver.estimates()) {
       const double beta_q = q2_ * dt * q2_ * dt;
@@ -128,6 +129,22 @@ class Bathe final : public Integrator {
       at(n.increment_known) = dt * (q0 * v + q1 * v_first) + b * v_known + b * b * a_end;
     });
     solver.retract(n.q, n.increment_known, to.q);
+  }
+
+  /// Both, or the second behind the first as it is guessed.
+  bool solve_stages(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history,
+                    bool second_alone) const {
+    history.guess(0, split_, to);
+    prepare_trapezoid(dt, n, to);
+    if (second_alone) {
+      in_pairs(n.v.size, [&](auto at) { at(to.v) = at(n.v_known) + 0.5 * split_ * dt * at(to.a); });
+    } else {
+      if (!solve(n.t + split_ * dt, 0.5 * split_ * dt, n, to, solver)) return false;
+      history.solved(0, to, solver.guess_error());
+    }
+    prepare_end(dt, n, to);
+    history.guess(1, 1.0, to);
+    return solve(n.t + dt, q2_ * dt, n, to, solver);
   }
 
   void prepare_trapezoid(double dt, Start& n, const StateView& to) const {

@@ -17,11 +17,11 @@ namespace freeplay {
 /// one iteration does. Where such a guess would have been no better than a_n, as behind an impact, and in steps of
 /// another length than those before, it is not used. A guess changes what a stage costs, not what it solves.
 ///
-/// Where guesses miss by a small part of what the iteration of a stage may leave, all stages of a step may be left as
+/// Where guesses miss by a small part of what the iteration of a stage may leave, both stages of a step may be left as
 /// they were guessed, for as many steps as this part, growing by itself in each, stays small. What the accelerations at
 /// the end of such a step come out otherwise tells when the motion is no longer that of the steps before: then the step
-/// is made with its stages solved. Of motions for which that is so again and again, more and more are before the next
-/// try.
+/// is made with its stages solved. Where that is so again and again, more and more steps come before the next try, of
+/// which the first stage alone is left as guessed: what the guess for the end misses speaks for both.
 class StageHistory {
  public:
   static int size(const Sizes& n, int stages) { return scalars + stages + (3 + 2 * stages) * (n.nv + n.nc) + n.nv; }
@@ -84,7 +84,7 @@ class StageHistory {
       beside_[i] = to.a[i];
     }
     for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] += to.lambda[r] - guess[a_.size + r];
-    const bool good = steps_ > 1.0 && (!(error > 1.0) || missed <= 0.5 * moved);
+    const bool good = steps_ > 1.0 && (!is_surprise(error) || missed <= 0.5 * moved);
     good_[static_cast<std::size_t>(stage)] = good ? 1.0 : 0.0;
     const double steps = good ? steps_of(error) : 0.0;
     foreseen_ = stage == 0 ? steps : std::min(steps, foreseen_);
@@ -92,16 +92,19 @@ class StageHistory {
   /// After a step whose stages were solved; `to` has the accelerations at its end.
   void finish(const StateView& to) {
     in_pairs(a_.size, [&](auto at) { at(beside_) -= at(to.a); });
-    if (pause_ > 0.0) pause_ -= 1.0, foreseen_ = 0.0;
+    pause_ = std::max(0.0, pause_ - 1.0);
     keep_start();
   }
 
-  /// Whether the two stages of a step may be left at their guesses. Counts.
+  /// Whether the stages of a step may be left at their guesses: both, or the first alone. Counts.
   bool foresees() {
     if (!(foreseen_ > 0.0)) return false;
     foreseen_ -= 1.0;
     return true;
   }
+  bool foresees_first_alone() const { return pause_ > 0.0; }
+  /// Whether what a guess missed (StageSolver::guess_error, unsolved_error) tells that nothing is as foreseen.
+  static bool is_surprise(double error) { return !(error <= 1.0); }
   /// These guesses of a: calls use(at, first, end) with the numbers at all places.
   template <class Use>
   void foresee(double c_first, double c_end, Use&& use) {
@@ -124,14 +127,14 @@ class StageHistory {
   }
   /// Whether it stands, with such an error (StageSolver::unsolved_error). If so, it is over.
   bool stands(double error) {
-    if (!(error <= 1.0)) {
+    if (is_surprise(error)) {
       foreseen_ = 0.0;
       pause_ = next_pause_;
       next_pause_ = std::min(2.0 * next_pause_ + 1.0, longest_pause);
       return false;
     }
     foreseen_ = std::min(foreseen_, steps_of(error));
-    if (!(foreseen_ > 0.0)) next_pause_ = 0.0;
+    next_pause_ = std::max(0.0, next_pause_ - worth);
     keep_start();
     return true;
   }
@@ -141,6 +144,7 @@ class StageHistory {
   static constexpr double small_part = 0.5;      // of what a stage may leave
   static constexpr double most_foreseen = 15.0;  // steps
   static constexpr double longest_pause = 1023.0;
+  static constexpr double worth = 0.25;  // of a step that stands, in tries that fail
 
   struct Weights {
     double now, previous, older, oldest;
@@ -168,7 +172,7 @@ class StageHistory {
   double steps_;
   double &count_, &foreseen_;    // foreseen_: steps to come whose stages nobody needs to solve
   double& last_;                 // how far the places of past_ have turned
-  double &pause_, &next_pause_;  // steps that are solved whatever is foreseen, and after the next surprise
+  double &pause_, &next_pause_;  // steps until both stages may be foreseen, and after the next surprise
   Span<double> past_[3];         // (a, lambda) at the starts of the steps before, the last one first
   Span<double> good_, off_, guess_;
   Span<double> beside_;  // a of the last stage less that at the end of the step, where it was solved last

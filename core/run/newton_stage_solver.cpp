@@ -22,16 +22,11 @@ constexpr int kept_factors = 4;
 constexpr std::size_t few_unknowns = 100;
 constexpr double unknown_contraction = 0.5;  // at most, while factors are those of the same forces
 constexpr double roundings_of_phi = 16.0;    // of its largest terms: what is left of Phi then says nothing
-constexpr double drift = 4.0;                // times as much may come of the steps before
-constexpr double small_part = 1e-4;          // of the first update: much less than what the step itself errs
-constexpr double many_steps = 5000.0;        // that together may move by the tolerance
+constexpr double few_units = 10.0;
+constexpr double drift = 4.0;          // times as much may come of the steps before
+constexpr double small_part = 1e-4;    // of the first update: much less than what the step itself errs
+constexpr double many_steps = 5000.0;  // that together may move by the tolerance
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-double largest(std::span<const double> numbers) {
-  double size = 0.0;
-  for (const double x : numbers) size = std::max(size, std::abs(x));
-  return size;
-}
 
 template <class Call>
 Status guarded_call(Message* message, const NewtonStageSolver& solver, Call&& call) noexcept {
@@ -97,6 +92,16 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
   other_lambda_.resize(at(nc));
   other_z_.resize(at(system.layout().nz()));
   other_rate_.resize(other_z_.size());
+  const Model& model = system.model();
+  for (const Gear& gear : model.gears) {
+    const std::size_t row = at(system.layout().rows(gear.joint).offset);
+    coordinate_terms_.push_back({row, at(gear.first), std::abs(gear.ratio)});
+    coordinate_terms_.push_back({row, at(gear.second), 1.0});
+  }
+  for (std::size_t d = 0; d < model.drivers.size(); ++d) {
+    const int row = system.layout().driver_row(static_cast<int>(d));
+    if (row >= 0 && row < nc) coordinate_terms_.push_back({at(row), at(model.drivers[d].joint), 1.0});
+  }
 }
 
 NewtonStageSolver::Factor& NewtonStageSolver::factor_for(double beta_q, double beta_v) {
@@ -150,18 +155,36 @@ bool NewtonStageSolver::refactor(Factor& factor) {
   return factor.valid;
 }
 
-// A row rounds as the coordinates do that it is made of.
+// A row rounds as the coordinates do that it is made of: by units, where they are not many units large.
 void NewtonStageSolver::note_rounding_of_phi() {
   const std::size_t width = at(system_.body_velocities());
+  coarse_ = 1.0;
+  for (std::size_t i = 0; i < unit_.size(); ++i) {
+    const std::size_t body = i / width, c = i % width;
+    const bool told = width == 3 || c < 3;  // else part of a quaternion
+    const double size = told ? std::abs(e_->q[(width == 3 ? 3 : 7) * body + c]) / (few_units * unit_[i]) : 0.0;
+    work_[i] = unit_[i] * std::max(1.0, size);
+    coarse_ = std::max(coarse_, size);
+  }
   for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
     double largest_term = 0.0;
     for (const System::RowPiece& piece : system_.row_pieces(r)) {
       for (std::size_t c = 0; c < width; ++c) {
         largest_term =
-            std::max(largest_term, std::abs(e_->jacobian[at(piece.offset) + c]) * unit_[at(piece.velocity) + c]);
+            std::max(largest_term, std::abs(e_->jacobian[at(piece.offset) + c]) * work_[at(piece.velocity) + c]);
       }
     }
     quiet_phi_[r] = roundings_of_phi * rounding * largest_term;
+  }
+  note_turns();
+}
+
+// Coordinates of joints are counted over turns: they grow while matrices stay.
+void NewtonStageSolver::note_turns() {
+  for (const CoordinateTerm& term : coordinate_terms_) {
+    const double size = std::abs(e_->coordinate[term.joint]);
+    quiet_phi_[term.row] = std::max(quiet_phi_[term.row], roundings_of_phi * rounding * term.factor * size);
+    coarse_ = std::max(coarse_, size / few_units);
   }
 }
 
@@ -216,6 +239,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       factor.contraction = 1.0;
     }
     const bool same_forces = e_->acting == factor.acting;
+    if (iteration == 0) note_turns();
     if (iteration == 0 && !same_forces) factor.contraction = 1.0, factor.noise = 0.0;
     factor.acting = e_->acting;
     ++iterations_;
@@ -281,15 +305,15 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const double left = part < 1.0 ? part / (1.0 - part) * change : change;
     const bool judged = iteration > 0 || same_forces;  // which what is foreseen needs, too
     const bool accurate = judged && ((left * beta_q <= options_.tolerance && left * beta_v <= allowed) ||
-                                     left * beta_q <= immaterial * rounding);
+                                     left * beta_q <= immaterial * rounding * coarse_);
     // What does not shrink although it moves positions by roundings alone is noise, or comes of old factors: which of
     // both, new ones tell.
-    const bool tiny = change * beta_q <= 50.0 * rounding;
+    const bool tiny = change * beta_q <= 50.0 * rounding * coarse_;
     const bool stays = iteration > 0 && tiny && ratio >= 0.3;
     if (stays && fresh) factor.noise = std::max(change, 0.5 * factor.noise), factor.since_noise = 0;
     if (stays && !fresh && ++factor.stays > most_stays) factor.stays = 0, factor.valid = false;
     const bool quiet = iteration == 0 && tiny && change <= 2.0 * factor.noise && ++factor.since_noise <= noise_for;
-    const bool noise = stays || quiet || (iteration > 0 && change * beta_q <= rounding);
+    const bool noise = stays || quiet || (iteration > 0 && change * beta_q <= rounding * coarse_);
     const bool stagnates = position && fresh && !accurate && !noise && ratio >= 0.3 && iteration > 0;
     if (internal_settled &&
         (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way, drifted)))) {
@@ -328,6 +352,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
 
 double NewtonStageSolver::unsolved_error(double beta_q, double beta_v, std::span<const double> missed) {
   Factor& factor = factor_for(beta_q, beta_v);
+  note_turns();
   if (!rows_hold(drift)) return std::numeric_limits<double>::infinity();
   ++factor.held;
   return index_one_.norm(missed) * std::max(beta_q, beta_v) / options_.tolerance;
@@ -373,7 +398,9 @@ void NewtonStageSolver::learn_drift(Factor& factor, StateView& out) {
 }
 
 bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double way, bool drifted) {
-  if (!(largest(e_->phi) <= 8.0 * rounding * system_.size())) return false;
+  for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
+    if (!(std::abs(e_->phi[r]) <= std::max(8.0 * rounding * system_.size(), quiet_phi_[r]))) return false;
+  }
   const std::size_t nv = unit_.size();
   std::fill(right_.begin(), right_.end(), 0.0);
   ask_for_rows(factor.beta_q, drifted);

@@ -104,6 +104,7 @@ class NewtonStageSolver {
   double factor_once(Factor& factor);
   bool find_dependent_rows();
   void note_rounding_of_phi();
+  void note_turns();
   void follow_choice_of_rows();
   /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the
   /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
@@ -135,7 +136,13 @@ class NewtonStageSolver {
   std::vector<Factor> factors_;  // one for each pair of betas
   int choice_of_rows_ = 0;       // that they were made with
   std::vector<double> right_, update_, increment_, drift_, z_rate_, work_;
-  std::vector<double> quiet_phi_;                                      // by row: below, Phi is rounding
+  std::vector<double> quiet_phi_;  // by row: below, Phi is rounding
+  double coarse_ = 1.0;            // roundings of the largest coordinate, in those of units
+  struct CoordinateTerm {
+    std::size_t row, joint;
+    double factor;
+  };
+  std::vector<CoordinateTerm> coordinate_terms_;                       // of rows of gears and drivers
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // of internal_error_norm()
   long clock_ = 0, iterations_ = 0, factorizations_ = 0;
   double guess_error_ = 0.0;  // first update of the last stage, in parts of what it may leave

@@ -66,6 +66,7 @@ def parser():
     words.add_argument("--quick", action="store_true", help="fewer runs, nothing large: to see that all of it works")
     words.add_argument("--page", action="store_true", help="write the tables into docs/performance.md, too")
     words.add_argument("--vs", metavar="REV", help="time this tree and the revision REV of git in turn")
+    words.add_argument("--only-words", action="store_true", help=argparse.SUPPRESS)  # are looked at, before anything is built
     words.add_argument("--program", default=os.path.join(ROOT, "build", "release", "freeplay"), help=argparse.SUPPRESS)
     words.add_argument("--kernels", default=os.path.join(ROOT, "build", "release", "tests", "kernel_bench"), help=argparse.SUPPRESS)
     words.add_argument("--build", default=os.path.join(ROOT, "build", "bench"), help=argparse.SUPPRESS)
@@ -73,7 +74,7 @@ def parser():
 
 
 def meant(word, words):
-    near = difflib.get_close_matches(word, words, 1)
+    near = difflib.get_close_matches(word.lower(), words, 1)
     return "; did you mean '%s'?" % near[0] if near else ""
 
 
@@ -100,6 +101,8 @@ def facts(bench, options):
 
 def main(arguments):
     options = parse(arguments)
+    if options.only_words:
+        return 0
     try:
         bench = Bench(options)
         results = facts(bench, options)

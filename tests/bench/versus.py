@@ -20,7 +20,10 @@ def told(*words, cwd=ROOT):
 
 def build(revision, folder):
     """The program of a revision, built in a folder of its own that is kept for the next time."""
-    commit = told("git", "rev-parse", "--verify", "--quiet", revision + "^{commit}")
+    try:
+        commit = told("git", "rev-parse", "--verify", "--quiet", revision + "^{commit}")
+    except Failed as failure:
+        raise Failed("there is no revision '%s' here; git log --oneline lists some" % revision) from failure
     tree = os.path.join(folder, "revisions", commit[:12])
     program = os.path.join(tree, "build", "release", "freeplay")
     if not os.path.exists(program):

@@ -42,15 +42,17 @@ class Bench(ProgramTest):
         self.assertLess(0.0, found["startup"]["3-rrr"]["median"])
 
     def test_mistyped_words_get_the_nearest(self):
-        for words, answer in ((["slider-crnk"], "did you mean 'slider-crank'?"), (["--quik"], "did you mean '--quick'?"),
+        for words, answer in ((["slider-crnk"], "did you mean 'slider-crank'?"), (["3-RRR"], "did you mean '3-rrr'?"), (["--quik"], "did you mean '--quick'?"),
                               (["--vs", "HEAD", "growth"], "--vs compares"), (["--page", "--quick"], "neither --quick")):
-            out, err = self.bench(*words, code=2)
-            self.assertEqual("", out)
-            self.assertIn(answer, err)
+            for more in ([], ["--only-words"]):  # as ./dev asks, before it builds anything
+                out, err = self.bench(*words, *more, code=2)
+                self.assertEqual("", out)
+                self.assertIn(answer, err)
+        self.assertEqual(("", ""), self.bench("slider-crank", "--vs", "HEAD", "--only-words"))
         _, err = self.bench("startup", "--quick", code=1, lower_bound=self.folder)
         self.assertIn("FREEPLAY_LOWER_BOUND: no Makefile", err)
         _, err = self.bench("--vs", "no-such-revision", "squeezer", code=1)
-        self.assertIn("no-such-revision", err)
+        self.assertIn("there is no revision 'no-such-revision' here", err)
 
     def test_help_lists_the_parts_and_the_page_has_a_table_of_each(self):
         out, _ = self.bench("--help")
