@@ -135,9 +135,9 @@ bool NormalMatrix::set_pattern_in(std::span<const double> mass, int rows, std::s
   }
   others_.clear();
   for (AnchoredBody<width>& own : anchored<width>(*this)) {
-    const auto of_body = std::ranges::equal_range(by_body, own.body, {}, body_of);
     own.first_other = others_.size();
-    others_.insert(others_.end(), of_body.begin(), of_body.end());
+    others_.insert(others_.end(), std::ranges::lower_bound(by_body, own.body, {}, body_of),
+                   std::ranges::upper_bound(by_body, own.body, {}, body_of));
     own.end_other = others_.size();
   }
   shares_.assign(at(AnchoredBody<width>::most_rows) * others_.size(), 0.0);
