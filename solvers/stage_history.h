@@ -15,7 +15,7 @@ namespace freeplay {
 ///
 /// with d what the same sum was off in the step before: the error falls with h^4 where the motion is smooth, so that
 /// one iteration does. Where such a guess would have been no better than a_n, as behind an impact, and in steps of
-/// another length than those before, it is not used. A guess changes what a stage costs, not what it solves.
+/// another length than those before, it is not used. Of a stage that is solved, a guess changes the cost alone.
 ///
 /// Where guesses miss by a small part of what the iteration of a stage may leave, both stages of a step may be left as
 /// they were guessed, for as many steps as this part, growing by itself in each, stays small. What the accelerations at

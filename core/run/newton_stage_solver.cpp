@@ -22,10 +22,10 @@ constexpr int kept_factors = 4;
 constexpr std::size_t few_unknowns = 100;
 constexpr double unknown_contraction = 0.5;  // at most, while factors are those of the same forces
 constexpr double roundings_of_phi = 16.0;    // of its largest terms: what is left of Phi then says nothing
-constexpr double few_units = 10.0;
-constexpr double drift = 4.0;          // times as much may come of the steps before
-constexpr double small_part = 1e-4;    // of the first update: much less than what the step itself errs
-constexpr double many_steps = 5000.0;  // that together may move by the tolerance
+constexpr double few_units = 10.0;           // a coordinate no larger rounds as a unit does
+constexpr double drift = 4.0;                // times as much may come of the steps before
+constexpr double small_part = 1e-4;          // of the first update: much less than what the step itself errs
+constexpr double many_steps = 5000.0;        // that together may move by the tolerance
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 template <class Call>

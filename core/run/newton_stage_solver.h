@@ -36,6 +36,7 @@ class NewtonStageSolver {
   void use_history(std::span<const double> h) { index_one_.use_history(h); }
 
   bool solve(const Stage& stage, StateView& out, StageResult& result);
+  /// See StageSolver::unsolved_error, at the present evaluation. Counts the stage.
   double unsolved_error(double beta_q, double beta_v, std::span<const double> missed);
   bool project_velocity(StateView& state) { return index_one_.project_velocity(state); }
   /// Multipliers mu of the last project_velocity(): the impulse on the bodies was -Phi_q^T mu [N s, N m s].
