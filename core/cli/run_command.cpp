@@ -20,6 +20,7 @@
 #include "io/channel_selection.h"
 #include "io/csv_sink.h"
 #include "io/event_sink.h"
+#include "io/judgement.h"
 #include "io/model_document.h"
 #include "io/result_directory.h"
 #include "io/run_log.h"
@@ -245,6 +246,8 @@ class RunJob {
         record.verify.emplace_back(channel.name, channel.error);
       record.agree_until = verification->agree_until;
     }
+    record.trust.add(outcome.doubts);
+    judge(record, record.trust);
     const Json json = summary(record);
     recording_.seal(json);
     if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {

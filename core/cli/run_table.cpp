@@ -101,6 +101,14 @@ std::string steps_per_impact(const RunRecord& record) {
                           : fmt::format("--step {:.2g}, or an accuracy in its place, would do\n", advice.step()));
 }
 
+/// "trust: good", or the level and the reasons.
+std::string trust_line(const Verdict& trust) {
+  std::string text = fmt::format("  trust: {}", word(trust.level()));
+  std::string list;
+  for (const TrustReason& reason : trust.reasons()) list += (list.empty() ? "" : "; ") + reason.message;
+  return text + (list.empty() ? "\n" : fmt::format(" ({})\n", list));
+}
+
 }  // namespace
 
 std::string run_table(const RunRecord& record) {
@@ -113,9 +121,10 @@ std::string run_table(const RunRecord& record) {
   text += joints.text("  ") + drivers.text("  ") + paths.text("  ");
   const bool any = has_statistics(record.model.settings, record.outcome);
   text += steps_per_impact(record);
-  return text + fmt::format("  energy residual {}   position residual {}\n",
-                            any ? quantity(record.statistics.energy_residual(), "J", 2) : "-",
-                            any ? quantity(record.statistics.position_residual(), "m", 2) : "-");
+  text += fmt::format("  energy residual {}   position residual {}\n",
+                      any ? quantity(record.statistics.energy_residual(), "J", 2) : "-",
+                      any ? quantity(record.statistics.position_residual(), "m", 2) : "-");
+  return text + trust_line(record.trust);
 }
 
 }  // namespace freeplay

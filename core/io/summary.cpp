@@ -205,6 +205,19 @@ Json verify_part(const RunRecord& record) {
   return part;
 }
 
+Json trust_part(const Verdict& trust) {
+  Json reasons = Json::array();
+  for (const TrustReason& reason : trust.reasons()) {
+    reasons.push_back({{"id", reason.id},
+                       {"level", word(reason.level)},
+                       {"message", reason.message},
+                       {"element", reason.element.empty() ? Json(nullptr) : Json(reason.element)},
+                       {"value", json_number(reason.value)},
+                       {"limit", json_number(reason.limit)}});
+  }
+  return {{"verdict", word(trust.level())}, {"reasons", std::move(reasons)}};
+}
+
 Json performance_part(const Outcome& outcome) {
   const double rate = outcome.wall_seconds > 0.0 ? static_cast<double>(outcome.steps) / outcome.wall_seconds : 0.0;
   return {{"wall_seconds", outcome.wall_seconds}, {"steps_per_second", rate}};
@@ -253,6 +266,7 @@ Json summary(const RunRecord& record) {
           {"advice", advice_part(record.advice)},
           {"verify", verify_part(record)},
           {"agree_until", json_number(record.agree_until)},
+          {"trust", trust_part(record.trust)},
           {"performance", performance_part(outcome)},
           {"files", record.files},
           {"warnings", record.warnings}};

@@ -68,6 +68,16 @@ Json joint_part() {
   return record(std::move(fields));
 }
 
+Json trust_part() {
+  const Json reason = record({{"id", text()},
+                              {"level", {{"enum", {"doubtful", "bad"}}}},
+                              {"message", text()},
+                              {"element", {{"type", {"string", "null"}}}},
+                              {"value", number_or_null()},
+                              {"limit", number_or_null()}});
+  return record({{"verdict", {{"enum", {"good", "doubtful", "bad"}}}}, {"reasons", list_of(reason)}});
+}
+
 Json driver_part() {
   return record({{"kind", {{"enum", {"angle", "position", "velocity", "torque", "force"}}}},
                  {"max_abs", number_or_null()},
@@ -103,6 +113,7 @@ Json summary_schema() {
                                            {"step", number_or_null()}})},
                         {"verify", {{"type", {"object", "null"}}, {"additionalProperties", number_or_null()}}},
                         {"agree_until", number_or_null()},
+                        {"trust", trust_part()},
                         {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
                         {"files", list_of(text())},
                         {"warnings", list_of(text())}});

@@ -483,7 +483,12 @@ void Simulation::Impl::format_warnings() {
     if (warning.text == nullptr) continue;
     std::string_view sentence = warning.text;
     if (sentence.ends_with('.')) sentence.remove_suffix(1);
-    std::string text = fmt::format("joint '{}' at t = {:.9g} s: {}", model.joints[j].name, warning.time, sentence);
+    const std::string joint = fmt::format("joint '{}'", model.joints[j].name);
+    std::string text = fmt::format("{} at t = {:.9g} s: {}", joint, warning.time, sentence);
+    outcome.doubts.push_back({.id = "law-range",
+                              .level = Trust::doubtful,
+                              .message = fmt::format("{}: {}", joint, sentence),
+                              .element = joint});
     const Span<const Channel> own = system.joint_layout(static_cast<int>(j)).channels;
     for (std::size_t i = 0; i < own.size; ++i) {
       const bool plain = std::string_view(own[i].unit) == "1";

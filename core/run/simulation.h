@@ -12,6 +12,7 @@
 #include "run/channel.h"
 #include "run/sink.h"
 #include "run/statistics.h"
+#include "run/trust.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -26,6 +27,7 @@ struct Outcome {
   double time = 0.0;          ///< reached [s]
   double wall_seconds = 0.0;  ///< from the assembled start to the last accepted step
   long steps = 0, rejected = 0, iterations = 0, factorizations = 0, rows = 0, events = 0;
+  std::vector<TrustReason> doubts{};  ///< what the loop itself found against its numbers
 };
 
 struct RunHooks {

@@ -79,6 +79,10 @@ struct JointLayout {
   Span<const PlanarRow> planar_rows;
   /// Planar models, nonzero: coordinate() is theta_b - theta_a or, a position, h.d. The host may make it itself.
   std::uint32_t planar_coordinate = 0;
+  // What is known of the two surfaces of a joint with play, by which the host judges results; NaN: not known.
+  double smaller_radius = std::numeric_limits<double>::quiet_NaN();   ///< of the two, as of a journal [m]
+  double contact_length = std::numeric_limits<double>::quiet_NaN();   ///< along the axis [m]
+  double contact_modulus = std::numeric_limits<double>::quiet_NaN();  ///< E*: 1/E* = (1-nu^2)/E of both, added [Pa]
 };
 
 /// Everything a joint may read. All views are valid during the call only.
