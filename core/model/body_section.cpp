@@ -12,6 +12,7 @@ namespace {
 
 void read_pose(const CheckedValue& value, Body& body) {
   MapReader map(value, "pose");
+  body.pose_location = value.key_location();
   const auto position = map.find("position");
   if (position) body.position = position->vector(dimension::length);
   body.rotation = read_rotation(map);
@@ -25,8 +26,11 @@ void read_pose(const CheckedValue& value, Body& body) {
 
 void read_velocity(const CheckedValue& value, Body& body) {
   MapReader map(value, "velocity");
+  body.velocity_location = value.key_location();
   const auto linear = map.find("linear");
   const auto angular = map.find("angular");
+  body.velocity_given = linear.has_value();
+  body.angular_velocity_given = angular.has_value();
   if (linear) body.velocity = linear->vector(dimension::velocity).value_or(Vector3{});
   if (angular && value.in_space()) {
     body.angular_velocity = angular->vector(dimension::angular_velocity).value_or(Vector3{});

@@ -37,6 +37,8 @@ struct Body {
   std::optional<Rotation> rotation;  ///< spatial starting guess of the body frame
   Vector3 velocity{};                ///< starting guess for the body frame's origin [m/s]
   Vector3 angular_velocity{};        ///< [rad/s]; planar: z
+  bool velocity_given = false, angular_velocity_given = false;  ///< each of the two, in the file
+  Location pose_location{}, velocity_location{};                ///< of their keys; empty where they are not given
 };
 
 /// Point with axes fixed on a body ("frame" in model files).
