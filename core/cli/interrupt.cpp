@@ -20,12 +20,10 @@ void on_interrupt(int) {
   _exit(130);
 }
 
-void on_closed_pipe(int) { _exit(0); }
-
 }  // namespace
 
 void handle_signals() {
-  std::signal(SIGPIPE, on_closed_pipe);
+  std::signal(SIGPIPE, SIG_IGN);  // a pipe that nobody reads is a failed write, which terminal.h keeps quiet about
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is a failed write, which is reported
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);

@@ -1,11 +1,11 @@
-// Interrupt: Ctrl-C, SIGTERM and closed pipes.
+// Interrupt: Ctrl-C, SIGTERM and other signals.
 #pragma once
 
 #include <atomic>
 
 namespace freeplay {
 
-/// A closed pipe ends the program quietly with 0, an interrupt with 130; a file over the size limit does not end it.
+/// An interrupt ends the program with 130; a closed pipe or a file over the size limit is a failed write and does not.
 void handle_signals();
 
 /// From here on the first interrupt only sets the flag, which the caller watches; a second one ends at once.

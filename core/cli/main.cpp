@@ -120,13 +120,15 @@ int execute_and_report(int argc, char** argv) {
 }  // namespace freeplay
 
 int main(int argc, char** argv) {
+  freeplay::open_standard_descriptors();
   freeplay::handle_signals();
+  int exit_code = 1;
   try {
-    return freeplay::execute_and_report(std::max(argc, 1), argv);
-  } catch (const freeplay::Error& error) {  // stdout did not take even the report
-    std::fputs(("freeplay: error: " + error.message() + "\n").c_str(), stderr);
-    return error.exit_code();
-  } catch (...) {
-    return 1;
+    exit_code = freeplay::execute_and_report(std::max(argc, 1), argv);
+  } catch (...) {  // even the report failed
   }
+  const std::string failure = freeplay::stdout_failure();
+  if (failure.empty()) return exit_code;
+  std::fputs(("freeplay: error: cannot write to stdout: " + failure + " [cannot-write]\n").c_str(), stderr);
+  return exit_code == 0 ? 6 : exit_code;
 }

@@ -7,13 +7,15 @@
 #include <cstring>
 #include <string>
 
+#include <fcntl.h>
 #include <unistd.h>
 
-#include "base/error.h"
 #include "base/text.h"
 
 namespace freeplay {
 namespace {
+
+int stdout_error = 0;  // errno of the first failure
 
 bool colour_wanted(bool no_color) {
   const char* none = std::getenv("NO_COLOR");
@@ -50,11 +52,22 @@ std::string printable_lines(std::string_view text) {
 
 }  // namespace
 
+void open_standard_descriptors() {
+  int opened = 0;
+  while (opened >= 0 && opened <= STDERR_FILENO) opened = ::open("/dev/null", O_RDWR);
+  if (opened > STDERR_FILENO) ::close(opened);
+}
+
 void print(std::string_view text) { print_data(printable_lines(text)); }
 
 void print_data(std::string_view text) {
+  if (stdout_error != 0) return;
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
-  throw Error(Error::Category::file, "cannot-write", std::string("cannot write to stdout: ") + std::strerror(errno));
+  stdout_error = errno;
+}
+
+std::string stdout_failure() {
+  return stdout_error == 0 || stdout_error == EPIPE ? std::string() : std::string(std::strerror(stdout_error));
 }
 
 void print_json(const Json& json) { print_data(json_text(json)); }
