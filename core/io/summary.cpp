@@ -1,8 +1,11 @@
 #include "io/summary.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "io/sha256.h"
 #include "io/version.h"
@@ -110,6 +113,20 @@ Json counts_part(const Outcome& outcome, const Statistics& statistics) {
           {"contacts_total", statistics.contacts_total()}};
 }
 
+/// Nine digits of a step: the difference of two times has no more.
+double rounded_step(double dt) {
+  const std::string text = fmt::format("{:.9g}", dt);
+  std::from_chars(text.data(), text.data() + text.size(), dt);
+  return dt;
+}
+
+Json time_part(const Outcome& outcome) {
+  const auto step = [&](double dt) { return outcome.steps > 0 ? Json(rounded_step(dt)) : Json(nullptr); };
+  return {{"reached", outcome.time},
+          {"smallest_step", step(outcome.smallest_step)},
+          {"largest_step", step(outcome.largest_step)}};
+}
+
 /// Null where the run ended before statistics began.
 Json residuals_part(const RunRecord& record) {
   const bool any = has_statistics(record.model.settings, record.outcome);
@@ -146,6 +163,7 @@ Json joints_part(const RunRecord& record) {
     append(part, joint.name,
            {{"type", joint.component->description.name},
             {"max_force", json_number(seen.max_force)},
+            {"max_torque", json_number(seen.max_torque)},
             {"rms_force", json_number(seen.rms_force)},
             {"max_fn", contact(seen.max_normal_force)},
             {"max_delta", contact(seen.max_penetration)},
@@ -153,6 +171,20 @@ Json joints_part(const RunRecord& record) {
             {"contacts", counted ? Json(seen.contacts) : Json(nullptr)},
             {"contact_fraction", contact(seen.contact_fraction)},
             {"dissipated", contact(seen.dissipated)}});
+  }
+  return part;
+}
+
+Json forces_part(const RunRecord& record) {
+  Json part = Json::object();
+  for (std::size_t i = 0; i < record.model.force_elements.size(); ++i) {
+    const ForceStatistics seen = record.statistics.force(static_cast<int>(i));
+    const ForceWords words = force_words(record.model, static_cast<int>(i));
+    append(part, words.name,
+           {{"type", words.type},
+            {"max_force", json_number(seen.max_force)},
+            {"max_torque", json_number(seen.max_torque)},
+            {"work", json_number(seen.work)}});
   }
   return part;
 }
@@ -239,6 +271,16 @@ const char* status_word(RunStatus status) {
   return "interrupted";
 }
 
+ForceWords force_words(const Model& model, int index) {
+  const ForceElement& element = model.force_elements[static_cast<std::size_t>(index)];
+  if (element.joint >= 0) {
+    const JointElement& joint = model.joints[static_cast<std::size_t>(element.joint)];
+    return {joint.name, joint.component->description.name};
+  }
+  const AppliedForce& force = model.forces[static_cast<std::size_t>(element.applied)];
+  return {force.name, force.kind == ForceKind::force ? "force" : "torque"};
+}
+
 bool has_contact_statistics(const JointColumns& columns) {
   return columns.normal_force >= 0 && columns.penetration >= 0 && columns.contact >= 0;
 }
@@ -255,12 +297,13 @@ Json summary(const RunRecord& record) {
           {"status", status_word(outcome.status)},
           {"stop_reason", outcome.reason.empty() ? Json(nullptr) : Json(outcome.reason)},
           {"exit_code", outcome.exit_code},
-          {"time", {{"reached", outcome.time}}},
+          {"time", time_part(outcome)},
           {"counts", counts_part(outcome, record.statistics)},
           {"residuals", residuals_part(record)},
           {"bodies", bodies_part(record)},
           {"joints", joints_part(record)},
           {"drivers", drivers_part(record)},
+          {"forces", forces_part(record)},
           {"paths", paths_part(record)},
           {"energy", energy_part(record.channels.energy, record.last_row)},
           {"advice", advice_part(record.advice)},

@@ -37,6 +37,12 @@ const char* status_word(RunStatus status);
 /// The object of section 2.4 of the command-line contract.
 Json summary(const RunRecord& record);
 
+/// Name and type of an entry of Model::force_elements.
+struct ForceWords {
+  std::string name, type;
+};
+ForceWords force_words(const Model& model, int index);
+
 /// True if the joint publishes what the contact part of its statistics needs.
 bool has_contact_statistics(const JointColumns& columns);
 

@@ -60,7 +60,7 @@ Json settings_part() {
 
 Json joint_part() {
   Json fields = {{"type", text()}};
-  for (const char* name : {"max_force", "rms_force", "max_fn", "max_delta", "max_eccentricity"}) {
+  for (const char* name : {"max_force", "max_torque", "rms_force", "max_fn", "max_delta", "max_eccentricity"}) {
     fields[name] = number_or_null();
   }
   fields["contacts"] = integer_or_null();
@@ -78,6 +78,13 @@ Json trust_part() {
   return record({{"verdict", {{"enum", {"good", "doubtful", "bad"}}}}, {"reasons", list_of(reason)}});
 }
 
+Json force_part() {
+  return record({{"type", text()},
+                 {"max_force", number_or_null()},
+                 {"max_torque", number_or_null()},
+                 {"work", number_or_null()}});
+}
+
 Json driver_part() {
   return record({{"kind", {{"enum", {"angle", "position", "velocity", "torque", "force"}}}},
                  {"max_abs", number_or_null()},
@@ -88,35 +95,38 @@ Json driver_part() {
 }  // namespace
 
 Json summary_schema() {
-  Json schema = record({{"freeplay", record({{"version", text()}, {"schema", {{"const", schema_version}}}})},
-                        {"model", model_part()},
-                        {"settings", settings_part()},
-                        {"status", {{"enum", {"completed", "stopped", "failed", "interrupted"}}}},
-                        {"stop_reason", {{"type", {"string", "null"}}}},
-                        {"exit_code", integer()},
-                        {"time", record({{"reached", number()}})},
-                        {"counts", record({{"rows", integer()},
-                                           {"steps", integer()},
-                                           {"rejected", integer()},
-                                           {"iterations", integer()},
-                                           {"factorizations", integer()},
-                                           {"contacts", integer()},
-                                           {"contacts_total", integer()}})},
-                        {"residuals", numbers({"position_max", "velocity_max", "energy_max"})},
-                        {"bodies", by_name({{"type", "object"}, {"additionalProperties", number_or_null()}})},
-                        {"joints", by_name(joint_part())},
-                        {"drivers", by_name(driver_part())},
-                        {"paths", by_name(numbers({"max_position", "rms_position", "max_angle", "rms_angle"}))},
-                        {"energy", numbers({"kinetic", "potential", "dissipated", "work", "residual"})},
-                        {"advice", record({{"under_resolved", integer()},
-                                           {"min_steps_per_contact", number_or_null()},
-                                           {"step", number_or_null()}})},
-                        {"verify", {{"type", {"object", "null"}}, {"additionalProperties", number_or_null()}}},
-                        {"agree_until", number_or_null()},
-                        {"trust", trust_part()},
-                        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
-                        {"files", list_of(text())},
-                        {"warnings", list_of(text())}});
+  Json schema = record(
+      {{"freeplay", record({{"version", text()}, {"schema", {{"const", schema_version}}}})},
+       {"model", model_part()},
+       {"settings", settings_part()},
+       {"status", {{"enum", {"completed", "stopped", "failed", "interrupted"}}}},
+       {"stop_reason", {{"type", {"string", "null"}}}},
+       {"exit_code", integer()},
+       {"time",
+        record({{"reached", number()}, {"smallest_step", number_or_null()}, {"largest_step", number_or_null()}})},
+       {"counts", record({{"rows", integer()},
+                          {"steps", integer()},
+                          {"rejected", integer()},
+                          {"iterations", integer()},
+                          {"factorizations", integer()},
+                          {"contacts", integer()},
+                          {"contacts_total", integer()}})},
+       {"residuals", numbers({"position_max", "velocity_max", "energy_max"})},
+       {"bodies", by_name({{"type", "object"}, {"additionalProperties", number_or_null()}})},
+       {"joints", by_name(joint_part())},
+       {"drivers", by_name(driver_part())},
+       {"forces", by_name(force_part())},
+       {"paths", by_name(numbers({"max_position", "rms_position", "max_angle", "rms_angle"}))},
+       {"energy", numbers({"kinetic", "potential", "dissipated", "work", "residual"})},
+       {"advice",
+        record(
+            {{"under_resolved", integer()}, {"min_steps_per_contact", number_or_null()}, {"step", number_or_null()}})},
+       {"verify", {{"type", {"object", "null"}}, {"additionalProperties", number_or_null()}}},
+       {"agree_until", number_or_null()},
+       {"trust", trust_part()},
+       {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
+       {"files", list_of(text())},
+       {"warnings", list_of(text())}});
   Json head = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Freeplay summary.json"}};
   head.update(schema);
   return head;

@@ -21,7 +21,8 @@ EnergyAccount::EnergyAccount(const System& system)
     : system_(system),
       driver_work_(system.model().drivers.size(), 0.0),
       joint_loss_(system.model().joints.size(), 0.0),
-      stored_start_(system.model().joints.size(), 0.0) {
+      stored_start_(system.model().joints.size(), 0.0),
+      force_work_(system.model().force_elements.size(), 0.0) {
   const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
   for (auto* numbers :
        {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &power_end_, &integral_inside_})
@@ -160,12 +161,22 @@ void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::spa
   std::size_t flow = 0;
   double work = row_work, lost = 0.0;
   for (double& driver : driver_work_) work += driver = integral[flow++];
+  const std::size_t first_force = flow;
   for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
   for (const ForceBlock& block : system_.force_blocks()) {
     const std::size_t j = at(block.joint);
     joint_loss_[j] = -integral[flow++];
     if (std::isnan(e.potential_rate[j])) joint_loss_[j] -= e.potential[j] - stored_start_[j];
     lost += joint_loss_[j];
+  }
+  for (std::size_t i = 0; i < force_work_.size(); ++i) {
+    const ForceElement& element = system_.model().force_elements[i];
+    if (element.joint < 0) {
+      force_work_[i] = integral[first_force + at(element.applied)];
+    } else {  // what it gave of its store, less what it lost
+      const std::size_t j = at(element.joint);
+      force_work_[i] = stored_start_[j] - e.potential[j] - joint_loss_[j];
+    }
   }
   const double total = row[at(channels.energy.kinetic)] + row[at(channels.energy.potential)];
   row[at(channels.energy.dissipated)] = lost;

@@ -66,6 +66,8 @@ class EnergyAccount {
 
   std::span<const double> driver_work() const { return driver_work_; }  ///< at the last fill() [J]
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
+  /// Of Model::force_elements on the bodies [J].
+  std::span<const double> force_work() const { return force_work_; }
 
  private:
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
@@ -88,7 +90,7 @@ class EnergyAccount {
   double dt_ = 0.0, initial_ = 0.0;
   double row_power_ = 0.0, row_work_ = 0.0;                // at the end of the last step
   double row_power_before_ = 0.0, row_work_before_ = 0.0;  // at its start
-  std::vector<double> driver_work_, joint_loss_, stored_start_;
+  std::vector<double> driver_work_, joint_loss_, stored_start_, force_work_;
   std::vector<double> power_, integral_;  // at the end of the last step
   std::vector<double> power_earlier_;     // at the start of the step before that
   int steps_alike_ = 0;                   // in length and forces, the last ones

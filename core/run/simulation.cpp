@@ -364,6 +364,7 @@ void Simulation::Impl::add_energy() {
 // Of a step whose end is evaluated in e_trial: events first, then the joints' history, then it is the accepted state.
 // A finite `kink` lies at its end.
 bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
+  const double dt = trial.t() - accepted.t();
   add_energy();
   if (adaptive && !write_rows_inside()) return false;
   Fault fault;
@@ -408,6 +409,8 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   }
   row_is_known = false;
   if (!record_step()) return false;
+  outcome.smallest_step = outcome.steps == 0 ? dt : std::min(outcome.smallest_step, dt);
+  outcome.largest_step = std::max(outcome.largest_step, dt);
   ++outcome.steps;  // from now on its row may be written
   return note_warnings() && tell_sinks();
 }
@@ -452,7 +455,7 @@ bool Simulation::Impl::record_step() {
     position = std::max(position, std::abs(e_accepted->phi[r]));
     velocity = std::max(velocity, std::abs(residual[r] - e_accepted->nu[r]));
   }
-  statistics.add(row, energy.driver_work(), energy.joint_loss(), position, velocity);
+  statistics.add(row, energy.driver_work(), energy.joint_loss(), energy.force_work(), position, velocity);
   return true;
 }
 

@@ -26,7 +26,13 @@ Statistics::Statistics(const Model& model, const Channels& channels)
       drivers_(model.drivers.size()),
       paths_(channels.paths.size()),
       body_speed_(model.bodies.size(), -1.0),
-      planar_(model.space == Space::planar) {}
+      planar_(model.space == Space::planar) {
+  for (const ForceElement& element : model.force_elements) {
+    const int column =
+        element.joint >= 0 ? channels.joints[at(element.joint)].force : channels.forces[at(element.applied)].force;
+    forces_.push_back({column});
+  }
+}
 
 // A step that ends a rounding error before the instant belongs to what follows.
 bool Statistics::counts(double t) const {
@@ -34,7 +40,8 @@ bool Statistics::counts(double t) const {
 }
 
 void Statistics::add(std::span<const double> row, std::span<const double> driver_work,
-                     std::span<const double> joint_loss, double position, double velocity) {
+                     std::span<const double> joint_loss, std::span<const double> force_work, double position,
+                     double velocity) {
   const double t = row[at(channels_.time)];
   if (!counts(t)) return;
   const bool first = !seen_;
@@ -51,6 +58,8 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
     const double flat = std::hypot(value(column), value(column + 1));
     return planar_ ? flat : std::hypot(flat, value(column + 2));
   };
+  // Length of the moment of the wrench that begins at a column.
+  const auto moment = [&](int column) { return planar_ ? std::abs(value(column + 2)) : length(column + 3); };
   for (std::size_t b = 0; b < body_speed_.size(); ++b) {
     body_speed_[b] = std::max(body_speed_[b], length(channels_.bodies[b] + (planar_ ? 3 : 7)));
   }
@@ -58,6 +67,7 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
     const JointColumns& columns = channels_.joints[j];
     JointSums& sums = joints_[j];
     sums.force.add(length(columns.force), dt, first);
+    sums.torque = std::max(sums.torque, moment(columns.force));
     if (first) sums.loss_start = joint_loss[j];
     sums.loss = joint_loss[j] - sums.loss_start;
     if (columns.contact < 0) continue;
@@ -68,6 +78,13 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
                                                columns.eccentricity_z >= 0 ? value(columns.eccentricity_z) : 0.0));
     if (!first) sums.contact_time += 0.5 * dt * (sums.last_contact + value(columns.contact));
     sums.last_contact = value(columns.contact);
+  }
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    ForceSums& sums = forces_[f];
+    sums.force = std::max(sums.force, length(sums.column));
+    sums.torque = std::max(sums.torque, moment(sums.column));
+    if (first) sums.work_start = force_work[f];
+    sums.work = force_work[f] - sums.work_start;
   }
   for (std::size_t d = 0; d < drivers_.size(); ++d) {
     DriverSums& sums = drivers_[d];
@@ -91,8 +108,9 @@ void Statistics::add_contact(int joint, double time) {
 
 JointStatistics Statistics::joint(int index) const {
   const JointSums& sums = joints_[at(index)];
-  if (!seen_) return {nan, nan, nan, nan, nan, nan, nan, 0};
-  JointStatistics out{sums.force.maximum, sums.force.rms(duration_), nan, nan, nan, nan, sums.loss, sums.contacts};
+  if (!seen_) return {nan, nan, nan, nan, nan, nan, nan, 0, nan};
+  JointStatistics out{sums.force.maximum, sums.force.rms(duration_), nan, nan, nan, nan, sums.loss, sums.contacts,
+                      sums.torque};
   const JointColumns& columns = channels_.joints[at(index)];
   if (columns.contact < 0 || columns.normal_force < 0 || columns.penetration < 0) return out;
   out.max_normal_force = sums.normal;
@@ -100,6 +118,12 @@ JointStatistics Statistics::joint(int index) const {
   if (columns.eccentricity_x >= 0) out.max_eccentricity = sums.eccentricity;
   out.contact_fraction = duration_ > 0.0 ? sums.contact_time / duration_ : sums.last_contact;
   return out;
+}
+
+ForceStatistics Statistics::force(int index) const {
+  if (!seen_) return {nan, nan, nan};
+  const ForceSums& sums = forces_[at(index)];
+  return {sums.force, sums.torque, sums.work};
 }
 
 DriverStatistics Statistics::driver(int index) const {

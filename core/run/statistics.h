@@ -12,6 +12,11 @@ namespace freeplay {
 struct JointStatistics {
   double max_force, rms_force, max_normal_force, max_penetration, max_eccentricity, contact_fraction, dissipated;
   long contacts;
+  double max_torque;
+};
+/// Of an entry of `forces`; the work is that on the bodies [J].
+struct ForceStatistics {
+  double max_force, max_torque, work;
 };
 struct DriverStatistics {
   double max_abs, rms, work;
@@ -27,13 +32,15 @@ class Statistics {
 
   /// Whether a state at t is one of those that count.
   bool counts(double t) const;
-  /// The accepted row at the end of a step (or the start row). `work` and `dissipated` per driver and joint come from
-  /// the energy account, `position` and `velocity` are the largest constraint residuals [m or rad, per s].
+  /// The accepted row at the end of a step (or the start row). Work and losses by driver, joint and force come from the
+  /// energy account, `position` and `velocity` are the largest constraint residuals [m or rad, per s].
   void add(std::span<const double> row, std::span<const double> driver_work, std::span<const double> joint_loss,
-           double position, double velocity);
+           std::span<const double> force_work, double position, double velocity);
   void add_contact(int joint, double time);
 
   JointStatistics joint(int index) const;
+  /// `index` into Model::force_elements.
+  ForceStatistics force(int index) const;
   DriverStatistics driver(int index) const;
   PathStatistics path(int index) const;
   double body_max_speed(int index) const;
@@ -51,10 +58,15 @@ class Statistics {
   };
   struct JointSums {
     Mean force;
+    double torque = -1.0;
     double normal = -1.0, penetration = 0.0, eccentricity = -1.0, contact_time = 0.0, last_contact = 0.0;
     double loss = 0.0, loss_start = 0.0;
     long contacts = 0;
     bool any = false;
+  };
+  struct ForceSums {
+    int column = 0;  ///< first of its wrench
+    double force = -1.0, torque = -1.0, work = 0.0, work_start = 0.0;
   };
   struct DriverSums {
     Mean effort;
@@ -68,6 +80,7 @@ class Statistics {
   double last_time_ = 0.0, duration_ = 0.0;
   bool seen_ = false;
   std::vector<JointSums> joints_;
+  std::vector<ForceSums> forces_;
   std::vector<DriverSums> drivers_;
   std::vector<PathSums> paths_;
   std::vector<double> body_speed_;

@@ -2,6 +2,7 @@
 import csv
 import hashlib
 import json
+import math
 import os
 import pty
 import resource
@@ -13,7 +14,7 @@ import unittest
 from program import PROGRAM, ProgramTest, mechanism
 
 SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "residuals",
-           "bodies", "joints", "drivers", "paths", "energy", "advice", "verify", "agree_until", "trust",
+           "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until", "trust",
            "performance", "files", "warnings"]
 FILES = ["events.csv", "model.yaml", "results.csv", "run.log", "summary.json"]
 EVENTS = "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps"
@@ -127,8 +128,109 @@ class Run(ProgramTest):
         for head in ("joint max |F| contacts in contact max delta", "driver max |torque| rms",
                      "path max error rms max angle rms"):
             self.assertIn(head, heads)
-        self.assertRegex(lines[-2], r"^  energy residual \S+ J   position residual \S+ m$")
+        self.assertRegex(lines[-3], r"^  energy residual \S+ J   position residual \S+ m$")
         self.assertEqual("  results in results/3-rrr", lines[-1])
+
+    def steps_said(self, *options):
+        """What stands between the parentheses of the first line, and the shortest and longest step of summary.json."""
+        out, _ = self.freeplay("run", self.pendulum(), *options)
+        time = self.summary("results", "p")["time"]
+        return out[out.index("(") + 1:out.index(")")], time["smallest_step"], time["largest_step"]
+
+    def test_the_step_that_is_printed_is_the_one_that_was_taken(self):
+        self.assertEqual(("bathe, 0.001 s", 1e-3, 1e-3), self.steps_said())
+        self.assertEqual(("bathe, 0.01 s: the step of 0.02 s is longer than the output interval", 0.01, 0.01),
+                         self.steps_said("--step", "20 ms"))
+        self.assertEqual(("bathe, 0.001 to 0.003 s", 1e-3, 3e-3), self.steps_said("--step", "3 ms"))
+        # The end of the run is no multiple of the interval.
+        self.assertEqual(("bathe, 0.01 s: the step of 0.02 s is longer than the output interval", 5e-3, 0.01),
+                         self.steps_said("--step", "20 ms", "--end", "0.085 s"))
+        said, smallest, largest = self.steps_said("--integrator", "dopri5", "--step", "1 ms")
+        self.assertEqual("dopri5, tolerance 1e-06, steps of %.2g to %.2g s" % (smallest, largest), said)
+        self.assertEqual("dopri5, accuracy 1e-06 m", self.steps_said("--accuracy", "1 um")[0])
+
+    def test_entries_of_forces_are_in_table_and_summary(self):
+        self.write("f.yaml", """freeplay: 1
+bodies:
+  pushed: {mass: 1 kg, inertia: 1}
+  hung: {mass: 1 kg, inertia: 1}
+  rotor: {mass: 1 kg, inertia: 0.5}
+joints:
+  a: {type: prismatic, between: [ground, pushed]}
+  b: {type: prismatic, between: [ground, hung]}
+  c: {type: revolute, between: [ground, rotor]}
+forces:
+  push: {type: force, at: pushed, value: [2 N, 0]}
+  spring: {type: spring-damper, between: [ground, hung], stiffness: 100 N/m}
+  turn: {type: torque, on: rotor, value: 3 N*m}
+initial: {joints: {b: 0.1 m}}
+simulation: {end: 1 s, accuracy: 1 nm}
+""")
+        out, _ = self.freeplay("run", "f.yaml")
+        forces = self.summary("results", "f")["forces"]
+        self.assertEqual(["push", "spring", "turn"], list(forces))
+        # The mass goes F t^2 / 2m = 1 m, the rotor turns M t^2 / 2J = 3 rad; the spring swings with 10 rad/s.
+        expected = {"push": ("force", 2.0, 0.0, 2.0), "turn": ("torque", 0.0, 3.0, 9.0),
+                    "spring": ("spring-damper", 10.0, 0.0, 0.5 * math.sin(10.0) ** 2)}
+        for name, (kind, force, torque, work) in expected.items():
+            self.assertEqual(kind, forces[name]["type"])
+            for key, value in (("max_force", force), ("max_torque", torque), ("work", work)):
+                self.assertAlmostEqual(value, forces[name][key], delta=1e-6, msg=name + " " + key)
+        rows = [" ".join(line.split()) for line in out.splitlines()]
+        at = rows.index("force max |F| max |torque| work")
+        self.assertEqual(["push 2 N - 2 J", "spring 10 N - 0.148 J", "turn - 3 N*m 9 J"], rows[at + 1:at + 4])
+
+    def test_work_of_forces_counts_from_discard_on(self):
+        self.write("f.yaml", """freeplay: 1
+bodies: {pushed: {mass: 1 kg, inertia: 1}}
+joints: {a: {type: prismatic, between: [ground, pushed]}}
+forces: {push: {type: force, at: pushed, value: ["2*t", 0]}}
+simulation: {end: 1 s, step: 1 ms, output: {discard: 0.5 s}}
+""")
+        self.freeplay("run", "f.yaml")
+        # F = 2 t, v = t^2: the integral of 2 t^3 from 0.5 on.
+        self.assertAlmostEqual(0.5 * (1 - 0.5 ** 4), self.summary("results", "f")["forces"]["push"]["work"], delta=1e-6)
+
+    def test_a_gear_says_its_torque_and_what_it_leaves_out(self):
+        self.write("g.yaml", """freeplay: 1
+bodies: {one: {mass: 1, inertia: 1}, two: {mass: 1, inertia: 1}}
+joints:
+  a: {type: revolute, between: [ground, one]}
+  b: {type: revolute, between: [ground, two]}
+  pair: {type: gear, of: [a, b], ratio: -2}
+drivers: {motor: {joint: a, kind: torque, value: 125 N*m}}
+simulation: {end: 10 ms, step: 1 ms}
+""")
+        out, _ = self.freeplay("run", "g.yaml")
+        # 125 N m turn (1 + 4) kg m^2; the second rotor gets twice that acceleration.
+        self.assertAlmostEqual(50.0, self.summary("results", "g")["joints"]["pair"]["max_torque"], delta=1e-9)
+        rows = [" ".join(line.split()) for line in out.splitlines()]
+        self.assertIn("pair - 50 N*m", rows)
+        self.assertIn("the forces of its teeth on the bearings are not modelled", out)
+        self.assertIn("gears 1 (the forces of their teeth on the bearings are not modelled)",
+                      [" ".join(line.split()) for line in self.freeplay("validate", "g.yaml")[0].splitlines()])
+        header = self.rows("results", "g", "results.csv")[0]
+        self.assertIn("joint.pair.torque", header)
+
+    def test_a_moment_that_a_joint_holds_is_in_the_table(self):
+        self.write("w.yaml", """freeplay: 1
+gravity: [0, -9.81]
+bodies: {beam: {mass: 2 kg, inertia: 1, com: [0.5, 0]}}
+joints: {wall: {type: fixed, between: [ground, beam]}}
+simulation: {end: 10 ms, step: 1 ms}
+""")
+        out, _ = self.freeplay("run", "w.yaml")
+        rows = [" ".join(line.split()) for line in out.splitlines()]
+        self.assertIn("joint max |F| contacts in contact max delta max |torque|", rows)
+        self.assertIn("wall 19.62 N - - - 9.81 N*m", rows)
+        self.assertAlmostEqual(9.81, self.summary("results", "w")["joints"]["wall"]["max_torque"], delta=1e-9)
+
+    def test_all_made_ideal_where_nothing_plays_is_said(self):
+        note = "freeplay: note: --ideal all: no joint of 'p.yaml' has clearance, nothing was made ideal\n"
+        for command in ("run", "validate", "show"):
+            self.assertEqual(note, self.freeplay(command, self.pendulum(), "--ideal", "all")[1])
+        self.assertEqual([], self.summary("results", "p-ideal")["settings"]["ideal"])
+        self.assertEqual("", self.freeplay("validate", mechanism("slider-crank"), "--ideal", "all")[1])
 
     def test_statistics_that_never_began_are_null(self):
         out, _ = self.freeplay("run", mechanism("3-rrr"), "--end", "1 ms")
