@@ -12,6 +12,7 @@ std::string read_input(const std::string& file_name, std::string& text) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file_name, ignored);
   if (!std::filesystem::exists(status)) return "there is no such file";
+  if (std::filesystem::is_directory(status)) return "it is a directory";
   if (!std::filesystem::is_regular_file(status)) return "it is not a regular file";
   std::ifstream stream(file_name, std::ios::binary);
   if (!stream) return "it cannot be opened";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t rows_shown = 10;  // without --verbose
+constexpr std::size_t rows_shown = 10;  // without --verbose and --channels
 
 struct CompareOptions {
   std::string a, b, tolerance, absolute, from, until;
@@ -37,6 +38,10 @@ ComparisonRules rules_of(const CompareOptions& options) {
   if (!options.absolute.empty()) rules.absolute = value_of("--absolute", options.absolute, false);
   if (!options.from.empty()) rules.from = value_of("--from", options.from, true);
   if (!options.until.empty()) rules.until = value_of("--until", options.until, true);
+  if (rules.from > rules.until) {
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("--from {} is behind --until {}", options.from, options.until));
+  }
   if (!options.channels.empty()) rules.channels = options.channels;
   return rules;
 }
@@ -48,6 +53,12 @@ std::string table_text(const Comparison& comparison, bool all) {
     const ChannelDifference& d = comparison.channels[i];
     text += fmt::format("{},{},{},{},{},{}\n", d.name, number_text(d.largest), number_text(d.relative),
                         number_text(d.rms), number_text(d.at_time), d.agrees ? "1" : "0");
+  }
+  if (shown < comparison.channels.size()) {
+    const auto rest = std::span(comparison.channels).subspan(shown);
+    const auto differ = std::ranges::count_if(rest, [](const ChannelDifference& d) { return !d.agrees; });
+    text += fmt::format("# {} more channels, {}; all with --verbose, some with --channels\n", rest.size(),
+                        differ == 0 ? "which agree" : fmt::format("of which {} differ", differ));
   }
   return text;
 }
@@ -75,15 +86,11 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
   if (common.json) {
     print_json(table_json(comparison));
   } else {
-    print(table_text(comparison, common.verbose));
+    print(table_text(comparison, common.verbose || !options.channels.empty()));
   }
   for (const std::string& text : comparison.missing) print_messages("freeplay: note: " + text + "\n", common.no_color);
   if (comparison.interpolated && !common.quiet) {
     print_messages(fmt::format("freeplay: note: times differ: {} is interpolated linearly\n", b.file), common.no_color);
-  }
-  const std::size_t left_out = comparison.channels.size() - std::min(comparison.channels.size(), rows_shown);
-  if (!common.json && !common.verbose && !common.quiet && left_out > 0) {
-    print_messages(fmt::format("freeplay: note: {} more channels with --verbose\n", left_out), common.no_color);
   }
   return comparison.agree() ? 0 : 7;
 }

@@ -204,7 +204,7 @@ Command add_convert_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "IN", options->in, "Model file");
   add_option(*app, "OUT", options->out, "File to write: .yaml, .yml or .urdf");
   add_flag(*app, "--force", options->force, "Overwrite");
-  add_model_options(*app, options->build);
+  add_model_options_without_ideal(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return convert(*options, common); }};
 }

@@ -42,7 +42,7 @@ class Doctor {
     examine_folder_of_results();
     add("ok", "URDF", "read by the program itself and judged by urdfdom");
     add("note", "HDF5", "not in this build: results are CSV");
-    add("note", "reference integrator", "not in this build");
+    examine_reference();
     return std::move(findings_);
   }
 
@@ -68,6 +68,14 @@ class Doctor {
     add(complete ? "ok" : "problem", "built-in types",
         fmt::format("{} joints, {} contact laws, {} friction laws, {} integrators", joints, contact, friction,
                     integrators));
+  }
+
+  void examine_reference() {
+    const char* const name = FREEPLAY_REFERENCE_INTEGRATOR;
+    if (registry_.find(ComponentKind::integrator, name) != nullptr) return add("ok", "reference integrator", name);
+    const char* const remedy = registry_.remedy(ComponentKind::integrator, name);
+    add("note", "reference integrator",
+        fmt::format("'{}' is not in this build{}{}", name, remedy ? ": " : "", remedy ? remedy : ""));
   }
 
   void examine_folders() {

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct InitOptions {
-  std::string name, kind = "model", type, from = "four-bar";
+  std::string name, kind = "model", type, from;
 };
 
 /// What was written, and the commands to type next.
@@ -168,7 +168,7 @@ int list_starters(const CommonOptions& common) {
   return 0;
 }
 
-int init(const InitOptions& options, const CommonOptions& common) {
+int init(InitOptions options, const CommonOptions& common) {
   require_word("kind", options.kind, {"model", "plugin"});
   const bool plugin = options.kind == "plugin";
   if (plugin && options.type.empty()) {
@@ -178,6 +178,14 @@ int init(const InitOptions& options, const CommonOptions& common) {
   if (!plugin && !options.type.empty()) {
     throw Error(Error::Category::usage, "unexpected-argument", "--type is for --kind plugin");
   }
+  if (plugin && !options.from.empty()) {
+    throw Error(Error::Category::usage, "unexpected-argument", "--from is for --kind model");
+  }
+  if (options.from == "list" && !options.name.empty()) {
+    throw Error(Error::Category::usage, "unexpected-argument",
+                fmt::format("--from list writes nothing, so '{}' is not needed", options.name));
+  }
+  if (options.from.empty()) options.from = "four-bar";
   if (plugin) {
     require_word("type", options.type, starter_types());
   } else if (options.from == "list") {

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "cli/failure.h"
 #include "cli/plugins.h"
+#include "cli/terminal.h"
 #include "io/channel_selection.h"
 #include "io/model_document.h"
 #include "io/yaml_document.h"
@@ -160,6 +161,11 @@ LoadedModel load(const Read& read, const BuildOptions& build, const CommonOption
   if (loaded.diagnostics.has_errors() || !loaded.model) {
     loaded.model.reset();
     if (loaded.exit_code == 0) loaded.exit_code = 3;
+  } else if (loaded.model->ideal.empty() && std::ranges::find(build.ideal, "all") != build.ideal.end() &&
+             !build.finer && !common.quiet) {
+    print_messages(fmt::format("freeplay: note: --ideal all: no joint of '{}' has clearance, nothing was made ideal\n",
+                               loaded.model->file),
+                   common.no_color);
   }
   return loaded;
 }

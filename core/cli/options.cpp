@@ -13,6 +13,7 @@ namespace freeplay {
 namespace {
 
 constexpr const char* common_group = "Options of every command";
+constexpr const char* hidden_group = "";
 constexpr const char* model_group = "Options of every command that reads a model";
 
 [[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
@@ -70,6 +71,10 @@ void add_flag(CLI::App& app, const std::string& name, bool& value, const std::st
   app.add_flag(name, value, help);
 }
 
+void add_later_flag(CLI::App& app, const std::string& name, bool& value) {
+  app.add_flag(name, value)->group(hidden_group);
+}
+
 void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_flag("-q,--quiet", options.quiet, "No progress, no text but the data asked for")->group(common_group);
   app.add_flag("-v,--verbose", options.verbose, "More on stderr")->group(common_group);
@@ -94,6 +99,11 @@ void add_model_options(CLI::App& app, ModelOptions& options) {
   repeatable(app, "--ideal", options.ideal, "Close the clearance of a joint: name, pattern with * or all; repeatable")
       ->type_name("JOINT")
       ->group(model_group);
+}
+
+void add_model_options_without_ideal(CLI::App& app, ModelOptions& options) {
+  add_model_options(app, options);
+  app.get_option("--ideal")->group(hidden_group);
 }
 
 BuildOptions build_options(const ModelOptions& options) {

@@ -38,6 +38,8 @@ struct Command {
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help);
 void add_common_options(CLI::App& app, CommonOptions& options);
 void add_model_options(CLI::App& app, ModelOptions& options);
+/// The same for a command that refuses --ideal.
+void add_model_options_without_ideal(CLI::App& app, ModelOptions& options);
 
 /// An option ("--end") or an argument ("MODEL"); `value_name` stands for its value in the help.
 void add_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
@@ -52,6 +54,8 @@ void add_repeatable(CLI::App& app, const std::string& name, std::vector<std::str
                     const std::string& value_name);
 /// An argument that takes all words.
 void add_arguments(CLI::App& app, const std::string& name, std::vector<std::string>& values, const std::string& help);
+/// A flag of a later release, which is refused and which the help does not show.
+void add_later_flag(CLI::App& app, const std::string& name, bool& value);
 void add_flag(CLI::App& app, const std::string& name, bool& value, const std::string& help);
 
 /// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".

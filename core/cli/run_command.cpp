@@ -41,12 +41,17 @@ struct RunOptions {
   bool force = false, dry_run = false, verify = false, profile = false, resume = false;
 };
 
-void refuse_later_options(const RunOptions& options) {
+void refuse_idle_options(const RunOptions& options) {
   if (options.resume) not_in_this_release("--resume");
+  if (options.dry_run && (options.verify || options.profile)) {
+    throw Error(
+        Error::Category::usage, "usage",
+        fmt::format("--dry-run runs nothing, so {} has nothing to tell", options.verify ? "--verify" : "--profile"));
+  }
   if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
   if (options.format.empty() || options.format == "csv") return;
   throw Error(Error::Category::usage, "bad-value",
-              fmt::format("bad value '{}' of --format: it must be csv, hdf5 or both", options.format));
+              fmt::format("bad value '{}' of --format: it must be csv", options.format));
 }
 
 BuildOptions build_options(const RunOptions& options) {
@@ -295,7 +300,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
 
 int run(const RunOptions& options, const CommonOptions& common) {
   if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
-  refuse_later_options(options);
+  refuse_idle_options(options);
   LoadedModel loaded = load_model(options.model, build_options(options), common);
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
@@ -325,8 +330,8 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
            "Tell where the time went: assembly, factorization, joints, events, output");
   add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");
   add_flag(*app, "--force", options->force, "Write into a directory that holds other files");
-  add_option(*app, "--format", options->format, "csv; hdf5 and both are not in this release", "FORMAT");
-  add_flag(*app, "--resume", options->resume, "Go on from a checkpoint (not in this release)");
+  add_option(*app, "--format", options->format, "Of the results: csv", "FORMAT");
+  add_later_flag(*app, "--resume", options->resume);
   add_flag(*app, "--dry-run", options->dry_run, "Load, assemble, print the facts, write nothing");
   add_model_options(*app, options->model_options);
   add_common_options(*app, common);

@@ -11,8 +11,8 @@ namespace freeplay {
 namespace {
 
 int schema(const std::string& of, const CommonOptions& common) {
-  require_word("schema", of, {"model", "summary", "sweep"});
   if (of == "sweep") not_in_this_release("the schema of sweep plans");
+  require_word("schema", of, {"model", "summary"});
   if (of == "summary") {
     print_json(summary_schema());
     return 0;
@@ -27,7 +27,7 @@ int schema(const std::string& of, const CommonOptions& common) {
 Command add_schema_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "schema", "Print the JSON Schema of the model file or of summary.json");
   const auto of = std::make_shared<std::string>("model");
-  add_option(*app, "KIND", *of, "model (the default), summary or sweep");
+  add_option(*app, "KIND", *of, "model (the default) or summary");
   add_common_options(*app, common);
   return {app, [of, &common] { return schema(*of, common); }};
 }

@@ -5,6 +5,7 @@
 #include "cli/failure.h"
 #include "cli/load_model.h"
 #include "cli/output_file.h"
+#include "cli/result_model.h"
 #include "cli/terminal.h"
 #include "io/model_json.h"
 #include "report/mechanism_drawing.h"
@@ -19,13 +20,24 @@ struct ShowOptions {
 };
 
 int show(ShowOptions options, const CommonOptions& common) {
-  if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "show needs a model file");
+  if (options.model.empty())
+    throw Error(Error::Category::usage, "missing-argument", "show needs a model file or a result directory");
   if (!options.format.empty()) require_word("format", options.format, {"text", "json", "dot", "svg"});
   if (options.format.empty()) options.format = common.json ? "json" : "text";
   if (common.json && options.format != "json") {
     throw Error(Error::Category::usage, "bad-value", "--json and --format " + options.format + " exclude each other");
   }
-  LoadedModel loaded = load_model(options.model, build_options(options.build), common);
+  BuildOptions build = build_options(options.build);
+  const std::string integrator = use_model_of_result(options.model, build);
+  LoadedModel loaded = load_model(options.model, build, common);
+  const auto integrator_of = [](const Model& model) -> std::string_view {
+    const Component* type = model.settings.integrator_parameters.component;
+    return type == nullptr ? "" : type->description.name;
+  };
+  if (loaded.model && !integrator.empty() && integrator != integrator_of(*loaded.model)) {
+    build.integrator = integrator;  // another than that of the file, with its default parameters
+    loaded = load_model(options.model, build, common);
+  }
   std::unique_ptr<AssembledModel> assembled;
   if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
   if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);
@@ -48,7 +60,7 @@ int show(ShowOptions options, const CommonOptions& common) {
 Command add_show_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "show", "Print or draw a model after everything in it is expanded");
   const auto options = std::make_shared<ShowOptions>();
-  add_option(*app, "MODEL", options->model, "Model file");
+  add_option(*app, "MODEL", options->model, "Model file, or result directory: the model as it ran");
   add_option(*app, "--format", options->format, "text (default), json, dot for Graphviz, svg: a drawing of the start",
              "FORMAT");
   add_file_option(*app, "--out", options->out, "Write into a file instead of stdout", "FILE");

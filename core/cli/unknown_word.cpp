@@ -38,6 +38,7 @@ std::vector<std::string> command_names(const CLI::App& program) {
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;  // hidden: of a later release
     for (const std::string& name : option->get_lnames()) names.push_back(name);
   }
   return names;

@@ -1,6 +1,7 @@
 #include "io/model_document.h"
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -88,7 +89,14 @@ std::optional<Document> parse_model(std::string text, const std::string& file_na
 std::optional<Document> read_model(const std::string& file_name, Diagnostics& diagnostics) {
   std::string text;
   if (const std::string why = read_input(file_name, text); !why.empty()) {
-    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why));
+    std::string hint;
+    for (const char* name : {"model.yaml", "model.urdf"}) {
+      const std::filesystem::path inside = std::filesystem::path(file_name) / name;
+      std::error_code ignored;
+      if (hint.empty() && std::filesystem::exists(inside, ignored)) hint = "its model is '" + inside.string() + "'";
+    }
+    diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why), {},
+                      hint);
     return std::nullopt;
   }
   return parse_model(std::move(text), file_name, diagnostics);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/input_text.h"
+#include "base/kept_input.h"
 #include "io/urdf_document.h"
 #include "model/map_reader.h"
 #include "model/name_rule.h"
@@ -66,7 +67,8 @@ class UrdfSection {
   bool read_file(const CheckedValue& file, const std::string& model_file) {
     const auto name = file.string();
     if (!name) return false;
-    path = (std::filesystem::path(model_file).parent_path() / *name).string();
+    const std::filesystem::path written = std::filesystem::path(model_file).parent_path() / *name;
+    path = kept_input(model_file, written.string(), written.filename().string());
     const std::string why = read_input(path, text);
     if (!why.empty()) file.fail("file-not-found", fmt::format("cannot read '{}': {}", path, why));
     if (text.size() > largest_input) file.fail("too-large", fmt::format("'{}' is larger than 16 MiB", path));

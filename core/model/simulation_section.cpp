@@ -190,7 +190,7 @@ class SimulationSection {
       return value.fail("wrong-type", "'" + value.path() + "' must be csv, not '" + value.node().text + "'", {},
                         "not in this release");
     }
-    value.word({"csv", "hdf5", "both"});
+    value.word({"csv"});
   }
 
   void read_stop(const CheckedValue& value) {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/input_text.h"
+#include "base/kept_input.h"
 #include "base/text.h"
 
 namespace freeplay {
@@ -268,7 +269,8 @@ class TableReader {
     const auto known = draft_.tables.find(path.string());
     if (known != draft_.tables.end()) return known->second.get();
     std::string text;
-    if (const std::string fault = read_input(path.string(), text); !fault.empty()) {
+    const std::string place = kept_input(draft_.model.file, path.string(), free_name(draft_.model.inputs, path));
+    if (const std::string fault = read_input(place, text); !fault.empty()) {
       file.fail("file-not-found", fmt::format("cannot read '{}': {}", path.string(), fault));
       return nullptr;
     }

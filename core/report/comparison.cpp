@@ -130,7 +130,8 @@ class Comparer {
     }
     const double allowed = rules_.absolute + rules_.relative * size;
     d.relative = d.largest == 0.0 ? 0.0 : d.largest / size;
-    d.rms = rows_.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(rows_.size()));
+    d.rms = std::sqrt(squares / static_cast<double>(rows_.size()));
+    if (rows_.empty()) d.largest = d.relative = d.at_time = std::numeric_limits<double>::quiet_NaN();
     d.agrees = d.largest <= allowed;
     result_.channels.push_back(d);
     weight_.push_back(std::isnan(d.largest) ? std::numeric_limits<double>::infinity()

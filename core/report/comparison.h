@@ -19,7 +19,7 @@ struct ComparisonRules {
 /// One channel of both results.
 struct ChannelDifference {
   std::string name;
-  double largest = 0.0;   ///< largest |a - b|, NaN where one has a number and the other has none
+  double largest = 0.0;   ///< largest |a - b|, NaN where one has a number and the other has none, or without rows
   double relative = 0.0;  ///< largest |a - b| over the largest |a|
   double rms = 0.0;       ///< of a - b over the rows
   double at_time = 0.0;   ///< of the largest [s]

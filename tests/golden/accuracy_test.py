@@ -102,8 +102,24 @@ class Compare(ProgramTest):
         self.assertEqual(6, len(rows))
         self.assertEqual({"channel", "max_abs", "max_rel", "rms", "at_time", "ok"}, set(rows[0]))
 
+    def test_channels_that_are_asked_for_are_all_shown_and_others_counted(self):
+        names = self.read("a", "results.csv").split("\n")[0].split(",")[1:]
+        self.assertGreater(len(names), 10)
+        everything, err = self.freeplay("compare", "a", "c", "--channels", "*")
+        self.assertEqual((len(names), ""), (len(everything.splitlines()) - 1, err))
+        self.assertEqual(everything, self.freeplay("compare", "a", "c", "--verbose")[0])
+        some, err = self.freeplay("compare", "a", "c")
+        left = "# %d more channels, which agree; all with --verbose, some with --channels" % (len(names) - 10)
+        self.assertEqual((everything.splitlines()[:11] + [left], ""), (some.splitlines(), err))
+        self.assertIn("of which 3 differ;", self.freeplay("compare", "a", "b", "--tolerance", "0", "--absolute", "0",
+                                                          code=7)[0])
+
     def test_window_and_mistakes(self):
         self.freeplay("compare", "a", "b", "--until", "0 s")
+        out, err = self.freeplay("compare", "a", "b", "--from", "5 s", "--channels", "body.*.x", code=7)
+        self.assertEqual("body.rod.x,,,,,0", out.splitlines()[1])
+        self.assertIn("no rows at common times", err)
+        self.freeplay("compare", "a", "b", "--from", "5 ms", "--until", "1 ms", code=2)
         self.freeplay("compare", "a", code=2)
         self.freeplay("compare", "a", "b", "--channels", "joint.nothing.*", code=2)
         self.freeplay("compare", "a", "b", "--tolerance", "-1", code=2)

@@ -24,6 +24,13 @@ class Doctor(ProgramTest):
         shown = len(self.freeplay("list", "joints")[0].splitlines()) - 1
         self.assertIn(f" {shown} joints,", self.freeplay("doctor")[0])
 
+    def test_the_reference_integrator_is_there_if_it_is_listed(self):
+        listed = "arkode" in [line.split()[0] for line in self.freeplay("list", "integrators")[0].splitlines()]
+        line = [line for line in self.freeplay("doctor")[0].splitlines() if "reference integrator" in line]
+        self.assertEqual(1, len(line))
+        self.assertEqual(listed, line[0].startswith("ok"))
+        self.assertEqual(not listed, "not in this build" in line[0])
+
     def test_a_plugin_that_is_refused_is_a_problem(self):
         self.write("libbroken.so", "no library")
         out, _ = self.freeplay("doctor", environment={"FREEPLAY_PLUGIN_PATH": self.folder}, code=1)

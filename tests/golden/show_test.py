@@ -24,6 +24,45 @@ class Show(ProgramTest):
         rod = json.loads(out)["bodies"]["rod"]
         self.assertEqual([0.25, 0], rod["com"])
 
+    def test_a_result_directory_is_its_model_as_it_ran(self):
+        crank = mechanism("slider-crank")
+        changes = ["--set", "c=0.2 mm", "--end", "1 ms", "--step", "2 us"]
+        self.freeplay("run", crank, *changes, "--integrator", "newmark", "--out", "r", "--quiet")
+        shown = json.loads(self.freeplay("show", "r", "--json")[0])
+        self.assertEqual((1e-3, 2e-6, "newmark"), (shown["simulation"]["end"], shown["simulation"]["step"],
+                                                    shown["simulation"]["integrator"]["type"]))
+        self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.2 mm")[0])["joints"],
+                         shown["joints"])
+        self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.1 mm")[0])["joints"],
+                         json.loads(self.freeplay("show", "r", "--json", "--set", "c=0.1 mm")[0])["joints"])
+        self.freeplay("run", crank, "--ideal", "all", "--end", "20 us", "--out", "i", "--quiet")
+        self.assertEqual(self.freeplay("show", crank, "--ideal", "all", "--format", "svg"),
+                         self.freeplay("show", "i", "--format", "svg"))
+
+    def test_a_result_directory_has_the_inputs_of_its_model(self):
+        os.makedirs(self.path("models", "data"))
+        self.write("models/data/push.csv", "t,force\n0,1\n1,2\n")
+        self.write("models/m.yaml", """freeplay: 1
+bodies: {b: {mass: 1, inertia: 1}}
+joints: {s: {type: prismatic, between: [ground, b]}}
+drivers: {m: {joint: s, kind: force, table: data/push.csv}}
+simulation: {end: 10 ms, step: 1 ms}
+""")
+        self.freeplay("run", "models/m.yaml", "--out", "r", "--quiet")
+        os.remove(self.path("models", "data", "push.csv"))
+        self.assertIn("push.csv", self.freeplay("show", "r")[0])
+        self.freeplay("run", "r/model.yaml", "--out", "again", "--quiet")
+        self.assertEqual(self.read("r", "results.csv"), self.read("again", "results.csv"))
+
+    def test_a_directory_that_is_no_result(self):
+        os.mkdir(self.path("empty"))
+        _, err = self.freeplay("show", "empty", code=3)
+        self.assertIn("'empty' is a directory without a result", err)
+        self.freeplay("run", mechanism("pendulum"), "--end", "1 ms", "--out", "r", "--quiet")
+        _, err = self.freeplay("validate", "r", code=3)
+        self.assertIn("r: error: cannot read 'r': it is a directory [file-not-found]", err)
+        self.assertIn("its model is 'r/model.yaml'", err)
+
     def test_text_has_units(self):
         out, err = self.freeplay("show", mechanism("four-bar"))
         self.assertIn("  crank: mass 0.3 kg  inertia 0.001 kg*m^2  com (0.05, 0) m\n    frame tip  (0.1, 0) m\n", out)

@@ -7,6 +7,8 @@ import unittest
 
 from program import PROGRAM, ROOT, ProgramTest, mechanism
 
+COMMANDS = ["run", "validate", "analyze", "compare", "show", "convert", "doctor", "list", "describe", "schema", "init",
+            "check-plugin"]
 LATER_COMMANDS = ["sweep", "report", "export"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
@@ -73,6 +75,24 @@ class Words(ProgramTest):
         for option in (["--resume"], ["--format", "hdf5"], ["--format", "both"]):
             _, err = self.freeplay("run", model, *option, code=2)
             self.assertIn("not in this release", err)
+        self.assertEqual([], os.listdir(self.folder))
+
+    def test_help_and_schema_show_only_what_is_not_refused(self):
+        for command in [[], *[[name] for name in COMMANDS]]:
+            out, _ = self.freeplay(*command, "--help")
+            for word in ("hdf5", "--resume", "not in this release", "sweep"):
+                self.assertNotIn(word, out, command)
+        self.assertNotIn("--ideal", self.freeplay("convert", "--help")[0])
+        self.assertNotIn("hdf5", self.freeplay("schema")[0])
+        self.assertNotIn("resume", self.freeplay("run", "x.yaml", "--resum", code=2)[1])
+        self.assertIn("not in this release", self.freeplay("schema", "sweep", code=2)[1])
+
+    def test_options_without_effect_are_refused(self):
+        for arguments in (["run", mechanism("pendulum"), "--dry-run", "--verify"],
+                          ["run", mechanism("pendulum"), "--dry-run", "--profile"],
+                          ["init", "x", "--kind", "plugin", "--type", "joint", "--from", "four-bar"],
+                          ["init", "x", "--from", "list"]):
+            self.freeplay(*arguments, code=2)
         self.assertEqual([], os.listdir(self.folder))
 
     def test_bad_values(self):

@@ -1,0 +1,61 @@
+#include "cli/result_model.h"
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "io/json_text.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void no_result(const std::string& folder, const char* missing) {
+  throw Error(Error::Category::input, "file-not-found",
+              fmt::format("'{}' is a directory without a result: it has no {}", folder, missing), {},
+              "give a model file, or a directory that `freeplay run` has written");
+}
+
+std::optional<double> number(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+}
+
+}  // namespace
+
+std::string use_model_of_result(std::string& path, BuildOptions& build) {
+  std::error_code ignored;
+  const fs::path folder = path;
+  if (!fs::is_directory(folder, ignored)) return {};
+  std::ifstream file(folder / "summary.json");
+  const Json summary = Json::parse(file, nullptr, false);
+  if (!summary.is_object() || !summary.contains("settings")) no_result(path, "summary.json of a run");
+  const fs::path yaml = folder / "model.yaml", urdf = folder / "model.urdf";
+  if (!fs::exists(yaml, ignored) && !fs::exists(urdf, ignored)) no_result(path, "model.yaml or model.urdf");
+  path = (fs::exists(yaml, ignored) ? yaml : urdf).string();
+  const Json& settings = summary["settings"];
+  const Json set = settings.value("set", Json::object()), ideal = settings.value("ideal", Json::array());
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const auto& [name, text] : set.items()) {
+    if (text.is_string()) all.emplace_back(name, text.get<std::string>());
+  }
+  all.insert(all.end(), build.set.begin(), build.set.end());
+  build.set = std::move(all);
+  for (const Json& name : ideal) {
+    if (name.is_string()) build.ideal.push_back(name.get<std::string>());
+  }
+  const Json step = settings.value("step", Json::object());
+  build.end = number(settings, "end");
+  build.accuracy = number(step, "accuracy");
+  if (!build.accuracy) build.step = number(step, "size");
+  const Json integrator = settings.value("integrator", Json::object());
+  const auto type = integrator.find("type");
+  return type != integrator.end() && type->is_string() ? type->get<std::string>() : std::string();
+}
+
+}  // namespace freeplay

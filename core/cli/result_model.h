@@ -1,0 +1,15 @@
+// ResultModel: the model that a result directory was computed from.
+#pragma once
+
+#include <string>
+
+#include "model/build_options.h"
+
+namespace freeplay {
+
+/// Where `path` is a directory: makes it the model file in it, and adds to `build` the parameters and ideal joints of
+/// that run (summary.json), before those that are asked for, its end and its step or accuracy. Returns the name of its
+/// integrator; empty for a file. Throws Error{input} "file-not-found" for a directory that holds no result.
+std::string use_model_of_result(std::string& path, BuildOptions& build);
+
+}  // namespace freeplay
