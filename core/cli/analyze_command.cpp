@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -19,6 +17,7 @@
 #include "cli/failure.h"
 #include "cli/load_model.h"
 #include "cli/output_file.h"
+#include "cli/processors.h"
 #include "cli/terminal.h"
 #include "report/map_drawing.h"
 
@@ -26,14 +25,6 @@ namespace freeplay {
 namespace {
 
 constexpr long most_points = 1'000'000;
-
-int thread_count() {
-  if (const char* text = std::getenv("FREEPLAY_THREADS")) {
-    const int count = std::atoi(text);
-    if (count > 0) return std::min(count, 256);
-  }
-  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
 
 /// One analysis of a model that was read.
 class AnalyzeJob {
@@ -92,8 +83,8 @@ class AnalyzeJob {
     if (!std::ranges::is_sorted(map.x) || !std::ranges::is_sorted(map.y)) {
       throw Error(Error::Category::usage, "bad-value", "--svg needs a grid whose x and y grow");
     }
-    map.determinant =
-        determinants(mechanism_, stations_, given_, thread_count(), watch_.begin("signs of the map", stations_.size()));
+    map.determinant = determinants(mechanism_, stations_, given_, processor_count(),
+                                   watch_.begin("signs of the map", stations_.size()));
     const auto& path = mechanism_.platform().path;
     for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
       const Settings& settings = model().settings;
@@ -288,7 +279,7 @@ class AnalyzeJob {
                   "the grid of an analysis has at most 10^6 points",
                   from_options ? Location{} : Location{model().file, 0, 0});
     }
-    stations_ = on_grid(mechanism_, std::span(axes_).first(form().size()), given_, thread_count(),
+    stations_ = on_grid(mechanism_, std::span(axes_).first(form().size()), given_, processor_count(),
                         watch_.begin("poses found", static_cast<std::size_t>(points)));
     on_grid_ = true;
   }
@@ -351,7 +342,7 @@ class AnalyzeJob {
   }
 
   AnalysisTable rows() {
-    const int threads = thread_count();
+    const int threads = processor_count();
     const Tick tick = watch_.begin("poses analysed", stations_.size());
     if (wants("ik")) return ik_rows(mechanism_, stations_, branch_of_, tick);
     if (wants("workspace")) return workspace(threads, tick);

@@ -12,8 +12,10 @@
 #include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/load_model.h"
+#include "cli/processors.h"
 #include "cli/profile_table.h"
 #include "cli/progress_line.h"
+#include "cli/repeat_runs.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
 #include "cli/verify_table.h"
@@ -36,17 +38,17 @@ namespace {
 constexpr double least_agreement = 1e-6;  // of positions, for --verify [m]
 
 struct RunOptions {
-  std::string model, end, step, accuracy, integrator, out, format;
+  std::string model, end, step, accuracy, integrator, out, format, repeat, seed;
   ModelOptions model_options;
   bool force = false, dry_run = false, verify = false, profile = false, resume = false;
 };
 
 void refuse_idle_options(const RunOptions& options) {
   if (options.resume) not_in_this_release("--resume");
-  if (options.dry_run && (options.verify || options.profile)) {
-    throw Error(
-        Error::Category::usage, "usage",
-        fmt::format("--dry-run runs nothing, so {} has nothing to tell", options.verify ? "--verify" : "--profile"));
+  if (options.dry_run && (options.verify || options.profile || !options.repeat.empty())) {
+    const char* idle = options.verify ? "--verify" : options.profile ? "--profile" : "--repeat";
+    throw Error(Error::Category::usage, "usage",
+                fmt::format("--dry-run runs nothing, so {} has nothing to tell", idle));
   }
   if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
   if (options.format.empty() || options.format == "csv") return;
@@ -132,11 +134,12 @@ class Recording {
 class RunJob {
  public:
   RunJob(const LoadedModel& loaded, AssembledModel& assembled, std::filesystem::path path, const RunOptions& options,
-         const CommonOptions& common)
+         const CommonOptions& common, RepeatRuns* repeats)
       : loaded_(loaded),
         assembled_(assembled),
         options_(options),
         common_(common),
+        repeats_(repeats),
         path_(std::move(path)),
         channels_(*loaded.model),
         recording_(path_, options.force, *loaded.model, channels_),
@@ -253,7 +256,8 @@ class RunJob {
     }
     record.trust.add(outcome.doubts);
     judge(record, record.trust);
-    const Json json = summary(record);
+    Json json = summary(record);
+    const int exit_code = repeats_ ? add_repeats(record, json) : outcome.exit_code;
     recording_.seal(json);
     if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
       print_messages(fmt::format("freeplay: error: {}\n", outcome.reason), common_.no_color);
@@ -268,13 +272,29 @@ class RunJob {
       const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
       common_.json ? print_messages(table, common_.no_color) : print(table);
     }
-    return outcome.exit_code;
+    return exit_code;
+  }
+
+  /// Waits for the other runs of a repeated one. Returns the exit code of all together.
+  int add_repeats(RunRecord& record, Json& json) {
+    const Outcome& outcome = record.outcome;
+    ProgressLine progress(0.0, 1.0, stderr_is_terminal() && !common_.quiet);
+    record.repeat = repeats_->finish(json, outcome, [&](std::size_t ended) {
+      progress.update("runs", static_cast<long>(ended), static_cast<long>(repeats_->runs()));
+    });
+    json["repeat"] = record.repeat;
+    if (outcome.exit_code != 0) return outcome.exit_code;
+    const Json& failed = record.repeat["failed"];
+    const bool all = record.repeat["completed"].get<std::size_t>() + failed.size() == repeats_->runs();
+    if (!all) return 130;
+    return failed.empty() ? 0 : failed[0]["exit_code"].get<int>();
   }
 
   const LoadedModel& loaded_;
   AssembledModel& assembled_;
   const RunOptions& options_;
   const CommonOptions& common_;
+  RepeatRuns* repeats_;  // null: the run is not repeated
   std::filesystem::path path_;
   Channels channels_;
   Recording recording_;
@@ -301,6 +321,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
 int run(const RunOptions& options, const CommonOptions& common) {
   if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
   refuse_idle_options(options);
+  const RepeatPlan plan = repeat_plan(options.repeat, options.seed);
   LoadedModel loaded = load_model(options.model, build_options(options), common);
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
@@ -312,7 +333,8 @@ int run(const RunOptions& options, const CommonOptions& common) {
   require_sound_integrator(assembled->system);
   loaded.document.reset();  // nothing asks for it any more, and that of a large model is large
   if (options.dry_run) return dry_run(loaded, *assembled, common);
-  return RunJob(loaded, *assembled, path, options, common).execute();
+  const auto repeats = plan.runs > 0 ? std::make_unique<RepeatRuns>(*loaded.model, plan, processor_count()) : nullptr;
+  return RunJob(loaded, *assembled, path, options, common, repeats.get()).execute();
 }
 
 }  // namespace
@@ -326,6 +348,9 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um", "L");
   add_option(*app, "--integrator", options->integrator, "Integrator, with its default parameters", "NAME");
   add_flag(*app, "--verify", options->verify, "Run again finer, and tell the observed error of each channel");
+  add_option(*app, "--repeat", options->repeat, "Run N times, from starts moved in the play: median and range of peaks",
+             "N");
+  add_option(*app, "--seed", options->seed, "Of the starts of --repeat (1)", "S");
   add_flag(*app, "--profile", options->profile,
            "Tell where the time went: assembly, factorization, joints, events, output");
   add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/text_table.h"
+#include "report/figure_text.h"
 
 namespace freeplay {
 namespace {
@@ -19,15 +20,33 @@ std::string quantity(double value, const char* unit, int digits = 4) {
   return std::isfinite(value) ? fmt::format("{:.{}g} {}", value, digits, unit) : "-";
 }
 
-/// With the prefix that leaves one to three digits before the point.
-std::string prefixed(double value, const char* unit) {
-  if (!std::isfinite(value)) return "-";
-  constexpr std::pair<double, const char*> prefixes[] = {{1.0, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
-  for (const auto& [factor, prefix] : prefixes) {
-    if (std::abs(value) >= factor) return fmt::format("{:.4g} {}{}", value / factor, prefix, unit);
+/// A figure of the tables: that of the run, or what repeated runs found of it.
+struct Figures {
+  const RunRecord& record;
+
+  std::string operator()(const char* part, const std::string& name, const char* quantity, double value,
+                         const char* unit, FigureStyle style = {}) const {
+    if (record.repeat.is_null()) return figure_text(value, unit, 0.0, style);
+    const Json* const spread = spread_of(part, name, quantity);
+    return spread ? range_text(*spread, unit) : "-";
   }
-  return fmt::format("{:.4g} {}", value, unit);
-}
+  /// A part of the whole, in per cent.
+  std::string share(const char* part, const std::string& name, const char* quantity, double value) const {
+    const Json* const spread = spread_of(part, name, quantity);
+    if (!spread || !(*spread)["median"].is_number()) return fmt::format("{:.1f} %", 100.0 * value);
+    const auto percent = [&](const char* key) { return 100.0 * (*spread)[key].get<double>(); };
+    return fmt::format("{:.1f} % ({:.1f} to {:.1f})", percent("median"), percent("min"), percent("max"));
+  }
+
+ private:
+  const Json* spread_of(const char* part, const std::string& name, const char* quantity) const {
+    if (record.repeat.is_null()) return nullptr;
+    const auto element = record.repeat[part].find(name);
+    return element == record.repeat[part].end() || !element->contains(quantity) ? nullptr : &(*element)[quantity];
+  }
+};
+
+constexpr FigureStyle short_figure{.digits = 2}, prefixed{.prefixed = true};
 
 /// The steps that were taken, where these are not simply the one that was asked for.
 std::string fixed_steps(const RunRecord& record) {
@@ -83,16 +102,20 @@ void add_joints(const RunRecord& record, TextTable& table) {
   std::vector<std::string> head{heading(record, "joint"), "max |F|", "contacts", "in contact", "max delta"};
   if (moments) head.emplace_back("max |torque|");
   table.add_row(std::move(head));
-  const bool any = has_statistics(record.model.settings, record.outcome);
+  const bool any = has_statistics(record.model.settings, record.outcome), once = record.repeat.is_null();
+  const Figures figure{record};
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!is_listed(joints[i])) continue;
     const JointStatistics seen = seen_of(i);
     const bool touches = any && has_contact_statistics(record.channels.joints[i]);
-    std::vector<std::string> row{joints[i].name, quantity(seen.max_force, "N"),
-                                 touches ? std::to_string(seen.contacts) : "-",
-                                 touches ? fmt::format("{:.1f} %", 100.0 * seen.contact_fraction) : "-",
-                                 touches ? quantity(seen.max_penetration, "m", 2) : "-"};
-    if (moments) row.push_back(holds_moment(seen) ? quantity(seen.max_torque, "N*m") : "-");
+    const std::string& name = joints[i].name;
+    std::vector<std::string> row{name, figure("joints", name, "max_force", seen.max_force, "N")};
+    row.push_back(!touches ? "-" : once ? std::to_string(seen.contacts) : figure("joints", name, "contacts", 0.0, ""));
+    row.push_back(touches ? figure.share("joints", name, "contact_fraction", seen.contact_fraction) : "-");
+    row.push_back(touches ? figure("joints", name, "max_delta", seen.max_penetration, "m", short_figure) : "-");
+    if (moments) {
+      row.push_back(holds_moment(seen) ? figure("joints", name, "max_torque", seen.max_torque, "N*m") : "-");
+    }
     table.add_row(std::move(row));
   }
 }
@@ -100,22 +123,27 @@ void add_joints(const RunRecord& record, TextTable& table) {
 /// A gear between turns passes a torque, one to a slide a force.
 void add_gears(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "gear"), "max |force|", "max |torque|"});
+  const Figures figure{record};
   for (const Gear& gear : record.model.gears) {
     const JointElement& second = record.model.joints[static_cast<std::size_t>(gear.second)];
     const bool turns = second.ideal_layout.coordinate == Coordinate::angle;
     const JointStatistics seen = record.statistics.joint(gear.joint);
-    table.add_row({record.model.joints[static_cast<std::size_t>(gear.joint)].name,
-                   turns ? "-" : quantity(seen.max_force, "N"), turns ? quantity(seen.max_torque, "N*m") : "-"});
+    const std::string& name = record.model.joints[static_cast<std::size_t>(gear.joint)].name;
+    table.add_row({name, turns ? "-" : figure("joints", name, "max_force", seen.max_force, "N"),
+                   turns ? figure("joints", name, "max_torque", seen.max_torque, "N*m") : "-"});
   }
 }
 
 void add_forces(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "force"), "max |F|", "max |torque|", "work"});
+  const Figures figure{record};
   for (int f = 0; f < static_cast<int>(record.model.force_elements.size()); ++f) {
     const ForceStatistics seen = record.statistics.force(f);
     const bool pure_force = seen.max_torque == 0.0, pure_torque = seen.max_force == 0.0 && !pure_force;
-    table.add_row({force_words(record.model, f).name, pure_torque ? "-" : quantity(seen.max_force, "N"),
-                   pure_force ? "-" : quantity(seen.max_torque, "N*m"), quantity(seen.work, "J")});
+    const std::string name = force_words(record.model, f).name;
+    table.add_row({name, pure_torque ? "-" : figure("forces", name, "max_force", seen.max_force, "N"),
+                   pure_force ? "-" : figure("forces", name, "max_torque", seen.max_torque, "N*m"),
+                   figure("forces", name, "work", seen.work, "J")});
   }
 }
 
@@ -132,19 +160,25 @@ void add_drivers(const RunRecord& record, TextTable& table) {
                  : all       ? "max |force|"
                              : "max |effort|",
                  "rms"});
+  const Figures figure{record};
   for (std::size_t i = 0; i < drivers.size(); ++i) {
     const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
     const char* unit = is_slide(record.model, drivers[i]) ? "N" : "N*m";
-    table.add_row({drivers[i].name, quantity(seen.max_abs, unit), quantity(seen.rms, unit)});
+    table.add_row({drivers[i].name, figure("drivers", drivers[i].name, "max_abs", seen.max_abs, unit),
+                   figure("drivers", drivers[i].name, "rms", seen.rms, unit)});
   }
 }
 
 void add_paths(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "path"), "max error", "rms", "max angle", "rms"});
+  const Figures figure{record};
   for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
     const PathStatistics seen = record.statistics.path(static_cast<int>(i));
-    table.add_row({record.model.kinematics[i].name, prefixed(seen.max_position, "m"), prefixed(seen.rms_position, "m"),
-                   prefixed(seen.max_angle, "rad"), prefixed(seen.rms_angle, "rad")});
+    const std::string& name = record.model.kinematics[i].name;
+    table.add_row({name, figure("paths", name, "max_position", seen.max_position, "m", prefixed),
+                   figure("paths", name, "rms_position", seen.rms_position, "m", prefixed),
+                   figure("paths", name, "max_angle", seen.max_angle, "rad", prefixed),
+                   figure("paths", name, "rms_angle", seen.rms_angle, "rad", prefixed)});
   }
 }
 
@@ -159,6 +193,22 @@ std::string steps_per_impact(const RunRecord& record) {
   const bool adaptive = record.model.settings.adaptive;
   return text + (adaptive ? "a larger per_contact or a smaller tolerance would do\n"
                           : fmt::format("--step {:.2g}, or an accuracy in its place, would do\n", advice.step()));
+}
+
+/// From which starts the medians and ranges are, and which runs are not among them.
+std::string repeat_lines(const Json& repeat) {
+  if (repeat.is_null()) return {};
+  const auto runs = repeat["runs"].get<std::size_t>(), completed = repeat["completed"].get<std::size_t>();
+  std::string text = fmt::format(
+      "  median (range) of {} runs: the model's own start, the others moved in their play by up to {:g} % of it "
+      "(seed {})\n",
+      completed, 100.0 * repeat["moved"].get<double>(), repeat["seed"].get<std::uint64_t>());
+  for (const Json& failed : repeat["failed"]) {
+    text += fmt::format("  run {} of {} failed: {}\n", failed["run"].get<std::size_t>(), runs,
+                        failed["reason"].get<std::string>());
+  }
+  const std::size_t missing = runs - completed - repeat["failed"].size();
+  return missing == 0 ? text : text + fmt::format("  {} of {} runs were not finished\n", missing, runs);
 }
 
 /// "trust: good", or the level and the reasons.
@@ -182,6 +232,7 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.force_elements.empty()) add_forces(record, forces);
   text += joints.text("  ") + gears.text("  ") + drivers.text("  ") + forces.text("  ") + paths.text("  ");
   if (!record.model.gears.empty()) text += gear_sentence;
+  text += repeat_lines(record.repeat);
   const bool any = has_statistics(record.model.settings, record.outcome);
   text += steps_per_impact(record);
   text += fmt::format("  energy residual {}   position residual {}\n",

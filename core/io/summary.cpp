@@ -310,6 +310,7 @@ Json summary(const RunRecord& record) {
           {"verify", verify_part(record)},
           {"agree_until", json_number(record.agree_until)},
           {"trust", trust_part(record.trust)},
+          {"repeat", record.repeat},
           {"performance", performance_part(outcome)},
           {"files", record.files},
           {"warnings", record.warnings}};

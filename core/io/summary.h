@@ -29,6 +29,7 @@ struct RunRecord {
   std::vector<std::pair<std::string, double>> verify{};
   double agree_until = std::numeric_limits<double>::quiet_NaN();
   Verdict trust{};
+  Json repeat = nullptr;  ///< of RepeatSummary, of a repeated run
 };
 
 /// completed, stopped, failed or interrupted.

@@ -85,6 +85,24 @@ Json force_part() {
                  {"work", number_or_null()}});
 }
 
+/// Null in a run that was not repeated.
+Json repeat_part() {
+  const Json spread = record({{"median", number_or_null()},
+                              {"min", number_or_null()},
+                              {"max", number_or_null()},
+                              {"values", list_of(number_or_null())}});
+  const Json failed = record({{"run", integer()}, {"exit_code", integer()}, {"reason", text()}});
+  Json fields = {{"runs", integer()},
+                 {"seed", integer()},
+                 {"moved", number()},
+                 {"completed", integer()},
+                 {"failed", list_of(failed)}};
+  for (const char* part : {"joints", "drivers", "forces", "paths"}) fields[part] = by_name(by_name(spread));
+  Json part = record(std::move(fields));
+  part["type"] = {"object", "null"};
+  return part;
+}
+
 Json driver_part() {
   return record({{"kind", {{"enum", {"angle", "position", "velocity", "torque", "force"}}}},
                  {"max_abs", number_or_null()},
@@ -124,6 +142,7 @@ Json summary_schema() {
        {"verify", {{"type", {"object", "null"}}, {"additionalProperties", number_or_null()}}},
        {"agree_until", number_or_null()},
        {"trust", trust_part()},
+       {"repeat", repeat_part()},
        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
        {"files", list_of(text())},
        {"warnings", list_of(text())}});

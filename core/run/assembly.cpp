@@ -43,8 +43,9 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 // The closed mechanism at the start time and the rows that hold it there.
 class Assembler {
  public:
-  explicit Assembler(System& system)
+  Assembler(System& system, const OffsetChange& change)
       : system_(system),
+        change_(change),
         model_(system.model()),
         closed_(system.model(), Variant::closed),
         state_(closed_.layout(), 0),
@@ -181,6 +182,7 @@ class Assembler {
                     fmt::format("joint '{}' has no start: {}", joint.name, message.text), joint.location);
       }
       offset.rotation = nullptr;
+      if (change_) change_(j, offset);
       moved = moved || !reactions.empty();
       closed_.set_offset(j, offset);
     }
@@ -549,6 +551,7 @@ class Assembler {
   }
 
   System& system_;
+  const OffsetChange& change_;
   const Model& model_;
   System closed_;
   State state_;
@@ -581,6 +584,6 @@ ModelFacts count_facts(const Model& model) {
   return facts;
 }
 
-Start assemble(System& system) { return Assembler(system).run(); }
+Start assemble(System& system, const OffsetChange& change) { return Assembler(system, change).run(); }
 
 }  // namespace freeplay

@@ -1,6 +1,7 @@
 // Assembly: consistent start of a model: positions, velocities, accelerations, and what the constraints leave free.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "model/model.h"
@@ -30,9 +31,12 @@ struct Start {
   ModelFacts facts;
 };
 
+/// Moves the start of a joint with play, given its index and where its second marker would stand in the first.
+using OffsetChange = std::function<void(int joint, InitialOffset& offset)>;
+
 /// Finds the start of `model` as model-format section 9 describes and hands the drivers' start values to `system`.
 /// Throws Error{input}: "assembly-failed" (names the worst joint and its gap in m or rad), "singular-mass",
 /// "ik-unreachable" (names the leg and the time), "ik-underdetermined".
-Start assemble(System& system);
+Start assemble(System& system, const OffsetChange& change = {});
 
 }  // namespace freeplay

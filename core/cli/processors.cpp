@@ -1,0 +1,24 @@
+#include "cli/processors.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <thread>
+
+#include <sched.h>
+
+namespace freeplay {
+namespace {
+constexpr int most = 256;
+}  // namespace
+
+int processor_count() {
+  if (const char* text = std::getenv("FREEPLAY_THREADS")) {
+    const int count = std::atoi(text);
+    if (count > 0) return std::min(count, most);
+  }
+  cpu_set_t mine;
+  const int allowed = ::sched_getaffinity(0, sizeof mine, &mine) == 0 ? CPU_COUNT(&mine) : 0;
+  return std::clamp(allowed > 0 ? allowed : static_cast<int>(std::thread::hardware_concurrency()), 1, most);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,9 @@
+// Processors: how much a command may do at once.
+#pragma once
+
+namespace freeplay {
+
+/// FREEPLAY_THREADS, else the processors that this process may use; from 1 to 256.
+int processor_count();
+
+}  // namespace freeplay

@@ -1,0 +1,92 @@
+#include "run/play_start.h"
+
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/philox.h"
+#include "run/observer.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::uint64_t stream = 0x706c6179;  // "play": draws of other kinds have other keys
+constexpr int most_attempts = 12;
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Evenly distributed in the unit disc or ball.
+Vector3 unit_ball(const RandomWords& words, Space space) {
+  const double turn = 2.0 * M_PI * unit_number(words[1]);
+  if (space == Space::planar) {
+    const double radius = std::sqrt(unit_number(words[0]));
+    return {radius * std::cos(turn), radius * std::sin(turn), 0.0};
+  }
+  const double radius = std::cbrt(unit_number(words[0])), height = 2.0 * unit_number(words[2]) - 1.0;
+  const double flat = radius * std::sqrt(1.0 - height * height);
+  return {flat * std::cos(turn), flat * std::sin(turn), radius * height};
+}
+
+/// By joint, whether it begins in contact; one that tells no penetration does not.
+std::vector<bool> touching(const System& system, const Start& start) {
+  const Model& model = system.model();
+  const Channels channels(model);
+  std::vector<double> row(channels.all().size());
+  constexpr unsigned terms = term_position | term_velocity | term_acceleration | term_force | term_coordinate;
+  Evaluation e(system);
+  Fault fault;
+  std::vector<bool> out(model.joints.size(), false);
+  if (!system.evaluate(point(start.state), terms, e) ||
+      !Observer(system, channels).observe(point(start.state), e, start.state.lambda(), row, fault)) {
+    return out;  // the run will say why
+  }
+  for (std::size_t j = 0; j < out.size(); ++j) {
+    const int column = channels.joints[j].penetration;
+    out[j] = model.joints[j].has_play && column >= 0 && row[at(column)] > 0.0;
+  }
+  return out;
+}
+
+/// Along the surface of a contact.
+void slide(const Vector3& ball, double reach, double* e) {
+  const double length = std::hypot(e[0], e[1], e[2]);
+  const double along = (e[0] * ball[0] + e[1] * ball[1] + e[2] * ball[2]) / (length * length);
+  double moved[3];
+  for (std::size_t i = 0; i < 3; ++i) moved[i] = e[i] + reach * (ball[i] - along * e[i]);
+  const double scale = length / std::hypot(moved[0], moved[1], moved[2]);
+  for (std::size_t i = 0; i < 3; ++i) e[i] = scale * moved[i];
+}
+
+}  // namespace
+
+Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number) {
+  Start own = assemble(system);
+  if (number == 0) return own;
+  const Model& model = system.model();
+  const std::vector<bool> rests = touching(system, own);
+  std::vector<double> share(model.joints.size(), 1.0);  // of the way from the middle of the play
+  const auto move = [&](int joint, InitialOffset& offset) {
+    const RandomWords words = philox({number, static_cast<std::uint64_t>(joint), 0, 0}, {seed, stream});
+    const Vector3 ball = unit_ball(words, model.space);
+    double* const e = offset.position;
+    const double reach = moved_in_play * system.joint_layout(joint).clearance;
+    if (rests[at(joint)] && std::hypot(e[0], e[1], e[2]) > 0.0) return slide(ball, reach, e);
+    for (std::size_t i = 0; i < 3; ++i) e[i] = share[at(joint)] * ((1.0 - moved_in_play) * e[i] + reach * ball[i]);
+  };
+  std::string still;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    Start start = assemble(system, move);
+    const std::vector<bool> touches = touching(system, start);
+    still.clear();
+    for (std::size_t j = 0; j < touches.size(); ++j) {
+      if (!touches[j] || rests[j]) continue;
+      still = model.joints[j].name;
+      share[j] *= 0.5;
+    }
+    if (still.empty()) return start;
+  }
+  throw Error(Error::Category::numerical, "no-free-start",
+              fmt::format("joint '{}' is in contact wherever it is put in its play", still));
+}
+
+}  // namespace freeplay

@@ -1,0 +1,177 @@
+"""freeplay run --repeat: the same run from starts moved in the play."""
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ProgramTest, mechanism
+
+# A crank-rocker that drives a slider, loose in two pins: its peaks hang on chance.
+SIX_BAR = """freeplay: 1
+name: six-bar
+parameters: {speed: 600 rpm, c: 0.2 mm}
+bodies:
+  ground: {frames: {pivot: [100 mm, 0], guide: [100 mm, 110 mm]}}
+  crank: {mass: 1 kg, inertia: 5e-4, com: [20 mm, 0], frames: {tip: [40 mm, 0]}}
+  coupler: {mass: 1.2 kg, inertia: 6e-3, com: [60 mm, 0], frames: {tip: [120 mm, 0]}, pose: {angle: 30 deg}}
+  rocker:
+    {mass: 1.5 kg, inertia: 5e-3, com: [50 mm, 0], frames: {tip: [80 mm, 0], out: [110 mm, 0]}, pose: {angle: 100 deg}}
+  rod: {mass: 1 kg, inertia: 4e-3, com: [75 mm, 0], frames: {tip: [150 mm, 0]}}
+  slider: {mass: 2 kg, inertia: 1e-3}
+presets:
+  play:
+    bearing_radius: 10 mm
+    radial_clearance: $c
+    length: 15 mm
+    material: {E: 207 GPa, nu: 0.3}
+    contact: {law: lankarani-nikravesh, restitution: 0.9}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  rockerpin: {type: revolute, bearing: coupler/tip, journal: rocker/tip, clearance: {use: play}}
+  pivot: {type: revolute, between: [ground/pivot, rocker]}
+  rodpin: {type: revolute, between: [rocker/out, rod]}
+  wrist: {type: revolute, bearing: rod/tip, journal: slider, clearance: {use: play}}
+  guide: {type: prismatic, between: [ground/guide, slider]}
+drivers: {motor: {joint: main, kind: velocity, value: $speed}}
+initial: {joints: {main: 60 deg}}
+simulation: {end: 0.3 s, accuracy: 1 um, output: {interval: 0.5 ms, discard: 0.1 s}}
+"""
+
+# A pendulum that hangs in its bearing and never leaves it: regular, though loose.
+HANGING = """freeplay: 1
+name: hanging
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1 kg, inertia: 1/12, com: [0.5, 0]}}
+joints:
+  pin:
+    type: revolute
+    bearing: ground
+    journal: rod
+    clearance:
+      bearing_radius: 10 mm
+      radial_clearance: 0.1 mm
+      length: 15 mm
+      material: {E: 207 GPa, nu: 0.3}
+      contact: {law: hunt-crossley, restitution: 0.5}
+      initial: loaded
+initial: {joints: {pin: -80 deg}}
+simulation: {end: 2 s, accuracy: 1 um, output: {discard: 0.2 s}}
+"""
+
+
+class Repeat(ProgramTest):
+    def run_json(self, *arguments, **options):
+        return json.loads(self.freeplay("run", *arguments, "--json", **options)[0])
+
+    def test_peaks_are_told_as_median_and_range(self):
+        self.write("m.yaml", SIX_BAR)
+        out, _ = self.freeplay("run", "m.yaml", "--repeat", "8", "--seed", "3")
+        with open(self.path("results", "six-bar", "summary.json"), encoding="utf-8") as file:
+            repeat = json.load(file)["repeat"]
+        self.assertEqual((8, 8, 3, []), (repeat["runs"], repeat["completed"], repeat["seed"], repeat["failed"]))
+        force = repeat["joints"]["wrist"]["max_force"]
+        self.assertEqual(8, len(set(force["values"])))
+        values = sorted(force["values"])
+        self.assertEqual((values[0], values[-1]), (force["min"], force["max"]))
+        self.assertEqual(0.5 * (values[3] + values[4]), force["median"])
+        self.assertGreater(force["max"] / force["min"], 1.1)
+        cell = re.search(r"^ *wrist +(\S+) kN \((\S+) to (\S+) in 8 runs\)", out, re.M)
+        self.assertTrue(cell, out)
+        for text, name in zip(cell.groups(), ("median", "min", "max")):
+            self.assertAlmostEqual(float(text), force[name] / 1e3, delta=0.06)
+        self.assertIn("(seed 3)", out)
+
+    def test_the_first_run_is_that_without_repeat(self):
+        self.write("m.yaml", SIX_BAR)
+        self.freeplay("run", "m.yaml", "--out", "once")
+        repeated = self.run_json("m.yaml", "--repeat", "3", "--out", "repeated")
+        for name in ("results.csv", "events.csv"):
+            self.assertEqual(self.read("once", name), self.read("repeated", name))
+        for name, joint in repeated["joints"].items():
+            self.assertEqual(joint["max_force"], repeated["repeat"]["joints"][name]["max_force"]["values"][0])
+        once = json.loads(self.read("once", "summary.json"))
+        self.assertIsNone(once["repeat"])
+        for name in ("joints", "drivers", "counts", "residuals"):
+            self.assertEqual(once[name], repeated[name])
+
+    def test_results_do_not_depend_on_how_many_run_at_once(self):
+        self.write("m.yaml", SIX_BAR)
+        found = [self.run_json("m.yaml", "--repeat", "5", "--out", threads, environment={"FREEPLAY_THREADS": threads})
+                 for threads in ("1", "2", "7")]
+        self.assertEqual(found[0]["repeat"], found[1]["repeat"])
+        self.assertEqual(found[0]["repeat"], found[2]["repeat"])
+        more = self.run_json("m.yaml", "--repeat", "6", "--out", "more")["repeat"]["joints"]["wrist"]["max_force"]
+        self.assertEqual(found[0]["repeat"]["joints"]["wrist"]["max_force"]["values"], more["values"][:5])
+        other = self.run_json("m.yaml", "--repeat", "5", "--seed", "2", "--out", "other")["repeat"]
+        self.assertNotEqual(found[0]["repeat"]["joints"], other["joints"])
+
+    def test_a_regular_model_has_tight_ranges_and_all_digits(self):
+        self.write("m.yaml", HANGING)
+        out, _ = self.freeplay("run", "m.yaml", "--repeat", "4")
+        low, high = re.search(r"pin +\S+ N \((\S+) to (\S+) in 4 runs\)", out).groups()
+        self.assertLess(float(high) - float(low), 0.01 * float(high), out)
+
+    def test_what_cannot_be_repeated(self):
+        for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint of this model has play"),
+                                ((mechanism("slider-crank"), "--ideal", "all", "--repeat", "4"), "has play"),
+                                ((mechanism("slider-crank"), "--repeat", "1"), "--repeat"),
+                                ((mechanism("slider-crank"), "--repeat", "many"), "--repeat"),
+                                ((mechanism("slider-crank"), "--seed", "4"), "--repeat"),
+                                ((mechanism("slider-crank"), "--repeat", "4", "--seed", "-1"), "--seed")):
+            _, err = self.freeplay("run", *arguments, code=2)
+            self.assertIn(word, err)
+        self.assertFalse(os.path.exists(self.path("results")))
+
+    def start(self, *arguments):
+        return subprocess.Popen([PROGRAM, "run", *arguments], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, env={**os.environ, "FREEPLAY_THREADS": "3"})
+
+    @staticmethod
+    def children(process):
+        with open("/proc/%d/task/%d/children" % (process.pid, process.pid), encoding="ascii") as file:
+            return [int(word) for word in file.read().split()]
+
+    def wait_for_children(self, process):
+        deadline = time.monotonic() + 60
+        while len(self.children(process)) < 2 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        return self.children(process)
+
+    def test_a_run_that_is_lost_costs_no_other(self):
+        self.write("m.yaml", SIX_BAR)
+        process = self.start("m.yaml", "--repeat", "6", "--end", "1 s")
+        time.sleep(0.2)
+        os.kill(self.wait_for_children(process)[0], signal.SIGSEGV)
+        out, err = process.communicate(timeout=120)
+        self.assertEqual(5, process.returncode, out + err)
+        self.assertRegex(out, r"run \d of 6 failed: its process ended with SIGSEGV")
+        self.assertIn("in 5 runs", out)
+        with open(self.path("results", "six-bar", "summary.json"), encoding="utf-8") as file:
+            repeat = json.load(file)["repeat"]
+        self.assertEqual((5, 5), (repeat["completed"], repeat["failed"][0]["exit_code"]))
+        self.assertEqual(1, repeat["joints"]["wrist"]["max_force"]["values"].count(None))
+
+    def test_an_interrupt_tells_what_is_known(self):
+        self.write("m.yaml", SIX_BAR)
+        process = self.start("m.yaml", "--repeat", "10000")
+        workers = self.wait_for_children(process)
+        while not os.path.exists(self.path("results", "six-bar", "results.csv")):
+            time.sleep(0.01)
+        time.sleep(3.0)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(130, process.returncode, out + err)
+        with open(self.path("results", "six-bar", "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.assertGreater(summary["repeat"]["completed"], 1)
+        self.assertIn("runs were not finished", out)
+        for worker in workers:
+            self.assertFalse(os.path.exists("/proc/%d" % worker))
+
+
+if __name__ == "__main__":
+    unittest.main()
