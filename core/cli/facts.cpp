@@ -3,6 +3,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "system/system.h"
 
@@ -53,7 +54,14 @@ std::string facts_text(const Model& model, const ModelFacts& facts) {
   return text;
 }
 
-Json facts_json(const Model& model, const ModelFacts& facts) {
+std::string structure_text(const Structure& structure) {
+  const auto list = [](const char* name, const std::vector<std::string>& items) {
+    return items.empty() ? std::string() : fmt::format("  {:<18}  {}\n", name, fmt::join(items, ", "));
+  };
+  return list("left_free", structure.left_free) + list("undetermined", structure.undetermined);
+}
+
+Json facts_json(const Model& model, const ModelFacts& facts, const Structure& structure) {
   const ConstraintFacts& actual = facts.actual;
   return {{"space", space_word(model)},
           {"bodies", facts.bodies},
@@ -69,7 +77,9 @@ Json facts_json(const Model& model, const ModelFacts& facts) {
           {"dof", count(actual.dof)},
           {"dof_driven", count(actual.dof_driven)},
           {"driver_redundant", count(actual.driver_redundant)},
-          {"ideal", facts.ideal ? ideal_json(*facts.ideal) : Json(nullptr)}};
+          {"ideal", facts.ideal ? ideal_json(*facts.ideal) : Json(nullptr)},
+          {"left_free", structure.left_free},
+          {"undetermined", structure.undetermined}};
 }
 
 Json start_json(const Model& model, const Start& start) {

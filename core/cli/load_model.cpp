@@ -192,6 +192,13 @@ std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
     System system(*loaded.model);
     Start start = assemble(system);
     require_attainable_accuracy(system);
+    for (const StructureDoubt& doubt : start.structure.doubts) {
+      loaded.diagnostics.warning(doubt.location, doubt.length, doubt.id, doubt.message);
+    }
+    if (loaded.diagnostics.has_errors()) {  // with --strict
+      loaded.exit_code = 3;
+      return nullptr;
+    }
     // Not make_unique: clang 14 knows no aggregates in parentheses.
     return std::unique_ptr<AssembledModel>(new AssembledModel{std::move(system), std::move(start)});
   } catch (const Error& error) {

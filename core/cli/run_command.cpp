@@ -309,11 +309,12 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
   if (common.json) {
     print_json(Json{{"file", model.file},
                     {"ok", true},
-                    {"facts", facts_json(model, assembled.start.facts)},
+                    {"facts", facts_json(model, assembled.start.facts, assembled.start.structure)},
                     {"start", start_json(model, assembled.start)},
                     {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
   } else if (!common.quiet) {
-    print(printable(model.file) + ": ok\n" + facts_text(model, assembled.start.facts));
+    print(printable(model.file) + ": ok\n" + facts_text(model, assembled.start.facts) +
+          structure_text(assembled.start.structure));
   }
   return 0;
 }

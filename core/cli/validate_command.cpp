@@ -25,35 +25,38 @@ struct Verdict {
   std::string file;
   LoadedModel loaded;
   std::optional<ModelFacts> facts;
+  Structure structure{};
   Json start = nullptr;
 
   bool ok() const { return loaded.exit_code == 0; }
 };
 
 Verdict judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
-  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}};
+  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}, {}};
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);
   } else if (const auto assembled = assemble_model(verdict.loaded)) {
     verdict.facts = assembled->start.facts;
+    verdict.structure = assembled->start.structure;
     verdict.start = start_json(*verdict.loaded.model, assembled->start);
   }
   return verdict;
 }
 
 Json verdict_json(const Verdict& verdict, int max_errors) {
-  return {{"file", verdict.file},
-          {"ok", verdict.ok()},
-          {"facts", verdict.ok() ? facts_json(*verdict.loaded.model, *verdict.facts) : Json(nullptr)},
-          {"start", verdict.start},
-          {"messages", messages_json(verdict.loaded.diagnostics, max_errors)}};
+  return {
+      {"file", verdict.file},
+      {"ok", verdict.ok()},
+      {"facts", verdict.ok() ? facts_json(*verdict.loaded.model, *verdict.facts, verdict.structure) : Json(nullptr)},
+      {"start", verdict.start},
+      {"messages", messages_json(verdict.loaded.diagnostics, max_errors)}};
 }
 
 void print_verdict(const Verdict& verdict, const CommonOptions& common) {
   if (!common.quiet && !common.json) {
     print(printable(verdict.file) + (verdict.ok() ? ": ok\n" : ": not ok\n"));
-    if (verdict.ok()) print(facts_text(*verdict.loaded.model, *verdict.facts));
+    if (verdict.ok()) print(facts_text(*verdict.loaded.model, *verdict.facts) + structure_text(verdict.structure));
   }
   print_messages(verdict.loaded.diagnostics.format(common.max_errors), common.no_color);
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "model/doubtful_number.h"
 #include "model/rotation.h"
 
 namespace freeplay {
@@ -20,6 +21,7 @@ void read_pose(const CheckedValue& value, Body& body) {
     map.refuse("angle", "only in planar models; use 'rpy' or 'quaternion'");
   } else if (const auto angle = map.find("angle")) {
     body.angle = angle->quantity(dimension::angle);
+    if (body.angle) doubt_angle(*angle, *body.angle);
   }
   map.finish();
 }
@@ -34,8 +36,12 @@ void read_velocity(const CheckedValue& value, Body& body) {
   if (linear) body.velocity = linear->vector(dimension::velocity).value_or(Vector3{});
   if (angular && value.in_space()) {
     body.angular_velocity = angular->vector(dimension::angular_velocity).value_or(Vector3{});
+    for (std::size_t i = 0; i < 3 && angular->node().is_list(); ++i) {
+      if (i < angular->node().items.size()) doubt_angular_speed(angular->item(i), body.angular_velocity[i]);
+    }
   } else if (angular) {
     body.angular_velocity[2] = angular->quantity(dimension::angular_velocity).value_or(0.0);
+    doubt_angular_speed(*angular, body.angular_velocity[2]);
   }
   map.finish();
 }

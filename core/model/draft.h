@@ -58,7 +58,12 @@ struct Draft {
     Vector3 position{};
     double angle = 0.0;
     Rotation rotation = no_rotation;
+    // Where it is declared; null for `origin` and `com`.
+    const Node* key = nullptr;
+    const Node* value = nullptr;
+    const Reading* reading = nullptr;
   };
+  double length_scale = 0.0;                      ///< freeplay::length_scale(), from when all frames are known on [m]
   std::unordered_map<std::string, Frame> frames;  ///< by BODY/FRAME
   std::unordered_map<std::string, int> markers;   ///< index into model.markers by BODY/FRAME
 

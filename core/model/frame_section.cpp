@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "model/doubtful_number.h"
 #include "model/name_rule.h"
 #include "model/rotation.h"
 
@@ -14,6 +15,7 @@ std::optional<Vector3> read_polar(const CheckedValue& value) {
   const auto radius = (*items)[0].quantity(dimension::length);
   const auto angle = (*items)[1].quantity(dimension::angle);
   if (!radius || !angle) return std::nullopt;
+  doubt_angle((*items)[1], *angle);
   return Vector3{*radius * std::cos(*angle), *radius * std::sin(*angle), 0.0};
 }
 
@@ -40,6 +42,7 @@ Draft::Frame read_frame(const CheckedValue& entry, BodyId body) {
     map.conflict("position", "polar");
     if (polar) frame.position = read_polar(*polar).value_or(Vector3{});
     if (angle) frame.angle = angle->quantity(dimension::angle).value_or(0.0);
+    if (angle) doubt_angle(*angle, frame.angle);
   }
   map.finish();
   return frame;
@@ -51,7 +54,11 @@ void add_frame(Draft& draft, const CheckedValue& entry, BodyId body, const std::
     entry.fail_at_key("duplicate-name", "frame '" + full + "' exists already");
     return;
   }
-  draft.frames.emplace(full, read_frame(entry, body));
+  Draft::Frame frame = read_frame(entry, body);
+  frame.key = entry.key_node();
+  frame.value = &entry.node();
+  frame.reading = &entry.reading();
+  draft.frames.emplace(full, frame);
 }
 
 /// False after a message.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/doubtful_number.h"
+
 namespace freeplay {
 namespace {
 
@@ -43,6 +45,9 @@ void read_start_value(Draft& draft, const CheckedValue& value, StartKind what) {
                              "a driver moves joint '" + name + "'; it has no start value of its own");
   }
   if (!number) return;
+  if (coordinate == Coordinate::angle) {
+    what == StartKind::coordinate ? doubt_angle(value, *number) : doubt_angular_speed(value, *number);
+  }
   (what == StartKind::coordinate ? element.start_coordinate : element.start_speed) =
       StartValue{*number, value.key_location()};
 }

@@ -1,6 +1,9 @@
 #include "model/joint_section.h"
 
+#include <fmt/format.h>
+
 #include "component/declared.h"
+#include "model/doubtful_number.h"
 #include "model/gear.h"
 #include "model/name_rule.h"
 #include "model/parameter_check.h"
@@ -8,6 +11,10 @@
 
 namespace freeplay {
 namespace {
+
+// Of bearings: clearances are 0.1 to 1 % of the radius, worn ones 5 %; polished surfaces are rough by 10 nm.
+constexpr double widest_play = 0.5;      // in smaller radii
+constexpr double narrowest_play = 1e-8;  // [m]
 
 bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
 
@@ -180,6 +187,7 @@ class JointEntry {
     const CheckedParameters parameters =
         twins ? check_parameters(*component_, map_, draft_.registry) : ideal_parameters;
     if (twins) make(parameters, joint, layout);
+    if (parameters.block) doubt_parameters(*parameters.block, parameters.places, draft_.length_scale);
     if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
     const bool play = twins && !is_made_ideal();
     if (twins && !play) draft_.model.ideal.push_back(element().name);
@@ -189,7 +197,24 @@ class JointEntry {
     element().joint = play ? joint : ideal;
     element().layout = play ? layout : element().ideal_layout;
     element().has_play = play;
+    if (twins) doubt_play(layout);
     draft_.joint_usable[index_] = usable && known_;
+  }
+
+  void doubt_play(const JointLayout& layout) {
+    const double share = layout.clearance / layout.smaller_radius, scale = draft_.length_scale;
+    std::string against;
+    if (share > widest_play) {
+      against = fmt::format("{:.2g} times the smaller radius of its surfaces", share);
+    } else if (scale > 0.0 && layout.clearance > scale) {
+      against = fmt::format("more than the lengths of the mechanism, about {:.3g} m", scale);
+    } else if (layout.clearance > 0.0 && layout.clearance < narrowest_play) {
+      against = "less than the roughness of any surface";
+    }
+    if (against.empty()) return;
+    entry_.warn_at_key("doubtful-clearance", fmt::format("the clearance of joint '{}' is {:.4g} m, {}: check it, the "
+                                                         "radii and their units",
+                                                         element().name, layout.clearance, against));
   }
 
   bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {

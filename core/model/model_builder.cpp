@@ -8,6 +8,9 @@
 
 #include "model/analysis_section.h"
 #include "model/body_section.h"
+#include "model/doubtful_body.h"
+#include "model/doubtful_motion.h"
+#include "model/doubtful_number.h"
 #include "model/draft.h"
 #include "model/driver_section.h"
 #include "model/force_section.h"
@@ -20,6 +23,7 @@
 #include "model/simulation_section.h"
 #include "model/sweep_section.h"
 #include "model/template.h"
+#include "model/unused_frame.h"
 
 namespace freeplay {
 namespace {
@@ -64,6 +68,10 @@ class ModelBuilder {
     if (!diagnostics_.has_errors()) warn_ignored_elbows(draft_);
     warn_unused();
     if (diagnostics_.has_errors()) return nullptr;
+    doubt_bodies(draft_);
+    doubt_motions(draft_);
+    if (!document_.incomplete()) warn_unused_frames(draft_);
+    if (diagnostics_.has_errors()) return nullptr;  // with --strict
     keep_frames();
     return std::make_unique<Model>(std::move(draft_.model));
   }
@@ -114,6 +122,7 @@ class ModelBuilder {
     }
     if (const auto gravity = top.find("gravity")) {
       model.gravity = gravity->vector(dimension::acceleration).value_or(Vector3{});
+      doubt_gravity(*gravity, model.gravity);
     }
     return true;
   }
@@ -222,6 +231,7 @@ class ModelBuilder {
   static void add_elements(Draft& draft) {
     for (const Part& part : draft.parts) add_bodies(draft, part);
     for (const Part& part : draft.parts) add_frames(draft, part);
+    draft.length_scale = length_scale(draft);
     for (const Part& part : draft.parts) add_joints(draft, part);
     for (const Part& part : draft.parts) add_gears(draft, part);
     for (const Part& part : draft.parts) add_drivers(draft, part);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "model/doubtful_number.h"
+
 namespace freeplay {
 
 Rotation product(const Rotation& a, const Rotation& b) {
@@ -104,6 +106,7 @@ std::optional<Rotation> read_rotation(MapReader& map) {
   map.conflict("rpy", "quaternion");
   if (rpy) {
     const auto angles = rpy->quantities(3, dimension::angle);
+    for (std::size_t i = 0; angles && i < 3; ++i) doubt_angle(rpy->item(i), (*angles)[i]);
     if (angles) return from_roll_pitch_yaw((*angles)[0], (*angles)[1], (*angles)[2]);
     return std::nullopt;
   }

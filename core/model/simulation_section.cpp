@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/doubtful_number.h"
 #include "model/parameter_check.h"
 
 namespace freeplay {
@@ -126,7 +127,15 @@ class SimulationSection {
     in_order(largest_, settings_.largest_step >= settings_.step,
              fmt::format("'max' must not be below 'size', {} s", settings_.step));
     require_estimate();
+    doubt_written_step(span);
     if (draft_.options.finer) refine();
+  }
+
+  void doubt_written_step(double span) const {
+    if (!step_ || draft_.options.step || settings_.accuracy > 0.0) return;
+    const Node* size = step_->node().is_map() ? step_->node().find("size") : &step_->node();
+    if (size == nullptr || !size->is_scalar()) return;
+    doubt_step(CheckedValue(step_->reading(), *size, nullptr, "simulation.step"), settings_.step, span);
   }
 
   void refine() {
@@ -158,6 +167,8 @@ class SimulationSection {
     const auto format = map.find("format");
     const auto discard = map.find("discard");
     if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
+    const double span = settings_.end - settings_.start;
+    if (interval && settings_.interval > 0.5 * span) doubt_step(*interval, settings_.interval, span);
     if (channels) read_channels(*channels);
     if (frames) read_frames(*frames);
     if (format) read_format(*format);

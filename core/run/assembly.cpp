@@ -493,7 +493,7 @@ class Assembler {
     ConstraintFacts ideal;
     if (model_.clearance_joints() > 0) ideal = facts_of(closed_);
     evaluate(term_position | term_velocity);
-    Start start{State(system_.layout(), 0), count_facts(model_)};
+    Start start{State(system_.layout(), 0), count_facts(model_), {}};
     State& state = start.state;
     state.t() = state_.t();
     std::ranges::copy(state_.q(), state.q().begin());
@@ -517,6 +517,7 @@ class Assembler {
     }
     start.facts.actual = facts_of(system_);
     if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
+    start.structure = examine_structure(system_, released, closed_, e_);
     return start;
   }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "model/model.h"
+#include "run/structure.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -29,6 +30,7 @@ ModelFacts count_facts(const Model& model);
 struct Start {
   State state;  ///< accepted state at Settings::start, clearance joints released
   ModelFacts facts;
+  Structure structure;
 };
 
 /// Moves the start of a joint with play, given its index and where its second marker would stand in the first.

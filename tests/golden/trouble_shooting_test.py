@@ -97,6 +97,35 @@ CASES = {
     "integrator '...' gives no error estimate: it takes fixed steps only":
         (2, PENDULUM, RUN + ["--accuracy", "1 um", "--integrator", "my-type", "--plugin", "TEMPLATE"]),
     "--integrator ...: there is no such integrator": (2, PENDULUM, RUN + ["--integrator", "rk4"]),
+    # Doubted, and run all the same
+    "'...' is ... rad, ... turns: write '... deg' if degrees are meant, else '... rad' [doubtful-angle]":
+        (0, pendulum("0 deg", "60"), RUN),
+    "'...' is ... rad/s, that is ... rpm: write '... rpm' if revolutions per minute are meant, else '... rad/s' [doubtful-speed]":
+        (0, driven("value: t", "value: 3000*t"), RUN + ["--step", "10 us"]),
+    "'...' is ... m/s^2, ... times that of the earth: write the unit behind the number, as in '... mm/s^2' [doubtful-value]":
+        (0, pendulum("-9.81", "-9810"), RUN),
+    "'...' is ... s in a run of ... s: write '... ms' if milliseconds are meant, else '... s' [doubtful-time]":
+        (0, pendulum("step: 1 ms", "step: 0.01"), RUN),
+    "'...' is ... m from the origin of its body, but the lengths around it are about ... m: write the unit behind the numbers, "
+    "as in '... mm' [doubtful-length]":
+        (0, pendulum("joints:\n", "  arm: {mass: 1 kg, inertia: 1, frames: {hand: [500, 0]}}\njoints:\n"
+                                "  hinge: {type: revolute, between: [rod/tip, arm]}\n").replace("step: 1 ms", "step: 1 ms, output: {frames: [arm/hand]}"), RUN),
+    "the inertia of '...' is ... kg*m^2 for a mass of ... kg: its radius of gyration would be ... m, but ...: ... [doubtful-inertia]":
+        (0, pendulum("1 kg*m^2 / 12", "250"), RUN),
+    "the mass of '...' is ... kg at a radius of gyration of ... m: its density would be ... kg/m^3, ... [doubtful-mass]":
+        (0, pendulum("mass: 1 kg, inertia: 1 kg*m^2 / 12", "mass: 1e6, inertia: 1"), RUN),
+    "the centre of mass of '...' is ... m away from its frames, which extend over ... m, ... [doubtful-com]":
+        (0, pendulum("com: [0.5 m, 0]", "com: [3 m, 0]"), RUN),
+    "the clearance of joint '...' is ... m, ... [doubtful-clearance]": (0, journal("0.1 mm", "0.1 nm"), RUN),
+    "frame '...' is not used": (0, PENDULUM, RUN),
+    "no joint holds body '...' and no force acts on it: connect it, or delete it [not-connected]":
+        (0, pendulum("joints:\n", "  spare: {mass: 1 kg, inertia: 0.1}\njoints:\n"), RUN),
+    "joint '...' holds nothing that '...' does not hold between the same two bodies: ... [duplicate-joint]":
+        (0, pendulum("initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
+    "the play of joint '...' is bypassed by ... [play-bypassed]":
+        (0, journal("simulation:", "  pin: {type: revolute, between: [ground, ball]}\nsimulation:"), RUN),
+    "with its drivers at rest the mechanism still moves in ... way(s), ... [left-free]":
+        (0, driven("joints:", "  load: {mass: 1 kg, inertia: 0.1, com: [0.1, 0]}\njoints:\n  eye: {type: revolute, between: [rod/tip, load]}"), RUN),
     # While it runs
     "a step of ... s is needed, the smallest allowed is ... s; joint '...' asks for it":
         (4, journal("step: 10 us", "step: {adaptive: true, size: 1 ms, min: 1 ms}"), RUN),

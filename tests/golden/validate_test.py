@@ -47,7 +47,7 @@ class Validate(ProgramTest):
             verdict = json.loads(self.freeplay("validate", file, "--json")[0])
             self.assertEqual(["file", "ok", "facts", "start", "messages"], list(verdict))
             self.assertEqual((file, True, []), (verdict["file"], verdict["ok"], verdict["messages"]))
-            expected = dict(zip(NAMES, facts), ideal=dict(zip(IDEAL, ideal)) if ideal else None)
+            expected = dict(zip(NAMES, facts), ideal=dict(zip(IDEAL, ideal)) if ideal else None, left_free=[], undetermined=[])
             self.assertEqual(list(expected.items()), list(verdict["facts"].items()))
             self.assertEqual(facts[1], len(verdict["start"]))
 

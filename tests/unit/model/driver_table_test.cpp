@@ -11,7 +11,7 @@ namespace {
 /// A rod on a pin that a table drives; `table` stands on line 6 from column 41 on.
 Built driven(const std::string& table, const std::string& kind = "angle") {
   return build(
-      with_rod("joints: {A: {type: pin, between: [ground, rod]}}\n"
+      with_rod("joints: {A: {type: pin, between: [ground, rod/tip]}}\n"
                "drivers:\n"
                "  motor: {joint: A, kind: " +
                kind + ", table: " + table + "}\n"));

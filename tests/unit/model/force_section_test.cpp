@@ -39,7 +39,7 @@ TEST(ForceSection, WarnsOfWhatActsOnGround) {
                      "  t: {type: torque, on: ground, value: 1}\n"
                      "  g: {type: gravity, on: [ground, rod], value: [0, 1]}\n"));
   EXPECT_TRUE(built.model);
-  EXPECT_EQ(built.places, "5:24 unused 6:25 unused 7:27 unused ");
+  EXPECT_EQ(built.places, "3:39 unused 5:24 unused 6:25 unused 7:27 unused ");
 }
 
 TEST(ForceSection, AForceIsNoJointForOthers) {

@@ -273,15 +273,28 @@ TEST(ModelBuilder, TakesEmptySectionsAsNone) {
 
 TEST(ModelBuilder, IgnoresNotes) {
   EXPECT_EQ(
-      build(with_rod("x-data: [1, 2]\nsimulation: {x-why: {a: 1}, output: {x-b: 2}}\ndrivers: {x-m: 1}\n")).report, "");
+      build(
+          with_rod(
+              "x-data: [1, 2]\nsimulation: {x-why: {a: 1}, output: {x-b: 2, frames: [rod/tip]}}\ndrivers: {x-m: 1}\n"))
+          .report,
+      "");
 }
 
 TEST(ModelBuilder, WarnsOfWhatIsNotUsed) {
   const std::string text = with_rod("parameters: {a: 1, b: $a}\npresets: {p: {nonsense: 1 q}}\ntemplates: {t: {}}\n");
   const Built built = build(text);
   EXPECT_TRUE(built.model);
-  EXPECT_EQ(built.places, "4:20 unused 5:11 unused 6:13 unused ");
+  EXPECT_EQ(built.places, "3:39 unused 4:20 unused 5:11 unused 6:13 unused ");
   EXPECT_FALSE(build(text, {}, true).model);
+}
+
+TEST(ModelBuilder, CountsAFrameOfATemplateAsUsedWhereOneInstanceUsesIt) {
+  const std::string text =
+      "freeplay: 1\n"
+      "templates: {t: {bodies: {b: {mass: 1, inertia: 1, frames: {tip: [1, 0], end: [2, 0]}}}}}\n"
+      "instances: {i: {template: t, count: 2}}\n"
+      "joints: {J: {type: pin, between: [ground, i2.b/tip]}}\n";
+  EXPECT_EQ(build(text).places, "2:73 unused ");
 }
 
 TEST(NamedPlugins, AreToldWithTheirPlaces) {

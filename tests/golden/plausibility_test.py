@@ -1,0 +1,215 @@
+"""Models that can be read but are hardly meant: `validate` and `run` say so in one sentence, and stay silent otherwise."""
+import glob
+import json
+import os
+import unittest
+
+from program import ROOT, ProgramTest
+
+# A loose slider-crank, written in SI without units, with a spring and gravity.
+CRANK = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  crank: {mass: 0.3, inertia: 1e-4, com: [0.025, 0], frames: {tip: [0.05, 0]}}
+  coupler: {mass: 0.21, inertia: 2.5e-4, com: [0.06, 0], frames: {tip: [0.12, 0]}}
+  slider: {mass: 0.14, inertia: 1e-4}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  guide: {type: prismatic, between: [ground, slider]}
+  wrist:
+    type: revolute
+    bearing: coupler/tip
+    journal: slider
+    clearance:
+      bearing_radius: 0.01
+      radial_clearance: 0.0005
+      length: 0.015
+      material: {E: 207e9, nu: 0.3}
+      contact: {law: lankarani-nikravesh, restitution: 0.9}
+forces:
+  buffer: {type: spring-damper, between: [ground/wall, slider], stiffness: 200, free_length: 0.15}
+frames: {ground/wall: [0.3, 0]}
+drivers: {motor: {joint: main, kind: velocity, value: 100}}
+initial: {joints: {main: 1}}
+simulation: {end: 0.02, step: 1e-5}
+"""
+# A pendulum on a driven slide, in SI without units.
+CART = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  cart: {mass: 1, inertia: 0.01}
+  pole: {mass: 0.2, inertia: 0.002, com: [0.15, 0], frames: {tip: [0.3, 0]}}
+joints:
+  rail: {type: prismatic, between: [ground, cart]}
+  hinge: {type: revolute, between: [cart, pole]}
+drivers: {motor: {joint: rail, kind: position, value: 0.1*sin(3*t)}}
+initial: {joints: {hinge: -1.2}}
+simulation: {end: 1, step: 1e-3, output: {frames: [pole/tip]}}
+"""
+# A rod between two balls in space.
+ROD = """freeplay: 1
+space: spatial
+gravity: [0, 0, -9.81]
+bodies:
+  rod: {mass: 1, inertia: [1e-5, 0.0208, 0.0208], com: [0.25, 0, 0], frames: {end: [0.5, 0, 0]}}
+  bob: {mass: 1, inertia: [1e-3, 1e-3, 1e-3]}
+joints:
+  hung: {type: spherical, between: [ground, rod]}
+  held: {type: spherical, between: [rod/end, bob]}
+simulation: {end: 0.1, step: 1e-3}
+"""
+DRIVEN = "kind: velocity, value: 100}}\ninitial: {joints: {main: 1}}"
+PIN = "  crankpin: {type: revolute, between: [crank/tip, coupler]}\n"
+GUIDE = "  guide: {type: prismatic, between: [ground, slider]}\n"
+INERTIA, MASS, LENGTH, VALUE, ANGLE = ["doubtful-" + word for word in ("inertia", "mass", "length", "value", "angle")]
+
+# Model, text, what stands in its place, id of the warning, line of the new text where it stands, words of the message.
+MISTAKES = [
+    (CRANK, "2.5e-4", "250", INERTIA, "250", "radius of gyration"),
+    (CRANK, "inertia: 2.5e-4", "inertia: 250 kg*m^2", INERTIA, "250", "radius of gyration would be 34.5 m"),
+    (CRANK, "inertia: 2.5e-4", "inertia: 2.5e5", INERTIA, "2.5e5", "radius of gyration"),  # g mm^2
+    (CRANK, "inertia: 2.5e-4", "inertia: 2.5", INERTIA, "2.5,", "radius of gyration"),  # kg cm^2
+    (CRANK, "mass: 0.3", "mass: 300", MASS, "300", "density"),
+    (CRANK, "mass: 0.21", "mass: 210", MASS, "210", "density"),
+    (CRANK, "mass: 0.21", "mass: 210 kg", MASS, "210", "density"),
+    (CRANK, "[0.12, 0]", "[120, 0]", LENGTH, "[120", "120 mm"),
+    (CRANK, "[0.12, 0]", "[120 m, 0]", INERTIA, "2.5e-4", "its frames reach 119.9 m"),
+    (CRANK, "com: [0.06, 0], frames: {tip: [0.12, 0]}", "com: [60, 0], frames: {tip: [120, 0]}", LENGTH, "[60", "mm"),
+    (CRANK, "com: [0.06, 0]", "com: [60, 0]", LENGTH, "[60", "mm"),
+    (CRANK, "com: [0.06, 0]", "com: [0.2, 0]", "doubtful-com", "[0.2", "away from its frames"),
+    (CRANK, "[0.3, 0]", "[300, 0]", LENGTH, "[300", "mm"),
+    (CRANK, "bearing_radius: 0.01", "bearing_radius: 10", LENGTH, "10", "mm"),
+    (CRANK, "length: 0.015", "length: 15", LENGTH, "15", "mm"),
+    (CRANK, "radial_clearance: 0.0005", "radial_clearance: 0.5 nm", "doubtful-clearance", "wrist", "roughness"),
+    (CRANK, "E: 207e9", "E: 207", VALUE, "207", "moduli"),
+    (CRANK, "E: 207e9", "E: 207e3", VALUE, "207e3", "moduli"),
+    (CRANK, "E: 207e9", "E: 207e9 GPa", VALUE, "207e9", "moduli"),
+    (CRANK, "stiffness: 200", "stiffness: 200e12", VALUE, "200e12", "N/m"),
+    (CRANK, "free_length: 0.15", "free_length: 150", LENGTH, "150", "mm"),
+    (CRANK, "free_length: 0.15", "free_length: 0.15 mm", LENGTH, "buffer", "free length"),
+    (CRANK, "-9.81", "-9810", VALUE, "[0, -9810", "mm/s^2"),
+    (CRANK, "value: 100", "value: 3000", "doubtful-speed", "3000", "rpm"),
+    (CRANK, DRIVEN, "kind: angle, value: 3000*t}}", "doubtful-speed", "3000*t", "rpm"),
+    (CRANK, "{main: 1}", "{main: 60}", ANGLE, "60", "60 deg"),
+    (CART, "{hinge: -1.2}", "{hinge: -1.2}, speeds: {hinge: 1500}", "doubtful-speed", "1500", "rpm"),
+    (CRANK, "slider: {", "slider: {pose: {angle: 180}, ", ANGLE, "180", "deg"),
+    (CRANK, "{ground/wall: [0.3, 0]}", "{ground/wall: {position: [0.3, 0], angle: 90}}", ANGLE, "90", "deg"),
+    (CRANK, "tip: [0.05, 0]", "tip: {polar: [0.05, 45]}", ANGLE, "45", "deg"),
+    (CRANK, DRIVEN, "kind: angle, value: 60*sin(3*t)}}", ANGLE, "60", "deg"),
+    (CRANK, DRIVEN, "kind: angle, value: 60 + sin(3*t)}}", ANGLE, "60", "deg"),
+    (CRANK, DRIVEN, "kind: angle, value: '90*smooth(t, 0, 0.01)'}}", ANGLE, "'90", "deg"),
+    (CRANK, DRIVEN, "kind: angle, value: 60}}", ANGLE, "60", "deg"),
+    (CRANK, "end: 0.02, step: 1e-5", "end: 2, step: 1", "doubtful-time", "1}", "ms"),
+    (CRANK, "step: 1e-5", "step: 0.015 s", "doubtful-time", "100", "in one step"),
+    (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 0.02}", "doubtful-time", "0.02}}", "ms"),
+    (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [10, 1], [20, 2]]}}}", "doubtful-time", "{points", "time_unit: ms"),
+    (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [0.01, 90], [0.02, 0]]}}}", ANGLE, "{points", "unit: deg"),
+    (CRANK, PIN, PIN + PIN.replace("crankpin", "again"), "duplicate-joint", "again", "'crankpin'"),
+    (CRANK, GUIDE, GUIDE + GUIDE.replace("guide", "guide2"), "duplicate-joint", "guide2", "'guide'"),
+    (CRANK, GUIDE, GUIDE + "  pin: {type: revolute, between: [coupler/tip, slider]}\n", "play-bypassed", "wrist", "'pin'"),
+    (CRANK, "joints:\n", "  block: {mass: 0.1, inertia: 1e-5}\njoints:\n  glue: {type: fixed, between: [slider, block]}\n"
+                         "  pin: {type: revolute, between: [coupler/tip, block]}\n", "play-bypassed", "wrist", "nowhere"),
+    (CRANK, GUIDE, "", "left-free", "coupler", "guide"),
+    (CRANK, "slider: {mass", "extra: {mass: 1, inertia: 0.01}\n  slider: {mass", "not-connected", "extra", "'extra'"),
+    (CRANK, "frames: {tip: [0.05, 0]}", "frames: {tip: [0.05, 0], twin: [0.05, 0]}", "unused", "twin", "frame 'twin'"),
+    (CRANK, "ground/wall: [0.3, 0]", "ground/wall: [0.3, 0], ground/floor: [0, 0.1]", "unused", "ground/floor", "frame"),
+    (CART, "value: 0.1*sin(3*t)", "value: 100*sin(3*t)", LENGTH, "100", "mm"),
+    (CART, ", output: {frames: [pole/tip]}", "", "unused", "tip", "frame 'tip'"),
+    (CART, "initial: {joints: {hinge: -1.2}}\n", "", "left-free", "pole", "start"),
+    (CART, "gravity: [0, -9.81]\n", "", "left-free", "pole", "nothing acts"),
+    (CART, "hinge: -1.2", "hinge: -70", ANGLE, "-70", "deg"),
+    (ROD, "[1e-5, 0.0208, 0.0208]", "[0.0208, 1e-5, 0.0208]", INERTIA, "[0.0208", "Ixx, Iyy, Izz"),
+    (ROD, "bob: {", "bob: {pose: {rpy: [0, 0, 90]}, ", ANGLE, "90", "deg"),
+]
+
+# What looks like these but is meant: no warning at all.
+SOUND = [
+    (CRANK, "", ""),
+    (CART, "", ""),
+    (ROD, "", ""),
+    (CRANK, "value: 100", "value: 3000 rpm"),
+    (CRANK, "value: 100", "value: 1200 rad/s"),
+    (CRANK, DRIVEN, "kind: angle, value: 500*t}}"),
+    (CRANK, DRIVEN, "kind: angle, value: 60 deg*sin(3*t)}}"),
+    (CRANK, DRIVEN, "kind: angle, value: 60 rad + sin(3*t)}}"),
+    (CRANK, "{main: 1}", "{main: 60 rad}"),
+    (CRANK, "{main: 1}", "{main: 7*pi}"),
+    (CRANK, "{main: 1}", "{main: 2*pi}"),
+    (CRANK, "-9.81", "-9810 mm/s^2"),
+    (CRANK, "E: 207e9", "E: 50 kPa"),
+    (CRANK, "[0.3, 0]", "[9 m, 0]"),
+    (CRANK, "E: 207e9", "E: 1.5e6"),
+    (CRANK, "mass: 0.14, inertia: 1e-4", "mass: 8, inertia: 1e-3"),
+    (CRANK, "{main: 1}", "{main: $a}", "parameters: {a: 7*pi/6 + 4*pi/3}\n"),
+    (CRANK, "step: 1e-5", "step: 1e-4"),
+    (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [0.01, 50], [0.02, 100]]}}}"),
+    (CRANK, DRIVEN, "kind: angle, table: {unit: deg, points: [[0, 0], [0.01, 90], [0.02, 0]]}}}"),
+]
+
+
+def text_of(model, old, new, more=""):
+    assert old in model, old
+    return model.replace(old, new, 1) + more
+
+
+def models(*folders):
+    for folder in folders:
+        yield from sorted(glob.glob(os.path.join(ROOT, folder, "**", "*.yaml"), recursive=True))
+
+
+class Plausibility(ProgramTest):
+    def messages(self, text, *options, code=0):
+        self.write("m.yaml", text)
+        return json.loads(self.freeplay("validate", "m.yaml", "--json", *options, code=code)[0])["messages"]
+
+    def test_mistakes_that_can_be_read_are_doubted_where_they_stand(self):
+        for model, old, new, wanted, place, words in MISTAKES:
+            with self.subTest(new or "without " + old):
+                text = text_of(model, old, new)
+                found = [m for m in self.messages(text) if m["id"] == wanted]
+                self.assertTrue(found, self.messages(text))
+                one = next((m for m in found if words in m["message"]), None)
+                self.assertIsNotNone(one, found)
+                self.assertEqual("warning", one["severity"])
+                line = text.splitlines()[one["line"] - 1]
+                self.assertTrue(line[one["column"] - 1:].startswith(place), (line, one))
+
+    def test_a_rod_held_twice_at_one_frame_is_told_beside_the_gap(self):
+        found = self.messages(text_of(CRANK, "bearing: coupler/tip", "bearing: coupler"), code=3)
+        self.assertEqual(["unused", "assembly-failed"], [m["id"] for m in found])
+        self.assertIn("'crankpin' and 'wrist' both hold 'coupler/origin'", found[0]["message"])
+
+    def test_what_is_meant_is_not_doubted(self):
+        for model, old, new, *more in SOUND:
+            with self.subTest(new or model[:60]):
+                self.assertEqual([], self.messages(text_of(model, old, new, *more)))
+
+    def test_strict_makes_doubts_errors_before_and_behind_assembly(self):
+        for old, new, wanted in [("{main: 1}", "{main: 60}", "doubtful-angle"), (GUIDE, GUIDE + GUIDE.replace("guide", "two"), "duplicate-joint")]:
+            text = text_of(CRANK, old, new)
+            found = self.messages(text, "--strict", code=3)
+            self.assertEqual([("error", wanted)], [(m["severity"], m["id"]) for m in found])
+            self.freeplay("run", "m.yaml", "--strict", code=3)
+            _, err = self.freeplay("run", "m.yaml", "--dry-run")
+            self.assertIn("warning:", err)
+            self.assertIn("[%s]" % wanted, err)
+
+    def test_facts_name_what_is_free_and_what_is_not_determined(self):
+        self.write("m.yaml", CART)
+        out, _ = self.freeplay("validate", "m.yaml")
+        self.assertRegex(out, r"\n  left_free +pole\n")
+        self.write("m.yaml", text_of(CRANK, GUIDE, GUIDE + GUIDE.replace("guide", "two")))
+        facts = json.loads(self.freeplay("validate", "m.yaml", "--json")[0])["facts"]
+        self.assertEqual([["guide", "two"], []], [facts["undetermined"], facts["left_free"]])
+
+    def test_shipped_models_are_not_doubted(self):
+        files = [file for file in models("mechanisms") if not file.endswith("study.yaml")]
+        out, _ = self.freeplay("validate", *files, "--json")
+        for one in json.loads(out):
+            with self.subTest(one["file"]):
+                self.assertEqual([], [m for m in one["messages"] if m["id"] not in ("zero-inertia",)])
+
+
+if __name__ == "__main__":
+    unittest.main()
