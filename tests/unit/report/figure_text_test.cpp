@@ -23,7 +23,7 @@ TEST(FigureText, HasNoMoreDigitsThanTheNoiseLeaves) {
   EXPECT_EQ("12.9 +- 0.4 kN", figure_text(12934.0, "N", 390.0));
   EXPECT_EQ("50 +- 20 N", figure_text(51.13, "N", 17.0));
   EXPECT_EQ("51 +- 14 N", figure_text(51.13, "N", 14.0));
-  EXPECT_EQ("0.7 +- 0.2 um", figure_text(7.04e-7, "m", 2.1e-7, {.digits = 2}));
+  EXPECT_EQ("700 +- 200 nm", figure_text(7.04e-7, "m", 2.1e-7, {.digits = 2}));
   EXPECT_EQ("200 +- 200 N", figure_text(230.0, "N", 170.0));
 }
 
