@@ -318,6 +318,13 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
   return table;
 }
 
+/// What a gear passes where its second joint turns.
+std::span<const char* const> moments_of(const JointElement& joint, bool planar) {
+  static constexpr const char *in_plane[] = {"torque"}, *in_space[] = {"tx", "ty", "tz"};
+  if (joint.gear < 0) return {};
+  return planar ? std::span<const char* const>(in_plane) : in_space;
+}
+
 AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                                     double preload, const Tick& tick) {
   AnalysisTable table;
@@ -326,11 +333,13 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
     table.columns.push_back("driver." + input_name(mechanism, i) + (mechanism.is_angle(i) ? ".torque" : ".force"));
   }
   std::vector<std::size_t> shown;
+  const bool planar = mechanism.model().space == Space::planar;
   for (std::size_t j = 0; j < mechanism.model().joints.size(); ++j) {
     const JointElement& joint = mechanism.model().joints[j];
     if (joint.is_force) continue;
     shown.push_back(j);
     for (const char* word : mechanism.form().forces) table.columns.push_back("joint." + joint.name + "." + word);
+    for (const char* word : moments_of(joint, planar)) table.columns.push_back("joint." + joint.name + "." + word);
   }
   PostureSolver solver(mechanism);
   InverseDynamics dynamics(solver);
@@ -362,8 +371,11 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
     append(row, {station.time});
     append_moving_pose(row, station, solver, turns);
     append_all(row, efforts.input);
-    for (const std::size_t j : shown)
-      append_all(row, std::span(efforts.wrench[j]).first(mechanism.form().forces.size()));
+    for (const std::size_t j : shown) {
+      const std::span wrench(efforts.wrench[j]);
+      append_all(row, wrench.first(mechanism.form().forces.size()));
+      append_all(row, wrench.last(moments_of(mechanism.model().joints[j], planar).size()));
+    }
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -21,6 +21,11 @@ namespace fs = std::filesystem;
               "give a model file, or a directory that `freeplay run` has written");
 }
 
+std::string text(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
 std::optional<double> number(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
@@ -28,7 +33,7 @@ std::optional<double> number(const Json& object, const char* key) {
 
 }  // namespace
 
-std::string use_model_of_result(std::string& path, BuildOptions& build) {
+ResultWords use_model_of_result(std::string& path, BuildOptions& build) {
   std::error_code ignored;
   const fs::path folder = path;
   if (!fs::is_directory(folder, ignored)) return {};
@@ -41,8 +46,8 @@ std::string use_model_of_result(std::string& path, BuildOptions& build) {
   const Json& settings = summary["settings"];
   const Json set = settings.value("set", Json::object()), ideal = settings.value("ideal", Json::array());
   std::vector<std::pair<std::string, std::string>> all;
-  for (const auto& [name, text] : set.items()) {
-    if (text.is_string()) all.emplace_back(name, text.get<std::string>());
+  for (const auto& [name, value] : set.items()) {
+    if (value.is_string()) all.emplace_back(name, value.get<std::string>());
   }
   all.insert(all.end(), build.set.begin(), build.set.end());
   build.set = std::move(all);
@@ -53,9 +58,8 @@ std::string use_model_of_result(std::string& path, BuildOptions& build) {
   build.end = number(settings, "end");
   build.accuracy = number(step, "accuracy");
   if (!build.accuracy) build.step = number(step, "size");
-  const Json integrator = settings.value("integrator", Json::object());
-  const auto type = integrator.find("type");
-  return type != integrator.end() && type->is_string() ? type->get<std::string>() : std::string();
+  return {text(summary.value("model", Json::object()), "name"),
+          text(settings.value("integrator", Json::object()), "type")};
 }
 
 }  // namespace freeplay

@@ -7,9 +7,14 @@
 
 namespace freeplay {
 
+/// What a result says of its model beside the file.
+struct ResultWords {
+  std::string name, integrator;  ///< empty: it was no result
+};
+
 /// Where `path` is a directory: makes it the model file in it, and adds to `build` the parameters and ideal joints of
-/// that run (summary.json), before those that are asked for, its end and its step or accuracy. Returns the name of its
-/// integrator; empty for a file. Throws Error{input} "file-not-found" for a directory that holds no result.
-std::string use_model_of_result(std::string& path, BuildOptions& build);
+/// that run (summary.json), before those that are asked for, its end and its step or accuracy. Throws Error{input}
+/// "file-not-found" for a directory that holds no result.
+ResultWords use_model_of_result(std::string& path, BuildOptions& build);
 
 }  // namespace freeplay

@@ -68,8 +68,9 @@ std::string first_line(const RunRecord& record) {
                                                       record.outcome.smallest_step, record.outcome.largest_step)
                                         : fixed_steps(record);
   if (settings.accuracy > 0.0) steps = fmt::format("accuracy {:g} m", settings.accuracy);
-  return fmt::format("{}: {}, {:g} s in {} steps ({}, {}), {:.3g} s wall\n", record.model.name,
-                     status_word(record.outcome.status), record.outcome.time, record.outcome.steps,
+  const std::string from = settings.start == 0.0 ? "" : fmt::format("{:g} s to ", settings.start);
+  return fmt::format("{}: {}, {}{:g} s in {} steps ({}, {}), {:.3g} s wall\n", record.model.name,
+                     status_word(record.outcome.status), from, record.outcome.time, record.outcome.steps,
                      settings.integrator_parameters.component->description.name, steps, record.outcome.wall_seconds);
 }
 

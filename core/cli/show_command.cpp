@@ -28,16 +28,17 @@ int show(ShowOptions options, const CommonOptions& common) {
     throw Error(Error::Category::usage, "bad-value", "--json and --format " + options.format + " exclude each other");
   }
   BuildOptions build = build_options(options.build);
-  const std::string integrator = use_model_of_result(options.model, build);
+  const ResultWords result = use_model_of_result(options.model, build);
   LoadedModel loaded = load_model(options.model, build, common);
   const auto integrator_of = [](const Model& model) -> std::string_view {
     const Component* type = model.settings.integrator_parameters.component;
     return type == nullptr ? "" : type->description.name;
   };
-  if (loaded.model && !integrator.empty() && integrator != integrator_of(*loaded.model)) {
-    build.integrator = integrator;  // another than that of the file, with its default parameters
+  if (loaded.model && !result.integrator.empty() && result.integrator != integrator_of(*loaded.model)) {
+    build.integrator = result.integrator;  // another than that of the file, with its default parameters
     loaded = load_model(options.model, build, common);
   }
+  if (loaded.model && !result.name.empty()) loaded.model->name = result.name;
   std::unique_ptr<AssembledModel> assembled;
   if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
   if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);

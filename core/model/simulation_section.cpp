@@ -80,14 +80,14 @@ class SimulationSection {
     MapReader inner(*step_, "step");
     const auto size = inner.find("size");
     const auto adaptive = inner.find("adaptive");
-    const auto tolerance = inner.find("tolerance");
+    tolerance_ = inner.find("tolerance");
     smallest_ = inner.find("min");
     largest_ = inner.find("max");
     const auto per_contact = inner.find("per_contact");
     if (size) settings_.step = size->quantity(dimension::time, positive).value_or(settings_.step);
     if (adaptive) settings_.adaptive = adaptive->boolean().value_or(false);
-    if (tolerance) {
-      settings_.tolerance = tolerance->quantity(dimension::none, tolerances).value_or(settings_.tolerance);
+    if (tolerance_) {
+      settings_.tolerance = tolerance_->quantity(dimension::none, tolerances).value_or(settings_.tolerance);
     }
     if (smallest_) settings_.smallest_step = smallest_->quantity(dimension::time, positive).value_or(0.0);
     if (largest_) settings_.largest_step = largest_->quantity(dimension::time, positive).value_or(unbounded);
@@ -128,6 +128,7 @@ class SimulationSection {
              fmt::format("'max' must not be below 'size', {} s", settings_.step));
     require_estimate();
     doubt_written_step(span);
+    warn_of_idle_keys();
     if (draft_.options.finer) refine();
   }
 
@@ -136,6 +137,16 @@ class SimulationSection {
     const Node* size = step_->node().is_map() ? step_->node().find("size") : &step_->node();
     if (size == nullptr || !size->is_scalar()) return;
     doubt_step(CheckedValue(step_->reading(), *size, nullptr, "simulation.step"), settings_.step, span);
+  }
+
+  /// What only an adaptive run looks at.
+  void warn_of_idle_keys() const {
+    if (settings_.adaptive || draft_.options.step || draft_.diagnostics.has_errors()) return;
+    for (const auto& [key, value] : {std::pair{"tolerance", &tolerance_}, {"min", &smallest_}, {"max", &largest_}}) {
+      if (!*value) continue;
+      (*value)->warn_at_key("unused",
+                            fmt::format("'{}' has no effect on fixed steps: 'adaptive: true' is missing", key));
+    }
   }
 
   void refine() {
@@ -299,7 +310,7 @@ class SimulationSection {
   Draft& draft_;
   Settings& settings_;
   bool frames_good_ = true;
-  std::optional<CheckedValue> integrator_, step_, accuracy_, smallest_, largest_;
+  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_;
 };
 
 }  // namespace

@@ -63,14 +63,14 @@ class Comparer {
       if (!wanted(a_.names[c])) continue;
       const int other = b_.find(a_.names[c]);
       if (other < 0) {
-        result_.missing.push_back(fmt::format("channel '{}' is missing in {}", a_.names[c], b_.file));
+        add_missing(a_.names[c], b_);
       } else {
         add(a_.names[c], a_.values[c], b_.values[static_cast<std::size_t>(other)]);
       }
     }
     for (std::size_t c = 1; c < b_.names.size(); ++c) {
       if (wanted(b_.names[c]) && a_.find(b_.names[c]) < 0) {
-        result_.missing.push_back(fmt::format("channel '{}' is missing in {}", b_.names[c], a_.file));
+        add_missing(b_.names[c], a_);
       }
     }
     sort();
@@ -136,6 +136,13 @@ class Comparer {
     result_.channels.push_back(d);
     weight_.push_back(std::isnan(d.largest) ? std::numeric_limits<double>::infinity()
                                             : (d.largest == 0.0 ? 0.0 : d.largest / allowed));
+  }
+
+  void add_missing(const std::string& name, const ResultTable& where) {
+    result_.missing.push_back(fmt::format("channel '{}' is missing in {}", name, where.file));
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    result_.channels.push_back({name, nan, nan, nan, nan, false});
+    weight_.push_back(std::numeric_limits<double>::infinity());
   }
 
   void sort() {

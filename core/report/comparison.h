@@ -16,7 +16,7 @@ struct ComparisonRules {
   double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();  ///< [s]
 };
 
-/// One channel of both results.
+/// One channel of both results, or of one alone: then all numbers are NaN.
 struct ChannelDifference {
   std::string name;
   double largest = 0.0;   ///< largest |a - b|, NaN where one has a number and the other has none, or without rows

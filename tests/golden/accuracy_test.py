@@ -114,6 +114,16 @@ class Compare(ProgramTest):
         self.assertIn("of which 3 differ;", self.freeplay("compare", "a", "b", "--tolerance", "0", "--absolute", "0",
                                                           code=7)[0])
 
+    def test_a_missing_channel_is_a_row_without_numbers(self):
+        lines = self.read("a", "results.csv").splitlines()
+        self.write("less.csv", "".join(line.rsplit(",", 1)[0] + "\n" for line in lines))
+        name = lines[0].rsplit(",", 1)[1]
+        out, err = self.freeplay("compare", "a", "less.csv", code=7)
+        self.assertEqual(name + ",,,,,0", out.splitlines()[1])
+        self.assertIn("channel '%s' is missing in less.csv" % name, err)
+        row = json.loads(self.freeplay("compare", "less.csv", "a", "--json", code=7)[0])[0]
+        self.assertEqual((name, None, False), (row["channel"], row["max_abs"], row["ok"]))
+
     def test_window_and_mistakes(self):
         self.freeplay("compare", "a", "b", "--until", "0 s")
         out, err = self.freeplay("compare", "a", "b", "--from", "5 s", "--channels", "body.*.x", code=7)

@@ -131,6 +131,20 @@ class Run(ProgramTest):
         self.assertRegex(lines[-3], r"^  energy residual \S+ J   position residual \S+ m$")
         self.assertEqual("  results in results/3-rrr", lines[-1])
 
+    def test_keys_of_adaptive_steps_warn_in_fixed_ones(self):
+        text = self.read(self.pendulum()).replace("step: 1 ms", "step: {size: 1 ms, tolerance: 1e-9, min: 1 us}")
+        self.write("p.yaml", text)
+        _, err = self.freeplay("run", "p.yaml")
+        for key in ("tolerance", "min"):
+            self.assertIn("warning: '%s' has no effect on fixed steps: 'adaptive: true' is missing [unused]" % key, err)
+        self.assertEqual("", self.freeplay("run", "p.yaml", "--integrator", "dopri5")[1])
+        self.write("p.yaml", text.replace("1e-9", "1e-9, adaptive: true"))
+        self.assertEqual("", self.freeplay("run", "p.yaml")[1])
+
+    def test_a_start_other_than_zero_is_said(self):
+        self.write("p.yaml", self.read(self.pendulum(end="1.1 s")).replace("{end", "{start: 1 s, end"))
+        self.assertIn("completed, 1 s to 1.1 s in 100 steps (", self.freeplay("run", "p.yaml")[0])
+
     def steps_said(self, *options):
         """What stands between the parentheses of the first line, and the shortest and longest step of summary.json."""
         out, _ = self.freeplay("run", self.pendulum(), *options)
@@ -211,6 +225,10 @@ simulation: {end: 10 ms, step: 1 ms}
                       [" ".join(line.split()) for line in self.freeplay("validate", "g.yaml")[0].splitlines()])
         header = self.rows("results", "g", "results.csv")[0]
         self.assertIn("joint.pair.torque", header)
+        self.write("g.yaml", self.read("g.yaml").replace("kind: torque, value: 125 N*m", 'kind: angle, value: "t*t"'))
+        out, _ = self.freeplay("analyze", "inverse-dynamics", "g.yaml", "--frame", "one", "--time", "0:1:2")
+        found = dict(zip(*(line.split(",") for line in out.splitlines()[:2])))
+        self.assertAlmostEqual(-4.0, float(found["joint.pair.torque"]), delta=1e-12)
 
     def test_a_moment_that_a_joint_holds_is_in_the_table(self):
         self.write("w.yaml", """freeplay: 1

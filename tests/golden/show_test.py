@@ -31,6 +31,7 @@ class Show(ProgramTest):
         shown = json.loads(self.freeplay("show", "r", "--json")[0])
         self.assertEqual((1e-3, 2e-6, "newmark"), (shown["simulation"]["end"], shown["simulation"]["step"],
                                                     shown["simulation"]["integrator"]["type"]))
+        self.assertEqual("slider-crank", shown["name"])
         self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.2 mm")[0])["joints"],
                          shown["joints"])
         self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.1 mm")[0])["joints"],
