@@ -68,6 +68,23 @@ inline void read_materials(const Parameters& p, ContactPair& pair) {
   }
 }
 
+/// What the host is told of the two surfaces; NaN where the file leaves it open.
+struct Surfaces {
+  Surfaces() = default;
+  explicit Surfaces(const ContactPair& pair)
+      : radius(pair.journal_radius),
+        length(pair.length),
+        modulus(1.0 / (compliance(pair.bearing) + compliance(pair.journal))) {}
+  void declare(JointLayout& layout) const {
+    layout.smaller_radius = radius;
+    layout.contact_length = length;
+    layout.contact_modulus = modulus;
+  }
+  static double compliance(const Material& m) { return (1.0 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus; }
+  double radius = not_a_number, length = not_a_number;  // [m]
+  double modulus = not_a_number;                        // E* [Pa]
+};
+
 /// Forces that do not depend on slip: tried at an ordinary and at a very high speed, with a unit normal force.
 inline bool is_inert(const FrictionLawRef& law) {
   if (law.internal_variables() != 0) return false;

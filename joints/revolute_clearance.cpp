@@ -64,6 +64,7 @@ class RevoluteClearance final : public Joint {
   explicit RevoluteClearance(const Parameters& p) : radii_(read_radii(p)), start_(p) {
     ContactPair pair{radii_.bearing, radii_.journal, radii_.clearance, p.number("clearance.length"), {}, {}};
     read_materials(p, pair);
+    surfaces_ = Surfaces(pair);
     contact_law_ = p.contact_law("clearance.contact", pair);
     friction_law_ = p.friction_law("clearance.friction");
     internal_variables_ = friction_law_.internal_variables();
@@ -84,6 +85,7 @@ class RevoluteClearance final : public Joint {
     layout.forces = 1;
     layout.analytic_derivatives = 1;
     layout.clearance = radii_.clearance;
+    surfaces_.declare(layout);
     layout.events = contact_events;
     layout.channels = gap_channels;
   }
@@ -323,6 +325,7 @@ class RevoluteClearance final : public Joint {
   }
 
   Radii radii_;
+  Surfaces surfaces_;
   ContactLawRef contact_law_;
   FrictionLawRef friction_law_;
   int internal_variables_ = 0;

@@ -22,6 +22,7 @@ struct SpatialPlay {
   SpatialPlay(const Parameters& p, double length) : radii(read_radii(p)), start(p) {
     ContactPair pair{radii.bearing, radii.journal, radii.clearance, length, {}, {}};
     read_materials(p, pair);
+    surfaces = Surfaces(pair);
     contact = p.contact_law("clearance.contact", pair);
     friction = p.friction_law("clearance.friction");
     law_variables = friction.internal_variables();
@@ -66,6 +67,7 @@ struct SpatialPlay {
                         Span<T> z_rate) const;
 
   Radii radii;
+  Surfaces surfaces;
   Start start;
   ContactLawRef contact;
   FrictionLawRef friction;

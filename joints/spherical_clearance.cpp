@@ -39,6 +39,7 @@ class SphericalClearance final : public Joint {
     layout.internal_variables = play_.memory();
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
+    play_.surfaces.declare(layout);
     layout.events = contact_events;
     layout.channels = gap_channels;
   }

@@ -82,6 +82,14 @@ std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<c
   return warnings;
 }
 
+/// What the reader of the model doubts, its results inherit.
+void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
+  for (const Diagnostic& diagnostic : diagnostics.sorted()) {
+    if (!diagnostic.id.starts_with("doubtful")) continue;
+    verdict.add({.id = "doubtful-input", .level = Trust::doubtful, .message = diagnostic.message});
+  }
+}
+
 /// The files of one run, from the open directory to the sealed summary.
 class Recording {
  public:
@@ -171,6 +179,7 @@ class RunJob {
   /// What is told of a simulation when it is over.
   struct Ended {
     Statistics statistics;
+    RunExtremes extremes;
     std::vector<double> last_row;
     std::vector<std::string> warnings;
   };
@@ -239,7 +248,10 @@ class RunJob {
   Ended end() {
     const auto row = simulation_->last_row();
     const auto warnings = simulation_->warnings();
-    Ended ended{simulation_->statistics(), {row.begin(), row.end()}, {warnings.begin(), warnings.end()}};
+    Ended ended{simulation_->statistics(),
+                simulation_->extremes(),
+                {row.begin(), row.end()},
+                {warnings.begin(), warnings.end()}};
     simulation_.reset();
     return ended;
   }
@@ -254,7 +266,9 @@ class RunJob {
         record.verify.emplace_back(channel.name, channel.error);
       record.agree_until = verification->agree_until;
     }
+    record.extremes = ended.extremes;
     record.trust.add(outcome.doubts);
+    doubt_input(loaded_.diagnostics, record.trust);
     judge(record, record.trust);
     Json json = summary(record);
     const int exit_code = repeats_ ? add_repeats(record, json) : outcome.exit_code;

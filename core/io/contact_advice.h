@@ -1,6 +1,7 @@
 // ContactAdvice: whether the steps were short enough for the impacts.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -21,6 +22,11 @@ class ContactAdvice : public Sink {
   long under_resolved() const { return under_resolved_; }
   /// Fewest steps of a contact; NaN when none ended.
   double fewest_steps() const { return fewest_steps_; }
+  /// The same of hard impacts alone, whose largest force is of the same power of ten as the largest of their joint;
+  /// infinite without.
+  double fewest_steps_of_hard() const;
+  /// Largest speed at which a contact of this joint began, from the start of the run on [m/s]; 0 without one.
+  double approach_speed(int joint) const { return joints_[static_cast<std::size_t>(joint)].speed; }
   /// Contacts that ended, and the steps that each should take (Settings::per_contact).
   long ended() const { return ended_; }
   double per_contact() const { return per_contact_; }
@@ -29,10 +35,16 @@ class ContactAdvice : public Sink {
 
  private:
   struct Fields {
-    int duration = -1, steps = -1;
+    int duration = -1, steps = -1, force = -1, speed = -1;
+  };
+  static constexpr int decades = 24;  // of forces, from 1e-9 N on
+  struct OfJoint {
+    std::array<double, decades> fewest_steps;  // by the decade of an impact's largest force
+    double speed = 0.0;
   };
   double from_, per_contact_;
   std::vector<std::vector<Fields>> fields_;  // joint, event
+  std::vector<OfJoint> joints_;
   long under_resolved_ = 0, ended_ = 0;
   double fewest_steps_ = std::numeric_limits<double>::quiet_NaN(), step_ = fewest_steps_;
 };

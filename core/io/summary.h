@@ -28,6 +28,7 @@ struct RunRecord {
   /// Observed errors by channel, and until when two runs agree [s]; null without a second run.
   std::vector<std::pair<std::string, double>> verify{};
   double agree_until = std::numeric_limits<double>::quiet_NaN();
+  RunExtremes extremes{};
   Verdict trust{};
   Json repeat = nullptr;  ///< of RepeatSummary, of a repeated run
 };

@@ -108,6 +108,14 @@ bool Simulation::Impl::adaptive_step() {
     if (!evaluate_all(trial, e_trial)) {
       return fail_with(e_trial->fault, trial.t());
     }
+    if (gains_energy()) {
+      ++outcome.rejected;
+      hunted = {};
+      control.halve(dt);
+      dt = control.next();
+      if (dt < smallest) return fail(4, why_energy_grows(dt));
+      continue;
+    }
     bool done = false;
     if (!pursue(hunted, dt, hunts, done)) return false;
     if (done) break;

@@ -120,6 +120,30 @@ void EnergyAccount::add(double dt, std::span<const double> half_way, const Evalu
   }
 }
 
+double EnergyAccount::largest_power(const Evaluation& start, std::span<const double> lambda_start,
+                                    const Evaluation& end, std::span<const double> lambda_end) {
+  flow(start, lambda_start, integral_inside_);
+  flow(end, lambda_end, power_end_);
+  double sum = std::max({0.0, row_power(start, lambda_start), row_power(end, lambda_end)});
+  const std::vector<Driver>& drivers = system_.model().drivers;
+  for (std::size_t i = 0; i < power_end_.size(); ++i) {
+    // Whatever state a step ends in, a prescribing driver holds against it: its power there explains nothing.
+    const bool holds = i < drivers.size() && prescribes(drivers[i].kind);
+    sum += std::max({0.0, integral_inside_[i], holds ? 0.0 : power_end_[i]});
+  }
+  return sum;
+}
+
+double EnergyAccount::lost_less_given(const Evaluation& e) const {
+  double sum = -initial_ - row_work_;
+  for (const double integral : integral_) sum -= integral;
+  for (const ForceBlock& block : system_.force_blocks()) {
+    const std::size_t j = at(block.joint);
+    if (std::isnan(e.potential_rate[j])) sum -= e.potential[j] - stored_start_[j];
+  }
+  return sum;
+}
+
 // Of a step of length dt, with these powers at its start, at its fraction s (which may lie a little beyond 1) and at
 // its end: from the nearer end, whose integral is known, over the parabola through the three.
 double EnergyAccount::integral_at(double s, double dt, const Ends& integral, double begin, double here, double end) {

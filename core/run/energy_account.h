@@ -54,6 +54,13 @@ class EnergyAccount {
   /// over the step.
   void fill_inside(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
                    std::span<double> row);
+  /// Of what gives energy at one end or at the other of a step: the sum of the larger powers [W]. Drivers that
+  /// prescribe motion count at the start alone.
+  double largest_power(const Evaluation& start, std::span<const double> lambda_start, const Evaluation& end,
+                       std::span<const double> lambda_end);
+  /// What was dissipated, less work and energy at the start, at the end of the last step [J]: with the energy there it
+  /// is the residual.
+  double lost_less_given(const Evaluation& e) const;
   /// An event changed what acts at the end of the last step.
   void renew(const Evaluation& e, std::span<const double> lambda) {
     flow(e, lambda, power_);

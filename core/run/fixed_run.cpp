@@ -39,6 +39,12 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
       if (last) trial.t() = goal;
       if (!evaluate_all(trial, e_trial)) return fail_with(e_trial->fault, trial.t());
       if (!resting.held(dt, e_trial)) continue;
+      if (gains_energy()) {
+        ++outcome.rejected;
+        dt *= 0.5;
+        if (dt < smallest) return fail(4, why_energy_grows(dt));
+        continue;
+      }
       for (double kink = system.motions().next_kink(accepted.t()); kink <= trial.t();
            kink = system.motions().next_kink(kink)) {
         if (note_jumps(kink)) book_jump(kink);

@@ -98,6 +98,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       events(system, adaptive, between, e_between),
       resting(system),
       statistics(model, all_channels),
+      watch(system, all_channels),
       scratch(at(integrator_layout.scratch) + guard::marks),
       row(all_channels.all().size(), 0.0),
       row_between(all_channels.all().size(), 0.0),
@@ -157,6 +158,9 @@ bool Simulation::Impl::fail_with(const Fault& fault, double t) {
     return fail(4,
                 fmt::format("t = {:.9g} s: joint '{}': {} [{}]", t, joint.name, fault.message.text, fault.message.id));
   }
+  if (std::string_view(fault.message.text).ends_with("not a finite number") && is_built_in(*joint.component)) {
+    return fail(4, why_beyond_bounds(t, fault.joint));
+  }
   return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
                              model.instances.words_of(*joint.component), fault.message.text));
 }
@@ -203,6 +207,7 @@ int Simulation::Impl::hardest_joint(BodyId body) const {
 }
 
 std::string Simulation::Impl::why_not_converged(double dt) const {
+  if (left_bounds) return why_beyond_bounds(accepted.t(), -1);
   std::string text = fmt::format("t = {:.9g} s: no step of {:.3g} s or longer could be made: {}", accepted.t(), dt,
                                  *solver.trouble() ? solver.trouble() : "the integrator gave up");
   if (const std::string worst = row_name(solver.worst_row()); !worst.empty()) text += "; worst is " + worst;
@@ -240,8 +245,9 @@ bool Simulation::Impl::begin() {
     return fail_with(fault, accepted.t());
   }
   energy.start(e_accepted, accepted.lambda(), channels, row);
+  explained_energy = energy_of(e_accepted);
   row_is_known = true;
-  return record_step() && tell_sinks();
+  return record_step() && watch_row(0.0) && tell_sinks();
 }
 
 // The joints' history in `state` at the begin of a step of the length dt from the accepted state.
@@ -330,7 +336,11 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   converged = attempt.converged != 0;
   error = attempt.error;
   const bool rejected = adaptive && !(error <= 1.0);  // whatever it left
-  return !converged || rejected || check_step(dt);
+  left_bounds = false;
+  if (!converged || rejected) return true;
+  if (!check_step(dt)) return false;
+  converged = !left_bounds;
+  return true;
 }
 
 /// What an integrator that says that it converged must have left.
@@ -341,6 +351,10 @@ bool Simulation::Impl::check_step(double dt) {
                                accepted.t(), integrator_words(model), expected, trial.t()));
   }
   if (is_finite(Span<const double>(trial.before_history()))) return true;
+  if (is_built_in(*settings.integrator_parameters.component)) {
+    left_bounds = true;  // a step that was too long for the forces: a shorter one may do
+    return true;
+  }
   return fail(5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
                              accepted.t(), integrator_words(model)));
 }
@@ -412,7 +426,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   outcome.smallest_step = outcome.steps == 0 ? dt : std::min(outcome.smallest_step, dt);
   outcome.largest_step = std::max(outcome.largest_step, dt);
   ++outcome.steps;  // from now on its row may be written
-  return note_warnings() && tell_sinks();
+  return watch_row(dt) && note_warnings() && tell_sinks();
 }
 
 // An event changes history or internal variables, and with them what acts: the integrator starts again from here.
@@ -457,49 +471,6 @@ bool Simulation::Impl::record_step() {
   }
   statistics.add(row, energy.driver_work(), energy.joint_loss(), energy.force_work(), position, velocity);
   return true;
-}
-
-// Once for each joint; the text is made when the run is over.
-bool Simulation::Impl::note_warnings() {
-  for (const ForceBlock& block : system.force_blocks()) {
-    Warning& warning = joint_warnings[at(block.joint)];
-    if (warning.text != nullptr || system.rest(block.joint).now) continue;
-    const Point here = point(accepted);
-    Fault fault;
-    if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
-      fault.kind = Fault::Kind::plugin;
-      fault.joint = block.joint;
-      return fail_with(fault, accepted.t());
-    }
-    if (warning.text == nullptr) continue;
-    if (!know_row()) return false;
-    warning.time = accepted.t();
-    std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,
-                warning_values.begin() + static_cast<std::ptrdiff_t>(warning.values));
-  }
-  return true;
-}
-
-void Simulation::Impl::format_warnings() {
-  for (std::size_t j = 0; j < joint_warnings.size(); ++j) {
-    const Warning& warning = joint_warnings[j];
-    if (warning.text == nullptr) continue;
-    std::string_view sentence = warning.text;
-    if (sentence.ends_with('.')) sentence.remove_suffix(1);
-    const std::string joint = fmt::format("joint '{}'", model.joints[j].name);
-    std::string text = fmt::format("{} at t = {:.9g} s: {}", joint, warning.time, sentence);
-    outcome.doubts.push_back({.id = "law-range",
-                              .level = Trust::doubtful,
-                              .message = fmt::format("{}: {}", joint, sentence),
-                              .element = joint});
-    const Span<const Channel> own = system.joint_layout(static_cast<int>(j)).channels;
-    for (std::size_t i = 0; i < own.size; ++i) {
-      const bool plain = std::string_view(own[i].unit) == "1";
-      text += fmt::format("{} {} = {:.4g}{}{}", i == 0 ? ":" : ",", own[i].name, warning_values[warning.values + i],
-                          plain ? "" : " ", plain ? "" : own[i].unit);
-    }
-    warnings.push_back(text);
-  }
 }
 
 bool Simulation::Impl::tell_sinks() {
@@ -580,6 +551,8 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.iterations = solver.iterations();
   outcome.factorizations = solver.factorizations();
   format_warnings();
+  note_unused_play();
+  explain_failure();
   format_jumps();
   return outcome;
 }
@@ -589,6 +562,7 @@ Simulation::Simulation(System& system, const Start& start, const Channels& chann
 Simulation::~Simulation() = default;
 Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->statistics; }
+const RunExtremes& Simulation::extremes() const { return impl_->watch.seen(); }
 std::span<const double> Simulation::last_row() const { return impl_->row; }
 std::span<const std::string> Simulation::warnings() const { return impl_->warnings; }
 

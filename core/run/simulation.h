@@ -10,6 +10,7 @@
 
 #include "run/assembly.h"
 #include "run/channel.h"
+#include "run/run_watch.h"
 #include "run/sink.h"
 #include "run/statistics.h"
 #include "run/trust.h"
@@ -45,6 +46,7 @@ class Simulation {
   ~Simulation();
   Outcome run(const RunHooks& hooks);
   const Statistics& statistics() const;
+  const RunExtremes& extremes() const;
   /// The last accepted row, every channel.
   std::span<const double> last_row() const;
   /// Warnings met on the way, such as a law used outside its range.

@@ -29,9 +29,17 @@ struct Simulation::Impl {
   bool begin_steps(double dt, State& state);
   bool accept(const StepEvents::Passage& located, double kink = unbounded);
   void add_energy();
+  // Steps that end with too much energy (energy_growth.cpp).
+  double energy_of(const Evaluation& e) const;
+  double energy_of_drives() const;
+  bool gains_energy();
+  std::string why_energy_grows(double dt);
+  std::string why_beyond_bounds(double t, int joint) const;
+  bool is_built_in(const Component& component) const;
   bool refresh();
   bool know_row();
   bool record_step();
+  bool watch_row(double dt);
   bool note_warnings();
   bool tell_sinks();
   bool check_stop();
@@ -84,6 +92,8 @@ struct Simulation::Impl {
   std::string row_name(int row_index) const;
   int hardest_joint(BodyId body) const;
   void format_warnings();
+  void note_unused_play();
+  void explain_failure();
 
   System system;  ///< of the unknowns
   const Model& model;
@@ -104,6 +114,7 @@ struct Simulation::Impl {
   StepEvents events;
   RestingJoints resting;
   Statistics statistics;
+  RunWatch watch;
   std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
   std::vector<int> stop_columns, with_history;
   struct Turn {
@@ -128,8 +139,11 @@ struct Simulation::Impl {
   std::vector<double> q_before, v_before, driven_change, impulses;
   std::vector<std::string> warnings;
   Outcome outcome;
-  Fault plugin_fault;         // of the last attempt
-  double error = 0.0;         // of the last attempt
+  Fault plugin_fault;             // of the last attempt
+  double error = 0.0;             // of the last attempt
+  double explained_energy = 0.0;  // the largest that work was found for [J]
+  double gained = 0.0;            // without work, by the step that was looked at last [J]
+  bool left_bounds = false;       // the last attempt ended with numbers that are not finite
   bool ended_inside = false;  // the step that is being accepted was cut short: the integrator has no memory of its end
   double allowed = 0.0;       // by which positions may err in one step, with error control [m]
   bool row_is_known = false;  // `row` is that of the accepted state

@@ -135,6 +135,14 @@ CASES = {
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
     "no step of ... s or longer could be made: ...; try a smaller step":
         (4, SHORT_ROD, RUN),
+    "joint '...' at t = ... s: its surfaces are ... m deep in each other, more than ...; likely cause: ...":
+        (4, journal("E: 207 GPa", "E: 1 Pa").replace("lankarani-nikravesh, restitution: 0.9", "hertz, K: 1e-3").replace("end: 20 ms", "end: 1 s"), RUN),
+    "joint '...' at t = ... s: a force of ... N presses with more than a tenth of the elastic modulus ...":
+        (4, journal("E: 207 GPa", "E: 207 Pa").replace("end: 20 ms", "end: 1 s"), RUN),
+    "energy would grow by ... J in a step of ... s, more than everything that acts could put in; ...":
+        (4, journal("E: 207 GPa", "E: 207e22 GPa").replace("lankarani-nikravesh, restitution: 0.9", "hertz"), RUN),
+    "forces and speeds grow beyond all bounds, ...":
+        (4, journal("E: 207 GPa", "E: 207e200 GPa"), RUN + ["--step", "20 us"]),
     "driver '...': the prescribed position jumps; no motion follows it":
         (4, driven("value: t", "table: {points: [[0, 0], [0.05, 1]], interpolation: linear, outside: repeat}"),
          RUN + ["--accuracy", "1 um"]),
@@ -150,6 +158,7 @@ CASES = {
     # After a run
     "steps per impact: ... or more; ... of ... impacts took fewer than 20: --step ..., or an accuracy in its place, would do":
         (0, journal("step: 10 us", "step: 500 us"), RUN),
+    "trust: doubtful (...)": (0, journal("mass: 1 kg", "mass: 100 kg"), RUN),
     "'...' holds other files than a result": (6, PENDULUM, ["run", "model.yaml", "--out", "."]),
     "'...' exists already": (6, PENDULUM, ["convert", "model.yaml", "model.yaml"]),
     "plugin '...' cannot be loaded: ... [plugin-refused]": (5, PENDULUM, RUN + ["--plugin", "./model.so"]),

@@ -1,0 +1,91 @@
+// Simulation: what a run holds against its own numbers while it goes on.
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "run/likely_cause.h"
+#include "run/simulation_impl.h"
+
+namespace freeplay {
+namespace {
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+// False where the row shows that going on makes no sense.
+bool Simulation::Impl::watch_row(double dt) {
+  watch.add_regularity(solver.regularity(), accepted.t());
+  if (!row_is_known && !watch.is_due(e_accepted)) return true;
+  if (!know_row()) return false;
+  const int joint = watch.add(row, e_accepted);
+  if (joint < 0) return true;
+  TrustReason reason = watch.why(joint, row);
+  const std::string cause = likely_cause(system, e_accepted, dt, joint);
+  if (!cause.empty()) reason.message += "; likely cause: " + cause;
+  fail(4, reason.message);
+  outcome.doubts.push_back(std::move(reason));
+  return false;
+}
+
+// Once for each joint; the text is made when the run is over.
+bool Simulation::Impl::note_warnings() {
+  for (const ForceBlock& block : system.force_blocks()) {
+    Warning& warning = joint_warnings[at(block.joint)];
+    if (warning.text != nullptr || system.rest(block.joint).now) continue;
+    const Point here = point(accepted);
+    Fault fault;
+    if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
+      fault.kind = Fault::Kind::plugin;
+      fault.joint = block.joint;
+      return fail_with(fault, accepted.t());
+    }
+    if (warning.text == nullptr) continue;
+    if (!know_row()) return false;
+    warning.time = accepted.t();
+    std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,
+                warning_values.begin() + static_cast<std::ptrdiff_t>(warning.values));
+  }
+  return true;
+}
+
+// A number of the model that no machine has is worth more than any advice about steps.
+void Simulation::Impl::explain_failure() {
+  if (outcome.exit_code != 4 || outcome.reason.find("likely cause") != std::string::npos) return;
+  const std::string cause = likely_cause(system, e_accepted, 0.0, -1);
+  if (!cause.empty()) outcome.reason += "; likely cause: " + cause;
+}
+
+void Simulation::Impl::note_unused_play() {
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    if (outcome.steps == 0 || !watch.never_moved(j)) continue;
+    const std::string joint = fmt::format("joint '{}'", model.joints[at(j)].name);
+    outcome.doubts.push_back({.id = "play-bypassed",
+                              .level = Trust::doubtful,
+                              .message = joint + ": its journal never moved in its bearing; do other joints hold it",
+                              .element = joint});
+  }
+}
+
+void Simulation::Impl::format_warnings() {
+  for (std::size_t j = 0; j < joint_warnings.size(); ++j) {
+    const Warning& warning = joint_warnings[j];
+    if (warning.text == nullptr) continue;
+    std::string_view sentence = warning.text;
+    if (sentence.ends_with('.')) sentence.remove_suffix(1);
+    const std::string joint = fmt::format("joint '{}'", model.joints[j].name);
+    std::string text = fmt::format("{} at t = {:.9g} s: {}", joint, warning.time, sentence);
+    outcome.doubts.push_back({.id = "law-range",
+                              .level = Trust::doubtful,
+                              .message = fmt::format("{}: {}", joint, sentence),
+                              .element = joint});
+    const Span<const Channel> own = system.joint_layout(static_cast<int>(j)).channels;
+    for (std::size_t i = 0; i < own.size; ++i) {
+      const bool plain = std::string_view(own[i].unit) == "1";
+      text += fmt::format("{} {} = {:.4g}{}{}", i == 0 ? ":" : ",", own[i].name, warning_values[warning.values + i],
+                          plain ? "" : " ", plain ? "" : own[i].unit);
+    }
+    warnings.push_back(text);
+  }
+}
+
+}  // namespace freeplay

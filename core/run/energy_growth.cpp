@@ -1,0 +1,92 @@
+// Simulation: steps that end with energy that nothing has put in.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "run/likely_cause.h"
+#include "run/simulation_impl.h"
+
+namespace freeplay {
+namespace {
+constexpr double suspicious =
+    2.0;  // energy of motion and of joints, by the largest before: work is looked at from there
+constexpr double near_singular = 1e-4;  // regularity
+constexpr double transmission = 10.0;   // speed of bodies, by that of drivers: a mechanism may come to it in a step
+constexpr double unexplained = 2.0;     // growth of energy, by all work that powers at both ends could have done
+}  // namespace
+
+// Of motion and of what joints store: without gravity's, which has no zero.
+double Simulation::Impl::energy_of(const Evaluation& e) const {
+  double sum = system.kinetic_energy(e.v);
+  for (const double potential : e.potential) sum += potential;
+  return sum;
+}
+
+// Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step.
+double Simulation::Impl::energy_of_drives() const {
+  double squared = 0.0, mass = 0.0;
+  for (std::size_t d = 0; d < model.drivers.size(); ++d) {
+    if (!prescribes(model.drivers[d].kind)) continue;
+    const bool rotates = system.joint_layout(model.drivers[d].joint).coordinate == Coordinate::angle;
+    const double rate = std::max(std::abs(e_accepted->motion[d].rate), std::abs(e_trial->motion[d].rate));
+    const double speed = rotates ? rate * system.size() : rate;
+    squared = std::max(squared, speed * speed);
+  }
+  for (const Body& body : model.bodies) mass += body.mass;
+  return 0.5 * mass * squared * transmission * transmission;
+}
+
+// Whether energy has grown in the step that was just made far beyond the work of drivers, forces and gravity. Implicit
+// methods do this in steps that overshoot a contact; a shorter one does not. Only a step that passes twice the
+// largest energy that was explained so far is looked at. A jump of a driver's speed does work in no time and is left
+// alone.
+bool Simulation::Impl::gains_energy() {
+  const double after = energy_of(e_trial);
+  if (after <= suspicious * explained_energy) return false;
+  const double dt = trial.t() - accepted.t();
+  if (system.motions().next_kink(accepted.t()) <= trial.t()) return false;
+  const double before = energy_of(e_accepted), high = system.gravity_potential(e_accepted->q);
+  const double fallen = high - system.gravity_potential(e_trial->q), drives = energy_of_drives();
+  const double work =
+      std::abs(fallen) + dt * energy.largest_power(e_accepted, accepted.lambda(), e_trial, trial.lambda());
+  gained = after - before;
+  if (gained > unexplained * work + explained_energy + drives) return true;
+  // What steps before have gained, each a little.
+  gained = before + high + energy.lost_less_given(e_accepted);
+  if (gained > 0.5 * after && gained > explained_energy + drives) return true;
+  explained_energy = after;
+  return false;
+}
+
+// Contacts are overshot by steps; constraints alone come to this where the mechanism cannot go on.
+std::string Simulation::Impl::why_energy_grows(double dt) {
+  if (model.clearance_joints() == 0) {
+    return adaptive && solver.regularity() < near_singular ? why_singular() : why_not_converged(dt);
+  }
+  std::string text = fmt::format(
+      "t = {:.9g} s: energy would grow by {:.3g} J in a step of {:.3g} s, more than everything that acts could put in",
+      accepted.t(), gained, dt);
+  const int joint = hardest_joint(ground);
+  if (joint >= 0) text += fmt::format("; joint '{}' pulls hardest", model.joints[static_cast<std::size_t>(joint)].name);
+  const std::string cause = likely_cause(system, e_accepted, dt, joint);
+  return text + (cause.empty() ? "; ask for an accuracy in place of a step" : "; likely cause: " + cause);
+}
+
+/// Numbers of the program's own types that are not finite any more come of the model or of the step.
+std::string Simulation::Impl::why_beyond_bounds(double t, int joint) const {
+  std::string text = fmt::format("t = {:.9g} s: forces and speeds grow beyond all bounds", t);
+  const int hardest = joint >= 0 ? joint : hardest_joint(ground);
+  if (hardest >= 0) text += fmt::format(", first in joint '{}'", model.joints[static_cast<std::size_t>(hardest)].name);
+  const std::string cause = likely_cause(system, e_accepted, settings.step, hardest);
+  return text + (cause.empty() ? "; ask for an accuracy in place of a step" : "; likely cause: " + cause);
+}
+
+bool Simulation::Impl::is_built_in(const Component& component) const {
+  return std::ranges::none_of(model.instances.libraries(), [&](const RegisteredLibrary& library) {
+    return library.path != "built-in" &&
+           std::ranges::any_of(library.table->components(), [&](const Component& type) { return &type == &component; });
+  });
+}
+
+}  // namespace freeplay

@@ -1,0 +1,79 @@
+#include "run/reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// Whether the rows of the ideal joint leave its second origin no way to move against the first.
+bool holds_origins(const JointElement& element, Space space) {
+  const int count = element.ideal_layout.constraint_rows, needed = space == Space::planar ? 2 : 3;
+  if (element.gear >= 0 || element.is_force || count < needed) return false;
+  std::vector<double> phi(at(count)), nu(phi), gamma(phi);
+  Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor> jacobian =
+      Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor>::Zero(count, 12);
+  ConstraintRows rows{{phi.data(), phi.size()},
+                      {jacobian.data(), static_cast<std::size_t>(jacobian.size())},
+                      {nu.data(), nu.size()},
+                      {gamma.data(), gamma.size()}};
+  MarkerKinematics marker{};
+  std::ranges::copy(no_rotation, marker.rotation);
+  JointInput in{};
+  in.a = in.b = &marker;
+  Message message;
+  if (!element.ideal.constrain(in, rows, message)) return false;
+  return Eigen::FullPivLU<Eigen::MatrixXd>(jacobian.middleCols(6, needed)).setThreshold(1e-9).rank() == needed;
+}
+
+}  // namespace
+
+std::vector<double> reach(const Model& model) {
+  // By marker: bound of its distance from the origin.
+  std::vector<double> bound(model.markers.size(), unbounded);
+  for (std::size_t m = 0; m < model.markers.size(); ++m) {
+    if (model.markers[m].body == ground) bound[m] = distance(model.markers[m].position, {});
+  }
+  const auto index = [](BodyId body) { return at(body + 1); };  // the ground first
+  std::vector<std::vector<std::size_t>> on_body(model.bodies.size() + 1);
+  for (std::size_t m = 0; m < model.markers.size(); ++m) on_body[index(model.markers[m].body)].push_back(m);
+  std::vector<std::vector<const JointElement*>> holding(model.bodies.size() + 1);  // by body
+  for (const JointElement& joint : model.joints) {
+    if (!holds_origins(joint, model.space)) continue;
+    for (const int marker : {joint.marker_a, joint.marker_b})
+      holding[index(model.markers[at(marker)].body)].push_back(&joint);
+  }
+  std::deque<BodyId> due{ground};
+  for (; !due.empty(); due.pop_front()) {
+    for (const JointElement* joint : holding[index(due.front())]) {
+      for (const auto& [from, to] :
+           {std::pair(at(joint->marker_a), at(joint->marker_b)), std::pair(at(joint->marker_b), at(joint->marker_a))}) {
+        const double farthest = bound[from] + joint->layout.clearance;
+        const BodyId body = model.markers[to].body;
+        if (body == ground || !(farthest < bound[to])) continue;
+        for (const std::size_t other : on_body[index(body)]) {
+          const double way = distance(model.markers[to].position, model.markers[other].position);
+          bound[other] = std::min(bound[other], farthest + way);
+        }
+        due.push_back(body);
+      }
+    }
+  }
+  std::vector<double> of_bodies(model.bodies.size(), unbounded);
+  for (std::size_t b = 0; b < of_bodies.size(); ++b) {
+    for (const std::size_t m : on_body[b + 1]) {
+      of_bodies[b] = std::min(of_bodies[b], bound[m] + distance(model.markers[m].position, model.bodies[b].com));
+    }
+  }
+  return of_bodies;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,175 @@
+"""The verdict at the end of a run: every mistake ends with the right word, and sound models are good."""
+import json
+import re
+import unittest
+
+from program import ROOT, ProgramTest, mechanism
+
+with open(mechanism("slider-crank"), encoding="utf-8") as file:
+    SLIDER_CRANK = file.read()
+
+PARALLELOGRAM = """freeplay: 1
+name: parallelogram
+bodies:
+  ground: {frames: {A: [0, 0], D: [0.4, 0]}}
+  crank: {mass: 0.3 kg, inertia: 1.0e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}}
+  coupler: {mass: 0.9 kg, inertia: 6.75e-3, com: [0.2, 0], frames: {tip: [0.4, 0]}}
+  rocker: {mass: 0.3 kg, inertia: 1e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}, pose: {angle: 60 deg}}
+joints:
+  A: {type: revolute, between: [ground/A, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+initial: {joints: {A: 60 deg}, speeds: {A: 10}}
+simulation: {end: 1 s, step: 1 ms}
+"""
+
+# A ball between two walls of a bearing, without anything else.
+BALL = """freeplay: 1
+name: ball
+gravity: [0, -9.81]
+bodies: {ball: {mass: 1 kg, inertia: 1e-4 kg*m^2, frames: {rim: [20 mm, 0]}}}
+joints:
+  B:
+    type: revolute
+    between: [ground, ball]
+    clearance:
+      bearing_radius: 20 mm
+      radial_clearance: 0.5 mm
+      material: {E: 207 GPa, nu: 0.3}
+      contact: {law: lankarani-nikravesh, restitution: 0.9}
+simulation: {end: 0.1 s, accuracy: 1 um, output: {interval: 1 ms%s}}
+"""
+
+
+def slider_crank(*changes):
+    text = SLIDER_CRANK
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return text
+
+
+class Trust(ProgramTest):
+    def run_model(self, text, *words, code=0):
+        self.write("model.yaml", text)
+        out, err = self.freeplay("run", "model.yaml", "--force", "--out", "r", *words, code=code)
+        summary = json.loads(self.read("r", "summary.json"))
+        self.trust = summary["trust"]
+        line = re.search(r"^  trust: (\w+)", out, re.M)
+        self.assertEqual(self.trust["verdict"], line[1])
+        return out, err
+
+    def ids(self):
+        return [reason["id"] for reason in self.trust["reasons"]]
+
+    def assert_ends(self, text, *parts, words=(), reasons=("penetration", "material-strength")):
+        """The run ends with exit code 4, and its message holds these parts."""
+        _, err = self.run_model(text, *words, code=4)
+        self.assertEqual("bad", self.trust["verdict"])
+        self.assertIn(self.trust["reasons"][0]["id"], reasons)
+        for part in parts:
+            self.assertIn(part, err)
+
+    def test_an_ideal_mechanism_is_good(self):
+        with open(mechanism("four-bar"), encoding="utf-8") as file:
+            out, _ = self.run_model(file.read())
+        self.assertEqual({"verdict": "good", "reasons": []}, self.trust)
+        self.assertIn("\n  trust: good\n", out)
+
+    def test_an_inertia_in_the_wrong_unit_ends_the_run(self):
+        self.assert_ends(slider_crank(("inertia: 2.5e-4", "inertia: 250")), "joint 'wrist' at t = ",
+                         "likely cause: inertia of 'coupler' is 250 kg m^2 for a mass of 0.21 kg: its radius of gyration "
+                         "would be 35 m")
+
+    def test_a_length_in_the_wrong_unit_ends_the_run(self):
+        self.assert_ends(slider_crank(("tip: [120 mm, 0]", "tip: [120 m, 0]")), "joint 'wrist' at t = ",
+                         "likely cause: 'coupler' measures 120 m, while bodies of this model measure 0.05 m")
+
+    def test_a_modulus_without_its_prefix_ends_the_run(self):
+        self.assert_ends(slider_crank(("207 GPa", "207 Pa")), "joint 'wrist'", "likely cause: E and nu of joint 'wrist'",
+                         "softer than rubber")
+
+    def test_a_modulus_with_a_unit_twice_ends_the_run(self):
+        self.assert_ends(slider_crank(("207 GPa", "207e9 GPa")), "joint 'wrist'", "stiffer than diamond",
+                         reasons=("run-failed",))
+
+    def test_a_soft_law_without_material_ends_the_run_by_its_depth(self):
+        self.assert_ends(slider_crank(("restitution: 0.9}", "restitution: 0.9, K: 100}"),
+                                      ("      material: {E: 207 GPa, nu: 0.3}\n", "")),
+                         "more than clearance and smaller radius together (0.01 m)", reasons=("penetration",))
+
+    def test_a_speed_a_thousand_times_too_large_ends_the_run(self):
+        self.write("model.yaml", slider_crank(("speed: 5000 rpm", "speed: 5000000 rpm")))
+        _, err = self.freeplay("run", "model.yaml", code=4)
+        self.assertIn("likely cause: driver 'motor' turns with 5.24e+05 rad/s", err)
+
+    def test_a_clearance_as_large_as_the_mechanism_is_doubtful(self):
+        self.run_model(slider_crank(("c: 0.5 mm", "c: 0.5 m"), ("bearing_radius: 10 mm", "bearing_radius: 10 m")))
+        self.assertEqual("doubtful", self.trust["verdict"])
+        self.assertIn("clearance-size", self.ids())
+
+    def test_a_step_too_long_for_impacts_is_doubtful_and_exits_with_0(self):
+        self.run_model(slider_crank(), "--step", "20us")
+        reason = next(r for r in self.trust["reasons"] if r["id"] == "impact-steps")
+        self.assertEqual(("doubtful", 10.0), (reason["level"], reason["limit"]))
+        self.assertLess(reason["value"], 10.0)
+
+    def test_a_window_shorter_than_a_turn_is_doubtful(self):
+        self.run_model(slider_crank(("discard: 12 ms", "discard: 13 ms")))
+        self.assertIn("statistics-window", self.ids())
+        self.run_model(slider_crank(("discard: 12 ms", "discard: 11 ms")))
+        self.assertNotIn("statistics-window", self.ids())
+
+    def test_a_window_of_an_oscillating_driver_is_its_period(self):
+        with open(mechanism("four-bar"), encoding="utf-8") as file:
+            text = file.read().replace("kind: velocity, value: $speed", "kind: angle, value: 60 deg + 0.2*sin(2*pi*t)").replace(
+                "initial: {joints: {A: 60 deg}}\n", "")
+        self.run_model(text, "--end", "0.9 s")
+        self.assertEqual(["statistics-window"], self.ids())
+        self.assertAlmostEqual(1.0, self.trust["reasons"][0]["limit"], 6)
+        self.run_model(text, "--end", "1.1 s")
+        self.assertEqual("good", self.trust["verdict"])
+
+    def test_a_motion_from_point_to_point_has_no_period(self):
+        with open(mechanism("four-bar"), encoding="utf-8") as file:
+            text = file.read().replace("kind: velocity, value: $speed", "kind: angle, value: '60 deg + smooth(t, 0, 1)'").replace("initial: {joints: {A: 60 deg}}\n", "")
+        self.run_model(text)
+        self.assertEqual("good", self.trust["verdict"])
+
+    def test_few_impacts_behind_a_discard_are_doubtful(self):
+        self.run_model(BALL % "")
+        self.assertNotIn("statistics-window", self.ids())
+        self.run_model(BALL % ", discard: 99 ms")
+        self.assertIn("statistics-window", self.ids())
+
+    def test_play_that_never_moves_is_named(self):
+        text = slider_crank(("drivers:", "  pin: {type: revolute, between: [coupler/tip, slider]}\ndrivers:"))
+        self.run_model(text)
+        reason = next(r for r in self.trust["reasons"] if r["id"] == "play-bypassed")
+        self.assertEqual("joint 'wrist'", reason["element"])
+
+    def test_redundant_constraints_are_named(self):
+        text = PARALLELOGRAM.replace("joints:\n", "joints:\n  B2: {type: revolute, between: [crank/tip, coupler]}\n", 1)
+        self.run_model(text)
+        reason = next(r for r in self.trust["reasons"] if r["id"] == "undetermined-forces")
+        self.assertEqual(2.0, reason["value"])
+
+    def test_a_parallelogram_is_never_good_with_a_residual(self):
+        for step in ("1 ms", "0.7 ms", "0.31 ms"):
+            self.write("model.yaml", PARALLELOGRAM)
+            self.freeplay("run", "model.yaml", "--step", step, "--out", "r", "--force")
+            summary = json.loads(self.read("r", "summary.json"))
+            energy, residual = summary["energy"]["kinetic"], summary["residuals"]["energy_max"]
+            if residual > 0.1 * energy:
+                self.assertEqual("bad", summary["trust"]["verdict"])
+
+    def test_the_page_has_a_section_for_each_reason(self):
+        with open(ROOT + "/docs/trust.md", encoding="utf-8") as file:
+            page = file.read()
+        sections = set(re.findall(r"^### ([a-z-]+)$", page, re.M))
+        self.assertEqual(sections, set(re.findall(r"\(#([a-z-]+)\)", page)))
+
+
+if __name__ == "__main__":
+    unittest.main()

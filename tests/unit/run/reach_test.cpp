@@ -1,0 +1,43 @@
+#include "run/reach.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "validation/run_model.h"
+
+namespace freeplay {
+namespace {
+
+constexpr const char* chain = R"(freeplay: 1
+name: chain
+bodies:
+  ground: {frames: {A: [1, 0]}}
+  b: {mass: 1 kg, inertia: 1, com: [0.2, 0], frames: {tip: [0.5, 0]}}
+  a: {mass: 1 kg, inertia: 1, com: [1, 0], frames: {tip: [2, 0]}}
+  free: {mass: 1 kg, inertia: 1}
+  slider: {mass: 1 kg, inertia: 1}
+joints:
+  B: {type: revolute, between: [a/tip, b]PLAY}
+  A: {type: revolute, between: [ground/A, a]}
+  S: {type: prismatic, between: [ground, slider]}
+simulation: {end: 1 s, step: 1 ms}
+)";
+
+TEST(Reach, IsTheSumOfLengthsAlongTheChain) {
+  const auto model = test::load(test::replaced(chain, "PLAY", ""));
+  const std::vector<double> far = reach(*model);
+  EXPECT_NEAR(far[0], 1.0 + 2.0 + 0.2, 1e-12);
+  EXPECT_NEAR(far[1], 1.0 + 1.0, 1e-12);
+  EXPECT_TRUE(std::isinf(far[2])) << "nothing holds it";
+  EXPECT_TRUE(std::isinf(far[3])) << "it slides as far as it likes";
+}
+
+TEST(Reach, CountsTheClearanceOfPlay) {
+  const auto model =
+      test::load(test::replaced(chain, "PLAY", ", clearance: {radial_clearance: 0.01, contact: {law: hertz, K: 1e8}}"));
+  EXPECT_NEAR(reach(*model)[0], 1.0 + 2.0 + 0.01 + 0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace freeplay
