@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/text_table.h"
+#include "cli/window_lines.h"
 #include "report/figure_text.h"
 
 namespace freeplay {
@@ -103,7 +104,7 @@ void add_joints(const RunRecord& record, TextTable& table) {
   std::vector<std::string> head{heading(record, "joint"), "max |F|", "contacts", "in contact", "max delta"};
   if (moments) head.emplace_back("max |torque|");
   table.add_row(std::move(head));
-  const bool any = has_statistics(record.model.settings, record.outcome), once = record.repeat.is_null();
+  const bool any = record.statistics.any(), once = record.repeat.is_null();
   const Figures figure{record};
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!is_listed(joints[i])) continue;
@@ -231,10 +232,11 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.kinematics.empty()) add_paths(record, paths);
   if (!record.model.gears.empty()) add_gears(record, gears);
   if (!record.model.force_elements.empty()) add_forces(record, forces);
-  text += joints.text("  ") + gears.text("  ") + drivers.text("  ") + forces.text("  ") + paths.text("  ");
+  text += joints.text("  ") + gears.text("  ") + drivers.text("  ") + forces.text("  ") + paths.text("  ") +
+          window_lines(record);
   if (!record.model.gears.empty()) text += gear_sentence;
   text += repeat_lines(record.repeat);
-  const bool any = has_statistics(record.model.settings, record.outcome);
+  const bool any = record.statistics.any();
   text += steps_per_impact(record);
   text += fmt::format("  energy residual {}   position residual {}\n",
                       any ? quantity(record.statistics.energy_residual(), "J", 2) : "-",

@@ -129,7 +129,7 @@ Json time_part(const Outcome& outcome) {
 
 /// Null where the run ended before statistics began.
 Json residuals_part(const RunRecord& record) {
-  const bool any = has_statistics(record.model.settings, record.outcome);
+  const bool any = record.statistics.any();
   const auto value = [&](double residual) { return any ? json_number(residual) : Json(nullptr); };
   return {{"position_max", value(record.statistics.position_residual())},
           {"velocity_max", value(record.statistics.velocity_residual())},
@@ -159,7 +159,7 @@ Json joints_part(const RunRecord& record) {
     const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
     const bool touches = has_contact_statistics(record.channels.joints[i]);
     const auto contact = [&](double value) { return touches ? json_number(value) : Json(nullptr); };
-    const bool counted = touches && has_statistics(record.model.settings, record.outcome);
+    const bool counted = touches && record.statistics.any();
     append(part, joint.name,
            {{"type", joint.component->description.name},
             {"max_force", json_number(seen.max_force)},
@@ -250,6 +250,27 @@ Json trust_part(const Verdict& trust) {
   return {{"verdict", word(trust.level())}, {"reasons", std::move(reasons)}};
 }
 
+/// The window of the statistics, and the largest values before it: null where nothing was left out.
+Json statistics_part(const RunRecord& record) {
+  const StatisticsWindow window = record.statistics.window();
+  const auto largest = record.statistics.largest_before();
+  const PeakValues& peaks = record.statistics.peak_values();
+  const auto value = [&](std::size_t i) { return json_number(largest[i]); };
+  Json joints = Json::object(), drivers = Json::object();
+  for (std::size_t j = 0; j < record.model.joints.size(); ++j) {
+    const JointElement& joint = record.model.joints[j];
+    if (!joint.is_force) append(joints, joint.name, {{"max_force", value(peaks.force(static_cast<int>(j)))}});
+  }
+  for (std::size_t d = 0; d < record.model.drivers.size(); ++d) {
+    append(drivers, record.model.drivers[d].name, {{"max_abs", value(peaks.effort(static_cast<int>(d)))}});
+  }
+  Json before = {{"joints", std::move(joints)}, {"drivers", std::move(drivers)}};
+  const bool any = record.statistics.any(), left_out = record.model.settings.discard > 0.0;
+  return {{"from", window.from},
+          {"to", any ? Json(window.to) : Json(nullptr)},
+          {"before", left_out ? std::move(before) : Json(nullptr)}};
+}
+
 Json performance_part(const Outcome& outcome) {
   const double rate = outcome.wall_seconds > 0.0 ? static_cast<double>(outcome.steps) / outcome.wall_seconds : 0.0;
   return {{"wall_seconds", outcome.wall_seconds}, {"steps_per_second", rate}};
@@ -285,10 +306,6 @@ bool has_contact_statistics(const JointColumns& columns) {
   return columns.normal_force >= 0 && columns.penetration >= 0 && columns.contact >= 0;
 }
 
-bool has_statistics(const Settings& settings, const Outcome& outcome) {
-  return outcome.time >= settings.start + settings.discard;
-}
-
 Json summary(const RunRecord& record) {
   const Outcome& outcome = record.outcome;
   return {{"freeplay", {{"version", program_version}, {"schema", schema_version}}},
@@ -299,6 +316,7 @@ Json summary(const RunRecord& record) {
           {"exit_code", outcome.exit_code},
           {"time", time_part(outcome)},
           {"counts", counts_part(outcome, record.statistics)},
+          {"statistics", statistics_part(record)},
           {"residuals", residuals_part(record)},
           {"bodies", bodies_part(record)},
           {"joints", joints_part(record)},

@@ -48,7 +48,4 @@ ForceWords force_words(const Model& model, int index);
 /// True if the joint publishes what the contact part of its statistics needs.
 bool has_contact_statistics(const JointColumns& columns);
 
-/// True if the run reached the time from which statistics are taken.
-bool has_statistics(const Settings& settings, const Outcome& outcome);
-
 }  // namespace freeplay

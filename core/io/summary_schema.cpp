@@ -110,6 +110,11 @@ Json driver_part() {
                  {"work", number_or_null()}});
 }
 
+Json statistics_part() {
+  const Json before = record({{"joints", by_name(numbers({"max_force"}))}, {"drivers", by_name(numbers({"max_abs"}))}});
+  return record({{"from", number()}, {"to", number_or_null()}, {"before", {{"anyOf", {before, {{"type", "null"}}}}}}});
+}
+
 }  // namespace
 
 Json summary_schema() {
@@ -129,6 +134,7 @@ Json summary_schema() {
                           {"factorizations", integer()},
                           {"contacts", integer()},
                           {"contacts_total", integer()}})},
+       {"statistics", statistics_part()},
        {"residuals", numbers({"position_max", "velocity_max", "energy_max"})},
        {"bodies", by_name({{"type", "object"}, {"additionalProperties", number_or_null()}})},
        {"joints", by_name(joint_part())},

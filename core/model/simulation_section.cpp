@@ -51,6 +51,7 @@ class SimulationSection {
     }
     create_integrator();
     complete_steps();
+    doubt_discard();
   }
 
   bool frames_good() const { return frames_good_; }
@@ -176,15 +177,25 @@ class SimulationSection {
     const auto channels = map.find("channels");
     const auto frames = map.find("frames");
     const auto format = map.find("format");
-    const auto discard = map.find("discard");
+    discard_ = map.find("discard");
     if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
     const double span = settings_.end - settings_.start;
     if (interval && settings_.interval > 0.5 * span) doubt_step(*interval, settings_.interval, span);
     if (channels) read_channels(*channels);
     if (frames) read_frames(*frames);
     if (format) read_format(*format);
-    if (discard) settings_.discard = discard->quantity(dimension::time, not_negative).value_or(0.0);
+    if (discard_) settings_.discard = discard_->quantity(dimension::time, not_negative).value_or(0.0);
     map.finish();
+  }
+
+  /// A run whose end leaves nothing to tables.
+  void doubt_discard() const {
+    const double from = settings_.start + settings_.discard;
+    if (!discard_ || from < settings_.end) return;
+    discard_->warn("no-statistics",
+                   fmt::format("statistics begin at {:g} s, but the run ends at {:g} s: its table and summary will "
+                               "have none; make 'discard' smaller than the run is long",
+                               from, settings_.end));
   }
 
   void read_channels(const CheckedValue& value) {
@@ -310,7 +321,7 @@ class SimulationSection {
   Draft& draft_;
   Settings& settings_;
   bool frames_good_ = true;
-  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_;
+  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_, discard_;
 };
 
 }  // namespace

@@ -190,6 +190,7 @@ bool Simulation::Impl::write_row_at(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
   energy.fill_inside(s, e_between, between.lambda(), channels, row_between);
   ++outcome.rows;
+  statistics.note_written(row_between);
   for (Sink* sink : sinks) sink->row(row_between);
   return sinks_are_well();
 }

@@ -72,9 +72,9 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int hunts
     return true;
   }
   if (hunts > most_hunts) {
-    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located", accepted.t(),
+    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located; {}", accepted.t(),
                                system.joint_layout(hunted.joint).events[at(hunted.event)].name,
-                               model.joints[at(hunted.joint)].name));
+                               model.joints[at(hunted.joint)].name, event_rule));
   }
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
   const double aim = aim_past(hunted, dt);

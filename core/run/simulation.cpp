@@ -62,6 +62,12 @@ StepLimits step_limits(const Settings& settings) {
           settings.accuracy > 0.0 ? largest_uninformed * settings.largest_step : settings.largest_step};
 }
 
+EventStorm::Limits storm_limits(const Settings& settings, bool adaptive) {
+  const double latest = std::max(std::abs(settings.start), std::abs(settings.end));
+  const double instant = std::max(2048.0 * rounding * latest, adaptive ? settings.smallest_step : 0.0);
+  return {instant, adaptive ? settings.step : 0.0, StepEvents::most_per_step};
+}
+
 // Multipliers that are not determined come out with efforts of drivers as small as can be: these must be among the
 // unknowns.
 Unknowns unknowns_of(const ModelFacts& facts) {
@@ -96,9 +102,11 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       e_between(own_between ? *own_between : solver.evaluation()),
       observer(system, all_channels),
       events(system, adaptive, between, e_between),
+      storm(model.joints.size(), storm_limits(settings, adaptive)),
       resting(system),
       statistics(model, all_channels),
       watch(system, all_channels),
+      peaks(statistics.peak_values().size()),
       scratch(at(integrator_layout.scratch) + guard::marks),
       row(all_channels.all().size(), 0.0),
       row_between(all_channels.all().size(), 0.0),
@@ -380,7 +388,9 @@ void Simulation::Impl::add_energy() {
 bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const double dt = trial.t() - accepted.t();
   add_energy();
-  if (adaptive && !write_rows_inside()) return false;
+  if (adaptive && (!write_rows_inside() || !begin_statistics_inside())) return false;
+  const bool expected = adaptive && (located.joint >= 0 || kink < unbounded);
+  if (expected && !note_abrupt_end()) return false;
   Fault fault;
   const auto mobility = [](void* self, int joint, double* out) {
     auto& run = *static_cast<Impl*>(self);
@@ -415,6 +425,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   outcome.time = accepted.t();
   const bool changed = !events.happenings().empty() || ended_inside;
   ended_inside = false;
+  ended_abruptly = changed || expected;
   if ((changed && !refresh()) || (kink < unbounded && !pass_kink(kink))) {
     // The row of the last state from which the run could go on may still be asked for.
     std::swap(accepted, trial);
@@ -443,54 +454,6 @@ bool Simulation::Impl::refresh() {
   }
   if (!evaluate_all(accepted, e_accepted)) return fail_with(e_accepted->fault, accepted.t());
   energy.renew(e_accepted, accepted.lambda());
-  return true;
-}
-
-// The channels of the accepted state: asked for by rows, statistics, stop conditions and warnings, and seldom by all
-// steps.
-bool Simulation::Impl::know_row() {
-  if (row_is_known) return true;
-  Fault fault;
-  if (!adaptive && !system.complete(point(accepted), e_accepted)) return fail_with(e_accepted->fault, accepted.t());
-  if (!observer.observe(point(accepted), e_accepted, accepted.lambda(), row, fault)) {
-    return fail_with(fault, accepted.t());
-  }
-  energy.fill(e_accepted, channels, row);
-  return row_is_known = true;
-}
-
-bool Simulation::Impl::record_step() {
-  const Profile::Timer timer(system.profile(), Phase::statistics);
-  if (!statistics.counts(accepted.t())) return true;
-  if (!know_row()) return false;
-  double position = 0.0, velocity = 0.0;
-  system.multiply(e_accepted, accepted.v(), residual);
-  for (std::size_t r = 0; r < residual.size(); ++r) {
-    position = std::max(position, std::abs(e_accepted->phi[r]));
-    velocity = std::max(velocity, std::abs(residual[r] - e_accepted->nu[r]));
-  }
-  statistics.add(row, energy.driver_work(), energy.joint_loss(), energy.force_work(), position, velocity);
-  return true;
-}
-
-bool Simulation::Impl::tell_sinks() {
-  outcome.events += static_cast<long>(events.happenings().size());
-  const Profile::Timer timer(system.profile(), Phase::events);
-  for (const StepEvents::Happening& happening : events.happenings()) {
-    const char* name = system.joint_layout(happening.joint).events[at(happening.event)].name;
-    if (std::string_view(name).ends_with("contact_begin")) statistics.add_contact(happening.joint, happening.time);
-    for (Sink* sink : sinks) {
-      sink->event({happening.time, happening.joint, happening.event, events.fields(happening)});
-    }
-  }
-  return events.happenings().empty() || sinks_are_well();
-}
-
-// What a sink was told may fail later, beside the run: a row or an event to come finds it.
-bool Simulation::Impl::sinks_are_well() {
-  for (const Sink* sink : sinks) {
-    if (!sink->ok()) return fail(6, "a result file could not be written");
-  }
   return true;
 }
 
@@ -524,14 +487,6 @@ bool Simulation::Impl::check_interrupt(const RunHooks& hooks) {
     }
   }
   return true;
-}
-
-bool Simulation::Impl::write_row() {
-  const Profile::Timer timer(system.profile(), Phase::output);
-  if (!know_row()) return false;
-  ++outcome.rows;
-  for (Sink* sink : sinks) sink->row(row);
-  return sinks_are_well();
 }
 
 double Simulation::Impl::row_time(long index) const {

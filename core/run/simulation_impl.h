@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "run/energy_account.h"
+#include "run/event_storm.h"
 #include "run/newton_stage_solver.h"
 #include "run/observer.h"
+#include "run/peak_search.h"
 #include "run/resting_joints.h"
 #include "run/simulation.h"
 #include "run/step_control.h"
@@ -69,6 +71,17 @@ struct Simulation::Impl {
   bool write_row_at(double t);
   bool look_inside(double t);
   bool settle_between();
+  // Records and the largest values inside a step (recording.cpp).
+  struct Leg {
+    const State& start;
+    const Evaluation& e_start;
+    const State& end;
+    const Evaluation& e_end;
+  };
+  bool observe_inside(double t, const Leg& leg);
+  void seek_peaks(const Leg& leg);
+  bool note_abrupt_end();
+  bool begin_statistics_inside();
   // and their ends at events (event_pursuit.cpp).
   double before_event(double dt, double shorter, StepEvents::Passage& hunted);
   bool pursue(StepEvents::Passage& hunted, double& dt, int hunts, bool& done);
@@ -88,6 +101,7 @@ struct Simulation::Impl {
   [[gnu::cold]] bool fail(int exit_code, std::string reason);
   [[gnu::cold]] bool fail_with(const Fault& fault, double t);
   [[gnu::cold]] bool fail_beside(int joint);
+  [[gnu::cold]] bool fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found);
   std::string why_not_converged(double dt) const;
   std::string row_name(int row_index) const;
   int hardest_joint(BodyId body) const;
@@ -112,9 +126,11 @@ struct Simulation::Impl {
   KeptEvaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
   Observer observer;
   StepEvents events;
+  EventStorm storm;
   RestingJoints resting;
   Statistics statistics;
   RunWatch watch;
+  PeakSearch peaks;  ///< with error control
   std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
   std::vector<int> stop_columns, with_history;
   struct Turn {
@@ -144,9 +160,10 @@ struct Simulation::Impl {
   double explained_energy = 0.0;  // the largest that work was found for [J]
   double gained = 0.0;            // without work, by the step that was looked at last [J]
   bool left_bounds = false;       // the last attempt ended with numbers that are not finite
-  bool ended_inside = false;  // the step that is being accepted was cut short: the integrator has no memory of its end
-  double allowed = 0.0;       // by which positions may err in one step, with error control [m]
-  bool row_is_known = false;  // `row` is that of the accepted state
+  bool ended_inside = false;   // the step that is being accepted was cut short: the integrator has no memory of its end
+  bool ended_abruptly = true;  // the last step: at an event or a kink, behind which values go on otherwise
+  double allowed = 0.0;        // by which positions may err in one step, with error control [m]
+  bool row_is_known = false;   // `row` is that of the accepted state
   long next_row = 1;
   std::chrono::steady_clock::time_point started;
   double last_progress = 0.0;

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "run/channel.h"
+#include "run/peak_values.h"
 
 namespace freeplay {
 
@@ -25,17 +25,30 @@ struct PathStatistics {
   double max_position, rms_position, max_angle, rms_angle;
 };
 
-/// Accumulates while a run goes on; means weigh each step by its length (trapezoidal rule).
+/// The part of a run that statistics are about [s]. Without length there are none.
+struct StatisticsWindow {
+  double from, to;
+};
+
+/// Accumulates while a run goes on; means weigh each step by its length (trapezoidal rule), and begin with the first
+/// row that is added from the instant on that `discard` names. Rows before it have maxima of their own.
 class Statistics {
  public:
   Statistics(const Model& model, const Channels& channels);
 
   /// Whether a state at t is one of those that count.
   bool counts(double t) const;
+  /// Whether the first instant that counts lies inside a step.
+  bool begins_inside(double from, double to) const;
+  double first_instant() const { return discard_until_; }
   /// The accepted row at the end of a step (or the start row). Work and losses by driver, joint and force come from the
   /// energy account, `position` and `velocity` are the largest constraint residuals [m or rad, per s].
   void add(std::span<const double> row, std::span<const double> driver_work, std::span<const double> joint_loss,
            std::span<const double> force_work, double position, double velocity);
+  /// A row inside a step, or at its end before an event: its values may be the largest.
+  void note(std::span<const double> row);
+  /// A row that is written.
+  void note_written(std::span<const double> row);
   void add_contact(int joint, double time);
 
   JointStatistics joint(int index) const;
@@ -44,6 +57,13 @@ class Statistics {
   DriverStatistics driver(int index) const;
   PathStatistics path(int index) const;
   double body_max_speed(int index) const;
+  StatisticsWindow window() const { return {discard_until_, any() ? last_time_ : discard_until_}; }
+  bool any() const { return duration_ > 0.0; }
+  const PeakValues& peak_values() const { return peaks_; }
+  std::span<const double> values() const { return values_; }            ///< of the last row
+  std::span<const double> largest() const { return largest_; }          ///< by PeakValues, in the window
+  std::span<const double> largest_before() const { return before_; }    ///< of rows before it; negative: there was none
+  std::span<const double> largest_written() const { return written_; }  ///< of rows in the window
   long contacts() const { return contacts_; }
   long contacts_total() const { return contacts_total_; }
   double position_residual() const { return position_; }
@@ -52,21 +72,18 @@ class Statistics {
 
  private:
   struct Mean {  // of a square over time
-    double integral = 0.0, last = 0.0, maximum = -1.0;
+    double integral = 0.0, last = 0.0;
     void add(double value, double dt, bool first);
     double rms(double duration) const;
   };
   struct JointSums {
     Mean force;
-    double torque = -1.0;
-    double normal = -1.0, penetration = 0.0, eccentricity = -1.0, contact_time = 0.0, last_contact = 0.0;
+    double contact_time = 0.0, last_contact = 0.0;
     double loss = 0.0, loss_start = 0.0;
     long contacts = 0;
-    bool any = false;
   };
   struct ForceSums {
-    int column = 0;  ///< first of its wrench
-    double force = -1.0, torque = -1.0, work = 0.0, work_start = 0.0;
+    double work = 0.0, work_start = 0.0;
   };
   struct DriverSums {
     Mean effort;
@@ -75,7 +92,11 @@ class Statistics {
   struct PathSums {
     Mean position, angle;
   };
+  void take_largest(double t);
+
   const Channels& channels_;
+  PeakValues peaks_;
+  std::vector<double> values_, largest_, before_, written_;
   double discard_until_;
   double last_time_ = 0.0, duration_ = 0.0;
   bool seen_ = false;
@@ -83,8 +104,6 @@ class Statistics {
   std::vector<ForceSums> forces_;
   std::vector<DriverSums> drivers_;
   std::vector<PathSums> paths_;
-  std::vector<double> body_speed_;
-  bool planar_;
   long contacts_ = 0, contacts_total_ = 0;
   double position_ = 0.0, velocity_ = 0.0, energy_ = 0.0;
 };

@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = 1e-15;      // of a located event function, in its unit
 constexpr double same_instant = 1e-12;  // part of a step
-constexpr int most_per_step = 8;        // of one joint; more are rounding, not motion
 constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
 constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little
 constexpr double faster_inside = 2.0;   // than at both ends no event function moves inside a step, or its error tells

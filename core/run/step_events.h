@@ -46,6 +46,7 @@ class StepEvents {
   bool tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
                    void* self, Fault& fault);
   static constexpr double tolerance = 1e-12;  ///< of a located event function, in its unit
+  static constexpr int most_per_step = 8;     ///< of one joint inside a step; more are rounding, not motion
 
   /// Advances z and h of `after` over the events between `before` and `after`; `e_before` and `e_after` are evaluated
   /// there (markers and coordinates of all joints). False, with `fault`, when a joint fails.

@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "system/joint_derivatives.h"
+
 namespace freeplay {
 namespace {
 
@@ -304,7 +306,11 @@ Evaluation::Evaluation(const System& system) {
   applied.resize(6 * model.forces.size());
   shifted.assign(joints, still);
   int widest = 0;
-  for (std::size_t j = 0; j < joints; ++j) widest = std::max(widest, layout.internal(static_cast<int>(j)).size);
+  std::size_t most_events = 0;
+  for (int j = 0; j < static_cast<int>(joints); ++j) {
+    widest = std::max(widest, layout.internal(j).size);
+    most_events = std::max(most_events, system.joint_layout(j).events.size);
+  }
   row_space = system.row_blank_;
   system.declared_.write_constants(*this);
   system.driven_rows_.write_constants(*this);
@@ -316,7 +322,7 @@ Evaluation::Evaluation(const System& system) {
     }
   }
   rate_space.resize(at(widest) + guard::marks);
-  derivative_space.resize(at((12 + widest) * (24 + widest) + 4 * widest));
+  derivative_space.resize(at((12 + widest) * (24 + widest)) + difference_numbers(at(widest), most_events));
   other_motion.resize(model.drivers.size());
   forget_motions();
   z.resize(at(layout.nz()));

@@ -97,9 +97,8 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     }
     bool good = record.joint.apply(in, out, e.fault.message);
     if (good && derivatives && layout.analytic_derivatives == 0) {
-      good = difference_forces(record.joint, in, layout.coordinate != Coordinate::none,
-                               std::span(e.derivative_space).first(table), std::span(e.derivative_space).subspan(table),
-                               e.fault.message);
+      good = difference_forces({record.joint, layout, size_, std::span(e.derivative_space).subspan(table)}, in, out,
+                               std::span(e.derivative_space).first(table), e.fault.message);
     }
     if (!good) return blame(j, e);
     if (!guard::intact(rate.end())) return refuse(j, beside, e);

@@ -13,8 +13,9 @@ import unittest
 
 from program import PROGRAM, ProgramTest, mechanism
 
-SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "residuals",
-           "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until", "trust", "repeat",
+SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "statistics",
+           "residuals", "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until",
+           "trust", "repeat",
            "performance", "files", "warnings"]
 FILES = ["events.csv", "model.yaml", "results.csv", "run.log", "summary.json"]
 EVENTS = "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps"

@@ -41,6 +41,8 @@ SHORT_ROD = DRIVEN.replace("bodies:", "bodies:\n  slider: {mass: 1 kg, inertia: 
 drivers:""").replace("value: t", "value: 10*t")
 with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
     PARALLELOGRAMS = chain.read()
+LIBRARIES = {"TEMPLATE": os.path.join(BUILD, "plugins", "template", "template_integrator.so"),
+             "ENDLESS": os.path.join(BUILD, "plugins", "tests", "endless_events.so")}
 RUN = ["run", "model.yaml", "--force"]
 
 
@@ -155,7 +157,14 @@ CASES = {
         (0, journal("mass: 1 kg", "mass: 100 kg"), RUN),
     "The law of ... rebounds faster than asked for a restitution below ...":
         (0, journal("restitution: 0.9", "restitution: 0.3"), RUN),
+    "the events of joint '...' do not end: ... within ... s, the last '...'; ... [event-storm]":
+        (4, pendulum("  pivot: {type: revolute, between: [ground, rod]}", "  stop: {type: endless-stop, between: [ground, rod], gap: 0.5 m}").replace("initial: {joints: {pivot: 0 deg}}\n", "").replace("gravity: [0, -9.81]", "gravity: [9.81, 0]")
+         .replace("end: 0.1 s", "end: 1 s"), RUN + ["--plugin", "ENDLESS"]),
     # After a run
+    "statistics begin at ... s, but the run ends at ... s: ... [no-statistics]":
+        (0, pendulum("step: 1 ms", "step: 1 ms, output: {discard: 0.1 s}"), RUN),
+    "rows ... s apart miss peaks between them: they show ... N of the ... N in ...":
+        (0, journal("step: 10 us", "step: 10 us, output: {interval: 5 ms}"), RUN),
     "steps per impact: ... or more; ... of ... impacts took fewer than 20: --step ..., or an accuracy in its place, would do":
         (0, journal("step: 10 us", "step: 500 us"), RUN),
     "trust: doubtful (...)": (0, journal("mass: 1 kg", "mass: 100 kg"), RUN),
@@ -184,8 +193,7 @@ class TroubleShooting(ProgramTest):
         for heading, (code, model, words) in CASES.items():
             with self.subTest(heading):
                 self.write("model.yaml", model)
-                words = [os.path.join(BUILD, "plugins", "template", "template_integrator.so") if word == "TEMPLATE" else word
-                         for word in words]
+                words = [LIBRARIES.get(word, word) for word in words]
                 done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=60)
                 said = done.stdout + done.stderr
                 self.assertEqual(code, done.returncode, said)

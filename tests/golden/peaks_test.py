@@ -1,0 +1,135 @@
+"""The largest values of tables and summaries: no row exceeds them, and they say from when to when they are taken."""
+import csv
+import glob
+import json
+import math
+import os
+import re
+import unittest
+
+from program import ROOT, ProgramTest, mechanism
+
+PART = 1e-6  # of a peak, by which a row may exceed it
+
+# Short enough to be quick, long enough to meet impacts.
+SHIPPED = sorted(glob.glob(os.path.join(ROOT, "mechanisms", "*.yaml")) +
+                 glob.glob(os.path.join(ROOT, "mechanisms", "spatial", "*.yaml")) +
+                 glob.glob(os.path.join(ROOT, "mechanisms", "validation", "*.yaml")))
+PENDULUM = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1 kg, inertia: 1/12, com: [0.5 m, 0]}}
+joints: {pivot: {type: revolute, between: [ground, rod]}}
+simulation: {end: 2 s, output: {interval: 2 s}}
+"""
+ENDS = {"slider-crank": 2e-3, "3-rrr": 0.01, "4-rrr": 0.01, "slider-crank-clearance": 4e-3, "cradle-3": 0.02, "cradle-5": 0.02,
+        "bathe-noh": 2.0, "bathe-noh-trapezoidal": 2.0}
+
+
+def length(row, prefix, names):
+    return math.hypot(*(float(row[prefix + name]) for name in names))
+
+
+def moment(row, prefix):
+    return abs(float(row[prefix + "torque"])) if prefix + "torque" in row else length(row, prefix + "t", "xyz")
+
+
+def peaks_of_rows(rows, model):
+    """Largest values of the rows under the names of summary.json."""
+    last = {}
+
+    def note(*name, value):
+        last[name] = max(last.get(name, -math.inf), value)
+
+    space = "xyz" if model["model"]["space"] == "spatial" else "xy"
+    for row in rows:
+        for name in model["bodies"]:
+            note("bodies", name, "max_speed", value=length(row, "body.%s.v" % name, space))
+        for name, joint in model["joints"].items():
+            prefix = "joint.%s." % name
+            note("joints", name, "max_force", value=length(row, prefix + "f", space))
+            note("joints", name, "max_torque", value=moment(row, prefix))
+            if joint["max_fn"] is not None:
+                note("joints", name, "max_fn", value=float(row[prefix + "fn"]))
+                note("joints", name, "max_delta", value=float(row[prefix + "delta"]))
+                axes = [axis for axis in space if prefix + "e" + axis in row]
+                note("joints", name, "max_eccentricity", value=length(row, prefix + "e", axes))
+        for name in model["forces"]:
+            note("forces", name, "max_force", value=length(row, "force.%s.f" % name, space))
+            note("forces", name, "max_torque", value=moment(row, "force.%s." % name))
+        for name in model["drivers"]:
+            prefix = "driver.%s." % name
+            effort = row.get(prefix + "torque", row.get(prefix + "force"))
+            note("drivers", name, "max_abs", value=abs(float(effort)))
+        for name in model["paths"]:
+            note("paths", name, "max_position", value=length(row, "driver.%s.e" % name, "xy"))
+            note("paths", name, "max_angle", value=abs(float(row["driver.%s.eangle" % name])))
+    return last
+
+
+class PeaksTest(ProgramTest):
+    def run_model(self, model, *options):
+        out, err = self.freeplay("run", model, "--out", "r", "--force", *options)
+        rows = list(csv.DictReader(self.read("r", "results.csv").splitlines()))
+        return rows, json.loads(self.read("r", "summary.json")), out, err
+
+    def assert_no_row_exceeds(self, rows, summary):
+        rows = [row for row in rows if float(row["time"]) >= summary["statistics"]["from"]]
+        for (kind, name, key), value in peaks_of_rows(rows, summary).items():
+            peak = summary[kind][name][key]
+            self.assertLessEqual(value, peak + PART * abs(peak) + 1e-15, (kind, name, key))
+
+    def finely_written(self, path, end):
+        """A copy of a model whose rows are fine, and whose statistics leave nothing out."""
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        text = re.sub(r"interval: [^,}\n]+", "interval: %g" % (end / 400), text)
+        text = re.sub(r"(, )?discard: [^,}\n]+", "", text)
+        return self.write(os.path.basename(path), text)
+
+    def test_no_row_exceeds_a_peak_in_any_shipped_model(self):
+        for path in SHIPPED:
+            end = ENDS.get(os.path.basename(path)[:-5], 0.05)
+            for options in (("--accuracy", "1um"), ("--step", "%g" % (end / 2000))):
+                with self.subTest(os.path.relpath(path, ROOT), options=options):
+                    model = self.finely_written(path, end)
+                    rows, summary, _, _ = self.run_model(model, "--end", "%g" % end, *options)
+                    self.assertGreater(len(rows), 390)
+                    self.assert_no_row_exceeds(rows, summary)
+
+    def test_a_peak_does_not_depend_on_how_fine_the_rows_are(self):
+        # A pendulum that is let go: largest speed and force at the bottom, which coarse steps pass by.
+        self.write("m.yaml", PENDULUM)
+        for accuracy in ("1mm", "10um", "0.1um"):
+            _, summary, _, _ = self.run_model("m.yaml", "--accuracy", accuracy)
+            self.assertAlmostEqual(1.0, summary["joints"]["pivot"]["max_force"] / (2.5 * 9.81), delta=2e-4)
+            self.assertAlmostEqual(1.0, summary["bodies"]["rod"]["max_speed"] / (0.5 * math.sqrt(3 * 9.81)), delta=2e-4)
+
+    def test_the_window_is_printed_with_what_it_leaves_out(self):
+        self.write("m.yaml", PENDULUM.replace("interval: 2 s", "interval: 10 ms, discard: 0.6 s"))
+        for options in (("--accuracy", "1um"), ("--step", "1 ms")):
+            rows, summary, out, err = self.run_model("m.yaml", "--end", "0.8 s", *options)
+            self.assertEqual("", err)
+            reached = max(length(row, "joint.pivot.f", "xy") for row in rows if float(row["time"]) < 0.6)
+            self.assertRegex(out, r"\n  statistics from 0\.6 s to 0\.8 s; in rows before that pivot reached 24\.\d+ N\n")
+            before = summary["statistics"]["before"]["joints"]["pivot"]["max_force"]
+            self.assertLessEqual(reached, before)
+            self.assertLess(summary["joints"]["pivot"]["max_force"], before)
+            self.assertEqual((0.6, 0.8), (summary["statistics"]["from"], summary["statistics"]["to"]))
+
+    def test_without_a_window_there_are_no_figures_and_a_word(self):
+        for discard in ("2 s", "3 s"):
+            self.write("m.yaml", PENDULUM.replace("interval: 2 s", "interval: 10 ms, discard: " + discard))
+            _, summary, out, err = self.run_model("m.yaml", "--step", "1 ms")
+            self.assertRegex(err, r"statistics begin at %s, but the run ends at 2 s.*\[no-statistics\]" % discard)
+            self.assertIn("no statistics: they begin at %s, and the run ended at 2 s; in rows before that pivot reached" % discard, out)
+            self.assertRegex(out, r"pivot +-  ")
+            self.assertIsNone(summary["joints"]["pivot"]["max_force"])
+            self.assertIsNone(summary["statistics"]["to"])
+
+    def test_rows_that_miss_a_peak_are_told(self):
+        _, _, out, _ = self.run_model(mechanism("slider-crank"), "--end", "16 ms", "--accuracy", "1um")
+        self.assertRegex(out, r"rows 2e-05 s apart miss peaks between them: they show \S+ N of the \S+ N in wrist\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
