@@ -51,6 +51,7 @@ class AxisForce final : public Joint {
   explicit AxisForce(const Parameters& parameters) : slides_(parameters.word("kind") == 0), law_(parameters) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.forces = 1;
     layout.analytic_derivatives = 1;
     layout.coordinate = slides_ ? Coordinate::position : Coordinate::angle;

@@ -31,6 +31,7 @@ class Bushing final : public Joint {
         turn_damping_{p.number("damping.turn_x"), p.number("damping.turn_y"), p.number("damping.turn_z")} {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.forces = 1;
     layout.analytic_derivatives = 1;
   }

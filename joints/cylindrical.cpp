@@ -12,7 +12,10 @@ class Cylindrical final : public Joint {
  public:
   explicit Cylindrical(const Parameters&) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 4; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 4;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     const space::Separation separation(in);
     separation.close(space::axis(*in.a, 0), 0, rows);

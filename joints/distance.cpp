@@ -17,7 +17,10 @@ class Distance final : public Joint {
  public:
   explicit Distance(const Parameters& parameters) : length_(parameters.number("length")) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 1; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 1;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
     const double distance = d.norm();
@@ -41,7 +44,10 @@ class SpatialDistance final : public Joint {
  public:
   explicit SpatialDistance(const Parameters& parameters) : length_(parameters.number("length")) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 1; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 1;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     const Eigen::Vector3d d = space::position(*in.b) - space::position(*in.a);
     const double distance = d.norm();

@@ -16,6 +16,7 @@ class Fixed final : public Joint {
   explicit Fixed(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.constraint_rows = 3;
     layout.planar_rows = planar_rows;
   }
@@ -42,7 +43,10 @@ class SpatialFixed final : public Joint {
  public:
   explicit SpatialFixed(const Parameters&) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 6; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 6;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     space::join_origins(in, 0, rows);
     space::RotationVector(in).close(in, 3, rows);

@@ -10,7 +10,10 @@ class Planar final : public Joint {
  public:
   explicit Planar(const Parameters&) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 3; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 3;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     space::Separation(in).close(space::axis(*in.a, 2), 0, rows);
     space::align_z_axes(in, 1, rows);

@@ -13,6 +13,7 @@ class PointOnLine final : public Joint {
   explicit PointOnLine(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::position;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 1;
@@ -37,6 +38,7 @@ class SpatialPointOnLine final : public Joint {
   explicit SpatialPointOnLine(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::position;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;

@@ -16,6 +16,7 @@ class Prismatic final : public Joint {
   explicit Prismatic(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::position;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;
@@ -47,6 +48,7 @@ class SpatialPrismatic final : public Joint {
   explicit SpatialPrismatic(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::position;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 5;

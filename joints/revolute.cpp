@@ -17,6 +17,7 @@ class Revolute final : public Joint {
   explicit Revolute(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::angle;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 2;
@@ -52,6 +53,7 @@ class SpatialRevolute final : public Joint {
   explicit SpatialRevolute(const Parameters&) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::angle;
     layout.rows_without_coordinate = 1;
     layout.constraint_rows = 5;

@@ -77,6 +77,7 @@ class RevoluteClearance final : public Joint {
   }
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::angle;
     layout.planar_coordinate = 1;
     layout.forces_without_coordinate = 1;

@@ -48,6 +48,7 @@ class RevoluteClearanceInSpace final : public Joint {
   }
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::angle;
     layout.forces_without_coordinate = 1;
     layout.history = static_cast<int>(std::size_t{places} * slots) + ends * play_.memory();

@@ -10,7 +10,10 @@ class Spherical final : public Joint {
  public:
   explicit Spherical(const Parameters&) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 3; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 3;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override { space::join_origins(in, 0, rows); }
   bool place(double, Pose& b_in_a) const override {
     b_in_a = planar::pose(0.0, 0.0);

@@ -33,6 +33,7 @@ class SphericalClearance final : public Joint {
   explicit SphericalClearance(const Parameters& p) : play_(p, not_a_number) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.forces_without_coordinate = 1;
     layout.history = static_cast<int>(slots) + play_.memory();
     layout.forces = 1;

@@ -29,6 +29,7 @@ struct Spring {
   double stored(double stretch) const { return (0.5 * stiffness * stretch + preload) * stretch; }
 
   void declare(JointLayout& layout) const {
+    layout.time_scale = unbounded;
     static const Channel length[] = {{"length", "m"}};
     layout.forces = 1;
     layout.analytic_derivatives = 1;

@@ -11,7 +11,10 @@ class Universal final : public Joint {
  public:
   explicit Universal(const Parameters&) {}
 
-  void declare(JointLayout& layout) const override { layout.constraint_rows = 4; }
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 4;
+  }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
     space::join_origins(in, 0, rows);
     space::keep_perpendicular(in, space::axis(*in.a, 0), space::axis(*in.b, 1), 3, rows);

@@ -47,6 +47,21 @@ struct EvaluationFailure {
   int offset = 0, length = 1;
 };
 
+/// A time at which a formula changes its form: an abs, min or max changes sides or a ramp of smooth() begins or ends.
+/// Just before it the formula is still what it was.
+struct Corner {
+  double time = 0.0;    ///< [s]
+  bool smooth = false;  ///< value, rate and acceleration do not jump there
+};
+
+/// The course of a formula over a span of time.
+struct Outline {
+  std::vector<Corner> corners;  ///< in order of time, each once
+  /// By piece, corners.size() + 1 of them, how fast it may change there [1/s]: 0 for a polynomial of low degree, w for
+  /// sin(w t) and exp(w t), the sum of both for a product; infinite where nothing is known.
+  std::vector<double> rates;
+};
+
 /// A compiled formula f(t). Parameters are folded in as constants; what depends on `t` becomes a flat postfix program.
 /// Immutable, cheap to copy for short formulas, safe to evaluate from several threads.
 class Expression {
@@ -64,10 +79,10 @@ class Expression {
   /// How many derivatives are used: 0, 1 or, from the start, 2. The others may not exist.
   void need(int derivatives) { derivatives_ = derivatives; }
 
-  /// Times in (from, to] [s] at which an abs, min or max changes sides, so that a derivative may jump; just before each
-  /// the formula is still what it was. Looked for at 4096 instants and more, with the rates there: what comes and goes
-  /// between two of them may be missed. Allocates.
-  std::vector<double> kinks(double from, double to) const;
+  /// What can be told of the formula in (from, to] [s] without a run. Corners of any duration are found where what
+  /// decides between two forms is a straight line of t; else it is looked at 4096 times and more, with its rate. Very
+  /// long formulas with many corners are not looked at to their end: then rates are infinite. Allocates.
+  Outline outline(double from, double to) const;
 
   bool depends_on_time() const { return depends_on_time_; }
   DimensionKind kind() const { return kind_; }
@@ -81,6 +96,7 @@ class Expression {
 
  private:
   friend class ExpressionCompiler;
+  friend class ExpressionOutline;
 
   enum class Operation {
     push_constant,
@@ -116,8 +132,6 @@ class Expression {
   bool run(double t, Jet& out, EvaluationFailure& failure) const noexcept;
   bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   static int operand_count(Operation operation) noexcept;
-  std::vector<Jet> sides(double t) const;
-
   std::vector<Instruction> program_;
   int stack_depth_ = 0;
   int characters_ = 0;

@@ -162,7 +162,7 @@ LoadedModel load(const Read& read, const BuildOptions& build, const CommonOption
     loaded.model.reset();
     if (loaded.exit_code == 0) loaded.exit_code = 3;
   } else if (loaded.model->ideal.empty() && std::ranges::find(build.ideal, "all") != build.ideal.end() &&
-             !build.finer && !common.quiet) {
+             !build.largest_step && !common.quiet) {
     print_messages(fmt::format("freeplay: note: --ideal all: no joint of '{}' has clearance, nothing was made ideal\n",
                                loaded.model->file),
                    common.no_color);

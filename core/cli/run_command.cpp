@@ -18,6 +18,7 @@
 #include "cli/repeat_runs.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
+#include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "io/channel_selection.h"
 #include "io/csv_sink.h"
@@ -29,13 +30,12 @@
 #include "io/summary.h"
 #include "io/version.h"
 #include "report/row_memory.h"
-#include "report/verification.h"
 #include "run/simulation.h"
 
 namespace freeplay {
 namespace {
 
-constexpr double least_agreement = 1e-6;  // of positions, for --verify [m]
+constexpr int runs_disagree = 7;  // exit code of --verify
 
 struct RunOptions {
   std::string model, end, step, accuracy, integrator, out, format, repeat, seed;
@@ -163,14 +163,15 @@ class RunJob {
                        library.table->compiler(), library.path));
     }
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
-    const Outcome outcome = run();
+    Outcome outcome = run();
     const Ended ended = end();
     for (const std::string& text : ended.warnings) warn(text);
     note(fmt::format("{} at {:g} s after {} steps, {} rows", status_word(outcome.status), outcome.time, outcome.steps,
                      outcome.rows));
     if (!outcome.reason.empty()) recording_.log().write(outcome.exit_code == 0 ? "note" : "error", outcome.reason);
     std::optional<Verification> verification;
-    if (options_.verify && outcome.exit_code == 0) verification = run_finer();
+    if (options_.verify && outcome.exit_code == 0) verification = verify(outcome, ended);
+    if (verification && verification->agreement == Agreement::disagree) outcome.exit_code = runs_disagree;
     recording_.close();
     return finish(outcome, ended, verification);
   }
@@ -201,35 +202,17 @@ class RunJob {
     return sinks_;
   }
 
-  /// The same model with half the step or a tenth of the error; nothing of it is written but how it differs.
-  std::optional<Verification> run_finer() {
-    BuildOptions build = build_options(options_);
-    build.finer = true;
-    LoadedModel loaded = load_model(options_.model, build, common_);
-    const auto assembled = loaded.model ? assemble_model(loaded) : nullptr;
-    if (!assembled) {
-      warn("--verify: the model could not be read again");
-      return std::nullopt;
+  /// What runs by another method say of this one; nothing of them is written but that.
+  std::optional<Verification> verify(const Outcome& outcome, const Ended& ended) {
+    std::string trouble;
+    const BuildOptions build = build_options(options_);
+    std::optional<Verification> verification = verify_run(
+        {options_.model, build, common_, assembled_.system, outcome, ended.statistics, rows_->table()}, trouble);
+    if (!trouble.empty()) warn("--verify: " + trouble);
+    if (verification && verification->agreement == Agreement::disagree) {
+      warn("--verify: " + agreement_text(*verification));
     }
-    RowMemory rows(channels_);
-    Sink* const sink = &rows;
-    Simulation simulation(assembled->system, assembled->start, channels_, {&sink, 1});
-    RunHooks hooks;
-    hooks.interrupt = &watch_interrupts();
-    const Outcome outcome = simulation.run(hooks);
-    if (outcome.exit_code != 0) warn(fmt::format("--verify: the finer run ended early: {}", outcome.reason));
-    std::vector<std::string> positions;
-    for (const Body& body : loaded_.model->bodies) {
-      for (const char* quantity : {"x", "y"}) positions.push_back(fmt::format("body.{}.{}", body.name, quantity));
-    }
-    Verification result =
-        verify(rows_->table(), rows.table(), positions, std::max(least_agreement, settings().accuracy));
-    const Settings& finer = loaded.model->settings;
-    result.finer = !finer.adaptive        ? fmt::format("step {:g} s", finer.step)
-                   : finer.accuracy > 0.0 ? fmt::format("accuracy {:g} m", finer.accuracy)
-                                          : fmt::format("tolerance {:g}", finer.tolerance);
-    result.steps = outcome.steps;
-    return result;
+    return verification;
   }
 
   Outcome run() {
@@ -244,7 +227,7 @@ class RunJob {
     return simulation_->run(hooks);
   }
 
-  /// The summary of a large model takes memory, and a finer run as much as this one did: matrices go first.
+  /// The summary of a large model takes memory, and a second run as much as this one did: matrices go first.
   Ended end() {
     const auto row = simulation_->last_row();
     const auto warnings = simulation_->warnings();
@@ -265,6 +248,14 @@ class RunJob {
       for (const ChannelError& channel : verification->channels)
         record.verify.emplace_back(channel.name, channel.error);
       record.agree_until = verification->agree_until;
+      record.verification = verification_json(*verification);
+      if (verification->agreement == Agreement::disagree) {
+        record.trust.add({.id = "verify",
+                          .level = Trust::bad,
+                          .message = fmt::format("a second run, by {}, disagrees", verification->method),
+                          .value = verification->largest,
+                          .limit = verification->limit});
+      }
     }
     record.extremes = ended.extremes;
     record.trust.add(outcome.doubts);
@@ -362,7 +353,8 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--step", options->step, "Step: 2us", "H");
   add_option(*app, "--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um", "L");
   add_option(*app, "--integrator", options->integrator, "Integrator, with its default parameters", "NAME");
-  add_flag(*app, "--verify", options->verify, "Run again finer, and tell the observed error of each channel");
+  add_flag(*app, "--verify", options->verify,
+           "Run again by a method of another kind and tell the observed errors; exit code 7 when both disagree");
   add_option(*app, "--repeat", options->repeat, "Run N times, from starts moved in the play: median and range of peaks",
              "N");
   add_option(*app, "--seed", options->seed, "Of the starts of --repeat (1)", "S");

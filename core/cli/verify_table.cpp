@@ -9,26 +9,80 @@
 namespace freeplay {
 namespace {
 
+using Align = TextTable::Align;
+
 std::string number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.4g}", value); }
+
+const char* word(Agreement agreement) {
+  constexpr const char* words[] = {"agree", "err", "part", "disagree"};
+  return words[static_cast<int>(agreement)];
+}
 
 }  // namespace
 
+std::string agreement_text(const Verification& v) {
+  const std::string limit = fmt::format("{:g} m", v.limit);
+  std::string peaks;
+  for (const PeakPair& peak : v.peaks) {
+    if (peak.differs)
+      peaks +=
+          fmt::format("{}{}: {} and {}", peaks.empty() ? "" : ", ", peak.name, number(peak.run), number(peak.second));
+  }
+  const std::string difference =
+      fmt::format("positions agree to {} until {:.6g} s and differ by up to {:.2g} m, at {:.6g} s", limit,
+                  v.agree_until, v.largest, v.at);
+  switch (v.agreement) {
+    case Agreement::agree:
+      return fmt::format("positions agree to {} throughout", limit);
+    case Agreement::err:
+      return (peaks.empty() ? difference : difference + "; peaks differ (" + peaks + ")") +
+             ": one of both methods errs by more than that; ask for more accuracy, or for shorter steps, if it is too "
+             "much";
+    case Agreement::part:
+      return fmt::format(
+          "positions agree to {} until {:.6g} s; after that runs go their own ways, as those of a chaotic "
+          "motion do: compare statistics, not points",
+          limit, v.agree_until);
+    case Agreement::disagree:
+      break;
+  }
+  return "THE RUNS DISAGREE: " + (peaks.empty() ? difference : difference + "; peaks differ (" + peaks + ")") +
+         "; this is not chaos: do not use these results, and ask for more accuracy or shorter steps";
+}
+
+Json verification_json(const Verification& v) {
+  Json peaks = Json::array();
+  for (const PeakPair& peak : v.peaks) {
+    peaks.push_back({{"name", peak.name},
+                     {"run", json_number(peak.run)},
+                     {"second", json_number(peak.second)},
+                     {"differs", peak.differs}});
+  }
+  return {{"method", v.method}, {"steps", v.steps},
+          {"until", v.until},   {"agreement", word(v.agreement)},
+          {"limit", v.limit},   {"largest", json_number(v.largest)},
+          {"at", v.at},         {"peaks", std::move(peaks)}};
+}
+
 std::string verify_table(const Verification& v) {
-  std::string text =
-      fmt::format("  verified by {} ({} steps): positions agree to {:g} m ", v.finer, v.steps, v.agreement);
-  text += v.throughout ? "throughout\n" : fmt::format("until {:.6g} s\n", v.agree_until);
-  using Align = TextTable::Align;
+  std::string text = fmt::format("  verified by {}, {} steps: {}\n", v.method, v.steps, agreement_text(v));
+  TextTable peaks({Align::left, Align::right, Align::right, Align::left});
+  peaks.add_row({"peak", "this run", "second run", ""});
+  for (const PeakPair& peak : v.peaks) {
+    peaks.add_row({peak.name, number(peak.run), number(peak.second), peak.differs ? "differs" : ""});
+  }
+  if (!v.peaks.empty()) text += peaks.text("  ");
+  const bool throughout = v.throughout();
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
-  if (v.throughout) {
+  if (throughout) {
     table.add_row({"channel", "observed error"});
   } else {
-    text += "  after that the two runs go their own ways: compare statistics, not points\n";
-    table.add_row({"channel", "observed error", "rms after", "finer run", "largest after", "finer run"});
+    table.add_row({"channel", "observed error", "rms after", "second run", "largest after", "second run"});
   }
   for (const ChannelError& c : v.channels) {
     std::vector<std::string> row{c.name, fmt::format("{:.2g}", c.error)};
-    if (!v.throughout) {
-      for (const double value : {c.rms, c.finer_rms, c.largest, c.finer_largest}) row.push_back(number(value));
+    if (!throughout) {
+      for (const double value : {c.rms, c.second_rms, c.largest, c.second_largest}) row.push_back(number(value));
     }
     table.add_row(std::move(row));
   }

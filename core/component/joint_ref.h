@@ -60,6 +60,9 @@ class JointRef {
   bool free_distance(const JointInput& in, double& distance, Message& m) const {
     return ok(table_->free_distance(self_, &in, &distance, &m));
   }
+  bool next_corner(double t, double& corner, Message& m) const {
+    return ok(table_->next_corner(self_, t, &corner, &m));
+  }
 
  private:
   static bool ok(Status status) { return status == Status::ok; }

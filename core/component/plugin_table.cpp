@@ -43,6 +43,10 @@ abi::JointTable defaults<abi::JointTable>() {
     *distance = 0.0;
     return Status::ok;
   };
+  table.next_corner = [](const void*, double, double* corner, Message*) noexcept {
+    *corner = unbounded;
+    return Status::ok;
+  };
   return table;
 }
 

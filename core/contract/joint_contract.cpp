@@ -158,7 +158,7 @@ bool same_names(Span<const Channel> a, Span<const Channel> b) {
 bool same_layout(const JointLayout& a, const JointLayout& b) {
   const auto numbers = [](const JointLayout& l) {
     return std::tuple(l.coordinate, l.constraint_rows, l.internal_variables, l.history, l.forces != 0,
-                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance);
+                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale);
   };
   return numbers(a) == numbers(b) && std::ranges::equal(a.planar_rows, b.planar_rows) &&
          same_names(a.channels, b.channels) &&
@@ -188,6 +188,7 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   check_cycle(probe, subject.passive, random, findings);
   check_memory(probe, twin, moments, random, findings);
   check_rest(probe, moments, random, findings);
+  check_time(probe, moments, random, findings);
   check_place(probe, random, findings);
   check_offset(probe, findings);
   return findings;

@@ -31,6 +31,7 @@ struct JointSubject {
 ///   initial-offset                    of a joint with play is a finite place within reach
 ///   no-hidden-state, same-twin        answers depend on the input alone, bit for bit, and not on the object
 ///   free-distance                     within it nothing acts, happens or is remembered
+///   time-scale, next-corner           what it says of its own dependence on time
 ///   rollback                          history and internal variables are all there is to put back
 ///   answers, finite, stays-in-span, step-limit, allocation, declares-sanely    of every call
 Findings check_joint(const JointSubject& subject, const Conditions& conditions);
@@ -43,6 +44,8 @@ void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, F
 void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
                   RandomNumbers& random, Findings& findings);
 void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
+                Findings& findings);
+void check_time(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
                 Findings& findings);
 
 }  // namespace freeplay

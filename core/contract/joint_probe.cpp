@@ -189,6 +189,12 @@ double JointProbe::free_distance(const JointMoment& moment) const {
   return std::isfinite(distance) ? distance : 0.0;
 }
 
+double JointProbe::next_corner(double t) const {
+  double corner = unbounded;
+  run("next_corner", nullptr, [&](Message& m) { return joint_.next_corner(t, corner, m); });
+  return corner;
+}
+
 bool JointProbe::warns(const JointMoment& moment) const {
   Fed fed(*this, moment);
   const char* text = nullptr;

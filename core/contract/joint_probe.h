@@ -56,6 +56,7 @@ class JointProbe {
   std::vector<double> observe(const JointMoment& at) const;
   double step_limit(const JointMoment& at) const;
   double free_distance(const JointMoment& at) const;
+  double next_corner(double t) const;
   /// False when there is nothing to warn of.
   bool warns(const JointMoment& at) const;
   /// False when the type cannot place a body.

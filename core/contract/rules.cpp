@@ -109,6 +109,13 @@ constexpr Rule rules[] = {
      "Wherever the origins of the markers move within free_distance(), the joint exerts and stores nothing, no event "
      "is "
      "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it tells later."},
+    {"time-scale", joints,
+     "`time_scale` is a time above zero, or zero where it is not known; a joint that declares `unbounded` gives the "
+     "same "
+     "forces and rows at any time. Look for JointInput::t and for functions of time among the parameters."},
+    {"next-corner", joints,
+     "next_corner(t) gives the first corner after t, later than t and the same from wherever in between it is asked; "
+     "unbounded where none is left."},
     {"initial-offset", joints, "A joint with play starts at a finite place with a finite speed, for any load."},
     // Contact laws.
     {"no-tension", contact_laws,

@@ -327,6 +327,7 @@ Json summary(const RunRecord& record) {
           {"advice", advice_part(record.advice)},
           {"verify", verify_part(record)},
           {"agree_until", json_number(record.agree_until)},
+          {"verification", record.verification},
           {"trust", trust_part(record.trust)},
           {"repeat", record.repeat},
           {"performance", performance_part(outcome)},

@@ -29,6 +29,7 @@ struct RunRecord {
   std::vector<std::pair<std::string, double>> verify{};
   double agree_until = std::numeric_limits<double>::quiet_NaN();
   RunExtremes extremes{};
+  Json verification{};  ///< what the second run was and what it says of the first; null without one
   Verdict trust{};
   Json repeat = nullptr;  ///< of RepeatSummary, of a repeated run
 };

@@ -68,6 +68,22 @@ Json joint_part() {
   return record(std::move(fields));
 }
 
+Json verification_part() {
+  Json part = record({{"method", text()},
+                      {"steps", integer()},
+                      {"until", number()},
+                      {"agreement", {{"enum", {"agree", "err", "part", "disagree"}}}},
+                      {"limit", number()},
+                      {"largest", number_or_null()},
+                      {"at", number()},
+                      {"peaks", list_of(record({{"name", text()},
+                                                {"run", number_or_null()},
+                                                {"second", number_or_null()},
+                                                {"differs", {{"type", "boolean"}}}}))}});
+  part["type"] = {"object", "null"};
+  return part;
+}
+
 Json trust_part() {
   const Json reason = record({{"id", text()},
                               {"level", {{"enum", {"doubtful", "bad"}}}},
@@ -147,6 +163,7 @@ Json summary_schema() {
             {{"under_resolved", integer()}, {"min_steps_per_contact", number_or_null()}, {"step", number_or_null()}})},
        {"verify", {{"type", {"object", "null"}}, {"additionalProperties", number_or_null()}}},
        {"agree_until", number_or_null()},
+       {"verification", verification_part()},
        {"trust", trust_part()},
        {"repeat", repeat_part()},
        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},

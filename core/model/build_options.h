@@ -17,7 +17,7 @@ struct BuildOptions {
   std::optional<double> accuracy = std::nullopt;         ///< [m per s]; in place of any step
   std::optional<std::string> integrator;                 ///< name
   Readout* readout = nullptr;                            ///< is told what values and names came to
-  bool finer = false;                                    ///< half the fixed step, or a tenth of the error allowed
+  std::optional<double> largest_step = std::nullopt;     ///< of runs with an accuracy [s]
 };
 
 }  // namespace freeplay

@@ -1,5 +1,7 @@
 #include "model/simulation_section.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "model/doubtful_number.h"
@@ -113,7 +115,7 @@ class SimulationSection {
       settings_.adaptive = true;
       settings_.step = 1e-5 * span;
       settings_.smallest_step = 1e-14 * span;
-      settings_.largest_step = 0.25 * span;
+      settings_.largest_step = std::min(0.25 * span, draft_.options.largest_step.value_or(unbounded));
       settings_.per_contact = steps_of_accurate_contact;
     } else {
       if (draft_.options.step) settings_.step = *draft_.options.step;
@@ -130,7 +132,6 @@ class SimulationSection {
     require_estimate();
     doubt_written_step(span);
     warn_of_idle_keys();
-    if (draft_.options.finer) refine();
   }
 
   void doubt_written_step(double span) const {
@@ -148,12 +149,6 @@ class SimulationSection {
       (*value)->warn_at_key("unused",
                             fmt::format("'{}' has no effect on fixed steps: 'adaptive: true' is missing", key));
     }
-  }
-
-  void refine() {
-    if (!settings_.adaptive) settings_.step *= 0.5;
-    settings_.tolerance *= 0.1;
-    settings_.accuracy *= 0.1;
   }
 
   /// An integrator that cannot tell its error cannot choose its steps.

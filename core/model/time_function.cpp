@@ -50,4 +50,9 @@ void set_function(ParameterValue& value, Expression expression, const Node& node
   value.function_owner = served;
 }
 
+const Expression* written_expression(const ParameterValue& value) {
+  if (value.function.evaluate != &evaluate_written) return nullptr;
+  return &static_cast<const WrittenFunction*>(value.function.self)->expression;
+}
+
 }  // namespace freeplay

@@ -14,4 +14,7 @@ void set_function(ParameterValue& value, double constant);
 /// failure on tells that not it but the model file is at fault.
 void set_function(ParameterValue& value, Expression expression, const Node& node);
 
+/// The expression that `value` serves, or null where it serves a constant or is no function of time.
+const Expression* written_expression(const ParameterValue& value);
+
 }  // namespace freeplay

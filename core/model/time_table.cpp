@@ -138,7 +138,8 @@ bool TimeTable::evaluate(double t, Jet& out, EvaluationFailure& failure) const n
   return true;
 }
 
-double TimeTable::next_kink(double t) const noexcept {
+// The next end of the table or, if `inner`, point.
+double TimeTable::next_place(double t, bool inner) const noexcept {
   const double first = times_.front(), last = times_.back(), none = std::numeric_limits<double>::infinity();
   if (t < first) return first;
   const bool repeats = outside_ == Outside::repeat;
@@ -148,8 +149,8 @@ double TimeTable::next_kink(double t) const noexcept {
   // The time may be at the end of the period before, or rounded to it.
   for (const double periods : {std::max(passed - 1.0, 0.0), passed, passed + 1.0}) {
     const double shift = periods * period, end = periods == 0.0 ? behind_last : last + shift;
-    const auto inner = std::upper_bound(times_.begin(), times_.end() - 1, t - shift);
-    if (straight_ && inner != times_.end() - 1 && *inner + shift > t) return *inner + shift;
+    const auto point = std::upper_bound(times_.begin(), times_.end() - 1, t - shift);
+    if (inner && point != times_.end() - 1 && *point + shift > t) return *point + shift;
     if (end > t) return end;
   }
   return none;

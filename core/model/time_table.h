@@ -31,7 +31,11 @@ class TimeTable {
   bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
   /// The first time after t at which the slope jumps; infinite when there is none. That of a repeated
   /// table may be told twice, with different rounding.
-  double next_kink(double t) const noexcept;
+  double next_kink(double t) const noexcept { return next_place(t, straight_); }
+  /// The first of its points after t, those of every period and the ends included; infinite when there is none.
+  double next_point(double t) const noexcept { return next_place(t, true); }
+  /// Straight lines between its points.
+  bool is_straight() const { return straight_; }
 
   std::span<const double> times() const { return times_; }
   std::span<const double> values() const { return values_; }
@@ -45,6 +49,7 @@ class TimeTable {
     double t = 0.0, beyond = 0.0, periods = 0.0;
   };
   bool locate(double t, Place& place, EvaluationFailure& failure) const noexcept;
+  double next_place(double t, bool inner) const noexcept;
   double end_rounding() const noexcept;
   std::size_t piece(double t) const noexcept;
   double integral_within(double t) const noexcept;

@@ -172,19 +172,4 @@ Comparison compare(const ResultTable& a, const ResultTable& b, const ComparisonR
   return Comparer(a, b, rules).compare();
 }
 
-double agree_until(const ResultTable& a, const ResultTable& b, const std::vector<std::string>& channels, double limit) {
-  const std::size_t rows = std::min(a.time().size(), b.time().size());
-  double until = a.time().empty() ? 0.0 : a.time().front();
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (const std::string& name : channels) {
-      const int i = a.find(name), k = b.find(name);
-      if (i < 0 || k < 0) continue;
-      const double x = a.values[static_cast<std::size_t>(i)][r], y = b.values[static_cast<std::size_t>(k)][r];
-      if (!(std::abs(x - y) <= limit) && !(std::isnan(x) && std::isnan(y))) return until;
-    }
-    until = a.time()[r];
-  }
-  return until;
-}
-
 }  // namespace freeplay

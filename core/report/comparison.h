@@ -39,8 +39,4 @@ struct Comparison {
 /// Throws Error{usage} when a pattern fits no channel.
 Comparison compare(const ResultTable& a, const ResultTable& b, const ComparisonRules& rules);
 
-/// Time until which every listed channel differs by no more than `limit`: that of the last row before the first that
-/// differs by more; the last row's time when none does. Rows stand at the same times.
-double agree_until(const ResultTable& a, const ResultTable& b, const std::vector<std::string>& channels, double limit);
-
 }  // namespace freeplay

@@ -70,10 +70,16 @@ bool Simulation::Impl::adaptive_step() {
   if (!(dt >= smallest)) {
     return fail(4, solver.regularity() < stuck_there ? why_singular() : why_so_small(dt, limiting));
   }
-  const double kink = next_kink();
+  double kink = 0.0;
+  if (!next_corner(kink)) return false;
   const bool to_kink = kink <= settings.end;
   const double goal = to_kink ? before(kink) : settings.end;
-  const double reach = std::min(dt, goal - accepted.t());
+  double reach = std::min(dt, goal - accepted.t());
+  if (const double proposed = reach; !resolve_inputs(reach)) {
+    return false;
+  } else if (reach < proposed) {
+    dt = reach;
+  }
   StepEvents::Passage hunted = events.expected_within(reach);
   if (hunted.joint >= 0) dt = hunted.fraction * reach;
   std::size_t detours = 0;
@@ -116,6 +122,14 @@ bool Simulation::Impl::adaptive_step() {
       if (dt < smallest) return fail(4, why_energy_grows(dt));
       continue;
     }
+    if (double resolved = trial.t() - accepted.t(); !resolves_joints(resolved)) {
+      return false;
+    } else if (resolved < trial.t() - accepted.t()) {
+      ++outcome.rejected;
+      hunted = {};
+      dt = resolved;
+      continue;
+    }
     bool done = false;
     if (!pursue(hunted, dt, hunts, done)) return false;
     if (done) break;
@@ -130,7 +144,8 @@ bool Simulation::Impl::adaptive_step() {
     ++hunts;
   }
   const bool at_kink = to_kink && trial.t() == goal;
-  if (at_kink) {
+  corner_kind = !inputs ? CornerKind::motion : at_kink ? inputs->kind_of(kink, kink - goal) : CornerKind::smooth;
+  if (at_kink && corner_kind == CornerKind::motion) {
     control.restart();
   } else if (hunted.joint < 0) {
     control.accept(trial.t() - accepted.t(), error);

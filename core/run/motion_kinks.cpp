@@ -1,5 +1,6 @@
-// Instants at which a motion that a driver prescribes has a kink. Runs with error control end a step just before one
-// and start again just behind it: a jump of the acceleration is legal, a jump of the speed is a blow.
+// Corners of inputs. Runs with error control end a step just before one. Where a ramp of smooth() begins or ends they
+// go on; where a load jumps they start again just behind it, and also where a motion that a driver prescribes has a
+// kink: a jump of its acceleration is legal, a jump of its speed is a blow.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,11 +20,63 @@ double margin(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * 
 
 }  // namespace
 
-// The next kink that a step can end before.
-double Simulation::Impl::next_kink() const {
-  double kink = system.motions().next_kink(accepted.t());
-  while (std::isfinite(kink) && kink - margin(kink) <= accepted.t()) kink = system.motions().next_kink(kink);
-  return kink;
+// The next corner that a step can end before.
+bool Simulation::Impl::next_corner(double& corner) {
+  Fault fault;
+  const auto next = [&](double t) {
+    if (inputs) return inputs->next_corner(t, corner, fault);
+    corner = system.motions().next_kink(t);
+    return true;
+  };
+  bool good = next(accepted.t());
+  while (good && std::isfinite(corner) && corner - margin(corner) <= accepted.t()) good = next(corner);
+  return good || fail_with(fault, accepted.t());
+}
+
+// Shortens a step of the length dt from the accepted state that does not resolve what depends on time.
+bool Simulation::Impl::resolve_inputs(double& dt) {
+  if (!inputs) return true;
+  dt = inputs->resolved(accepted.t(), dt);
+  if (!inputs->watches_joints()) return true;
+  const Profile::Timer timer(system.profile(), Phase::joints);
+  Fault fault;
+  return inputs->resolved_by_joints(point(accepted), e_accepted, accepted.t(), dt, fault) ||
+         fail_with(fault, accepted.t());
+}
+
+// The same for joints where the step of the length dt that was just made has brought them.
+bool Simulation::Impl::resolves_joints(double& dt) {
+  if (!inputs || !inputs->watches_joints()) return true;
+  const Profile::Timer timer(system.profile(), Phase::joints);
+  Fault fault;
+  return inputs->resolved_by_joints(point(trial), e_trial, accepted.t(), dt, fault) || fail_with(fault, trial.t());
+}
+
+// Whether an effort or a force is another one behind the corner.
+bool Simulation::Impl::loads_jump(double corner) {
+  const double before = corner - margin(corner), behind = corner + margin(corner);
+  const auto jumps = [&](double from, double to, double rates) {
+    return std::abs(to - from) > smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(corner) * rates;
+  };
+  MotionFault fault;
+  if (!system.motions().evaluate(before, {motion_before.data(), motion_before.size()}, fault) ||
+      !system.motions().evaluate(behind, {motion_behind.data(), motion_behind.size()}, fault)) {
+    return true;  // the run will meet it
+  }
+  for (std::size_t d = 0; d < model.drivers.size(); ++d) {
+    if (prescribes(model.drivers[d].kind)) continue;
+    const TimeValue &from = motion_before[d], &to = motion_behind[d];
+    if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
+  }
+  for (const AppliedForce& force : model.forces) {
+    for (const Expression& component : force.value) {
+      Jet from, to;
+      EvaluationFailure failure;
+      if (!component.evaluate(before, from, failure) || !component.evaluate(behind, to, failure)) return true;
+      if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
+    }
+  }
+  return false;
 }
 
 double Simulation::Impl::before(double kink) { return kink - margin(kink); }
@@ -31,6 +84,10 @@ double Simulation::Impl::before(double kink) { return kink - margin(kink); }
 // From just before `kink` to just behind it, and behind others that rounding cannot tell from it. Positions stay, the
 // velocities follow the drivers by the least impulse.
 bool Simulation::Impl::pass_kink(double kink) {
+  if (corner_kind == CornerKind::smooth || (corner_kind == CornerKind::load && !loads_jump(kink))) {
+    accepted.t() = kink;
+    return true;
+  }
   note_jumps(kink);
   for (double next = kink; next - kink <= margin(kink); next = system.motions().next_kink(next)) {
     accepted.t() = next + margin(next);
@@ -124,6 +181,18 @@ bool Simulation::Impl::note_jumps(double kink) {
     if (speed_jumps[d].count++ == 0) speed_jumps[d] = {1, kink, from, to};
   }
   return any;
+}
+
+// Of runs in steps of one size: inputs that do more inside a step than it can see.
+void Simulation::Impl::format_unresolved() {
+  if (adaptive) return;
+  const double step = std::min(settings.step, settings.interval);
+  for (const InputActivity::Unresolved& input : InputActivity(system, settings.interval, 0.0).closer_than(step)) {
+    warnings.push_back(fmt::format(
+        "{} '{}': it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over what it "
+        "does between them; ask for an accuracy instead, or for steps of {:.2g} s",
+        input.section, *input.name, input.from, input.to, step, 0.1 * (input.to - input.from)));
+  }
 }
 
 void Simulation::Impl::format_jumps() {

@@ -20,6 +20,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
+constexpr double shortest_part = 1e-6;      // of the run, see shortest_change()
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
@@ -55,6 +56,11 @@ double local_tolerance(const System& system) {
     if (clearance > 0.0) unit = std::min(unit, clearance);
   }
   return settings.tolerance * unit;
+}
+
+// What depends on time in a way that cannot be analysed is looked at so closely that no change this long is missed [s].
+double shortest_change(const Settings& settings) {
+  return std::max(shortest_part * (settings.end - settings.start), settings.interval);
 }
 
 StepLimits step_limits(const Settings& settings) {
@@ -128,6 +134,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
     system.end_steps_at_events(settings.per_contact);
+    inputs.emplace(system, shortest_change(settings), allowed);
   }
   if (flows > 0) solver.integrate_flows(energy);
   system.begin_at(owner, start.state, accepted);
@@ -498,6 +505,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   started = Clock::now();
   system.set_profile(hooks.profile);
   if (hooks.profile != nullptr) hooks.profile->start();
+  if (hooks.blind_to_inputs) inputs.reset();
   outcome.time = accepted.t();
   if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
@@ -509,6 +517,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   note_unused_play();
   explain_failure();
   format_jumps();
+  format_unresolved();
   return outcome;
 }
 

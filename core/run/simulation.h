@@ -37,6 +37,8 @@ struct RunHooks {
   /// Called at most ten times a second: time reached, steps so far.
   std::function<void(double, long)> progress;
   Profile* profile = nullptr;  ///< told where the time goes
+  /// For tests of what finds wrong runs: steps go over what forces and other inputs do inside them.
+  bool blind_to_inputs = false;
 };
 
 /// Advances a model from its start to Settings::end and feeds sinks and statistics.

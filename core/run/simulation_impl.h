@@ -6,6 +6,7 @@
 
 #include "run/energy_account.h"
 #include "run/event_storm.h"
+#include "run/input_activity.h"
 #include "run/newton_stage_solver.h"
 #include "run/observer.h"
 #include "run/peak_search.h"
@@ -51,8 +52,12 @@ struct Simulation::Impl {
   bool run_fixed(const RunHooks& hooks);
   bool advance_to(double target, const RunHooks& hooks);
 
-  // Kinks of prescribed motions (motion_kinks.cpp).
-  double next_kink() const;
+  // Corners of inputs (motion_kinks.cpp).
+  bool next_corner(double& corner);
+  bool resolve_inputs(double& dt);
+  bool resolves_joints(double& dt);
+  bool loads_jump(double corner);
+  void format_unresolved();
   static double before(double kink);
   bool pass_kink(double kink);
   bool note_jumps(double kink);
@@ -128,6 +133,8 @@ struct Simulation::Impl {
   StepEvents events;
   EventStorm storm;
   RestingJoints resting;
+  std::optional<InputActivity> inputs;          ///< with error control, unless a test blinds it
+  CornerKind corner_kind = CornerKind::smooth;  // of the corner at which the step being accepted ends
   Statistics statistics;
   RunWatch watch;
   PeakSearch peaks;  ///< with error control

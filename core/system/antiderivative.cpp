@@ -1,6 +1,7 @@
 #include "system/antiderivative.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/error.h"
@@ -13,22 +14,32 @@ constexpr double node[4] = {0.1834346424956498049394761, 0.525532409916328985817
                             0.9602898564975362316835609};
 constexpr double weight[4] = {0.3626837833783619829651504, 0.3137066458778872873379622, 0.2223810344533744705443560,
                               0.1012285362903762591525314};
-constexpr int deepest = 40;  // 2^-40 of the run: a kink costs 1e-12 of a panel at most
+constexpr int first_cuts = 6,
+              unknown_cuts = 10;  // into halves, before a rule is believed that may miss what lies between
+constexpr int deepest = 40;       // 2^-40 of the run: a kink costs 1e-12 of a panel at most
 
 }  // namespace
 
 Antiderivative::Antiderivative(const Expression& integrand, double start, double end, const Location& location)
     : integrand_(&integrand), start_(start) {
   if (!integrand.depends_on_time()) return;
-  double whole = 0.0;
-  EvaluationFailure failure;
-  if (!gauss(start, end, whole, failure)) {
-    throw Error(Error::Category::input, failure.id, failure.reason, location);
+  const Outline outline = integrand.outline(start, end);
+  const int fewer = static_cast<int>(std::bit_width(outline.corners.size()));
+  for (std::size_t i = 0; i <= outline.corners.size(); ++i) {
+    const double from = i == 0 ? start : outline.corners[i - 1].time;
+    const double to = i < outline.corners.size() ? outline.corners[i].time : end;
+    if (!(from < to)) continue;
+    double whole = 0.0;
+    EvaluationFailure failure;
+    if (!gauss(from, to, whole, failure)) {
+      throw Error(Error::Category::input, failure.id, failure.reason, location);
+    }
+    cut(from, to, whole, std::max(0, (std::isfinite(outline.rates[i]) ? first_cuts : unknown_cuts) - fewer), location);
   }
-  cut(start, end, whole, 0, location);
 }
 
-void Antiderivative::cut(double from, double to, double whole, int depth, const Location& location) {
+// `cuts` are made at least.
+void Antiderivative::cut(double from, double to, double whole, int cuts, const Location& location, int depth) {
   const double middle = 0.5 * (from + to);
   double left = 0.0, right = 0.0;
   EvaluationFailure failure;
@@ -36,14 +47,13 @@ void Antiderivative::cut(double from, double to, double whole, int depth, const 
     throw Error(Error::Category::input, failure.id, failure.reason, location);
   }
   const double scale = std::abs(left) + std::abs(right) + std::abs(total_);
-  // The first cuts are always made: a rule can miss what lies between its points.
-  if (depth >= 6 && (std::abs(left + right - whole) <= 1e-15 * scale || depth >= deepest)) {
+  if (depth >= cuts && (std::abs(left + right - whole) <= 1e-15 * scale || depth >= deepest)) {
     panels_.push_back({from, total_});
     total_ += left + right;
     return;
   }
-  cut(from, middle, left, depth + 1, location);
-  cut(middle, to, right, depth + 1, location);
+  cut(from, middle, left, cuts, location, depth + 1);
+  cut(middle, to, right, cuts, location, depth + 1);
 }
 
 bool Antiderivative::gauss(double from, double to, double& sum, EvaluationFailure& failure) const noexcept {

@@ -8,8 +8,9 @@
 
 namespace freeplay {
 
-/// F(t) = integral of f from `start` to t, to about 1e-14 of the largest panel. The interval is cut once, into panels
-/// on which one Gauss rule is exact to rounding; F depends on t alone, never on earlier calls.
+/// F(t) = integral of f from `start` to t, to about 1e-14 of the largest panel. The interval is cut once, at the
+/// corners of f and in between into panels on which one Gauss rule is exact to rounding; F depends on t alone, never on
+/// earlier calls.
 class Antiderivative {
  public:
   Antiderivative() = default;
@@ -24,7 +25,7 @@ class Antiderivative {
     double start, integral;  ///< integral up to its start
   };
   bool gauss(double from, double to, double& sum, EvaluationFailure& failure) const noexcept;
-  void cut(double from, double to, double whole, int depth, const Location& location);
+  void cut(double from, double to, double whole, int cuts, const Location& location, int depth = 0);
 
   const Expression* integrand_ = nullptr;
   double start_ = 0.0, total_ = 0.0;

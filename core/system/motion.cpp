@@ -47,8 +47,9 @@ Motions::Motions(const Model& model)
 }
 
 void Motions::add_kinks(const Expression& expression) {
-  const std::vector<double> more = expression.kinks(model_.settings.start, model_.settings.end);
-  kinks_.insert(kinks_.end(), more.begin(), more.end());
+  for (const Corner& corner : expression.outline(model_.settings.start, model_.settings.end).corners) {
+    if (!corner.smooth) kinks_.push_back(corner.time);
+  }
 }
 
 double Motions::next_kink(double t) const noexcept {

@@ -23,6 +23,7 @@ class TorsionalSpringDamper final : public Joint {
       : stiffness_(p.number("stiffness")), damping_(p.number("damping")), free_angle_(p.number("free_angle")) {}
 
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
     layout.coordinate = Coordinate::angle;  // the host reports it, counts its turns and hands it to apply()
     layout.forces = 1;
     layout.channels = channels;

@@ -24,6 +24,7 @@ class MyType final : public Joint {
 
   // Counts are fixed here, once: rows of constraints, internal variables, history, events, channels.
   void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;  // apply() does not read in.t: no run has to look for changes in time
     layout.forces = 1;
     layout.channels = channels;
   }

@@ -59,6 +59,9 @@ enum class Flaw {
   writes_beside_history,
   step_limit_zero,
   free_too_far,
+  timed_force,
+  earlier_corner,
+  wandering_corner,
   offset_nowhere,
   negative_rows
 };
@@ -209,6 +212,9 @@ class Cage final : public Joint {
     channels[0] = flaw_ == Flaw::keeps_contact ? deepest_ : Gap(in).delta;
   }
   double step_limit(const JointInput&) const override { return flaw_ == Flaw::step_limit_zero ? 0.0 : unbounded; }
+  double next_corner(double t) const override {
+    return flaw_ == Flaw::earlier_corner ? t : flaw_ == Flaw::wandering_corner ? t + 1.0 : unbounded;
+  }
   double free_distance(const JointInput& in) const override {
     const double left = clearance_ - Gap(in).distance;
     return !(left > 0.0) || relaxing_ ? 0.0 : flaw_ == Flaw::free_too_far ? 2.0 * left : left;

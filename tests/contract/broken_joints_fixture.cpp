@@ -18,6 +18,7 @@ void Cage::declare(JointLayout& layout) const {
   layout.clearance = clearance_;
   layout.events = events_;
   layout.channels = channels_;
+  layout.time_scale = unbounded;
 }
 
 void Cage::apply(const JointInput& in, JointForces& out) const {
@@ -53,6 +54,10 @@ void Cage::break_forces(const JointInput& in, JointForces& out) const {
       // A force across the line of the origins needs a moment.
       out.wrench_b[0] += 1.0;
       out.wrench_a[0] -= 1.0;
+      break;
+    case Flaw::timed_force:
+      for (int i = 0; i < 6; ++i)
+        out.wrench_a[i] *= 1.0 + 1e-3 * std::sin(in.t), out.wrench_b[i] *= 1.0 + 1e-3 * std::sin(in.t);
       break;
     case Flaw::derivative_entry:
       if (asked) out.derivatives[6 * (24 + in.internal.size) + 7] *= 1.01;

@@ -169,6 +169,9 @@ TEST(JointContract, FindsWrongCalls) {
                       {Flaw::writes_beside_history, "stays-in-span"},
                       {Flaw::step_limit_zero, "step-limit"},
                       {Flaw::free_too_far, "free-distance"},
+                      {Flaw::timed_force, "time-scale"},
+                      {Flaw::earlier_corner, "next-corner"},
+                      {Flaw::wandering_corner, "next-corner"},
                       {Flaw::offset_nowhere, "initial-offset"}});
 }
 

@@ -68,16 +68,49 @@ class Accuracy(ProgramTest):
     def test_verify_tells_errors_and_until_when_runs_agree(self):
         out, _ = self.freeplay("run", mechanism("slider-crank"), "--accuracy", "1e-9", "--end", "10 ms", "--verify",
                                "--out", "r")
-        self.assertIn("verified by accuracy 1e-10 m", out)
+        self.assertIn("verified by bathe (implicit), accuracy 5e-10 m, steps of 2e-05 s at most", out)
         self.assertIn("body.slider.x", out)
         with open(self.path("r/summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
         self.assertGreaterEqual(summary["agree_until"], 8e-3)
         self.assertLess(summary["verify"]["body.slider.x"], 1e-6)
+        self.assertIn(summary["verification"]["agreement"], ("agree", "part"))
 
-    def test_verify_of_fixed_steps_halves_the_step(self):
+    def test_verify_of_fixed_steps_takes_another_kind_with_error_control(self):
         out, _ = self.freeplay("run", mechanism("pendulum"), "--end", "1 s", "--verify", "--out", "r")
-        self.assertIn("verified by step 0.0005 s (2000 steps): positions agree", out)
+        self.assertRegex(out, r"verified by dopri5 \(explicit\), accuracy 5e-08 m, steps of 0.001 s at most, \d+ steps: "
+                              "positions agree")
+        self.assertNotIn("go their own ways", out)
+
+    def test_verify_calls_a_chaotic_motion_chaotic(self):
+        out, _ = self.freeplay("run", mechanism("slider-crank"), "--accuracy", "1um", "--verify", "--out", "r")
+        self.assertIn("after that runs go their own ways", out)
+
+    PULSE = """freeplay: 1
+bodies: {m: {mass: 1, inertia: 1}}
+joints: {guide: {type: prismatic, between: [ground, m]}}
+forces: {hit: {type: force, at: m, value: ["1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", 0]}}
+simulation: {end: 2 s, %s}
+"""
+
+    def test_a_short_pulse_is_in_the_last_row_and_verified(self):
+        self.write("pulse.yaml", self.PULSE % "accuracy: 1 um")
+        summary = self.run_json("pulse.yaml", "--verify", "--out", "r")
+        with open(self.path("r/results.csv"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        x = float(lines[-1].split(",")[lines[0].split(",").index("body.m.x")])
+        self.assertAlmostEqual(1.499, x, delta=5e-6)
+        self.assertEqual("agree", summary["verification"]["agreement"])
+
+    def test_verify_disagrees_with_steps_that_go_over_a_pulse(self):
+        self.write("pulse.yaml", self.PULSE % "step: 5 ms, output: {interval: 5 ms}")
+        out, err = self.freeplay("run", "pulse.yaml", "--verify", "--out", "r", code=7)
+        self.assertIn("THE RUNS DISAGREE", out)
+        self.assertIn("force 'hit': it has corners at 0.5 s and 0.501 s", err)
+        with open(self.path("r/summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.assertEqual(("disagree", 7), (summary["verification"]["agreement"], summary["exit_code"]))
+        self.assertEqual("bad", summary["trust"]["verdict"])
 
 
 class Compare(ProgramTest):

@@ -83,6 +83,11 @@ struct JointLayout {
   double smaller_radius = std::numeric_limits<double>::quiet_NaN();   ///< of the two, as of a journal [m]
   double contact_length = std::numeric_limits<double>::quiet_NaN();   ///< along the axis [m]
   double contact_modulus = std::numeric_limits<double>::quiet_NaN();  ///< E*: 1/E* = (1-nu^2)/E of both, added [Pa]
+  /// How fine the joint's own dependence on time (JointInput::t) is: the duration of its shortest change [s].
+  /// `unbounded`: neither forces nor rows depend on t. 0: not known. Runs with error control look at forces and rows,
+  /// as functions of t alone, so closely that no change of that duration is stepped over; where it is not known, none
+  /// as long as an output interval. What is shorter is met if next_corner() tells of it.
+  double time_scale = 0.0;
 };
 
 /// Everything a joint may read. All views are valid during the call only.
@@ -188,6 +193,10 @@ class Joint {
   /// steps of fixed size the host does not ask a joint for anything of that until its markers have used up the
   /// distance, nearly. 0: no promise.
   virtual double free_distance(const JointInput&) const { return 0.0; }
+  /// The first time after t [s] at which forces or rows, as functions of JointInput::t alone, begin, end, jump or have
+  /// a kink: runs with error control end a step there. It depends on nothing but t. `unbounded`: there is none. Corners
+  /// of a TimeFunction among the parameters are known to the host.
+  virtual double next_corner(double /*t*/) const { return unbounded; }
 };
 
 namespace abi {
@@ -211,6 +220,7 @@ struct JointTable {
   Status (*initial_offset)(const void*, Span<const double>, InitialOffset*, Message*) noexcept;
   Status (*warning)(const void*, const JointInput*, const char** text, Message*) noexcept;
   Status (*free_distance)(const void*, const JointInput*, double*, Message*) noexcept;
+  Status (*next_corner)(const void*, double t, double* corner, Message*) noexcept;
 };
 
 /// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
@@ -262,6 +272,9 @@ inline constexpr JointTable joint_table{
     },
     [](const void* s, const JointInput* in, double* distance, Message* m) noexcept {
       return guarded(m, [&] { *distance = static_cast<const J*>(s)->free_distance(*in); });
+    },
+    [](const void* s, double t, double* corner, Message* m) noexcept {
+      return guarded(m, [&] { *corner = static_cast<const J*>(s)->next_corner(t); });
     }};
 
 template <class J>

@@ -297,38 +297,83 @@ TEST(Expression, EvaluatesTheDeepestStack) {
   EXPECT_EQ(at(powers, 1.0).value, 1.0);
 }
 
-void expect_kinks(std::string_view text, std::vector<double> wanted) {
-  const std::vector<double> found = compiled(text).kinks(0.0, 1.0);
+/// Times of its corners: sharp ones, or ends of ramps.
+std::vector<double> corners(std::string_view text, bool smooth = false) {
+  std::vector<double> times;
+  for (const Corner& corner : compiled(text).outline(0.0, 1.0).corners) {
+    if (corner.smooth == smooth) times.push_back(corner.time);
+  }
+  return times;
+}
+
+void expect_times(const std::vector<double>& found, const std::vector<double>& wanted, std::string_view text) {
   ASSERT_EQ(found.size(), wanted.size()) << text;
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-15) << text;
 }
 
-TEST(ExpressionKinks, AreWhereSidesChange) {
+void expect_kinks(std::string_view text, const std::vector<double>& wanted) {
+  expect_times(corners(text), wanted, text);
+}
+
+TEST(ExpressionOutline, HasKinksWhereSidesChange) {
   expect_kinks("abs(t - 0.3)", {0.3});
   expect_kinks("min(1, 2*t) + max(0, t - 0.7, 3*t - 2.7)", {0.5, 0.7});
   expect_kinks("abs(sin(10*t))", {0.1 * pi, 0.2 * pi, 0.3 * pi});
   expect_kinks("smooth(max(t, 0.25), 0, 1)", {0.25});
 }
 
-TEST(ExpressionKinks, OneThatComesAndGoesBetweenLooksIsSeenByItsRates) {
-  const double half = std::sqrt(1e-10);
-  const std::vector<double> found = compiled("max(0, 1e-10 - (t - 0.50001)^2)").kinks(0.0, 1.0);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_NEAR(found[0], 0.50001 - half, 1e-11);
-  EXPECT_NEAR(found[1], 0.50001 + half, 1e-11);
+TEST(ExpressionOutline, HasBothEndsOfEverySmoothRamp) {
+  const char* const text = "1000*smooth(t, 0.5, 0.501)*(1 - smooth(t, 0.502, 0.5021))";
+  expect_times(corners(text, true), {0.5, 0.501, 0.502, 0.5021}, text);
+  expect_kinks(text, {});
+  expect_times(corners("smooth(abs(t - 0.5), 0.1, 0.2)", true), {0.3, 0.4, 0.6, 0.7}, "of an abs");
+  expect_kinks("smooth(abs(t - 0.5), 0.1, 0.2)", {0.5});
 }
 
-TEST(ExpressionKinks, AreNotWhereASideIsOnlyTouched) {
+// Pieces between inner corners are straight, however short they are.
+TEST(ExpressionOutline, FindsShortPulsesOfNestedFunctions) {
+  expect_kinks("max(0, 1 - abs(t - 0.5)/1e-7)", {0.5 - 1e-7, 0.5, 0.5 + 1e-7});
+  expect_kinks("min(max(0, t - 0.3), max(0, 0.3 + 2e-8 - t))*1e9", {0.3, 0.3 + 1e-8, 0.3 + 2e-8});
+  expect_kinks("max(0, 1e-14 - (t - 0.500001)^2)", {0.500001 - 1e-7, 0.500001 + 1e-7});
+  expect_kinks("t*max(0, 1 - abs(max(t, 0.2) - 0.5)/1e-6)", {0.2, 0.5 - 1e-6, 0.5, 0.5 + 1e-6});
+}
+
+TEST(ExpressionOutline, SeesWhatComesAndGoesBetweenLooksByItsRates) {
+  const double half = std::sqrt(1e-10);
+  const std::vector<double> found = corners("max(0, 1e-10 - sin(t - 0.5001)^2)");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0], 0.5001 - half, 1e-11);
+  EXPECT_NEAR(found[1], 0.5001 + half, 1e-11);
+}
+
+TEST(ExpressionOutline, HasNoCornerWhereASideIsOnlyTouched) {
   expect_kinks("abs((t - 0.3)^2)", {});
   expect_kinks("sin(t) + abs(2)", {});
   expect_kinks("max(t, t)", {});
 }
 
 // Left of it the formula is what it was, so that a step can end there.
-TEST(ExpressionKinks, AreTheFirstInstantsOfTheOtherSide) {
-  const double kink = compiled("abs(t - 0.3)").kinks(0.0, 1.0).at(0);
+TEST(ExpressionOutline, CornersAreTheFirstInstantsOfTheOtherSide) {
+  const double kink = corners("abs(t - 0.3)").at(0);
   EXPECT_EQ(at("abs(t - 0.3)", std::nextafter(kink, 0.0)).rate, -1.0);
   EXPECT_EQ(at("abs(t - 0.3)", kink).rate, 1.0);
+}
+
+TEST(ExpressionOutline, FindsEveryCornerOfManyPeriods) {
+  EXPECT_EQ(corners("abs(sin(2*pi*1000*(t + 1e-5)))").size(), 2000u);
+}
+
+TEST(ExpressionOutline, KnowsHowFastPiecesMayChange) {
+  const auto rates = [](std::string_view text) { return compiled(text).outline(0.0, 1.0).rates; };
+  const double unknown = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(rates("3*t^2 - 2*t + 1"), std::vector<double>{0.0});
+  EXPECT_EQ(rates("t*sin(5*t + 1)"), std::vector<double>{5.0});
+  EXPECT_EQ(rates("exp(-2*t)*sin(5*t)*cos(t)"), std::vector<double>{8.0});
+  EXPECT_EQ(rates("exp(-((t - 0.5)/1e-3)^2)"), std::vector<double>{unknown});
+  EXPECT_EQ(rates("(1 - (t - 0.5)^2)^100"), std::vector<double>{unknown});
+  EXPECT_EQ(rates("1/(1 + t^2)"), std::vector<double>{unknown});
+  EXPECT_EQ(rates("sin(100*max(0, t - 0.5))"), (std::vector<double>{0.0, 100.0}));
+  EXPECT_EQ(rates("smooth(t, 0.2, 0.4)"), (std::vector<double>{0.0, 0.0, 0.0}));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "report/verification.h"
 
 namespace freeplay {
 namespace {
@@ -85,27 +84,6 @@ TEST(Compare, NoCommonRowsDiffer) {
 TEST(Compare, PatternThatFitsNothingIsRefused) {
   const ResultTable a = table("a", {0, 1}, {1, 1});
   EXPECT_THROW(compare(a, a, {.channels = {"joint.*"}}), Error);
-}
-
-TEST(AgreeUntil, IsTheLastRowBeforeTheFirstThatDiffers) {
-  const ResultTable a = table("a", {0, 1, 2, 3}, {0, 0, 0, 0}), b = table("b", {0, 1, 2, 3}, {0, 0.1, 0.3, 0});
-  EXPECT_EQ(agree_until(a, b, {"body.a.x"}, 0.2), 1.0);
-  EXPECT_EQ(agree_until(a, b, {"body.a.x"}, 0.05), 0.0);
-  EXPECT_EQ(agree_until(a, b, {"body.a.x"}, 0.5), 3.0);
-}
-
-TEST(Verify, ErrorsAreOfTheTimeOfAgreementAndStatisticsOfTheRest) {
-  const ResultTable a = table("a", {0, 1, 2, 3}, {0, 0, 3, -4}, {1, 1, 1, 1});
-  const ResultTable b = table("b", {0, 1, 2, 3}, {0, 0.1, -3, 4}, {1, 1.5, 2, 2});
-  const Verification v = verify(a, b, {"body.a.x"}, 0.2);
-  EXPECT_EQ(v.agree_until, 1.0);
-  EXPECT_FALSE(v.throughout);
-  ASSERT_EQ(v.channels.size(), 2u);
-  EXPECT_EQ(v.channels[0].error, 0.1);
-  EXPECT_EQ(v.channels[1].error, 0.5);
-  EXPECT_NEAR(v.channels[0].rms, std::sqrt(12.5), 1e-15);
-  EXPECT_NEAR(v.channels[0].finer_rms, std::sqrt(12.5), 1e-15);
-  EXPECT_EQ(v.channels[1].finer_largest, 2.0);
 }
 
 }  // namespace

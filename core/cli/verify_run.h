@@ -1,0 +1,33 @@
+// VerifyRun: the runs that `--verify` makes besides the one that is asked for.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/load_model.h"
+#include "report/verification.h"
+#include "run/simulation.h"
+
+namespace freeplay {
+
+/// The run to verify.
+struct VerifiedRun {
+  const std::string& file;    ///< the model
+  const BuildOptions& build;  ///< as it was read
+  const CommonOptions& common;
+  const System& system;
+  const Outcome& outcome;
+  const Statistics& statistics;
+  const ResultTable& rows;  ///< every channel
+};
+
+/// Runs the model again by an integrator of another kind (implicit where the run was explicit, and the other way round)
+/// with error control and steps no longer than the output interval: what one method steps over the other meets. Where
+/// the two do not agree a third run, of the second's method, tells why. Empty, with `trouble`, when there is no second
+/// run.
+std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trouble);
+
+/// The largest values of the table that a run prints.
+std::vector<Peak> peaks_of(const Model& model, const Statistics& statistics);
+
+}  // namespace freeplay

@@ -1,0 +1,327 @@
+#include "run/input_activity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "model/time_function.h"
+#include "system/guard_marks.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double samples_per_change = 3.0;  // in the duration of the shortest change
+constexpr double fewest_samples = 8.0;      // in a step, besides its ends, its middle and its quarters
+constexpr double little = 0.01;             // of what positions may err by in a step
+constexpr double slow = 2.0;                // rate times step that every integrator sees
+constexpr double coarsest = 0.5;            // of the shortest change: no step up to there goes over one
+constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
+constexpr double longer = 4.0;              // the next step to look at, of one that had to be shortened
+
+/// Steps up to there need not be looked at; behind one that had to be shortened a change goes on.
+double unwatched(double shortest, double most) { return (most < unbounded ? finest : coarsest) * shortest; }
+
+/// Instants in the middle of equal parts.
+struct EvenInstants {
+  double time, by;
+  double operator()() { return std::exchange(time, time + by); }
+};
+auto even(double shortest) {
+  return [shortest](double t, double dt) {
+    const double by = dt / std::max(fewest_samples, std::ceil(samples_per_change * dt / shortest));
+    return EvenInstants{t + 0.5 * by, by};
+  };
+}
+
+/// The points of a table and the middles between them.
+struct TableInstants {
+  const TimeTable* table;
+  double time, point;
+  bool at_point = true;
+  double operator()() {
+    if (at_point) {
+      const double next = table->next_point(point);
+      if (!std::isfinite(next)) return next;
+      time = 0.5 * (point + next), point = next, at_point = false;
+      return time;
+    }
+    at_point = true;
+    return point;
+  }
+};
+
+}  // namespace
+
+InputActivity::Unit InputActivity::unit_of(DriverKind kind) {
+  switch (kind) {
+    case DriverKind::force:
+      return Unit::force;
+    case DriverKind::torque:
+      return Unit::torque;
+    case DriverKind::position:
+      return Unit::length;
+    case DriverKind::angle:
+      return Unit::angle;
+    case DriverKind::velocity:
+      break;
+  }
+  return Unit::other;
+}
+
+InputActivity::InputActivity(const System& system, double shortest, double allowed)
+    : system_(system),
+      start_(system.model().settings.start),
+      end_(system.model().settings.end),
+      shortest_(shortest),
+      resolution_(0) {
+  const Model& model = system.model();
+  double mass = unbounded, inertia = unbounded;
+  for (const Body& body : model.bodies) {
+    if (body.mass > 0.0) mass = std::min(mass, body.mass);
+    for (const std::size_t axis : {0u, 4u, 8u}) {
+      if (body.inertia[axis] > 0.0) inertia = std::min(inertia, body.inertia[axis]);
+    }
+  }
+  short_length_ = little * allowed;
+  small_angle_ = short_length_ / system.size();
+  light_force_ = std::isfinite(mass) ? short_length_ * mass : 0.0;
+  light_torque_ = std::isfinite(inertia) ? small_angle_ * inertia : 0.0;
+  for (const Driver& driver : model.drivers) {
+    const CornerKind sharp = prescribes(driver.kind) ? CornerKind::motion : CornerKind::load;
+    if (driver.table) {
+      tables_.push_back({&driver.name, driver.table.get(), sharp, unit_of(driver.kind)});
+    } else if (driver.kinematics < 0) {
+      add("driver", driver.name, driver.value, sharp, unit_of(driver.kind));
+    }
+  }
+  for (const InverseKinematics& entry : model.kinematics) {
+    for (const std::optional<Expression>& component : entry.path) {
+      if (component) add("driver", entry.name, *component, CornerKind::motion, Unit::other);
+    }
+  }
+  for (const AppliedForce& force : model.forces) {
+    const Unit unit = force.kind == ForceKind::force ? Unit::force : Unit::torque;
+    for (const Expression& component : force.value) add("force", force.name, component, CornerKind::load, unit);
+  }
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) add_joint(j);
+  std::ranges::sort(corners_);
+  std::size_t signals = 1;
+  for (const TimedJoint& joint : joints_) signals = std::max(signals, joint.signals);
+  resolution_ = StepResolution(signals);
+}
+
+void InputActivity::add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp,
+                        Unit unit) {
+  if (!expression.depends_on_time()) return;
+  formulas_.push_back({section, &name, &expression, expression.outline(start_, end_), sharp, unit});
+  for (const Corner& corner : formulas_.back().outline.corners) corners_.push_back(corner.time);
+}
+
+// In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for a second.
+double InputActivity::negligible(Unit unit, double dt) const {
+  switch (unit) {
+    case Unit::force:
+      return light_force_ / (dt * std::max(dt, 1.0));
+    case Unit::torque:
+      return light_torque_ / (dt * std::max(dt, 1.0));
+    case Unit::length:
+      return short_length_;
+    case Unit::angle:
+      return small_angle_;
+    case Unit::other:
+      break;
+  }
+  return 0.0;
+}
+
+void InputActivity::add_joint(int joint) {
+  const JointElement& element = system_.model().joints[at(joint)];
+  if (element.gear >= 0) return;
+  if (element.parameters) {
+    for (const auto& [name, value] : element.parameters->values) {
+      if (const Expression* written = written_expression(value))
+        add("joint", element.name, *written, CornerKind::motion, Unit::other);
+    }
+  }
+  double corner = 0.0;
+  Fault fault;
+  if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back(joint);
+  const JointLayout& layout = system_.joint_layout(joint);
+  const std::size_t rows = at(layout.constraint_rows), internal = at(layout.internal_variables);
+  const std::size_t signals = rows + (layout.forces != 0 ? 12 + internal : 0);
+  if (signals == 0 || layout.time_scale == unbounded) return;
+  joints_.push_back({joint, layout.time_scale > 0.0 ? layout.time_scale : shortest_, signals});
+  rate_.resize(std::max(rate_.size(), internal + guard::marks));
+  for (std::vector<double>* numbers : {&phi_, &nu_, &gamma_}) numbers->resize(std::max(numbers->size(), rows));
+  jacobian_.resize(std::max(jacobian_.size(), 12 * rows));
+}
+
+bool InputActivity::ask(int joint, double t, double& corner, Fault& fault) const {
+  corner = unbounded;
+  if (system_.joint(joint).next_corner(t, corner, fault.message) && corner > t) return true;
+  if (!(corner > t))
+    abi::copy_text(fault.message.text, sizeof fault.message.text, "its next corner is not a later time");
+  fault.kind = Fault::Kind::plugin;
+  fault.joint = joint;
+  return false;
+}
+
+bool InputActivity::next_corner(double t, double& corner, Fault& fault) {
+  if (t >= told_from_ && t < told_) {
+    corner = told_;
+    return true;
+  }
+  const auto next = std::ranges::upper_bound(corners_, t);
+  corner = next == corners_.end() ? unbounded : *next;
+  for (const Table& table : tables_) corner = std::min(corner, table.table->next_kink(t));
+  for (const int joint : telling_) {
+    double theirs = unbounded;
+    if (!ask(joint, t, theirs, fault)) return false;
+    corner = std::min(corner, theirs);
+  }
+  told_from_ = t, told_ = corner;
+  return true;
+}
+
+CornerKind InputActivity::kind_of(double corner, double margin) const {
+  const double from = corner - margin, to = corner + margin, before = from - margin;
+  CornerKind kind = CornerKind::smooth;
+  for (const Formula& formula : formulas_) {
+    const std::vector<Corner>& corners = formula.outline.corners;
+    for (auto c = std::ranges::lower_bound(corners, from, {}, &Corner::time); c != corners.end() && c->time <= to;
+         ++c) {
+      if (!c->smooth) kind = std::max(kind, formula.sharp);
+    }
+  }
+  for (const Table& table : tables_) {
+    if (table.table->next_kink(before) <= to) kind = std::max(kind, table.sharp);
+  }
+  for (const int joint : telling_) {
+    double theirs = unbounded;
+    Fault fault;
+    if (!ask(joint, before, theirs, fault) || theirs <= to) kind = CornerKind::motion;
+  }
+  return kind;
+}
+
+double InputActivity::resolved(double t, double dt) {
+  if (t >= seen_from_ && t + dt <= seen_to_) return dt;
+  for (Formula& formula : formulas_) dt = resolved_formula(formula, t, dt);
+  for (Table& table : tables_) dt = resolved_table(table, t, dt);
+  seen_from_ = t, seen_to_ = t + dt;
+  return dt;
+}
+
+double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
+  const std::vector<Corner>& corners = formula.outline.corners;
+  const auto piece = std::ranges::upper_bound(corners, t, {}, &Corner::time) - corners.begin();
+  const double rate = formula.outline.rates[static_cast<std::size_t>(piece)];
+  if (rate * dt <= slow || dt <= unwatched(shortest_, formula.most)) return dt;
+  const auto look = [&](double time, double* out) {
+    Jet value;
+    EvaluationFailure failure;
+    if (!formula.expression->evaluate(time, value, failure)) return false;
+    *out = value.value;
+    return true;
+  };
+  const double wanted = std::min(dt, formula.most), least = finest * shortest_;
+  const double length = resolution_.resolved(t, wanted, least, 1, look, even(shortest_),
+                                             [&](std::size_t, double step) { return negligible(formula.unit, step); });
+  formula.most = length < dt ? longer * length : unbounded;
+  return length;
+}
+
+double InputActivity::resolved_table(Table& table, double t, double dt) {
+  if (table.table->is_straight()) return dt;
+  const double least = table.table->next_point(t) - t;
+  if (dt <= least) return dt;
+  const auto look = [&](double time, double* out) {
+    Jet value;
+    EvaluationFailure failure;
+    if (!table.table->evaluate(time, value, failure)) return false;
+    *out = value.value;
+    return true;
+  };
+  const auto instants = [&](double from, double) { return TableInstants{table.table, from, from}; };
+  const double wanted = std::min(dt, std::max(table.most, least));
+  const double length = resolution_.resolved(t, wanted, least, 1, look, instants,
+                                             [&](std::size_t, double step) { return negligible(table.unit, step); });
+  table.most = length < dt ? longer * length : unbounded;
+  return length;
+}
+
+bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault) {
+  for (TimedJoint& timed : joints_) {
+    if (dt <= unwatched(timed.shortest, timed.most)) continue;
+    bool good = true;
+    const JointInput in = system_.input(timed.joint, here, e);
+    const auto look = [&](double time, double* out) { return good = signals_of(timed, in, time, out, fault); };
+    const std::size_t wrenches = system_.joint_layout(timed.joint).forces != 0 ? 12 : 0;
+    const auto light = [&](std::size_t c, double step) {
+      return c >= wrenches ? 0.0 : negligible(c % 6 < 3 ? Unit::force : Unit::torque, step);
+    };
+    const double wanted = std::min(dt, timed.most), least = finest * timed.shortest;
+    const double length = resolution_.resolved(t, wanted, least, timed.signals, look, even(timed.shortest), light);
+    if (!good) return false;
+    if (length < dt || here.t == t) timed.most = length < dt ? longer * length : unbounded;
+    dt = length;
+  }
+  return true;
+}
+
+// Wrenches, rates of internal variables and residuals of the rows, at another time than the input's.
+bool InputActivity::signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault) {
+  const JointLayout& layout = system_.joint_layout(timed.joint);
+  const JointRef& joint = system_.joint(timed.joint);
+  in.t = t;
+  bool good = true;
+  if (layout.forces != 0) {
+    JointForces forces{};
+    const Span<double> rate(rate_.data(), at(layout.internal_variables));
+    std::ranges::fill(rate, 0.0);
+    forces.internal_rate = rate;
+    good = joint.apply(in, forces, fault.message);
+    out = std::copy_n(forces.wrench_a, 6, out);
+    out = std::copy_n(forces.wrench_b, 6, out);
+    out = std::copy(rate.begin(), rate.end(), out);
+  }
+  if (const std::size_t rows = at(layout.constraint_rows); good && rows > 0) {
+    const auto zeroed = [](std::vector<double>& numbers, std::size_t count) {
+      std::fill_n(numbers.begin(), count, 0.0);
+      return Span<double>(numbers.data(), count);
+    };
+    ConstraintRows made{zeroed(phi_, rows), zeroed(jacobian_, 12 * rows), zeroed(nu_, rows), zeroed(gamma_, rows)};
+    good = joint.constrain(in, made, fault.message);
+    std::copy_n(phi_.begin(), rows, out);
+  }
+  if (good) return true;
+  fault.kind = Fault::Kind::plugin;
+  fault.joint = timed.joint;
+  return false;
+}
+
+std::vector<InputActivity::Unresolved> InputActivity::closer_than(double step) const {
+  std::vector<Unresolved> found;
+  const auto add_closest = [&](const char* section, const std::string* name, std::span<const double> times) {
+    Unresolved closest{section, name, 0.0, unbounded};
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+      const bool rounded = times[i + 1] - times[i] <= 1e-12 * std::max(std::abs(times[i]), std::abs(times[i + 1]));
+      if (!rounded && times[i + 1] - times[i] < closest.to - closest.from) {
+        closest.from = times[i], closest.to = times[i + 1];
+      }
+    }
+    const bool known = std::ranges::any_of(found, [&](const Unresolved& u) { return u.name == name; });
+    if (!known && closest.to - closest.from < step * (1.0 - 1e-9)) found.push_back(closest);
+  };
+  for (const Formula& formula : formulas_) {
+    std::vector<double> times;
+    for (const Corner& corner : formula.outline.corners) times.push_back(corner.time);
+    add_closest(formula.section, formula.name, times);
+  }
+  for (const Table& table : tables_) add_closest("driver", table.name, table.table->times());
+  return found;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,94 @@
+// InputActivity: when the inputs of a model change, told before a step goes there. Inputs are the motions, forces,
+// torques and efforts that the model file gives as functions of time, and what joints of plugins make of the time.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "run/step_resolution.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+/// What may jump at a corner of an input: nothing (ends of smooth ramps), accelerations (a load jumps or has a kink),
+/// or speeds as well (a motion has one).
+enum class CornerKind { smooth, load, motion };
+
+class InputActivity {
+ public:
+  /// Looks at all formulas of the run once. `shortest`: duration of the changes that no step may go over where a
+  /// formula cannot be analysed and a joint does not say how fine its dependence on time is [s]. `allowed`: by which
+  /// positions may err in a step [m]; what moves them by much less does not matter.
+  InputActivity(const System& system, double shortest, double allowed);
+
+  /// The first corner after t; infinite when there is none. False, with `fault`, when a joint does not tell.
+  bool next_corner(double t, double& corner, Fault& fault);
+  /// The kind of the corners that lie within `margin` of a time.
+  CornerKind kind_of(double corner, double margin) const;
+
+  /// The length, dt or less, of a step from t that no corner lies in and that resolves all formulas and tables: their
+  /// values at the samples are, to a tenth of their range, what a polynomial through five of them makes of them.
+  double resolved(double t, double dt);
+  /// The same for joints that may depend on time, as `here` has their markers, internal variables and history: the
+  /// start of the step, or its end once it is made.
+  bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
+  bool watches_joints() const { return !joints_.empty(); }
+
+  /// An input whose corners follow each other within `step`, by the name of what has it; formulas and tables.
+  struct Unresolved {
+    const char* section;  ///< "driver", "force" or "joint"
+    const std::string* name;
+    double from, to;  ///< the closest two [s]
+  };
+  std::vector<Unresolved> closer_than(double step) const;
+
+ private:
+  enum class Unit { force, torque, length, angle, other };
+  struct Formula {
+    const char* section;
+    const std::string* name;
+    const Expression* expression;
+    Outline outline;
+    CornerKind sharp;  ///< kind of its kinks
+    Unit unit;
+    double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
+  };
+  struct Table {
+    const std::string* name;
+    const TimeTable* table;
+    CornerKind sharp;
+    Unit unit;
+    double most = unbounded;
+  };
+  struct TimedJoint {
+    int joint;
+    double shortest;
+    std::size_t signals;
+    double most = unbounded;
+  };
+
+  void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit);
+  static Unit unit_of(DriverKind kind);
+  double negligible(Unit unit, double dt) const;
+  void add_joint(int joint);
+  bool ask(int joint, double t, double& corner, Fault& fault) const;
+  double resolved_formula(Formula& formula, double t, double dt);
+  double resolved_table(Table& table, double t, double dt);
+  bool signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault);
+
+  const System& system_;
+  double start_, end_, shortest_;
+  double light_force_, light_torque_, short_length_, small_angle_;  ///< over a second; see negligible()
+  std::vector<Formula> formulas_;
+  std::vector<Table> tables_;
+  std::vector<int> telling_;  ///< joints that may tell corners
+  std::vector<TimedJoint> joints_;
+  std::vector<double> corners_;  ///< of formulas, in order
+  StepResolution resolution_;
+  std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;  // of a joint that is asked
+  double told_from_ = 0.0, told_ = 0.0;                     // the last answer of next_corner()
+  double seen_from_ = 0.0, seen_to_ = 0.0;                  // a span that was resolved
+};
+
+}  // namespace freeplay

@@ -1,0 +1,98 @@
+// StepResolution: whether what depends on time alone is smooth over a step.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace freeplay {
+
+/// Compares signals at many instants of a step with the polynomial of degree 4 through five of them. An integrator
+/// whose stages lie about as close as these five sees what the polynomial shows; what it does not show may have been
+/// stepped over. Allocates only when it is made.
+class StepResolution {
+ public:
+  static constexpr double tolerance = 0.1;   ///< of a signal's range in the step
+  static constexpr double rounding = 1e-12;  ///< of the largest signal: no change
+
+  explicit StepResolution(std::size_t most_signals)
+      : nodes_(5 * most_signals), now_(most_signals), low_(most_signals), high_(most_signals), worst_(most_signals) {}
+
+  /// The length, dt or less, of a step from t that resolves `count` signals; one of `least` always does.
+  /// `look(t, double*)` fills the signals; where it returns false the search ends, as the step will meet that.
+  /// `instants(t, dt)` makes what gives one time behind the other at which to look; the last is t + dt or later.
+  /// `negligible(c, dt)` is a range of signal c that does not matter in such a step.
+  template <class Look, class Instants, class Negligible>
+  double resolved(double t, double dt, double least, std::size_t count, Look&& look, Instants&& instants,
+                  Negligible&& negligible) {
+    while (dt > least) {
+      const double change = sampled(t, dt, count, look, instants, negligible);
+      if (change < 0.0) return dt;
+      // What begins late in the step is left to the next one.
+      dt = std::max(change > 0.125 * dt ? change : 0.5 * dt, least);
+    }
+    return dt;
+  }
+
+ private:
+  /// If the step is too long, the part of it before a signal changes; else -1.
+  template <class Look, class Instants, class Negligible>
+  double sampled(double t, double dt, std::size_t count, Look& look, Instants& instants, Negligible& negligible) {
+    const double end = t + dt;
+    double size = 0.0;
+    for (std::size_t k = 0; k < 5; ++k) {
+      double* const values = &nodes_[k * count];
+      if (!look(k == 4 ? end : t + 0.25 * static_cast<double>(k) * dt, values)) return -1.0;
+      for (std::size_t c = 0; c < count; ++c) {
+        low_[c] = k == 0 ? values[c] : std::min(low_[c], values[c]);
+        high_[c] = k == 0 ? values[c] : std::max(high_[c], values[c]);
+        size = std::max(size, std::abs(values[c]));
+      }
+    }
+    std::fill(worst_.begin(), worst_.end(), 0.0);
+    auto next = instants(t, dt);
+    for (double now = next(); now < end; now = next()) {
+      if (!look(now, now_.data())) return -1.0;
+      const std::array<double, 5> weights = lagrange(4.0 * (now - t) / dt);
+      for (std::size_t c = 0; c < count; ++c) {
+        const double value = now_[c];
+        low_[c] = std::min(low_[c], value);
+        high_[c] = std::max(high_[c], value);
+        size = std::max(size, std::abs(value));
+        double expected = 0.0;
+        for (std::size_t k = 0; k < 5; ++k) expected += weights[k] * nodes_[k * count + c];
+        worst_[c] = std::max(worst_[c], std::abs(value - expected));
+      }
+    }
+    const auto coarse = [&](std::size_t c) {
+      const double range = high_[c] - low_[c];
+      return worst_[c] > tolerance * range && range > std::max(rounding * size, negligible(c, dt));
+    };
+    bool any = false;
+    for (std::size_t c = 0; c < count; ++c) any = any || coarse(c);
+    if (!any) return -1.0;
+    double quiet = 0.0;
+    next = instants(t, dt);
+    for (double now = next(); now < end; now = next()) {
+      if (!look(now, now_.data())) return 0.0;
+      for (std::size_t c = 0; c < count; ++c) {
+        if (coarse(c) && std::abs(now_[c] - nodes_[c]) > tolerance * (high_[c] - low_[c])) return quiet;
+      }
+      quiet = now - t;
+    }
+    return 0.0;
+  }
+
+  /// Weights of the values at 0, 1, 2, 3 and 4 in that at x.
+  static std::array<double, 5> lagrange(double x) {
+    const double a = x, b = x - 1.0, c = x - 2.0, d = x - 3.0, e = x - 4.0;
+    return {b * c * d * e / 24.0, -a * c * d * e / 6.0, a * b * d * e / 4.0, -a * b * c * e / 6.0,
+            a * b * c * d / 24.0};
+  }
+
+  std::vector<double> nodes_, now_, low_, high_, worst_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,296 @@
+// Runs with error control go over no load, however short it is and however it is written.
+#include <random>
+
+#include <fmt/format.h>
+
+#include "pulse_joint.h"
+#include "report/verification.h"
+#include "run_model.h"
+
+namespace freeplay::test {
+namespace {
+
+BuildOptions with(const char* integrator) {
+  BuildOptions options;
+  if (*integrator != '\0') options.integrator = integrator;
+  return options;
+}
+
+/// A mass of 1 kg on a guide along x, with `more` sections.
+std::string mass(const std::string& more, double accuracy, double end = 2.0, double interval = 0.0) {
+  const std::string output = interval > 0.0 ? fmt::format(", output: {{interval: {:.17g}}}", interval) : "";
+  return fmt::format(
+      "freeplay: 1\n"
+      "bodies: {{m: {{mass: 1, inertia: 1}}}}\n"
+      "joints: {{guide: {{type: prismatic, between: [ground, m]}}}}\n"
+      "{}\n"
+      "simulation: {{end: {:.17g}, accuracy: {:.17g}{}}}\n",
+      more, end, accuracy, output);
+}
+
+std::string force(const std::string& value) {
+  return "forces: {hit: {type: force, at: m, value: ['" + value + "', 0]}}";
+}
+
+// 1000 N over ramps of 1 ms: 1 N s at 0.501 s.
+TEST(InputActivity, AShortPulseIsMetHoweverItIsWritten) {
+  const char* const smooth = "1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))";
+  for (const char* integrator : {"", "verner7", "bathe"}) {
+    const ModelRun run(mass(force(smooth), 1e-6), with(integrator));
+    EXPECT_NEAR(run.last("body.m.x"), 1.499, 5e-6) << integrator;
+    const ModelRun table(mass("drivers: {d: {joint: guide, kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, "
+                              "1000], [0.502, 0], [2, 0]], interpolation: linear}}}",
+                              1e-6),
+                         with(integrator));
+    EXPECT_NEAR(table.last("body.m.x"), 1.499, 5e-6) << integrator;
+  }
+}
+
+// Neither has a corner that could be told.
+TEST(InputActivity, APulseWithoutCornersIsMetIfItLastsAnOutputInterval) {
+  const double width = 2e-3, impulse = std::sqrt(M_PI) * width * 1000.0;
+  for (const char* integrator : {"", "verner7"}) {
+    const ModelRun bell(mass(force("1000*exp(-((t - 0.7)/2e-3)^2)"), 1e-6), with(integrator));
+    EXPECT_NEAR(bell.last("body.m.x"), 1.3 * impulse, 2e-5) << integrator;
+    const ModelRun cubic(mass("drivers: {d: {joint: guide, kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, "
+                              "1000], [0.502, 0], [1, 0], [2, 0]]}}}",
+                              1e-6),
+                         with(integrator));
+    const ModelRun finer(mass("drivers: {d: {joint: guide, kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, "
+                              "1000], [0.502, 0], [1, 0], [2, 0]]}}}",
+                              1e-9),
+                         with(integrator));
+    EXPECT_NEAR(cubic.last("body.m.x") / finer.last("body.m.x"), 1.0, 1e-7) << integrator;  // the spline swings far
+  }
+}
+
+TEST(InputActivity, AFunctionOfTimeOfAJointIsAnalysedToo) {
+  const ModelRun run(mass("forces: {hit: {type: written-load, between: [ground, m], load: 'max(0, 1e6 - "
+                          "1e11*abs(t - 0.5))'}}",
+                          1e-6),
+                     {}, {}, types_with_pulses());
+  EXPECT_NEAR(run.last("body.m.x"), 15.0, 2e-5);  // 1 MN at 0.5 s, 10 us to both sides: 10 N s
+}
+
+// A test may take the eyes away: then steps are as they were before loads were looked at.
+TEST(InputActivity, ABlindRunGoesOverThePulse) {
+  RunHooks blind;
+  blind.blind_to_inputs = true;
+  const ModelRun run(mass(force("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))"), 1e-6), {}, {},
+                     builtin_types(), blind);
+  EXPECT_NEAR(run.last("body.m.x"), 0.0, 1e-9);
+}
+
+ResultTable table_of(const ModelRun& run) {
+  ResultTable table{"", run.kept().names(), {}};
+  table.values.resize(table.names.size());
+  for (std::size_t r = 0; r < run.rows(); ++r) {
+    for (std::size_t c = 0; c < table.names.size(); ++c) table.values[c].push_back(run.at(r, table.names[c]));
+  }
+  return table;
+}
+
+// As `run --verify` does it: a method of another kind with steps of an output interval at most, blind as the first.
+TEST(InputActivity, ASecondRunByAnotherKindFindsABlindOne) {
+  RunHooks blind;
+  blind.blind_to_inputs = true;
+  const std::string text = mass(force("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))"), 1e-6);
+  const auto table = [&](const char* integrator, double accuracy, std::optional<double> largest_step) {
+    BuildOptions options = with(integrator);
+    options.accuracy = accuracy;
+    options.largest_step = largest_step;
+    return table_of(ModelRun(text, options, {"time", "body.m.x"}, builtin_types(), blind));
+  };
+  const ResultTable first = table("dopri5", 1e-6, {}), second = table("bathe", 5e-7, 2e-3),
+                    third = table("bathe", 5e-6, 2e-3);
+  const RunResult a{&first, {}}, b{&second, {}}, c{&third, {}};
+  const VerificationRules rules{{"body.m.x"}, 3e-6, false};
+  Verification v = compare_runs(a, b, rules);
+  EXPECT_NEAR(v.agree_until, 0.5, 2.1e-3);
+  judge(v, a, b, c, rules);
+  EXPECT_EQ(v.agreement, Agreement::disagree);
+}
+
+// What is prescribed takes the pulse; the drive feels it at its height.
+TEST(InputActivity, AStepEndsAtTheHeightOfALoadOnADrivenMechanism) {
+  const ModelRun run(mass("drivers: {motor: {joint: guide, kind: position, value: '0.1*sin(3*t)'}}\n" +
+                              force("5000*min(max(0, t - 0.5), max(0, 0.502 - t))/1e-3"),
+                          1e-6));
+  EXPECT_NEAR(run.statistics().driver(0).max_abs, 5000.0, 2.0);
+}
+
+TEST(InputActivity, CornersOfLoadsCostFewSteps) {
+  const double end = 2.0;
+  const ModelRun wave(mass(force("10*abs(sin(2*pi*50*t))"), 1e-6, end));
+  EXPECT_LT(wave.outcome().steps, 200 * 8);
+  const ModelRun teeth(
+      mass("drivers: {d: {joint: guide, kind: force, table: {points: [[0, 0], [1 ms, 10], [2 ms, 0]], "
+           "interpolation: linear, outside: repeat}}}",
+           1e-6, end));
+  EXPECT_LT(teeth.outcome().steps, 2000 * 2);
+  EXPECT_LT(teeth.outcome().rejected, 100);
+  EXPECT_NEAR(teeth.last("body.m.x"), 10.0, 1e-4);
+  // A spline of many points need not be taken point by point.
+  std::string points;
+  for (int i = 0; i <= 4000; ++i) points += fmt::format("[{:.17g}, {:.17g}], ", i * 5e-4, std::sin(M_PI * i * 5e-4));
+  const ModelRun spline(
+      mass("drivers: {d: {joint: guide, kind: force, table: {points: [" + points + "[3, 0]]}}}", 1e-6, end));
+  EXPECT_LT(spline.outcome().steps, 200);
+}
+
+// The force of a joint that leaves a step function behind jumps at a corner that it tells.
+TEST(InputActivity, AJumpOfALoadStartsTheIntegratorAgain) {
+  const ModelRun run(
+      mass("drivers: {d: {joint: guide, kind: force, table: {points: [[0, 0], [0.7, 0], [0.7000001, 1], "
+           "[0.8, 1]], interpolation: linear, outside: repeat}}}",
+           1e-8, 1.0));
+  EXPECT_NEAR(run.last("body.m.x"), 0.5 * 0.01 + 0.1 * 0.2, 1e-7);
+  EXPECT_LT(run.outcome().steps, 100);
+}
+
+TEST(InputActivity, APulseOfAPrescribedSpeedIsInThePosition) {
+  const ModelRun run(
+      mass("drivers: {motor: {joint: guide, kind: velocity, value: 'max(0, 1000 - 1e8*abs(t - 0.5))'}}", 1e-6));
+  EXPECT_NEAR(run.last("body.m.x"), 1e-2, 1e-9);
+}
+
+TEST(InputActivity, FixedStepsThatGoOverAPulseAreWarnedOf) {
+  const std::string text = replaced(mass(force("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))"), 1e-6),
+                                    "accuracy: 9.9999999999999995e-07", "step: 5 ms");
+  const auto warnings = [](const std::string& model) {
+    const auto loaded = load(model);
+    System system(*loaded);
+    const Start start = assemble(system);
+    const Channels channels(*loaded);
+    Simulation simulation(system, start, channels, {});
+    simulation.run({});
+    return std::vector<std::string>(simulation.warnings().begin(), simulation.warnings().end());
+  };
+  ASSERT_EQ(warnings(text).size(), 1u);
+  EXPECT_NE(warnings(text)[0].find("force 'hit': it has corners at 0.5 s and 0.501 s, closer than the step of 0.002 s"),
+            std::string::npos)
+      << warnings(text)[0];
+  EXPECT_TRUE(warnings(replaced(text, "step: 5 ms", "step: 0.1 ms")).empty());
+}
+
+/// One pulse along x with where it takes a mass of 1 kg by the end.
+struct Pulse {
+  std::string section;  ///< of the model
+  double way;           ///< [m]
+};
+
+// Moments of a pulse that grows on (a, b) and falls on (b, c): integral of (end - t) F(t).
+double way_of_triangle(double a, double b, double c, double end) {
+  return (b - a) * ((end - a) / 2 - (b - a) / 3) + (c - b) * ((end - b) / 2 - (c - b) / 6);
+}
+double way_of_smooth(double a, double b, double c, double end) {
+  return (b - a) * ((end - a) / 2 - (b - a) * 5 / 14) + (c - b) * ((end - b) / 2 - (c - b) / 7);
+}
+
+/// `wanted`: how far it shall go. Four ways to write it.
+Pulse pulse(int form, std::mt19937_64& random, double length, double end, double wanted) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const double a = (end - length) * (0.05 + 0.9 * unit(random)), b = a + length * (0.2 + 0.6 * unit(random)),
+               c = a + length;
+  const bool round = form == 0;
+  const double height = wanted / (round ? way_of_smooth(a, b, c, end) : way_of_triangle(a, b, c, end));
+  switch (form) {
+    case 0:
+      return {force(fmt::format("{:.17g}*smooth(t, {:.17g}, {:.17g})*(1 - smooth(t, {:.17g}, {:.17g}))", height, a, b,
+                                b, c)),
+              wanted};
+    case 1:
+      return {
+          fmt::format("drivers: {{d: {{joint: slide, kind: force, table: {{points: [[0, 0], [{:.17g}, 0], [{:.17g}, "
+                      "{:.17g}], [{:.17g}, 0], [{:.17g}, 0]], interpolation: linear}}}}{}}}",
+                      a, b, height, c, 2 * end, "@drivers"),
+          wanted};
+    case 2:
+      return {force(fmt::format("{:.17g}*max(0, min((t - {:.17g})/({:.17g}), ({:.17g} - t)/({:.17g})))", height, a,
+                                b - a, c, c - b)),
+              wanted};
+    default: {
+      const double square = 2.0 * wanted / (length * (end - a - length / 2));
+      const int told = 1 + static_cast<int>(random() % 2);
+      return {fmt::format("forces: {{hit: {{type: pulse, between: [ground, m], height: {:.17g}, begin: {:.17g}, "
+                          "duration: {:.17g}, told: {}}}}}",
+                          square, a, length, told),
+              wanted};
+    }
+  }
+}
+
+// In fall: along the guide. Carried: on a slide of a cart that is driven to and fro. Loose: a pin in its bearing, which
+// the pulse does not take to the other side.
+enum class Where { falling, carried, loose };
+
+std::string model_of(Where where, Pulse p, double accuracy, double end) {
+  std::string text = "freeplay: 1\n", drivers;
+  if (where == Where::carried) {
+    text +=
+        "bodies: {m: {mass: 1, inertia: 1}, cart: {mass: 3, inertia: 1}}\n"
+        "joints:\n"
+        "  guide: {type: prismatic, between: [ground, cart]}\n"
+        "  slide: {type: prismatic, between: [cart, m]}\n";
+    drivers = "motor: {joint: guide, kind: position, value: '0.2*(1 - cos(3*t))'}";
+  } else {
+    text +=
+        "bodies: {m: {mass: 1, inertia: 1}}\n"
+        "joints:\n"
+        "  slide: {type: prismatic, between: [ground, m]}\n";
+    if (where == Where::falling) text += "gravity: [-9.81, 0]\n";
+    if (where == Where::loose) {
+      text +=
+          "  pin: {type: revolute, bearing: ground, journal: m, clearance: {bearing_radius: 10 mm, radial_clearance: 1 "
+          "mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: lankarani-nikravesh, restitution: 0.9}}}\n";
+    }
+  }
+  const std::size_t place = p.section.find("@drivers");
+  if (place != std::string::npos) {
+    p.section.replace(place, 8, drivers.empty() ? "" : ", " + drivers);
+  } else if (!drivers.empty()) {
+    p.section += "\ndrivers: {" + drivers + "}";
+  }
+  return text + p.section +
+         fmt::format("\nsimulation: {{end: {:.17g}, accuracy: {:.17g}, output: {{interval: {:.17g}}}}}\n", end,
+                     accuracy, end / 10);
+}
+
+TEST(InputActivity, FiveHundredRandomPulsesEndWhereTheyShould) {
+  std::mt19937_64 random(20);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const double end = 1.0;
+  double worst = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const Where where = static_cast<Where>(i % 3);
+    const int form = i / 3 % 4;
+    const double length = end * std::pow(10.0, -5.0 + 4.0 * unit(random));
+    const double accuracy = std::pow(10.0, -4.0 - 4.0 * unit(random));
+    const double wanted = where == Where::loose ? 4e-4 * (0.1 + unit(random)) : 0.01 + unit(random);
+    const std::string text = model_of(where, pulse(form, random, length, end, wanted), accuracy, end);
+    const ModelRun run(text, {}, {"time", "body.m.x", "body.m.vx"}, types_with_pulses());
+    ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason << "\n" << text;
+    const double fall = where == Where::falling ? -0.5 * 9.81 * end * end : 0.0;
+    const double exact = run.at(0, "body.m.x") + end * run.at(0, "body.m.vx") + wanted + fall;
+    const double error = std::abs(run.last("body.m.x") - exact);
+    EXPECT_LE(error, 10.0 * accuracy) << "pulse " << i << ", of " << length << " s\n" << text;
+    worst = std::max(worst, error / accuracy);
+  }
+  record("largest error over accuracy", worst);
+}
+
+// A joint that says nothing of its time is looked at for changes as long as an output interval.
+TEST(InputActivity, APulseOfASilentJointIsMetIfItLastsAnOutputInterval) {
+  for (const double at : {0.03, 0.41234, 0.9}) {
+    const double duration = 1.1e-3, height = 2.0 * 0.5 / (duration * (1.0 - at - duration / 2));
+    const ModelRun run(mass(fmt::format("forces: {{hit: {{type: pulse, between: [ground, m], height: {:.17g}, begin: "
+                                        "{:.17g}, duration: {:.17g}}}}}",
+                                        height, at, duration),
+                            1e-7, 1.0),
+                       {}, {}, types_with_pulses());
+    EXPECT_NEAR(run.last("body.m.x"), 0.5, 1e-6) << at;
+  }
+}
+
+}  // namespace
+}  // namespace freeplay::test
