@@ -1,6 +1,9 @@
 #include "cli/facts.h"
 
+#include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -82,6 +85,22 @@ Json facts_json(const Model& model, const ModelFacts& facts, const Structure& st
           {"undetermined", structure.undetermined}};
 }
 
+std::string moved_text(const Model& model, const StartReport& report) {
+  constexpr std::size_t most_lines = 20;
+  std::vector<std::string> moved, chosen;
+  for (const MovedStart& one : report.moved) moved.push_back(sentence(one));
+  for (const ChosenSpeed& one : report.chosen) chosen.push_back(sentence(model, one));
+  std::string text;
+  for (const auto& [word, lines] : {std::pair("moved", &moved), std::pair("chosen", &chosen)}) {
+    for (std::size_t i = 0; i < std::min(lines->size(), most_lines); ++i) {
+      text += fmt::format("  {:<18}  {}\n", i == 0 ? word : "", (*lines)[i]);
+    }
+    if (lines->size() <= most_lines) continue;
+    text += fmt::format("  {:<18}  and {} more: validate --json has all\n", "", lines->size() - most_lines);
+  }
+  return text;
+}
+
 Json start_json(const Model& model, const Start& start) {
   Json json = Json::object();
   const System system(model);
@@ -95,6 +114,17 @@ Json start_json(const Model& model, const Start& start) {
     }
     const std::span<const double> pose = start.state.q().subspan(3 * i, 3);
     json[model.bodies[i].name] = {{"x", pose[0]}, {"y", pose[1]}, {"angle", pose[2]}};
+  }
+  for (const MovedStart& moved : start.report.moved) {
+    json[moved.body]["moved"].push_back(
+        {{"quantity", moved.quantity}, {"by", moved.by}, {"unit", moved.unit}, {"far", moved.far}});
+  }
+  for (const ChosenSpeed& chosen : start.report.chosen) {
+    const JointElement& joint = model.joints[static_cast<std::size_t>(chosen.joint)];
+    BodyId body = model.markers[static_cast<std::size_t>(joint.marker_b)].body;
+    if (body == ground) body = model.markers[static_cast<std::size_t>(joint.marker_a)].body;
+    json[model.bodies[static_cast<std::size_t>(body)].name]["chosen"].push_back(
+        {{"joint", joint.name}, {"speed", chosen.speed}});
   }
   return json;
 }

@@ -187,6 +187,18 @@ void require_planar(const LoadedModel& loaded, const std::string& what) {
               what + " works on planar models only, but '" + loaded.model->file + "' is spatial");
 }
 
+namespace {
+
+/// Warns of starts that could as well be others.
+void judge_start(const StartReport& report, Diagnostics& diagnostics) {
+  for (const TwinStart& twin : report.twins) {
+    diagnostics.warning(twin.location, 1, "ambiguous-start", sentence(twin), {},
+                        fmt::format("give '{}' a `pose` that is nearer to one of them", twin.body));
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
   try {
     System system(*loaded.model);
@@ -195,6 +207,7 @@ std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
     for (const StructureDoubt& doubt : start.structure.doubts) {
       loaded.diagnostics.warning(doubt.location, doubt.length, doubt.id, doubt.message);
     }
+    judge_start(start.report, loaded.diagnostics);
     if (loaded.diagnostics.has_errors()) {  // with --strict
       loaded.exit_code = 3;
       return nullptr;

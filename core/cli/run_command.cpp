@@ -163,6 +163,7 @@ class RunJob {
                        library.table->compiler(), library.path));
     }
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
+    for (const MovedStart& moved : assembled_.start.report.moved) note(sentence(moved));
     Outcome outcome = run();
     const Ended ended = end();
     for (const std::string& text : ended.warnings) warn(text);
@@ -270,8 +271,8 @@ class RunJob {
     if (common_.json) {
       print_json(json);
     } else if (!common_.quiet) {
-      print(run_table(record) + (verification ? verify_table(*verification) : "") +
-            fmt::format("  results in {}\n", path_.string()));
+      print(run_table(record) + moved_text(*loaded_.model, assembled_.start.report) +
+            (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()));
     }
     if (options_.profile) {
       const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
@@ -319,7 +320,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
                     {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
   } else if (!common.quiet) {
     print(printable(model.file) + ": ok\n" + facts_text(model, assembled.start.facts) +
-          structure_text(assembled.start.structure));
+          structure_text(assembled.start.structure) + moved_text(model, assembled.start.report));
   }
   return 0;
 }

@@ -27,12 +27,13 @@ struct Verdict {
   std::optional<ModelFacts> facts;
   Structure structure{};
   Json start = nullptr;
+  std::string moved{};
 
   bool ok() const { return loaded.exit_code == 0; }
 };
 
 Verdict judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
-  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}, {}};
+  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}, {}, {}};
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);
@@ -40,6 +41,7 @@ Verdict judge(const std::string& file, const ValidateOptions& options, const Com
     verdict.facts = assembled->start.facts;
     verdict.structure = assembled->start.structure;
     verdict.start = start_json(*verdict.loaded.model, assembled->start);
+    verdict.moved = moved_text(*verdict.loaded.model, assembled->start.report);
   }
   return verdict;
 }
@@ -56,7 +58,9 @@ Json verdict_json(const Verdict& verdict, int max_errors) {
 void print_verdict(const Verdict& verdict, const CommonOptions& common) {
   if (!common.quiet && !common.json) {
     print(printable(verdict.file) + (verdict.ok() ? ": ok\n" : ": not ok\n"));
-    if (verdict.ok()) print(facts_text(*verdict.loaded.model, *verdict.facts) + structure_text(verdict.structure));
+    if (verdict.ok()) {
+      print(facts_text(*verdict.loaded.model, *verdict.facts) + structure_text(verdict.structure) + verdict.moved);
+    }
   }
   print_messages(verdict.loaded.diagnostics.format(common.max_errors), common.no_color);
 }

@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "report/given_start.h"
 #include "report/spatial_drawing.h"
 #include "report/svg_page.h"
 
@@ -20,10 +21,11 @@ using svg::px;
 
 class Drawing {
  public:
-  Drawing(const Model& model, std::span<const double> q) : model_(model), q_(q) {}
+  Drawing(const System& system, std::span<const double> q) : model_(system.model()), q_(q), given_(system, q) {}
 
   std::string text() {
     fit();
+    for (const BodyId id : given_.moved()) draw_as_given(id);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) draw_body(static_cast<BodyId>(b));
     for (const JointElement& joint : model_.joints) draw_joint(joint);
     for (const AppliedForce& force : model_.forces) draw_force(force);
@@ -39,12 +41,25 @@ class Drawing {
 
   Point world(const Marker& marker) const { return world(marker.body, {marker.position[0], marker.position[1]}); }
 
-  Point world(BodyId id, const Point& p) const {
+  Point world(BodyId id, const Point& p) const { return world(id, p, q_); }
+
+  Point world(BodyId id, const Point& p, std::span<const double> q) const {
     if (id == ground) return p;
     const std::size_t b = static_cast<std::size_t>(id);
-    const double angle = q_[3 * b + 2], c = std::cos(angle), s = std::sin(angle);
+    const double angle = q[3 * b + 2], c = std::cos(angle), s = std::sin(angle);
     const Point arm{p.x - model_.bodies[b].com[0], p.y - model_.bodies[b].com[1]};
-    return {q_[3 * b] + c * arm.x - s * arm.y, q_[3 * b + 1] + s * arm.x + c * arm.y};
+    return {q[3 * b] + c * arm.x - s * arm.y, q[3 * b + 1] + s * arm.x + c * arm.y};
+  }
+
+  /// Points of a body that a joint or a force is at, and its centre of mass.
+  std::vector<Point> points_of(BodyId id, std::span<const double> q) const {
+    std::vector<Point> points;
+    for (const Marker& one : model_.markers) {
+      if (one.body == id) points.push_back(world(id, {one.position[0], one.position[1]}, q));
+    }
+    const std::size_t b = static_cast<std::size_t>(id);
+    points.push_back({q[3 * b], q[3 * b + 1]});
+    return points;
   }
 
   double angle_of(const Marker& marker) const {
@@ -65,6 +80,10 @@ class Drawing {
       if (!is_origin(one) || one.body != ground) all.push_back(world(one));
     }
     for (const Marker& one : model_.markers) all.push_back(world(one));
+    for (const BodyId id : given_.moved()) {
+      const std::vector<Point> points = points_of(id, given_.q());
+      all.insert(all.end(), points.begin(), points.end());
+    }
     Point low{0.0, 0.0}, high{0.0, 0.0};
     if (!all.empty()) low = high = all.front();
     for (const Point& p : all) {
@@ -84,12 +103,9 @@ class Drawing {
   // --- shapes ----------------------------------------------------------------------------------------------------
 
   void draw_body(BodyId id) {
-    std::vector<Point> points;
-    for (const Marker& one : model_.markers) {
-      if (one.body == id) points.push_back(page(world(one)));
-    }
+    std::vector<Point> points = points_of(id, q_);
+    for (Point& p : points) p = page(p);
     const std::size_t b = static_cast<std::size_t>(id);
-    points.push_back(page({q_[3 * b], q_[3 * b + 1]}));
     const std::vector<Point> outline = svg::hull(points);
     out_.shape(
         "<path d=\"{} Z\" fill=\"{}\" fill-opacity=\"0.25\" stroke=\"{}\" stroke-width=\"7\" stroke-opacity=\"0.55\" "
@@ -97,6 +113,16 @@ class Drawing {
         svg::path(outline), svg::tint(id), svg::tint(id));
     for (std::size_t i = 0; i < outline.size(); ++i) out_.shun(outline[i], outline[(i + 1) % outline.size()]);
     out_.label(model_.bodies[b].name, page({q_[3 * b], q_[3 * b + 1]}), "font-weight=\"bold\"");
+  }
+
+  /// Where the file gives the pose of a body that stands elsewhere: pale and dashed.
+  void draw_as_given(BodyId id) {
+    std::vector<Point> points = points_of(id, given_.q());
+    for (Point& p : points) p = page(p);
+    out_.shape(
+        "<path class=\"given\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\" stroke-opacity=\"0.35\" "
+        "stroke-dasharray=\"9 6\" stroke-linejoin=\"round\"/>\n",
+        svg::path(svg::hull(points)), svg::tint(id));
   }
 
   void draw_joint(const JointElement& joint) {
@@ -193,6 +219,7 @@ class Drawing {
 
   const Model& model_;
   std::span<const double> q_;
+  GivenStart given_;
   double scale_ = 1.0, height_ = least_height;
   Point middle_;
   svg::Page out_;
@@ -202,7 +229,7 @@ class Drawing {
 
 std::string mechanism_svg(const System& system, std::span<const double> q) {
   if (system.model().space == Space::spatial) return spatial_svg(system, q);
-  return Drawing(system.model(), q).text();
+  return Drawing(system, q).text();
 }
 
 }  // namespace freeplay

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/given_start.h"
 #include "report/spatial_scene.h"
 #include "report/view.h"
 
@@ -45,7 +46,8 @@ std::string axis_word(const Vector& axis) {
 
 class Drawing {
  public:
-  Drawing(const System& system, std::span<const double> q) : scene_(system, q), model_(system.model()) {}
+  Drawing(const System& system, std::span<const double> q)
+      : scene_(system, q), given_(system, q), given_scene_(system, given_.q()), model_(system.model()) {}
 
   std::string text() {
     choose_views();
@@ -77,6 +79,11 @@ class Drawing {
     for (const Vector& p : scene_.points()) {
       for (std::size_t i = 0; i < views_.size(); ++i) extents[i].add(views_[i].flat(p));
     }
+    for (const BodyId id : given_.moved()) {
+      for (const Vector& p : given_scene_.points_of(id)) {
+        for (std::size_t i = 0; i < views_.size(); ++i) extents[i].add(views_[i].flat(p));
+      }
+    }
     const auto size = [&](std::size_t i) { return extents[i].size(); };
     const double largest = std::max({size(0).x, size(0).y, size(2).y, 1e-9}), least = 1e-6 * largest;
     const double wide = panel_width - axes_width - 2 * margin, high = most_height - 2 * margin;
@@ -98,6 +105,7 @@ class Drawing {
   std::string panel(const View& view, const svg::Box& box) {
     page_ = svg::Page();
     view_ = &view;
+    for (const BodyId id : given_.moved()) draw_as_given(id);
     draw_items();
     for (const AppliedForce& force : model_.forces) draw_force(force);
     draw_frames();
@@ -159,6 +167,16 @@ class Drawing {
         draw_joint(item.index);
       }
     }
+  }
+
+  /// Where the file gives the pose of a body that stands elsewhere: pale and dashed.
+  void draw_as_given(BodyId id) {
+    std::vector<Point> points;
+    for (const Vector& p : given_scene_.points_of(id)) points.push_back(view_->page(p));
+    page_.shape(
+        "<path class=\"given\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\" stroke-opacity=\"0.35\" "
+        "stroke-dasharray=\"9 6\" stroke-linejoin=\"round\"/>\n",
+        svg::path(svg::hull(points)), svg::tint(id));
   }
 
   /// `nearness` is 0 for the furthest and 1 for the nearest.
@@ -289,6 +307,8 @@ class Drawing {
   }
 
   SpatialScene scene_;
+  GivenStart given_;
+  SpatialScene given_scene_;
   const Model& model_;
   std::vector<View> views_;
   std::array<svg::Box, 4> bounds_{};

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "model/model.h"
+#include "run/start_report.h"
 #include "run/structure.h"
 #include "system/system.h"
 
@@ -31,6 +32,7 @@ struct Start {
   State state;  ///< accepted state at Settings::start, clearance joints released
   ModelFacts facts;
   Structure structure;
+  StartReport report{};  ///< start values of the file that were not kept
 };
 
 /// Moves the start of a joint with play, given its index and where its second marker would stand in the first.

@@ -29,6 +29,7 @@ bool Simulation::Impl::watch_row(double dt) {
 
 // Once for each joint; the text is made when the run is over.
 bool Simulation::Impl::note_warnings() {
+  if (torn_from && accepted.t() >= *torn_from) return fail(4, "the mechanism is torn apart");
   for (const ForceBlock& block : system.force_blocks()) {
     Warning& warning = joint_warnings[at(block.joint)];
     if (warning.text != nullptr || system.rest(block.joint).now) continue;
@@ -40,6 +41,7 @@ bool Simulation::Impl::note_warnings() {
       return fail_with(fault, accepted.t());
     }
     if (warning.text == nullptr) continue;
+    if (!torn_from) torn_from = out_of_reach_from(all_bodies, first_start.state);
     if (!know_row()) return false;
     warning.time = accepted.t();
     std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,

@@ -9,6 +9,7 @@
 
 #include "component/declared.h"
 #include "component/joint_answer.h"
+#include "run/drive_range.h"
 #include "run/simulation_impl.h"
 #include "system/finite.h"
 
@@ -87,7 +88,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& all_channels,
                        std::span<Sink* const> all_sinks)
-    : system(owner.model(), Variant::released, unknowns_of(start.facts)),
+    : all_bodies(owner),
+      first_start(start),
+      system(owner.model(), Variant::released, unknowns_of(start.facts)),
       model(owner.model()),
       settings(model.settings),
       channels(all_channels),
@@ -509,6 +512,10 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.time = accepted.t();
   if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
+  // What failed there says little where a driver asks for what the mechanism cannot do.
+  if (outcome.status == RunStatus::failed && outcome.exit_code == 4) {
+    if (auto why = why_out_of_reach(all_bodies, first_start.state, outcome.time)) outcome.reason = std::move(*why);
+  }
   if (hooks.profile != nullptr) hooks.profile->stop();
   system.set_profile(nullptr);
   outcome.iterations = solver.iterations();

@@ -44,6 +44,7 @@ struct RunHooks {
 /// Advances a model from its start to Settings::end and feeds sinks and statistics.
 class Simulation {
  public:
+  /// `system` and `start` must outlive the simulation.
   Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks);
   ~Simulation();
   Outcome run(const RunHooks& hooks);

@@ -114,7 +114,9 @@ struct Simulation::Impl {
   void note_unused_play();
   void explain_failure();
 
-  System system;  ///< of the unknowns
+  const System& all_bodies;  ///< of the whole model
+  const Start& first_start;  ///< of the run
+  System system;             ///< of the unknowns
   const Model& model;
   const Settings& settings;
   const Channels& channels;
@@ -161,6 +163,8 @@ struct Simulation::Impl {
   std::vector<TimeValue> motion_before, motion_behind;
   std::vector<double> q_before, v_before, driven_change, impulses;
   std::vector<std::string> warnings;
+  /// Time from which drivers pull the mechanism apart, looked for when a joint first warns of its load.
+  std::optional<double> torn_from;
   Outcome outcome;
   Fault plugin_fault;             // of the last attempt
   double error = 0.0;             // of the last attempt

@@ -39,6 +39,9 @@ SHORT_ROD = DRIVEN.replace("bodies:", "bodies:\n  slider: {mass: 1 kg, inertia: 
   guide: {type: prismatic, between: [ground, slider]}
   link: {type: distance, between: [rod/tip, slider], length: 0.5 m}
 drivers:""").replace("value: t", "value: 10*t")
+NO_STEP = PENDULUM.replace("initial:", "forces: {kick: {type: torque, on: rod, value: 1e15}}\ninitial:")
+IN_LINE = SHORT_ROD.replace("drivers: {motor: {joint: pivot, kind: angle, value: 10*t}}", "initial: {joints: {guide: 1.2 m}}").replace(
+    "frames: {tip: [1 m, 0]}", "frames: {tip: [1 m, 0]}, pose: {angle: 0}")
 with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
     PARALLELOGRAMS = chain.read()
 LIBRARIES = {"TEMPLATE": os.path.join(BUILD, "plugins", "template", "template_integrator.so"),
@@ -88,6 +91,8 @@ CASES = {
         (3, driven("simulation:", "initial: {joints: {pivot: 0}}\nsimulation:"), RUN),
     "cannot read '...': there is no such file [file-not-found]": (3, PENDULUM, ["run", "modell.yaml"]),
     # Before the first step
+    "two positions are equally near to what the file gives: ... [ambiguous-start]":
+        (0, IN_LINE, ["validate", "model.yaml"]),
     "the mechanism cannot be put together: ... [assembly-failed]":
         (3, pendulum("initial:", "  far: {type: revolute, between: [ground/far, rod/tip]}\n"
                                  "frames: {ground/far: [5 m, 0]}\ninitial:"), RUN),
@@ -135,7 +140,7 @@ CASES = {
         (4, pendulum("step: 1 ms", "step: {adaptive: true, size: 50 ms, min: 50 ms, tolerance: 1e-9}"), RUN),
     "the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding hides how; ...":
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
-    "no step of ... s or longer could be made: ...; try a smaller step":
+    "driver '...' asks for a position that the mechanism cannot take: ... [dead-point]":
         (4, SHORT_ROD, RUN),
     "joint '...' at t = ... s: its surfaces are ... m deep in each other, more than ...; likely cause: ...":
         (4, journal("E: 207 GPa", "E: 1 Pa").replace("lankarani-nikravesh, restitution: 0.9", "hertz, K: 1e-3").replace("end: 20 ms", "end: 1 s"), RUN),
@@ -145,6 +150,8 @@ CASES = {
         (4, journal("E: 207 GPa", "E: 207e22 GPa").replace("lankarani-nikravesh, restitution: 0.9", "hertz"), RUN),
     "forces and speeds grow beyond all bounds, ...":
         (4, journal("E: 207 GPa", "E: 207e200 GPa"), RUN + ["--step", "20 us"]),
+    "no step of ... s or longer could be made: ...; try a smaller step":
+        (4, NO_STEP, RUN),
     "driver '...': the prescribed position jumps; no motion follows it":
         (4, driven("value: t", "table: {points: [[0, 0], [0.05, 1]], interpolation: linear, outside: repeat}"),
          RUN + ["--accuracy", "1 um"]),

@@ -1,0 +1,104 @@
+"""Drivers that ask for a position that the mechanism cannot take: the message names it, and advises nothing in vain."""
+import math
+import re
+import unittest
+
+from program import ProgramTest
+
+FOUR_BAR = """freeplay: 1
+bodies:
+  crank: {mass: 1, inertia: 0.01, frames: {tip: [%g, 0]}}
+  coupler: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}, pose: {angle: -10 deg}}
+  rocker: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}, pose: {angle: 120 deg}}
+frames: {ground/D: [0.4, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]%s}
+  D: {type: revolute, between: [ground/D, rocker]}
+drivers: {motor: {joint: A, kind: %s}}
+initial: {joints: {%s}}
+simulation: {end: 1 s, %s}
+"""
+PLAY = (", clearance: {bearing_radius: 10 mm, radial_clearance: 0.5 mm, material: {E: 207 GPa, nu: 0.3}, "
+        "contact: {law: flores, restitution: 0.9}}")
+SPEED = "velocity, value: 60 rpm"
+
+SLIDE = """freeplay: 1
+bodies:
+  slider: {mass: 1, inertia: 0.01}
+  rod: {mass: 1, inertia: 0.01, frames: {tip: [0.5, 0]}, pose: {angle: 60 deg}}
+  follower: {mass: 1, inertia: 0.01}
+frames: {ground/up: {angle: 90 deg}}
+joints:
+  guide: {type: prismatic, between: [ground, slider]}
+  foot: {type: revolute, between: [slider, rod]}
+  head: {type: revolute, between: [rod/tip, follower]}
+  rail: {type: prismatic, between: [ground/up, follower]}
+drivers: {push: {joint: guide, kind: position, value: "-0.3 m - 1 m/s*t"}}
+simulation: {end: 1 s, step: 1 ms}
+"""
+
+
+class DeadPoint(ProgramTest):
+    def reason(self, text, *more):
+        _, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force", "--quiet", *more, code=4)
+        line, = [line for line in err.splitlines() if "error" in line]
+        self.assertIn("[dead-point]", line)
+        self.assertNotIn("smaller", line)
+        self.assertNotIn("try", line)
+        return line
+
+    def assert_names(self, line, limit, gap):
+        self.assertIn("joint 'A' comes to a dead point at %.4g deg" % limit, line)
+        self.assertIn("turn from -%.4g deg to %.4g deg" % (limit, limit), line)
+        said = re.search(r"at (\S+) deg joint '[BCD]' would stay open by (\S+) m", line)
+        self.assertAlmostEqual(180, float(said.group(1)), delta=0.1)
+        self.assertAlmostEqual(gap, float(said.group(2)), delta=1e-3 * gap)
+
+    def test_ideal_joints_in_steps_of_every_kind(self):
+        limit = math.degrees(math.acos((0.2**2 + 0.4**2 - 0.4**2) / (2 * 0.2 * 0.4)))
+        for steps in ("step: 1 ms", "accuracy: 1 um", "step: {size: 0.1 ms, adaptive: true}"):
+            for integrator in ("bathe", "newmark", "hht", "generalized-alpha", "dopri5"):
+                if integrator == "dopri5" and steps == "step: 1 ms":
+                    continue
+                line = self.reason(FOUR_BAR % (0.2, "", SPEED, "A: 60 deg", steps), "--integrator", integrator)
+                self.assert_names(line, limit, 0.2)
+                # It turns by 360 deg/s from 60 deg on.
+                time = float(re.search(r"t = (\S+) s", line).group(1))
+                self.assertAlmostEqual((limit - 60) / 360, time, delta=1e-3)
+
+    def test_play_is_not_torn_apart_first(self):
+        for crank in (0.2, 0.35):
+            cosine = (crank**2 + 0.4**2 - 0.4**2) / (2 * crank * 0.4)
+            for steps in ("step: 20 us", "accuracy: 1 um"):
+                line = self.reason(FOUR_BAR % (crank, PLAY, SPEED, "A: 40 deg", steps))
+                self.assert_names(line, math.degrees(math.acos(cosine)), crank)
+
+    def test_a_motion_that_turns_back_in_time_is_left_alone(self):
+        value = "angle, value: 60 deg + 10 deg*sin(2*pi*t)"
+        self.freeplay("run", self.write("m.yaml", FOUR_BAR % (0.2, "", value, "", "step: 1 ms")), "--out", "r")
+        value = "angle, value: 60 deg + 16 deg*sin(2*pi*t)"
+        line = self.reason(FOUR_BAR % (0.2, "", value, "", "step: 1 ms"))
+        self.assertIn("at 75.52 deg", line)
+
+    def test_a_slide(self):
+        line = self.reason(SLIDE)
+        self.assertIn("joint 'guide' comes to a dead point at -0.5 m", line)
+        self.assertIn("move from -0.5 m to 0.5 m", line)
+        self.assertIn("at -1.3 m", line)
+        self.assertIn("would stay open by 0.8 m", line)
+
+    def test_two_drivers(self):
+        text = FOUR_BAR % (0.2, "", SPEED, "A: 40 deg", "step: 1 ms")
+        text = text.replace("  D: {type: revolute, between: [ground/D, rocker]}",
+                            "  D: {type: revolute, between: [cart/D, rocker]}\n  rail: {type: prismatic, between: [ground, cart]}")
+        text = text.replace("frames: {ground/D: [0.4, 0]}\n", "")
+        text = text.replace("  crank:", "  cart: {mass: 1, inertia: 0.01, frames: {D: [0.4, 0]}}\n  crank:")
+        text = text.replace("drivers: {", "drivers: {feed: {joint: rail, kind: position, value: 0.1 m/s*t}, ")
+        line = self.reason(text)
+        self.assertRegex(line, "driver '(motor|feed)' asks for a position that the mechanism cannot take")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,180 @@
+"""Start values: what the file gives is kept, or freeplay says how far it was moved; the nearest position is taken."""
+import csv
+import io
+import json
+import math
+import unittest
+
+from program import ProgramTest
+
+RUN = "simulation: {end: 1 ms, step: 1 ms}\n"
+
+ARM = """freeplay: 1
+bodies:
+  arm: {mass: 1, inertia: 1/12, com: [0.5, 0], frames: {tip: [1, 0]}%s}
+  rotor: {mass: 1, inertia: 0.1%s}
+joints:
+  pivot: {type: revolute, between: [ground, arm]}
+  spin: {type: revolute, between: [arm/tip, rotor]}
+%s""" + RUN
+
+BALL = """freeplay: 1
+bodies:
+  ball: {mass: 1, inertia: 0.1, velocity: {linear: [0.3, -0.1]}}
+joints:
+  ring:
+    type: revolute
+    between: [ground, ball]
+    clearance: {bearing_radius: 10 mm, radial_clearance: 1 mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: hertz}%s}
+simulation: {end: 1 ms, step: 10 us}
+"""
+
+# A crank moves the knee of two links between a hinge above and a ram below. Link angles of -75 and -105 degrees fit
+# with the knee on the right, and its mirror image with the knee on the left.
+TOGGLE = """freeplay: 1
+parameters: {upper: -90 deg, lower: -90 deg}
+bodies:
+  upper: {mass: 1, inertia: 0.01, frames: {end: [0.3, 0]}, pose: {angle: $upper}}
+  lower: {mass: 1, inertia: 0.01, frames: {end: [0.3, 0]}, pose: {angle: $lower}}
+  ram: {mass: 1, inertia: 0.01}
+frames: {ground/guide: {angle: -90 deg}}
+joints:
+  top: {type: revolute, between: [ground, upper]}
+  knee: {type: revolute, between: [upper/end, lower]}
+  foot: {type: revolute, between: [lower/end, ram]}
+  guide: {type: prismatic, between: [ground/guide, ram]}
+initial: {joints: {guide: "0.6*cos(15 deg)"}}
+""" + RUN
+
+CARDAN = """freeplay: 1
+space: spatial
+bodies:
+  in: {mass: 1, inertia: [0.01, 0.01, 0.01], frames: {tip: {position: [0, 0, 1]}}}
+  out: {mass: 1, inertia: [0.01, 0.01, 0.01], pose: {position: [0, 0, 1], rpy: [%s]}}
+joints:
+  axle: {type: revolute, between: [ground, in]}
+  cardan: {type: universal, between: [in/tip, out]}
+initial: {joints: {axle: 0}}
+""" + RUN
+
+
+class Start(ProgramTest):
+    def first_row(self, text):
+        out, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force")
+        table = list(csv.reader(io.StringIO(self.read("r", "results.csv"))))
+        return {name: float(value) for name, value in zip(table[0], table[1])}, out, err
+
+    def start(self, text, *more):
+        verdict = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json", *more)[0])
+        return verdict["start"], verdict["messages"]
+
+    # --- velocities --------------------------------------------------------------------------------------------------
+
+    def test_a_speed_that_the_file_leaves_open_is_said(self):
+        row, out, _ = self.first_row(ARM % ("", "", "initial: {speeds: {spin: 10}}\n"))
+        # I1 w + 0.1 (w + 10) = 0 with the arm's moment about its pivot and the rotor's mass at its tip.
+        arm = -0.1 * 10 / (1 / 3 + 1 + 0.1)
+        self.assertAlmostEqual(10, row["joint.spin.speed"], places=12)
+        self.assertAlmostEqual(arm, row["joint.pivot.speed"], places=12)
+        self.assertIn("joint 'pivot' starts at %.4g rad/s by least kinetic energy" % arm, out)
+        self.assertIn("joint 'pivot' starts at", self.freeplay("validate", "m.yaml")[0])
+
+    def test_speeds_that_are_all_given_are_kept_without_a_word(self):
+        row, out, _ = self.first_row(ARM % ("", "", "initial: {speeds: {spin: 10, pivot: 0}}\n"))
+        self.assertAlmostEqual(10, row["joint.spin.speed"], places=12)
+        self.assertAlmostEqual(0, row["joint.pivot.speed"], places=12)
+        self.assertNotIn("starts", out)
+
+    def test_a_velocity_that_is_given_is_kept_and_another_body_follows(self):
+        row, out, _ = self.first_row(ARM % (", velocity: {angular: 2}", "", ""))
+        self.assertAlmostEqual(2, row["body.arm.omega"], places=12)
+        self.assertAlmostEqual(2, row["body.rotor.vy"], places=12)
+        self.assertNotIn("moved", out)
+
+    def test_a_velocity_that_a_start_speed_contradicts_is_listed(self):
+        row, out, _ = self.first_row(ARM % (", velocity: {angular: 2}", "", "initial: {speeds: {pivot: 3}}\n"))
+        self.assertAlmostEqual(3, row["body.arm.omega"], places=12)
+        self.assertIn("body 'arm' starts 1 rad/s", out)
+        self.assertIn("from the angular velocity that its `velocity` gives", out)
+
+    def test_a_velocity_in_play_is_kept(self):
+        for initial in ("", ", initial: centered", ", initial: {eccentricity: [0.1 mm, 0]}"):
+            row, out, _ = self.first_row(BALL % initial)
+            self.assertEqual((0.3, -0.1), (row["body.ball.vx"], row["body.ball.vy"]))
+            self.assertNotIn("moved", out)
+
+    def test_the_block_of_a_clearance_wins_and_what_it_moved_is_listed(self):
+        row, out, _ = self.first_row(BALL % ", initial: {velocity: [0.2, 0]}")
+        self.assertAlmostEqual(0.2, row["body.ball.vx"], places=12)
+        self.assertIn("body 'ball' starts 0.141 m/s from the velocity that its `velocity` gives", out)
+
+    # --- positions ---------------------------------------------------------------------------------------------------
+
+    def test_the_nearest_of_two_positions_is_taken(self):
+        for upper, lower, sign in ((-70, -100, 1), (-80, -115, 1), (-100, -80, -1), (-112, -71, -1)):
+            start, messages = self.start(TOGGLE, "--set", "upper=%d deg" % upper, "--set", "lower=%d deg" % lower)
+            self.assertEqual([], messages)
+            self.assertAlmostEqual(-90 + sign * 15, math.degrees(start["upper"]["angle"]), places=9)
+            self.assertAlmostEqual(-90 - sign * 15, math.degrees(start["lower"]["angle"]), places=9)
+            moved = start["lower"]["moved"]
+            self.assertEqual("angle", moved[0]["quantity"])
+            self.assertAlmostEqual(abs(-90 - sign * 15 - lower), math.degrees(moved[0]["by"]), places=9)
+            self.assertEqual(abs(-90 - sign * 15 - lower) > 10, moved[0]["far"])
+
+    def test_two_positions_that_are_equally_near_are_both_named(self):
+        _, messages = self.start(TOGGLE)
+        message, = [m for m in messages if m["id"] == "ambiguous-start"]
+        self.assertIn("-75.0 deg", message["message"])
+        self.assertIn("-105.0 deg", message["message"])
+        self.assertEqual("warning", message["severity"])
+        self.freeplay("validate", "m.yaml", "--strict", code=3)
+
+    def test_a_motion_that_is_left_free_serves_the_given_poses(self):
+        free = TOGGLE.replace('initial: {joints: {guide: "0.6*cos(15 deg)"}}\n', "")
+        start, messages = self.start(free, "--set", "upper=-60 deg", "--set", "lower=-100 deg")
+        self.assertEqual([], messages)
+        # -90 + a and -90 - a are nearest to -60 and -100 with a = (30 + 10) / 2.
+        self.assertAlmostEqual(-70, math.degrees(start["upper"]["angle"]), places=6)
+        self.assertAlmostEqual(-110, math.degrees(start["lower"]["angle"]), places=6)
+
+    def test_a_cardan_joint_says_how_far_it_turned_its_body(self):
+        _, out, _ = self.first_row(CARDAN % "20 deg, 20 deg, 40 deg")
+        self.assertIn("from the orientation that its `pose` gives: that is far", out)
+        _, out, _ = self.first_row(CARDAN % "0, 20 deg, 0")
+        self.assertNotIn("moved", out)
+
+    def test_show_draws_given_and_assembled_poses(self):
+        self.write("m.yaml", TOGGLE)
+        words = ("show", "m.yaml", "--format", "svg", "--set", "lower=-140 deg")
+        self.assertEqual(1 + 1, self.freeplay(*words, "--set", "upper=-70 deg")[0].count('class="given"'))
+        self.assertEqual(0, self.freeplay("show", "m.yaml", "--format", "svg", "--set", "upper=-75 deg", "--set",
+                                          "lower=-105 deg")[0].count('class="given"'))
+        self.write("s.yaml", CARDAN % "20 deg, 20 deg, 40 deg")
+        self.assertEqual(4, self.freeplay("show", "s.yaml", "--format", "svg")[0].count('class="given"'))  # views
+
+    # --- positions that cannot be ------------------------------------------------------------------------------------
+
+    def test_a_mechanism_that_cannot_close_says_how_far_and_where_it_would(self):
+        text = """freeplay: 1
+bodies:
+  crank: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}}
+  coupler: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}}
+  rocker: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}}
+frames: {ground/D: [0.4, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+initial: {joints: {A: 180 deg}}
+"""
+        _, err = self.freeplay("validate", self.write("m.yaml", text), code=3)
+        # The crank's tip is 0.6 m from D, and two links of 0.2 m are between.
+        self.assertIn("stays open by 0.2 m", err)
+        limit = math.degrees(math.acos((0.2**2 + 0.4**2 - 0.4**2) / (2 * 0.2 * 0.4)))
+        self.assertIn("can turn from -%.4g deg to %.4g deg" % (limit, limit), err)
+        self.assertIn("assembly-failed", err)
+
+
+if __name__ == "__main__":
+    unittest.main()

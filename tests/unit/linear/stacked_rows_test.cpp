@@ -1,0 +1,34 @@
+#include "linear/stacked_rows.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TEST(StackedRows, LaterRowsAreSolvedInWhatEarlierOnesLeaveFree) {
+  StackedRows stack(3);
+  stack.add(MatrixXd{{1.0, 1.0, 0.0}}, VectorXd{{2.0}});
+  stack.add(MatrixXd{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, VectorXd{{5.0, 0.0}});  // contradicts it: least squares
+  stack.add(MatrixXd{{1.0, 0.0, 1.0}}, VectorXd{{4.0}});
+  EXPECT_NEAR(stack.solution()[0], 3.5, 1e-14);
+  EXPECT_NEAR(stack.solution()[1], -1.5, 1e-14);
+  EXPECT_NEAR(stack.solution()[2], 0.5, 1e-14);
+  EXPECT_EQ(stack.free().cols(), 0);
+}
+
+TEST(StackedRows, WhatNoRowNamesStaysZeroAndFree) {
+  StackedRows stack(2);
+  stack.add(MatrixXd{{0.0, 3.0}, {0.0, 3.0}}, VectorXd{{6.0, 6.0}});
+  EXPECT_NEAR(stack.solution()[0], 0.0, 1e-15);
+  EXPECT_NEAR(stack.solution()[1], 2.0, 1e-15);
+  ASSERT_EQ(stack.free().cols(), 1);
+  EXPECT_NEAR(std::abs(stack.free()(0, 0)), 1.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace freeplay
