@@ -74,10 +74,13 @@ class Bathe final : public Integrator {
       for (std::size_t i = 0; i < n.v.size; ++i) n.increment_known[i] += beta_q * to.a[i];  // now the whole increment
     }
     end_step(to, z_rate, solver);
+    double error = 0.0;
+    if (solver.estimates()) {
+      StepError judge(to, scratch.part(n.used, scratch.size - n.used));
+      error = judge(dt, {n.q, n.v, n.a, n.z, n.z_rate}, n.increment_known, to, z_rate, solver);
+    }
     history.finish(to);
-    if (!solver.estimates()) return {.converged = 1, .error = 0.0};
-    StepError error(to, scratch.part(n.used, scratch.size - n.used));
-    return {.converged = 1, .error = error(dt, {n.q, n.v, n.a, n.z, n.z_rate}, n.increment_known, to, z_rate, solver)};
+    return {.converged = 1, .error = error};
   }
 
  private:

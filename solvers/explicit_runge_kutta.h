@@ -16,6 +16,7 @@ namespace freeplay {
 /// Phi_q v = nu, which moves them by less than the local error, and what is solved for there is the first stage of the
 /// next step. Hairer, Norsett and Wanner 1993, II.4.
 ///
+/// A tableau whose two results err so much alike that their difference says too little has a factor `caution` for it.
 /// A tableau has `stages` s, `order`, `error_order` (power of dt with which the difference of the pair falls), `node`
 /// (s numbers), `weight` ((s + 1) x s: a row for each stage, as the last the result) and `error_weight` (s + 1 numbers:
 /// result less the other order, the last that of the end of the step).
@@ -135,7 +136,10 @@ class ExplicitRungeKutta : public Integrator {
     sum<-1>(dt, nullptr, k.v(0).data, stride, k.increment, all);
     sum<-1>(dt, nullptr, k.a(0).data, stride, k.spare, all);
     sum<-1>(dt, nullptr, k.z_rate(0).data, stride, k.z_spare, all);
-    return std::max(solver.error_norm(k.increment, k.spare), solver.internal_error_norm(dt, to, k.z_spare));
+    const double apart =
+        std::max(solver.error_norm(k.increment, k.spare), solver.internal_error_norm(dt, to, k.z_spare));
+    if constexpr (requires { Tableau::caution; }) return Tableau::caution * apart;
+    return apart;
   }
 };
 

@@ -71,12 +71,13 @@ class NewmarkStep : public Integrator {
     for (std::size_t i = 0; i < m.z.size; ++i) m.z[i] += k1_ * (to.z[i] - n.z[i]) / beta_v;
     solver.project_velocity(to);
     solver.accelerate(to, m.z_rate);
+    double error = 0.0;
+    if (solver.estimates()) {
+      StepError judge(to, scratch.part(n.used, scratch.size - n.used));
+      error = judge(dt, {n.q, n.v_start, n.a_start, n.z_start, n.rate_start}, n.increment, to, m.z_rate, solver);
+    }
     if (!auxiliary_) take_over(to, m);
-    if (!solver.estimates()) return {.converged = 1, .error = 0.0};
-    StepError error(to, scratch.part(n.used, scratch.size - n.used));
-    return {
-        .converged = 1,
-        .error = error(dt, {n.q, n.v_start, n.a_start, n.z_start, n.rate_start}, n.increment, to, m.z_rate, solver)};
+    return {.converged = 1, .error = error};
   }
 
  protected:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,10 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr int order_by_ends = 5;           // of a method whose steps are known as well inside by their ends
+constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
+constexpr double astray_inside = 0.1;      // and by which its ends may mislead
+constexpr int most_sweeps = 3;
 constexpr double largest_turn = 1.0;  // of a joint in one step [rad]: angles are continued over turns
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
@@ -184,14 +189,88 @@ bool Simulation::Impl::settle_between() {
          solver.accelerate(view, {z_rate.data(), z_rate.size()});
 }
 
-// A consistent state inside the step that was just made, in `between` and e_between.
-bool Simulation::Impl::look_inside(double t) {
+// Between its ends a step is known to the sixth order from these alone. Where that is not enough the equations of
+// motion are solved at places inside, over and over, until nothing changes that would matter. Where a joint cannot be
+// asked there, the ends have to do.
+void Simulation::Impl::know_inside() {
+  if (inner.known()) return;
+  const std::size_t joints = e_accepted->internal_rate.size();
+  std::ranges::copy(e_accepted->internal_rate, start_rate.begin());
+  std::ranges::copy(e_trial->internal_rate, end_rate.begin());
+  if (flows > 0) {
+    energy.flow(e_accepted, accepted.lambda(), std::span(start_rate).subspan(joints));
+    energy.flow(e_trial, trial.lambda(), std::span(end_rate).subspan(joints));
+  }
+  const DenseStep by_ends(system, accepted, start_rate, trial, end_rate);
+  const auto look = [&](std::size_t place) {
+    const double s = InnerMotion::places[place];
+    DenseStep(system, accepted, start_rate, trial, end_rate, &inner).at(s, between);
+    StateView view = between.view();
+    solver.use_history(between.h());
+    if (!solver.accelerate(view, {z_rate.data(), z_rate.size()})) return false;
+    by_ends.missing(s, between, z_rate, inner.missing(place), inner.missing_rate(place));
+    return true;
+  };
+  const auto change = [&](std::size_t place) {
+    const std::span<const double> now = inner.missing(place);
+    for (std::size_t i = 0; i < now.size(); ++i) defect[i] = now[i] - std::exchange(inner_before[i], now[i]);
+    return error_by_missing(0.5);
+  };
+  std::ranges::fill(inner_before, 0.0);
+  if (!look(InnerMotion::middle)) return;
+  inner.fit_middle();
+  if (change(InnerMotion::middle) <= unnoticed_inside) return;
+  std::ranges::fill(inner_before, 0.0);
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    bool seen = look(InnerMotion::middle);
+    if (seen && sweep == 0) inner.fit_middle();
+    seen = seen && look(0) && look(2);
+    if (!seen) return inner.forget();
+    inner.fit();
+    if (change(0) <= unnoticed_inside) return;
+  }
+}
+
+// Largest error of an interpolation by the ends, in units of what a step may err by, that misses `defect` of the second
+// derivative by s of increments at the fraction s: as u^3 with u = s (1 - s), of which no more than 1/64 and, by s,
+// 0.054 come together. `defect` is lost.
+double Simulation::Impl::error_by_missing(double s) {
+  const double dt = trial.t() - accepted.t();
+  const double bend = std::max(std::abs(InnerMotion::Weights(s).acceleration[0]), 0.05);
+  for (std::size_t i = 0; i < defect.size(); ++i) {
+    rate_defect[i] = 0.054 / (bend * dt) * defect[i];
+    defect[i] *= 1.0 / (64.0 * bend);
+  }
+  return solver.error_norm(defect, rate_defect);
+}
+
+// A consistent state inside the step that was just made, in `between`.
+bool Simulation::Impl::settle_inside(double t) {
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
-  DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate).at(s, between);
+  if (inner.known()) {
+    DenseStep(system, accepted, start_rate, trial, end_rate, &inner).at(s, between);
+  } else {
+    DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate).at(s, between);
+  }
   between.t() = t;
-  if (!settle_between()) {
-    if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), t);
-    return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
+  if (settle_between()) return true;
+  if (solver.fault().kind != Fault::Kind::none) return fail_with(solver.fault(), t);
+  return fail(4, fmt::format("t = {:.9g} s: {}", t, solver.trouble()));
+}
+
+// The same in e_between as well, as good as the ends of the step are.
+bool Simulation::Impl::look_inside(double t) {
+  if (integrator_layout.order > order_by_ends) know_inside();
+  if (!settle_inside(t)) return false;
+  if (!inner.known()) {
+    const double s = (t - accepted.t()) / (trial.t() - accepted.t());
+    // How far the ends alone lead astray, their own accelerations say.
+    DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate)
+        .missing(s, between, {}, defect, {});
+    if (!(error_by_missing(s) <= astray_inside)) {
+      know_inside();
+      if (!settle_inside(t)) return false;
+    }
   }
   if (!evaluate_all(between, e_between)) return fail_with(e_between->fault, t);
   return true;
@@ -203,7 +282,12 @@ bool Simulation::Impl::write_row_at(double t) {
   Fault fault;
   if (!observer.observe(point(between), e_between, between.lambda(), row_between, fault)) return fail_with(fault, t);
   const double s = (t - accepted.t()) / (trial.t() - accepted.t());
-  energy.fill_inside(s, e_between, between.lambda(), channels, row_between);
+  if (flows > 0 && inner.known()) {
+    const std::span<const double> integrals = std::span<const double>(between.z()).last(at(flows));
+    energy.fill_inside(s, e_between, between.lambda(), integrals, channels, row_between);
+  } else {
+    energy.fill_inside(s, e_between, between.lambda(), channels, row_between);
+  }
   ++outcome.rows;
   statistics.note_written(row_between);
   for (Sink* sink : sinks) sink->row(row_between);

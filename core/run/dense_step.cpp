@@ -45,30 +45,44 @@ class Quintic {
   Weights position_, velocity_, acceleration_;
 };
 
+/// Increment of a body in space since `start` and its first two derivatives, from its coordinates, v and a.
+struct SpatialIncrement {
+  SpatialIncrement(const double* start, const double* q, const double* v, const double* a) {
+    spatial::difference_body(start, q, moved);
+    std::copy_n(v, 6, rate);
+    std::copy_n(a, 6, acceleration);
+    const spatial::Vector turned = spatial::vector(moved + 3), w = spatial::vector(v + 3);
+    const spatial::Vector turned_rate = spatial::rotation_rate(turned, w);
+    spatial::target(rate + 3) = turned_rate;
+    spatial::target(acceleration + 3) =
+        spatial::rotation_acceleration(turned, turned_rate, w, spatial::Vector(spatial::vector(a + 3)));
+  }
+  double moved[6], rate[6], acceleration[6];
+};
+
 }  // namespace
 
 void DenseStep::bodies_in_space(double s, State& out) const {
-  using spatial::Vector;
-  const Quintic quintic(s, end_.t() - start_.t());
+  const double dt = end_.t() - start_.t();
+  const Quintic quintic(s, dt);
+  const InnerMotion::Weights inside(s);
   for (std::size_t b = 0; 6 * b < out.v().size(); ++b) {
     const double *v0 = &start_.v()[6 * b], *a0 = &start_.a()[6 * b];
-    double end[6], end_v[6], end_a[6], moved[6], rate[6];
-    spatial::difference_body(&start_.q()[7 * b], &end_.q()[7 * b], end);
-    std::copy_n(&end_.v()[6 * b], 6, end_v);
-    std::copy_n(&end_.a()[6 * b], 6, end_a);
-    const Vector turned = spatial::vector(end + 3), w = spatial::vector(end_v + 3), alpha = spatial::vector(end_a + 3);
-    const Vector turned_rate = spatial::rotation_rate(turned, w);
-    spatial::target(end_v + 3) = turned_rate;
-    spatial::target(end_a + 3) = spatial::rotation_acceleration(turned, turned_rate, w, alpha);
+    const SpatialIncrement end(&start_.q()[7 * b], &end_.q()[7 * b], &end_.v()[6 * b], &end_.a()[6 * b]);
+    double moved[6], rate[6];
     for (std::size_t i = 0; i < 6; ++i) {
-      const Moved at = quintic(v0[i], a0[i], end[i], end_v[i], end_a[i]);
+      const Moved at = quintic(v0[i], a0[i], end.moved[i], end.rate[i], end.acceleration[i]);
       moved[i] = at.q;
       rate[i] = at.v;
+      if (inner_ != nullptr) {
+        moved[i] += inner_->increment(inside.position, 6 * b + i);
+        rate[i] += inner_->increment(inside.velocity, 6 * b + i) / dt;
+      }
       out.a()[6 * b + i] = (1.0 - s) * a0[i] + s * end_.a()[6 * b + i];
     }
     spatial::retract_body(&start_.q()[7 * b], moved, &out.q()[7 * b]);
     spatial::target(rate + 3) =
-        spatial::angular_velocity(spatial::vector(moved + 3), Vector(spatial::vector(rate + 3)));
+        spatial::angular_velocity(spatial::vector(moved + 3), spatial::Vector(spatial::vector(rate + 3)));
     std::copy_n(rate, 6, &out.v()[6 * b]);
   }
 }
@@ -76,6 +90,7 @@ void DenseStep::bodies_in_space(double s, State& out) const {
 void DenseStep::at(double s, State& out) const {
   const double dt = end_.t() - start_.t();
   out.t() = start_.t() + s * dt;
+  const InnerMotion::Weights inside(s);
   if (system_.model().space == Space::planar) {
     const Quintic quintic(s, dt);
     const std::span q = out.q(), v = out.v(), a = out.a();
@@ -87,6 +102,11 @@ void DenseStep::at(double s, State& out) const {
       v[i] = at.v;
       a[i] = at.a;
     }
+    for (std::size_t i = 0; inner_ != nullptr && i < q.size(); ++i) {
+      q[i] += inner_->increment(inside.position, i);
+      v[i] += inner_->increment(inside.velocity, i) / dt;
+      a[i] += inner_->increment(inside.acceleration, i) / (dt * dt);
+    }
   } else {
     bodies_in_space(s, out);
   }
@@ -95,8 +115,36 @@ void DenseStep::at(double s, State& out) const {
   }
   for (std::size_t i = 0; i < start_rate_.size(); ++i) {
     out.z()[i] = Hermite{start_.z()[i], dt * start_rate_[i], end_.z()[i], dt * end_rate_[i]}.at(s);
+    if (inner_ != nullptr) out.z()[i] += inner_->internal(inside, i);
   }
   std::ranges::copy(start_.h(), out.h().begin());
+}
+
+void DenseStep::missing(double s, const State& solved, std::span<const double> rate, std::span<double> bends,
+                        std::span<double> rates) const {
+  const double dt = end_.t() - start_.t();
+  const Quintic quintic(s, dt);
+  const std::span<const double> v0 = start_.v(), a0 = start_.a();
+  if (system_.model().space == Space::planar) {
+    for (std::size_t i = 0; i < bends.size(); ++i) {
+      const Moved at = quintic(v0[i], a0[i], end_.q()[i] - start_.q()[i], end_.v()[i], end_.a()[i]);
+      bends[i] = dt * dt * (solved.a()[i] - at.a);
+    }
+  } else {
+    for (std::size_t b = 0; 6 * b < bends.size(); ++b) {
+      const double* const start = &start_.q()[7 * b];
+      const SpatialIncrement end(start, &end_.q()[7 * b], &end_.v()[6 * b], &end_.a()[6 * b]);
+      const SpatialIncrement here(start, &solved.q()[7 * b], &solved.v()[6 * b], &solved.a()[6 * b]);
+      for (std::size_t i = 0; i < 6; ++i) {
+        const Moved at = quintic(v0[6 * b + i], a0[6 * b + i], end.moved[i], end.rate[i], end.acceleration[i]);
+        bends[6 * b + i] = dt * dt * (here.acceleration[i] - at.a);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const Hermite cubic{start_.z()[i], dt * start_rate_[i], end_.z()[i], dt * end_rate_[i]};
+    rates[i] = dt * rate[i] - cubic.slope(s);
+  }
 }
 
 }  // namespace freeplay

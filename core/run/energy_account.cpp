@@ -176,8 +176,7 @@ void EnergyAccount::fill_inside(double s, const Evaluation& e, std::span<const d
     integral_inside_[i] =
         integral_at(s, dt_, {integral_before_[i], integral_[i]}, power_before_[i], integral_inside_[i], power_[i]);
   }
-  fill(e, channels, row, integral_inside_,
-       row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda)));
+  fill(e, channels, row, integral_inside_, row_work_inside(s, e, lambda));
 }
 
 void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::span<double> row,

@@ -61,6 +61,11 @@ class EnergyAccount {
   /// What was dissipated, less work and energy at the start, at the end of the last step [J]: with the energy there it
   /// is the residual.
   double lost_less_given(const Evaluation& e) const;
+  /// The same with the flows() integrals there.
+  void fill_inside(double s, const Evaluation& e, std::span<const double> lambda, std::span<const double> integrals,
+                   const Channels& channels, std::span<double> row) {
+    fill(e, channels, row, integrals, row_work_inside(s, e, lambda));
+  }
   /// An event changed what acts at the end of the last step.
   void renew(const Evaluation& e, std::span<const double> lambda) {
     flow(e, lambda, power_);
@@ -80,6 +85,9 @@ class EnergyAccount {
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
             double row_work);
   double row_power(const Evaluation& e, std::span<const double> lambda) const;
+  double row_work_inside(double s, const Evaluation& e, std::span<const double> lambda) const {
+    return row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda));
+  }
   bool is_like_last(double dt, const Evaluation& e) const;
   void take(double dt, const Evaluation& e, std::span<const double> lambda, std::span<const double> powers,
             std::span<const double> integrals);

@@ -148,6 +148,7 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
       }
       std::swap(trial, between);
       swap(e_trial, e_between);
+      inner.forget();
       return ended_inside = true;
     }
     const double change = (end.value - aim_past(end, at_event)) / end.rate;

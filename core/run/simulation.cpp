@@ -123,6 +123,11 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       z_rate(at(system.layout().nz() + flows)),
       flow_half_way(at(energy.flows())),
       defect(at(system.layout().nv())),
+      inner(at(system.layout().nv()), z_rate.size()),
+      inner_before(defect.size()),
+      rate_defect(defect.size()),
+      start_rate(z_rate.size()),
+      end_rate(z_rate.size()),
       joint_warnings(model.joints.size()),
       speed_jumps(model.drivers.size()),
       motion_before(model.drivers.size()),
@@ -325,6 +330,7 @@ void Simulation::Impl::note_turns(const Evaluation& e, std::span<double> history
 bool Simulation::Impl::step(double dt, bool& converged) {
   converged = false;
   plugin_fault.kind = Fault::Kind::none;
+  inner.forget();
   trial.assign(accepted);
   if (!begin_steps(dt, trial)) return false;
   solver.use_history(trial.h());

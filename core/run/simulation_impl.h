@@ -6,6 +6,7 @@
 
 #include "run/energy_account.h"
 #include "run/event_storm.h"
+#include "run/inner_motion.h"
 #include "run/input_activity.h"
 #include "run/newton_stage_solver.h"
 #include "run/observer.h"
@@ -74,6 +75,9 @@ struct Simulation::Impl {
   bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
   bool write_rows_inside();
   bool write_row_at(double t);
+  void know_inside();
+  double error_by_missing(double s);
+  bool settle_inside(double t);
   bool look_inside(double t);
   bool settle_between();
   // Records and the largest values inside a step (recording.cpp).
@@ -141,6 +145,8 @@ struct Simulation::Impl {
   RunWatch watch;
   PeakSearch peaks;  ///< with error control
   std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
+  InnerMotion inner;  ///< of the step that was made last, where somebody looked inside
+  std::vector<double> inner_before, rate_defect, start_rate, end_rate;
   std::vector<int> stop_columns, with_history;
   struct Turn {
     std::size_t slot, joint;

@@ -105,8 +105,9 @@ double unit_rebound(const std::string& integrator, double step, double phase) {
   return all.empty() ? 0.0 : all[0].end.fields.at(speed);
 }
 
-// The rebound of the known study, 0.901222060959, with a push that a wrong approach speed would show.
-TEST(LocatedEvent, MethodsOfOrderTwoKeepItThroughAnImpact) {
+// The rebound of the known study, 0.901222060959, with a push that a wrong approach speed would show. The error of every
+// step is taken off, which makes the order one more than that of the method; the force law bends like x^1.5.
+TEST(LocatedEvent, MethodsOfOrderTwoHaveOneMoreThroughAnImpact) {
   for (const char* integrator : {"bathe", "hht", "generalized-alpha", "newmark"}) {
     std::vector<double> errors;
     for (const int steps : {40, 160, 640}) {
@@ -120,8 +121,8 @@ TEST(LocatedEvent, MethodsOfOrderTwoKeepItThroughAnImpact) {
     }
     const double mean_order = order(errors[0], errors[2]) / 4.0;
     record(std::string(integrator) + "_order", mean_order);
-    EXPECT_GE(mean_order, 1.8) << integrator;
-    EXPECT_LE(mean_order, 2.3) << integrator;
+    EXPECT_GE(mean_order, 2.7) << integrator;
+    EXPECT_LE(mean_order, 3.4) << integrator;
   }
 }
 
