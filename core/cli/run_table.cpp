@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -25,9 +26,11 @@ std::string quantity(double value, const char* unit, int digits = 4) {
 struct Figures {
   const RunRecord& record;
 
+  /// `peak`: of PeakValues, where the figure is one.
   std::string operator()(const char* part, const std::string& name, const char* quantity, double value,
-                         const char* unit, FigureStyle style = {}) const {
-    if (record.repeat.is_null()) return figure_text(value, unit, 0.0, style);
+                         const char* unit, std::optional<std::size_t> peak = {}, FigureStyle style = {}) const {
+    if (record.repeat.is_null())
+      return figure_text(value, unit, peak ? record.statistics.noise().of(*peak) : 0.0, style);
     const Json* const spread = spread_of(part, name, quantity);
     return spread ? range_text(*spread, unit) : "-";
   }
@@ -106,17 +109,23 @@ void add_joints(const RunRecord& record, TextTable& table) {
   table.add_row(std::move(head));
   const bool any = record.statistics.any(), once = record.repeat.is_null();
   const Figures figure{record};
+  const PeakValues& peaks = record.statistics.peak_values();
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!is_listed(joints[i])) continue;
     const JointStatistics seen = seen_of(i);
     const bool touches = any && has_contact_statistics(record.channels.joints[i]);
     const std::string& name = joints[i].name;
-    std::vector<std::string> row{name, figure("joints", name, "max_force", seen.max_force, "N")};
+    std::vector<std::string> row{
+        name, figure("joints", name, "max_force", seen.max_force, "N", peaks.force(static_cast<int>(i)))};
     row.push_back(!touches ? "-" : once ? std::to_string(seen.contacts) : figure("joints", name, "contacts", 0.0, ""));
     row.push_back(touches ? figure.share("joints", name, "contact_fraction", seen.contact_fraction) : "-");
-    row.push_back(touches ? figure("joints", name, "max_delta", seen.max_penetration, "m", short_figure) : "-");
+    row.push_back(touches ? figure("joints", name, "max_delta", seen.max_penetration, "m",
+                                   peaks.penetration(static_cast<int>(i)), short_figure)
+                          : "-");
     if (moments) {
-      row.push_back(holds_moment(seen) ? figure("joints", name, "max_torque", seen.max_torque, "N*m") : "-");
+      row.push_back(holds_moment(seen) ? figure("joints", name, "max_torque", seen.max_torque, "N*m",
+                                                peaks.torque(static_cast<int>(i)))
+                                       : "-");
     }
     table.add_row(std::move(row));
   }
@@ -126,26 +135,30 @@ void add_joints(const RunRecord& record, TextTable& table) {
 void add_gears(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "gear"), "max |force|", "max |torque|"});
   const Figures figure{record};
+  const PeakValues& peaks = record.statistics.peak_values();
   for (const Gear& gear : record.model.gears) {
     const JointElement& second = record.model.joints[static_cast<std::size_t>(gear.second)];
     const bool turns = second.ideal_layout.coordinate == Coordinate::angle;
     const JointStatistics seen = record.statistics.joint(gear.joint);
     const std::string& name = record.model.joints[static_cast<std::size_t>(gear.joint)].name;
-    table.add_row({name, turns ? "-" : figure("joints", name, "max_force", seen.max_force, "N"),
-                   turns ? figure("joints", name, "max_torque", seen.max_torque, "N*m") : "-"});
+    table.add_row(
+        {name, turns ? "-" : figure("joints", name, "max_force", seen.max_force, "N", peaks.force(gear.joint)),
+         turns ? figure("joints", name, "max_torque", seen.max_torque, "N*m", peaks.torque(gear.joint)) : "-"});
   }
 }
 
 void add_forces(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "force"), "max |F|", "max |torque|", "work"});
   const Figures figure{record};
+  const PeakValues& peaks = record.statistics.peak_values();
   for (int f = 0; f < static_cast<int>(record.model.force_elements.size()); ++f) {
     const ForceStatistics seen = record.statistics.force(f);
     const bool pure_force = seen.max_torque == 0.0, pure_torque = seen.max_force == 0.0 && !pure_force;
     const std::string name = force_words(record.model, f).name;
-    table.add_row({name, pure_torque ? "-" : figure("forces", name, "max_force", seen.max_force, "N"),
-                   pure_force ? "-" : figure("forces", name, "max_torque", seen.max_torque, "N*m"),
-                   figure("forces", name, "work", seen.work, "J")});
+    table.add_row(
+        {name, pure_torque ? "-" : figure("forces", name, "max_force", seen.max_force, "N", peaks.applied_force(f)),
+         pure_force ? "-" : figure("forces", name, "max_torque", seen.max_torque, "N*m", peaks.applied_torque(f)),
+         figure("forces", name, "work", seen.work, "J")});
   }
 }
 
@@ -163,10 +176,12 @@ void add_drivers(const RunRecord& record, TextTable& table) {
                              : "max |effort|",
                  "rms"});
   const Figures figure{record};
+  const PeakValues& peaks = record.statistics.peak_values();
   for (std::size_t i = 0; i < drivers.size(); ++i) {
     const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
     const char* unit = is_slide(record.model, drivers[i]) ? "N" : "N*m";
-    table.add_row({drivers[i].name, figure("drivers", drivers[i].name, "max_abs", seen.max_abs, unit),
+    table.add_row({drivers[i].name,
+                   figure("drivers", drivers[i].name, "max_abs", seen.max_abs, unit, peaks.effort(static_cast<int>(i))),
                    figure("drivers", drivers[i].name, "rms", seen.rms, unit)});
   }
 }
@@ -174,13 +189,17 @@ void add_drivers(const RunRecord& record, TextTable& table) {
 void add_paths(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "path"), "max error", "rms", "max angle", "rms"});
   const Figures figure{record};
+  const PeakValues& peaks = record.statistics.peak_values();
   for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
     const PathStatistics seen = record.statistics.path(static_cast<int>(i));
     const std::string& name = record.model.kinematics[i].name;
-    table.add_row({name, figure("paths", name, "max_position", seen.max_position, "m", prefixed),
-                   figure("paths", name, "rms_position", seen.rms_position, "m", prefixed),
-                   figure("paths", name, "max_angle", seen.max_angle, "rad", prefixed),
-                   figure("paths", name, "rms_angle", seen.rms_angle, "rad", prefixed)});
+    table.add_row(
+        {name,
+         figure("paths", name, "max_position", seen.max_position, "m", peaks.position_error(static_cast<int>(i)),
+                prefixed),
+         figure("paths", name, "rms_position", seen.rms_position, "m", {}, prefixed),
+         figure("paths", name, "max_angle", seen.max_angle, "rad", peaks.angle_error(static_cast<int>(i)), prefixed),
+         figure("paths", name, "rms_angle", seen.rms_angle, "rad", {}, prefixed)});
   }
 }
 
@@ -195,6 +214,13 @@ std::string steps_per_impact(const RunRecord& record) {
   const bool adaptive = record.model.settings.adaptive;
   return text + (adaptive ? "a larger per_contact or a smaller tolerance would do\n"
                           : fmt::format("--step {:.2g}, or an accuracy in its place, would do\n", advice.step()));
+}
+
+/// What a figure with its noise says, where there is one.
+std::string noise_line(const std::string& tables) {
+  if (tables.find(" +- ") == std::string::npos) return {};
+  return "  +-: impacts make the motion chaotic; another step, start or build may change a peak by so much (--repeat "
+         "N)\n";
 }
 
 /// From which starts the medians and ranges are, and which runs are not among them.
@@ -232,8 +258,9 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.kinematics.empty()) add_paths(record, paths);
   if (!record.model.gears.empty()) add_gears(record, gears);
   if (!record.model.force_elements.empty()) add_forces(record, forces);
-  text += joints.text("  ") + gears.text("  ") + drivers.text("  ") + forces.text("  ") + paths.text("  ") +
-          window_lines(record);
+  const std::string tables =
+      joints.text("  ") + gears.text("  ") + drivers.text("  ") + forces.text("  ") + paths.text("  ");
+  text += tables + noise_line(tables) + window_lines(record);
   if (!record.model.gears.empty()) text += gear_sentence;
   text += repeat_lines(record.repeat);
   const bool any = record.statistics.any();

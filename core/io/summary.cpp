@@ -271,6 +271,42 @@ Json statistics_part(const RunRecord& record) {
           {"before", left_out ? std::move(before) : Json(nullptr)}};
 }
 
+/// By how much peaks may differ in another run; null where nothing can touch.
+Json noise_part(const RunRecord& record) {
+  const PeakNoise& noise = record.statistics.noise();
+  if (!noise.active()) return nullptr;
+  const PeakValues& peaks = record.statistics.peak_values();
+  const auto value = [&](std::size_t i) { return json_number(noise.of(i)); };
+  const Model& model = record.model;
+  Json joints = Json::object(), drivers = Json::object(), forces = Json::object(), paths = Json::object();
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[static_cast<std::size_t>(j)];
+    if (joint.is_force) continue;
+    append(joints, joint.name,
+           {{"max_force", value(peaks.force(j))},
+            {"max_torque", value(peaks.torque(j))},
+            {"max_fn", value(peaks.normal_force(j))},
+            {"max_delta", value(peaks.penetration(j))},
+            {"max_eccentricity", value(peaks.eccentricity(j))}});
+  }
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    append(drivers, model.drivers[static_cast<std::size_t>(d)].name, {{"max_abs", value(peaks.effort(d))}});
+  }
+  for (int f = 0; f < static_cast<int>(model.force_elements.size()); ++f) {
+    append(forces, force_words(model, f).name,
+           {{"max_force", value(peaks.applied_force(f))}, {"max_torque", value(peaks.applied_torque(f))}});
+  }
+  for (int p = 0; p < static_cast<int>(model.kinematics.size()); ++p) {
+    append(paths, model.kinematics[static_cast<std::size_t>(p)].name,
+           {{"max_position", value(peaks.position_error(p))}, {"max_angle", value(peaks.angle_error(p))}});
+  }
+  return {{"growing_impacts", noise.growing_impacts()},
+          {"joints", std::move(joints)},
+          {"drivers", std::move(drivers)},
+          {"forces", std::move(forces)},
+          {"paths", std::move(paths)}};
+}
+
 Json performance_part(const Outcome& outcome) {
   const double rate = outcome.wall_seconds > 0.0 ? static_cast<double>(outcome.steps) / outcome.wall_seconds : 0.0;
   return {{"wall_seconds", outcome.wall_seconds}, {"steps_per_second", rate}};
@@ -329,6 +365,7 @@ Json summary(const RunRecord& record) {
           {"agree_until", json_number(record.agree_until)},
           {"verification", record.verification},
           {"trust", trust_part(record.trust)},
+          {"noise", noise_part(record)},
           {"repeat", record.repeat},
           {"performance", performance_part(outcome)},
           {"files", record.files},

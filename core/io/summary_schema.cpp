@@ -101,6 +101,18 @@ Json force_part() {
                  {"work", number_or_null()}});
 }
 
+/// Null where nothing in the model can touch.
+Json noise_part() {
+  Json part =
+      record({{"growing_impacts", integer()},
+              {"joints", by_name(numbers({"max_force", "max_torque", "max_fn", "max_delta", "max_eccentricity"}))},
+              {"drivers", by_name(numbers({"max_abs"}))},
+              {"forces", by_name(numbers({"max_force", "max_torque"}))},
+              {"paths", by_name(numbers({"max_position", "max_angle"}))}});
+  part["type"] = {"object", "null"};
+  return part;
+}
+
 /// Null in a run that was not repeated.
 Json repeat_part() {
   const Json spread = record({{"median", number_or_null()},
@@ -165,6 +177,7 @@ Json summary_schema() {
        {"agree_until", number_or_null()},
        {"verification", verification_part()},
        {"trust", trust_part()},
+       {"noise", noise_part()},
        {"repeat", repeat_part()},
        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
        {"files", list_of(text())},

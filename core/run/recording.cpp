@@ -58,6 +58,7 @@ bool Simulation::Impl::tell_sinks() {
   for (const StepEvents::Happening& happening : events.happenings()) {
     const char* name = system.joint_layout(happening.joint).events[at(happening.event)].name;
     if (std::string_view(name).ends_with("contact_begin")) statistics.add_contact(happening.joint, happening.time);
+    statistics.note_event(happening.joint, happening.event, events.fields(happening));
     for (Sink* sink : sinks) {
       sink->event({happening.time, happening.joint, happening.event, events.fields(happening)});
     }

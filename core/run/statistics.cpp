@@ -24,6 +24,7 @@ double Statistics::Mean::rms(double duration) const { return std::sqrt(integral 
 Statistics::Statistics(const Model& model, const Channels& channels)
     : channels_(channels),
       peaks_(model, channels),
+      noise_(model, peaks_.size()),
       values_(peaks_.size()),
       largest_(peaks_.size(), nothing),
       before_(peaks_.size(), nothing),
@@ -43,7 +44,11 @@ bool Statistics::begins_inside(double from, double to) const {
   return !counts(from) && counts(to) && discard_until_ - from < (1.0 - 1e-9) * (to - from);
 }
 
-void Statistics::take_largest(double t) { raise(values_, counts(t) ? largest_ : before_); }
+void Statistics::take_largest(double t) {
+  if (!counts(t)) return raise(values_, before_);
+  raise(values_, largest_);
+  noise_.see(t, values_);
+}
 
 void Statistics::note(std::span<const double> row) {
   peaks_.of(row, values_);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "run/peak_noise.h"
 #include "run/peak_values.h"
 
 namespace freeplay {
@@ -50,6 +51,8 @@ class Statistics {
   /// A row that is written.
   void note_written(std::span<const double> row);
   void add_contact(int joint, double time);
+  /// Any event of a joint, with its fields.
+  void note_event(int joint, int event, std::span<const double> fields) { noise_.event(joint, event, fields); }
 
   JointStatistics joint(int index) const;
   /// `index` into Model::force_elements.
@@ -60,6 +63,7 @@ class Statistics {
   StatisticsWindow window() const { return {discard_until_, any() ? last_time_ : discard_until_}; }
   bool any() const { return duration_ > 0.0; }
   const PeakValues& peak_values() const { return peaks_; }
+  const PeakNoise& noise() const { return noise_; }                     ///< of the largest values, by PeakValues
   std::span<const double> values() const { return values_; }            ///< of the last row
   std::span<const double> largest() const { return largest_; }          ///< by PeakValues, in the window
   std::span<const double> largest_before() const { return before_; }    ///< of rows before it; negative: there was none
@@ -96,6 +100,7 @@ class Statistics {
 
   const Channels& channels_;
   PeakValues peaks_;
+  PeakNoise noise_;
   std::vector<double> values_, largest_, before_, written_;
   double discard_until_;
   double last_time_ = 0.0, duration_ = 0.0;

@@ -1,4 +1,4 @@
-"""freeplay run --repeat: the same run from starts moved in the play."""
+"""freeplay run --repeat: the same run from starts moved in the play, and digits that chance leaves."""
 import json
 import os
 import re
@@ -63,6 +63,22 @@ simulation: {end: 2 s, accuracy: 1 um, output: {discard: 0.2 s}}
 """
 
 
+UNITS = {"": 1.0, "k": 1e3, "M": 1e6, "m": 1e-3, "u": 1e-6}
+
+
+def printed(text):
+    """What a table cell such as `13 +- 3 kN` or `51.13 N` says: lowest and highest value in SI."""
+    number, _, rest = text.partition(" ")
+    noise = re.match(r"\+- (\S+) (.*)", rest)
+    unit = noise[2] if noise else rest
+    factor = UNITS[unit[:-1]]
+    if noise:
+        return (float(number) - float(noise[1])) * factor, (float(number) + float(noise[1])) * factor
+    digits = re.sub(r"e.*", "", number).replace(".", "").lstrip("0")
+    half = 0.5 * 10.0 ** (len(str(int(float(number)))) - len(digits))
+    return (float(number) - half) * factor, (float(number) + half) * factor
+
+
 class Repeat(ProgramTest):
     def run_json(self, *arguments, **options):
         return json.loads(self.freeplay("run", *arguments, "--json", **options)[0])
@@ -114,6 +130,8 @@ class Repeat(ProgramTest):
         out, _ = self.freeplay("run", "m.yaml", "--repeat", "4")
         low, high = re.search(r"pin +\S+ N \((\S+) to (\S+) in 4 runs\)", out).groups()
         self.assertLess(float(high) - float(low), 0.01 * float(high), out)
+        out, _ = self.freeplay("run", "m.yaml")
+        self.assertRegex(out, r"pin +\d+\.\d\d N ")
 
     def test_what_cannot_be_repeated(self):
         for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint of this model has play"),
@@ -171,6 +189,23 @@ class Repeat(ProgramTest):
         self.assertIn("runs were not finished", out)
         for worker in workers:
             self.assertFalse(os.path.exists("/proc/%d" % worker))
+
+
+class Digits(ProgramTest):
+    def test_digits_of_one_run_cover_those_of_others(self):
+        self.write("m.yaml", SIX_BAR)
+        peaks, intervals = [], []
+        for accuracy in ("2um", "1um", "0.5um", "0.2um", "0.1um"):
+            out, _ = self.freeplay("run", "m.yaml", "--accuracy", accuracy)
+            with open(self.path("results", "six-bar", "summary.json"), encoding="utf-8") as file:
+                peaks.append(json.load(file)["joints"]["wrist"]["max_force"])
+            intervals.append(printed(re.search(r"^ *wrist +(.*?)  ", out, re.M)[1]))
+        for low, high in intervals:
+            self.assertGreaterEqual(sum(low <= peak <= high for peak in peaks), 4, (peaks, intervals))
+
+    def test_a_model_without_contacts_has_all_digits(self):
+        out, _ = self.freeplay("run", mechanism("four-bar"))
+        self.assertNotIn("+-", out)
 
 
 if __name__ == "__main__":

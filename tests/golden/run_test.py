@@ -16,7 +16,7 @@ from program import PROGRAM, ProgramTest, mechanism
 SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "statistics",
            "residuals", "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until",
            "verification",
-           "trust", "repeat",
+           "trust", "noise", "repeat",
            "performance", "files", "warnings"]
 FILES = ["events.csv", "model.yaml", "results.csv", "run.log", "summary.json"]
 EVENTS = "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps"

@@ -1,0 +1,73 @@
+// PeakNoise: how far the digits of the largest values of a run mean anything.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "model/model.h"
+
+namespace freeplay {
+
+/// Impacts make small differences grow: what another step, machine or start changes by little changes the impacts that
+/// follow more and more. Two estimates, both without a second run:
+///
+/// 1. Growth. Of a difference of a hundredth of the play, what has come of it at the time of a peak is
+///    g = min(1, 0.01 (2^n - 1)) of all that chance can do. n counts the impacts so far, in the joint that has
+///    most, that come faster than the body left the contact before: those that do not, as of a ball that comes to rest,
+///    let differences die out.
+/// 2. What chance can do. The time of the statistics is cut into 32 parts. Their largest values, in falling order
+///    X1 > X2 > ..., are taken as draws from a distribution with an exponential tail, whose scale is the mean of
+///    i (X_i - X_i+1) over the first eight (Weissman 1978, J Am Stat Assoc 73); the largest of many such draws varies
+///    by about as much. 1.5 times that, at least X1 - X2, is the noise. Where X1, X2 and X3 agree to a hundredth the
+///    same peak comes again and again, and X1 - X3 is.
+///
+/// Without impacts the noise is zero. The cost is a comparison for each value and step.
+class PeakNoise {
+ public:
+  PeakNoise(const Model& model, std::size_t values);
+
+  /// Values inside the window of the statistics, in rising order of time [s].
+  void see(double t, std::span<const double> values) {
+    if (active_) add(t, values);
+  }
+  /// An event of a joint: contacts begin and end with a field `speed` [m/s].
+  void event(int joint, int event, std::span<const double> fields);
+
+  /// Whether anything in the model can touch.
+  bool active() const { return active_; }
+  /// By how much the largest value may differ in another run; of its unit.
+  double of(std::size_t value) const;
+  /// Impacts that let differences grow, in the joint that has most.
+  int growing_impacts() const { return impacts_; }
+
+ private:
+  static constexpr std::size_t parts = 32, kept = 9;
+  struct Peak {
+    std::array<double, kept> largest{};  // of parts that are over, the largest first
+    double present = 0.0;                // of the present part
+    double all = 0.0;                    // of all
+    int impacts = 0;                     // so far, at that time
+  };
+  struct Contact {
+    double separation = -1.0;  // speed after the last one [m/s]; negative: there was none
+    int growing = 0;
+  };
+  struct EventKind {
+    bool begins = false, ends = false;
+    int speed = -1;  // index of the field
+  };
+  void add(double t, std::span<const double> values);
+  void end_part();
+
+  bool active_ = false;
+  double from_, part_length_, part_end_;
+  std::size_t parts_over_ = 0;
+  int impacts_ = 0;
+  std::vector<Peak> peaks_;
+  std::vector<Contact> contacts_;              // by joint
+  std::vector<std::vector<EventKind>> kinds_;  // by joint and event
+};
+
+}  // namespace freeplay
