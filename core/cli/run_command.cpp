@@ -23,12 +23,12 @@
 #include "io/channel_selection.h"
 #include "io/csv_sink.h"
 #include "io/event_sink.h"
-#include "io/judgement.h"
 #include "io/model_document.h"
 #include "io/result_directory.h"
 #include "io/run_log.h"
 #include "io/summary.h"
 #include "io/version.h"
+#include "report/judgement.h"
 #include "report/row_memory.h"
 #include "run/simulation.h"
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "run/loop_gap.h"
+#include "run/start_branches.h"
 
 namespace freeplay {
 namespace {
@@ -114,8 +115,9 @@ class Reach {
         const std::optional<LoopGap> found = loop_gap(mechanism_);
         return found ? found->size : 0.0;
       };
-      double inside = 0.0, outside = widest(range, exit->beyond);
-      if (!(gap(outside) > 2.0 * play)) return;
+      const std::optional<Widest> most = widest(range, *exit);
+      if (!most || !(most->gap.size > 2.0 * play)) return;
+      double inside = 0.0, outside = most->out;
       for (int halving = 0; halving < 12; ++halving) {
         const double middle = 0.5 * (inside + outside);
         (gap(middle) > 2.0 * play ? outside : inside) = middle;
@@ -184,11 +186,36 @@ class Reach {
     return infinite;
   }
 
-  // How far it is from the end of a range to where the loops are furthest from closing, or as far as a driver goes.
-  static double widest(const DriveRange& range, double beyond) {
+  // Where a driver opens the loops most on its way beyond the end of a range, and by how much; `out` counts from there.
+  struct Widest {
+    double out = 0.0;
+    LoopGap gap{};
+  };
+
+  std::optional<Widest> widest(const DriveRange& range, const Exit& exit) {
     const double whole = 2.0 * std::numbers::pi;
-    if (range.from == -infinite || range.to == infinite || range.to - range.from > whole) return beyond;
-    return std::min(beyond, 0.5 * (whole - (range.to - range.from)));
+    const bool comes_round =
+        mechanism_.system.joint_layout(mechanism_.leads.back().joint).coordinate == Coordinate::angle &&
+        range.from > -infinite && range.to < infinite;
+    const double way = comes_round ? std::min(exit.beyond, whole - (range.to - range.from)) : exit.beyond;
+    const double end = exit.up ? range.to : range.from, sign = exit.up ? 1.0 : -1.0;
+    const std::vector<double> q(mechanism_.state.q().begin(), mechanism_.state.q().end());
+    std::optional<Widest> best;
+    const auto look = [&](double out) {
+      std::ranges::copy(q, mechanism_.state.q().begin());
+      mechanism_.leads.back().value = end + sign * out;
+      const std::optional<LoopGap> gap = loop_gap(mechanism_);
+      if (gap && (!best || gap->size > (1.0 + 1e-9) * best->gap.size)) best = Widest{out, *gap};
+    };
+    constexpr int pieces = 12;
+    for (int i = 1; i <= pieces; ++i) look(way * i / pieces);
+    for (double step = 0.5 * way / pieces; best && step > 1e-3 * way; step *= 0.5) {
+      const double from = best->out;
+      for (const double out : {from - step, from + step}) {
+        if (out > 0.0 && out <= way) look(out);
+      }
+    }
+    return best;
   }
 
   Coordinate coordinate(int driver) const {
@@ -224,25 +251,17 @@ class Reach {
   std::string sentence(int d, const DriveRange& range, const Exit& exit) {
     const Driver& driver = model_.drivers[at(d)];
     const Coordinate kind = coordinate(d);
-    const double end = exit.up ? range.to : range.from, way = widest(range, exit.beyond);
-    const std::vector<double> q(mechanism_.state.q().begin(), mechanism_.state.q().end());
-    std::optional<LoopGap> worst;
-    double there = end;
-    ClosedMechanism::Lead& lead = mechanism_.leads.back();
-    for (int i = 1; i <= 8; ++i) {
-      std::ranges::copy(q, mechanism_.state.q().begin());
-      lead.value = end + (exit.up ? 1.0 : -1.0) * way * i / 8.0;
-      const std::optional<LoopGap> gap = loop_gap(mechanism_);
-      if (gap && (!worst || gap->size > worst->size)) worst = gap, there = lead.value;
-    }
+    const double end = exit.up ? range.to : range.from;
+    const std::optional<Widest> most = widest(range, exit);
     std::string text = fmt::format(
         "t = {:.9g} s: driver '{}' asks for a position that the mechanism cannot take: joint '{}' comes to a dead "
         "point "
         "at {}",
         t_, driver.name, model_.joints[at(driver.joint)].name, words(end, kind));
-    if (worst) {
-      text += fmt::format(", and at {} joint '{}' would stay open by {:.4g} m", words(there, kind),
-                          model_.joints[at(worst->joint)].name, worst->size);
+    if (most) {
+      text += fmt::format(", and at {} joint '{}' would stay open by {:.4g} m",
+                          words(end + (exit.up ? most->out : -most->out), kind),
+                          model_.joints[at(most->gap.joint)].name, most->gap.size);
     }
     return text +
            fmt::format("; it can {}: keep the driver within, or check the lengths [dead-point]", words(range, kind));
@@ -294,7 +313,10 @@ std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism) {
   // With the joint leading in place of what held it, at whatever makes the mechanism close.
   const auto try_joint = [&](int joint) -> std::optional<std::string> {
     std::ranges::copy(q, mechanism.state.q().begin());
-    if (!mechanism.holds(mechanism.converge())) return std::nullopt;
+    StartBranches branches(mechanism, q);
+    branches.search();
+    if (!branches.any()) return std::nullopt;
+    branches.take_nearest();
     const Coordinate coordinate = model.joints[at(joint)].ideal_layout.coordinate;
     const double closed = mechanism.e.coordinate[at(joint)];
     mechanism.leads.push_back({joint, closed});

@@ -227,7 +227,7 @@ double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
     return true;
   };
   const double wanted = std::min(dt, formula.most), least = finest * shortest_;
-  const double length = resolution_.resolved(t, wanted, least, 1, look, even(shortest_),
+  const double length = resolution_.resolved(t, wanted, least, 0.0, 1, look, even(shortest_),
                                              [&](std::size_t, double step) { return negligible(formula.unit, step); });
   formula.most = length < dt ? longer * length : unbounded;
   return length;
@@ -246,7 +246,7 @@ double InputActivity::resolved_table(Table& table, double t, double dt) {
   };
   const auto instants = [&](double from, double) { return TableInstants{table.table, from, from}; };
   const double wanted = std::min(dt, std::max(table.most, least));
-  const double length = resolution_.resolved(t, wanted, least, 1, look, instants,
+  const double length = resolution_.resolved(t, wanted, least, 0.0, 1, look, instants,
                                              [&](std::size_t, double step) { return negligible(table.unit, step); });
   table.most = length < dt ? longer * length : unbounded;
   return length;
@@ -263,7 +263,8 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
       return c >= wrenches ? 0.0 : negligible(c % 6 < 3 ? Unit::force : Unit::torque, step);
     };
     const double wanted = std::min(dt, timed.most), least = finest * timed.shortest;
-    const double length = resolution_.resolved(t, wanted, least, timed.signals, look, even(timed.shortest), light);
+    const double length = resolution_.resolved(t, wanted, least, coarsest * timed.shortest, timed.signals, look,
+                                               even(timed.shortest), light);
     if (!good) return false;
     if (length < dt || here.t == t) timed.most = length < dt ? longer * length : unbounded;
     dt = length;

@@ -101,12 +101,22 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
   if (mechanism.system.layout().nv() > 200) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   Opening opening(mechanism);
-  opening.settle(-1);
-  const int joint = opening.worst_joint();
   std::optional<LoopGap> gap;
-  if (joint >= 0) {
+  // Links in line may stand folded where they should be stretched: the smallest of several ways to open.
+  for (const double turn : {0.0, 0.2, 0.7, 1.5}) {
+    std::vector<double> increment(at(mechanism.system.layout().nv()), 0.0);
+    for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
+      if (!mechanism.system.is_turn(i)) continue;
+      const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
+      increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
+    }
+    mechanism.system.retract(q, increment, mechanism.state.q());
+    opening.settle(-1);
+    const int joint = opening.worst_joint();
+    if (joint < 0) continue;
     const auto [open, others] = opening.settle(joint);
-    if (others <= closed_enough * std::max(1.0, mechanism.system.size())) gap = LoopGap{joint, open};
+    if (!(others <= closed_enough * std::max(1.0, mechanism.system.size()))) continue;
+    if (!gap || open < (1.0 - 1e-6) * gap->size) gap = LoopGap{joint, open};
   }
   std::ranges::copy(q, mechanism.state.q().begin());
   mechanism.position_rows();

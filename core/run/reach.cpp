@@ -14,6 +14,12 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
+/// How far the origins of a joint with play can stand apart while one surface is still within the other [m].
+double room(const JointLayout& layout) {
+  constexpr double without_radius = 10.0;  // of the clearance
+  return layout.smaller_radius > 0.0 ? layout.clearance + layout.smaller_radius : without_radius * layout.clearance;
+}
+
 /// Whether the rows of the ideal joint leave its second origin no way to move against the first.
 bool holds_origins(const JointElement& element, Space space) {
   const int count = element.ideal_layout.constraint_rows, needed = space == Space::planar ? 2 : 3;
@@ -56,7 +62,7 @@ std::vector<double> reach(const Model& model) {
     for (const JointElement* joint : holding[index(due.front())]) {
       for (const auto& [from, to] :
            {std::pair(at(joint->marker_a), at(joint->marker_b)), std::pair(at(joint->marker_b), at(joint->marker_a))}) {
-        const double farthest = bound[from] + joint->layout.clearance;
+        const double farthest = bound[from] + room(joint->layout);
         const BodyId body = model.markers[to].body;
         if (body == ground || !(farthest < bound[to])) continue;
         for (const std::size_t other : on_body[index(body)]) {

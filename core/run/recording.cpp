@@ -12,6 +12,7 @@ namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double near_singular = 1e-2;  // regularity below which no motion is interpolated
+constexpr double open_rows = 1e-3;      // of the size of the model: constraints that are off by more do not hold
 }  // namespace
 
 // The channels of the accepted state: asked for by rows, statistics, stop conditions and warnings, and seldom by all
@@ -37,10 +38,21 @@ bool Simulation::Impl::record_step() {
     position = std::max(position, std::abs(e_accepted->phi[r]));
     velocity = std::max(velocity, std::abs(residual[r] - e_accepted->nu[r]));
   }
+  if (!(position <= open_rows * system.size())) return fail(4, why_open(position));
   statistics.add(row, energy.driver_work(), energy.joint_loss(), energy.force_work(), position, velocity);
   if (adaptive && ended_abruptly) peaks.restart(accepted.t(), statistics.values());
   if (adaptive && !ended_abruptly) seek_peaks({trial, e_trial, accepted, e_accepted});
   return true;
+}
+
+// Roundings of coordinates that have grown without bound, as behind a dead point, can pass for rows that hold.
+std::string Simulation::Impl::why_open(double position) const {
+  int worst = 0;
+  for (int r = 0; r < system.layout().nc(); ++r) {
+    if (!(std::abs(e_accepted->phi[at(r)]) <= std::abs(e_accepted->phi[at(worst)]))) worst = r;
+  }
+  return fmt::format("t = {:.9g} s: the mechanism has come apart: {} stays open by {:.4g} m", accepted.t(),
+                     row_name(worst), position);
 }
 
 bool Simulation::Impl::write_row() {

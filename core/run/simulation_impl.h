@@ -112,6 +112,7 @@ struct Simulation::Impl {
   [[gnu::cold]] bool fail_beside(int joint);
   [[gnu::cold]] bool fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found);
   std::string why_not_converged(double dt) const;
+  std::string why_open(double position) const;
   std::string row_name(int row_index) const;
   int hardest_joint(BodyId body) const;
   void format_warnings();

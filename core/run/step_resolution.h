@@ -15,6 +15,7 @@ namespace freeplay {
 class StepResolution {
  public:
   static constexpr double tolerance = 0.1;   ///< of a signal's range in the step
+  static constexpr double strict = 0.01;     ///< the same, where no more than a corner can be inside
   static constexpr double rounding = 1e-12;  ///< of the largest signal: no change
 
   explicit StepResolution(std::size_t most_signals)
@@ -23,12 +24,14 @@ class StepResolution {
   /// The length, dt or less, of a step from t that resolves `count` signals; one of `least` always does.
   /// `look(t, double*)` fills the signals; where it returns false the search ends, as the step will meet that.
   /// `instants(t, dt)` makes what gives one time behind the other at which to look; the last is t + dt or later.
+  /// Steps shorter than `strict_below` are judged strictly: a change that they are a small part of is smooth in them,
+  /// unless it begins there.
   /// `negligible(c, dt)` is a range of signal c that does not matter in such a step.
   template <class Look, class Instants, class Negligible>
-  double resolved(double t, double dt, double least, std::size_t count, Look&& look, Instants&& instants,
-                  Negligible&& negligible) {
+  double resolved(double t, double dt, double least, double strict_below, std::size_t count, Look&& look,
+                  Instants&& instants, Negligible&& negligible) {
     while (dt > least) {
-      const double change = sampled(t, dt, count, look, instants, negligible);
+      const double change = sampled(t, dt, dt <= strict_below ? strict : tolerance, count, look, instants, negligible);
       if (change < 0.0) return dt;
       // What begins late in the step is left to the next one.
       dt = std::max(change > 0.125 * dt ? change : 0.5 * dt, least);
@@ -39,7 +42,8 @@ class StepResolution {
  private:
   /// If the step is too long, the part of it before a signal changes; else -1.
   template <class Look, class Instants, class Negligible>
-  double sampled(double t, double dt, std::size_t count, Look& look, Instants& instants, Negligible& negligible) {
+  double sampled(double t, double dt, double part, std::size_t count, Look& look, Instants& instants,
+                 Negligible& negligible) {
     const double end = t + dt;
     double size = 0.0;
     for (std::size_t k = 0; k < 5; ++k) {
@@ -68,7 +72,7 @@ class StepResolution {
     }
     const auto coarse = [&](std::size_t c) {
       const double range = high_[c] - low_[c];
-      return worst_[c] > tolerance * range && range > std::max(rounding * size, negligible(c, dt));
+      return worst_[c] > part * range && range > std::max(rounding * size, negligible(c, dt));
     };
     bool any = false;
     for (std::size_t c = 0; c < count; ++c) any = any || coarse(c);
@@ -78,7 +82,7 @@ class StepResolution {
     for (double now = next(); now < end; now = next()) {
       if (!look(now, now_.data())) return 0.0;
       for (std::size_t c = 0; c < count; ++c) {
-        if (coarse(c) && std::abs(now_[c] - nodes_[c]) > tolerance * (high_[c] - low_[c])) return quiet;
+        if (coarse(c) && std::abs(now_[c] - nodes_[c]) > part * (high_[c] - low_[c])) return quiet;
       }
       quiet = now - t;
     }

@@ -111,7 +111,7 @@ class Start(ProgramTest):
     # --- positions ---------------------------------------------------------------------------------------------------
 
     def test_the_nearest_of_two_positions_is_taken(self):
-        for upper, lower, sign in ((-70, -100, 1), (-80, -115, 1), (-100, -80, -1), (-112, -71, -1)):
+        for upper, lower, sign in ((-70, -100, 1), (-80, -117, 1), (-100, -80, -1), (-112, -71, -1)):
             start, messages = self.start(TOGGLE, "--set", "upper=%d deg" % upper, "--set", "lower=%d deg" % lower)
             self.assertEqual([], messages)
             self.assertAlmostEqual(-90 + sign * 15, math.degrees(start["upper"]["angle"]), places=9)

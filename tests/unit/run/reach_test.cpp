@@ -33,10 +33,10 @@ TEST(Reach, IsTheSumOfLengthsAlongTheChain) {
   EXPECT_TRUE(std::isinf(far[3])) << "it slides as far as it likes";
 }
 
-TEST(Reach, CountsTheClearanceOfPlay) {
+TEST(Reach, CountsTenTimesTheClearanceOfPlayWithoutRadii) {
   const auto model =
       test::load(test::replaced(chain, "PLAY", ", clearance: {radial_clearance: 0.01, contact: {law: hertz, K: 1e8}}"));
-  EXPECT_NEAR(reach(*model)[0], 1.0 + 2.0 + 0.01 + 0.2, 1e-12);
+  EXPECT_NEAR(reach(*model)[0], 1.0 + 2.0 + 0.1 + 0.2, 1e-12);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "io/judgement.h"
+#include "report/judgement.h"
 
 #include <algorithm>
 #include <cmath>
