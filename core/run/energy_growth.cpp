@@ -12,6 +12,7 @@ namespace {
 constexpr double suspicious =
     2.0;  // energy of motion and of joints, by the largest before: work is looked at from there
 constexpr double near_singular = 1e-4;  // regularity
+constexpr double digits = 1e-9;         // of potential energies that their differences keep, at least
 constexpr double transmission = 10.0;   // speed of bodies, by that of drivers: a mechanism may come to it in a step
 constexpr double unexplained = 2.0;     // growth of energy, by all work that powers at both ends could have done
 }  // namespace
@@ -23,9 +24,10 @@ double Simulation::Impl::energy_of(const Evaluation& e) const {
   return sum;
 }
 
-// Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step.
+// Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step, and what
+// potential energies are rounded to: of a short step from rest nothing else is left.
 double Simulation::Impl::energy_of_drives() const {
-  double squared = 0.0, mass = 0.0;
+  double squared = 0.0, mass = 0.0, lifted = std::abs(system.gravity_potential(e_accepted->q));
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     if (!prescribes(model.drivers[d].kind)) continue;
     const bool rotates = system.joint_layout(model.drivers[d].joint).coordinate == Coordinate::angle;
@@ -33,8 +35,11 @@ double Simulation::Impl::energy_of_drives() const {
     const double speed = rotates ? rate * system.size() : rate;
     squared = std::max(squared, speed * speed);
   }
-  for (const Body& body : model.bodies) mass += body.mass;
-  return 0.5 * mass * squared * transmission * transmission;
+  for (const Body& body : model.bodies) {
+    mass += body.mass;
+    lifted += body.mass * std::hypot(body.gravity[0], body.gravity[1], body.gravity[2]) * system.size();
+  }
+  return 0.5 * mass * squared * transmission * transmission + digits * lifted;
 }
 
 // Whether energy has grown in the step that was just made far beyond the work of drivers, forces and gravity. Implicit
