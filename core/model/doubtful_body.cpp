@@ -192,8 +192,8 @@ class BodyDoubts {
     const double slender = outline.reach / gyration_[i];
     if (slender <= (between ? body_limit::slender_between : body_limit::slender)) return false;
     warn(i, "inertia", "doubtful-inertia",
-         fmt::format("{}, but its frames reach {:.4g} m: check the number, its unit and the lengths of the body",
-                     moment_words(i), outline.reach));
+         fmt::format("{}, but its frame '{}' is {:.4g} m away: check the number and the lengths of the body",
+                     moment_words(i), outline.farthest, outline.reach));
     return true;
   }
 

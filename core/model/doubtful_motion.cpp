@@ -16,7 +16,7 @@ namespace {
 constexpr int samples = 128;                // of a motion over the run
 constexpr std::size_t most_drivers = 2000;  // that are looked at
 constexpr double table_beyond = 50.0;       // the end of a table, in runs
-constexpr double largest_turn = 1.0;        // in a fixed step [rad]
+constexpr double largest_turn = 0.5;        // in a fixed step [rad]
 
 /// What a prescribed motion does during the run.
 struct Course {

@@ -110,7 +110,8 @@ class Examination {
       const Body& body = model_.bodies[at(i)];
       if (acted[at(i)] || has_velocity(body)) continue;
       doubt("not-connected",
-            fmt::format("no joint holds body '{}' and no force acts on it: connect it, or delete it", body.name),
+            fmt::format("no joint or force holds body '{}', which {}: connect it, or delete it", body.name,
+                        body.gravity == Vector3{} ? "stays where it is" : "falls freely"),
             body.name, body.location);
     }
   }
@@ -288,10 +289,20 @@ class Examination {
   /// Is it said where the free bodies start, and does anything act on them? Pendulums and loads are given a start.
   void judge_left_free(const std::vector<int>& moving) {
     const auto is_moving = [&](BodyId body) { return std::ranges::count(moving, body) > 0; };
+    std::vector<char> jointed(model_.bodies.size(), 0);
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (model_.joints[at(j)].gear >= 0 || closed_.layout().rows(j).size == 0) continue;
+      for (const int marker : {model_.joints[at(j)].marker_a, model_.joints[at(j)].marker_b}) {
+        if (body_of(marker) != ground) jointed[at(body_of(marker))] = 1;
+      }
+    }
+    // Springs alone hold it, so that its place is not in doubt.
+    const auto hangs = [&](BodyId body) { return is_moving(body) && !jointed[at(body)]; };
     bool start = false, acts = false;
     for (const int b : moving) {
       const Body& body = model_.bodies[at(b)];
-      start = start || body.angle || body.rotation || body.position || has_velocity(body);
+      start = start || body.angle || body.rotation || body.position || has_velocity(body) ||
+              body.location.file != model_.file;  // robots start as their file draws them
       acts = acts || body.gravity != Vector3{} || has_velocity(body);
     }
     for (const JointElement& joint : model_.joints) {
@@ -299,6 +310,7 @@ class Examination {
           joint.gear < 0 && (is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b)));
       start = start || (on_moving && (joint.start_coordinate || joint.start_speed));
       acts = acts || (on_moving && (joint.is_force || joint.start_speed));
+      start = start || (joint.is_force && (hangs(body_of(joint.marker_a)) || hangs(body_of(joint.marker_b))));
     }
     for (const AppliedForce& force : model_.forces) acts = acts || is_moving(body_of(force.marker));
     if (start && acts) return;
@@ -308,10 +320,11 @@ class Examination {
       names = fmt::format("'{}' and {} others", model_.bodies[at(moving[0])].name, moving.size() - 1);
     const Body& first = model_.bodies[at(moving.front())];
     doubt("left-free",
-          fmt::format("with its drivers at rest the mechanism still moves in {} way(s), and {}: {}; add the missing "
-                      "guide, joint or driver, or say under 'initial' how it starts",
-                      structure_.free_motions, acts ? "it is not said where these start" : "nothing acts on these",
-                      names),
+          fmt::format("{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver, or "
+                      "say under 'initial' how it starts",
+                      structure_.free_motions == 1 ? std::string("1 freedom is")
+                                                   : fmt::format("{} freedoms are", structure_.free_motions),
+                      acts ? "no start is given for" : "nothing acts on", names),
           first.name, first.location);
   }
 

@@ -74,7 +74,7 @@ MISTAKES = [
     (CRANK, "mass: 0.21", "mass: 210", MASS, "210", "density"),
     (CRANK, "mass: 0.21", "mass: 210 kg", MASS, "210", "density"),
     (CRANK, "[0.12, 0]", "[120, 0]", LENGTH, "[120", "120 mm"),
-    (CRANK, "[0.12, 0]", "[120 m, 0]", INERTIA, "2.5e-4", "its frames reach 119.9 m"),
+    (CRANK, "[0.12, 0]", "[120 m, 0]", INERTIA, "2.5e-4", "its frame 'coupler/tip' is 119.9 m away"),
     (CRANK, "com: [0.06, 0], frames: {tip: [0.12, 0]}", "com: [60, 0], frames: {tip: [120, 0]}", LENGTH, "[60", "mm"),
     (CRANK, "com: [0.06, 0]", "com: [60, 0]", LENGTH, "[60", "mm"),
     (CRANK, "com: [0.06, 0]", "com: [0.2, 0]", "doubtful-com", "[0.2", "away from its frames"),
@@ -120,11 +120,37 @@ MISTAKES = [
     (CART, "gravity: [0, -9.81]\n", "", "left-free", "pole", "nothing acts"),
     (CART, "hinge: -1.2", "hinge: -70", ANGLE, "-70", "deg"),
     (ROD, "[1e-5, 0.0208, 0.0208]", "[0.0208, 1e-5, 0.0208]", INERTIA, "[0.0208", "Ixx, Iyy, Izz"),
+    (ROD, "  held:", "  again: {type: spherical, between: [ground, rod]}\n  held:", "duplicate-joint", "again", "'hung'"),
     (ROD, "bob: {", "bob: {pose: {rpy: [0, 0, 90]}, ", ANGLE, "90", "deg"),
 ]
 
+# A driven crank from which a double pendulum hangs, a roller that spins on it, a mass between springs, a free puck.
+HANGING = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  crank: {mass: 0.3, inertia: 1e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}}
+  upper: {mass: 0.3, inertia: 1e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}, pose: {angle: -1.5}}
+  lower: {mass: 0.3, inertia: 1e-3, com: [0.05, 0]}
+  roller: {mass: 0.3, inertia: 1e-3}
+  mass: {mass: 2, inertia: 1e-2, pose: {position: [1, 0]}}
+  puck: {mass: 1, inertia: 1e-2, velocity: {linear: [1, 2]}}
+frames: {ground/left: [0.8, 0], ground/right: [1.2, 0]}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  first: {type: revolute, between: [crank/tip, upper]}
+  second: {type: revolute, between: [upper/tip, lower]}
+  axle: {type: revolute, between: [crank/tip, roller]}
+forces:
+  one: {type: spring-damper, between: [ground/left, mass], stiffness: 500, free_length: 0.15}
+  two: {type: spring-damper, between: [ground/right, mass], stiffness: 500, free_length: 0.15}
+drivers: {motor: {joint: main, kind: angle, value: 0.3*sin(20*t)}}
+simulation: {end: 0.1, step: 1e-4}
+"""
 # What looks like these but is meant: no warning at all.
 SOUND = [
+    (HANGING, "", ""),
+    (HANGING, "kind: angle, value: 0.3*sin(20*t)", "kind: torque, value: 1"),
+
     (CRANK, "", ""),
     (CART, "", ""),
     (ROD, "", ""),

@@ -125,13 +125,13 @@ CASES = {
         (0, pendulum("com: [0.5 m, 0]", "com: [3 m, 0]"), RUN),
     "the clearance of joint '...' is ... m, ... [doubtful-clearance]": (0, journal("0.1 mm", "0.1 nm"), RUN),
     "frame '...' is not used": (0, PENDULUM, RUN),
-    "no joint holds body '...' and no force acts on it: connect it, or delete it [not-connected]":
+    "no joint or force holds body '...', which ...: connect it, or delete it [not-connected]":
         (0, pendulum("joints:\n", "  spare: {mass: 1 kg, inertia: 0.1}\njoints:\n"), RUN),
     "joint '...' holds nothing that '...' does not hold between the same two bodies: ... [duplicate-joint]":
         (0, pendulum("initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
     "the play of joint '...' is bypassed by ... [play-bypassed]":
         (0, journal("simulation:", "  pin: {type: revolute, between: [ground, ball]}\nsimulation:"), RUN),
-    "with its drivers at rest the mechanism still moves in ... way(s), ... [left-free]":
+    "... left over with all drivers at rest, ... [left-free]":
         (0, driven("joints:", "  load: {mass: 1 kg, inertia: 0.1, com: [0.1, 0]}\njoints:\n  eye: {type: revolute, between: [rod/tip, load]}"), RUN),
     # While it runs
     "a step of ... s is needed, the smallest allowed is ... s; joint '...' asks for it":
