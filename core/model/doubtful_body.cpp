@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,8 @@
 
 namespace freeplay {
 namespace {
+
+constexpr int most_lookups = 1000;  // of entries: the text is searched for each
 
 double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
@@ -115,6 +118,7 @@ class BodyDoubts {
   }
 
   void judge(std::size_t i) const {
+    if (lookups_ > most_lookups) return;
     if (judge_large_inertia(i) || judge_far_frame(i) || judge_large_mass(i)) return;
     if (judge_small_inertia(i) || judge_small_mass(i) || judge_com(i)) return;
     if (in_space_) judge_axis(i);
@@ -129,6 +133,7 @@ class BodyDoubts {
   const Body& body(std::size_t i) const { return draft_.model.bodies[i]; }
 
   std::optional<CheckedValue> key_of(std::size_t i, const char* key) const {
+    ++lookups_;
     const auto entry = entry_of(draft_, "bodies", body(i).name);
     if (!entry || !entry->node().is_map()) return std::nullopt;
     MapReader map(*entry, "body");
@@ -137,7 +142,8 @@ class BodyDoubts {
 
   void warn(std::size_t i, const char* key, const char* id, const std::string& text) const {
     if (const auto value = key_of(i, key)) {
-      value->warn(id, text);
+      // Instances of a template share the text: the first of them is enough.
+      if (doubted_.insert(&value->node()).second) value->warn(id, text);
     } else if (const auto entry = entry_of(draft_, "bodies", body(i).name)) {
       entry->warn_at_key(id, text);
     }
@@ -176,6 +182,7 @@ class BodyDoubts {
     if (i && (!value || distance(body(*i).com, {}) > own)) value = key_of(*i, "com");
     if (!value || says_unit(*value)) return false;
     const double number = i && value->key() == "com" ? distance(body(*i).com, {}) : own;
+    if (!doubted_.insert(&value->node()).second) return true;
     value->warn("doubtful-length",
                 fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
                             "m: write the unit behind the numbers, as in '{:.4g} mm'",
@@ -235,6 +242,7 @@ class BodyDoubts {
     if (outside <= body_limit::com_outside * extent || outside <= body_limit::com_outside_gyration * k) return false;
     const auto value = key_of(i, "com");
     if (!value || is_foreign(i)) return false;  // robots have motors beside their joints
+    if (!doubted_.insert(&value->node()).second) return true;
     value->warn("doubtful-com",
                 fmt::format("the centre of mass of '{}' is {:.4g} m away from its frames, which extend over {:.4g} m, "
                             "at a radius of gyration of {:.4g} m: check 'com' and the frames",
@@ -290,6 +298,8 @@ class BodyDoubts {
   std::vector<double> reaches_;
   std::vector<double> gyration_, density_;  // by body
   double usual_density_ = 0.0;
+  mutable std::set<const Node*> doubted_;
+  mutable int lookups_ = 0;
 };
 
 }  // namespace

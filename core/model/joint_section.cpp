@@ -214,7 +214,7 @@ class JointEntry {
     if (against.empty()) return;
     entry_.warn_at_key("doubtful-clearance", fmt::format("the clearance of joint '{}' is {:.4g} m, {}: check it, the "
                                                          "radii and their units",
-                                                         element().name, layout.clearance, against));
+                                                         entry_.key(), layout.clearance, against));
   }
 
   bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {

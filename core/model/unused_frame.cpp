@@ -27,20 +27,32 @@ std::unordered_map<BodyId, std::string> shared_holds(const Draft& draft) {
 }  // namespace
 
 void warn_unused_frames(const Draft& draft) {
-  std::unordered_map<const Node*, bool> used;  // by declaration, which instances of a template share
+  // Instances of a template share a declaration: it is reported once, of the first of them.
+  struct Declared {
+    bool used = false;
+    const std::string* name = nullptr;
+    const Draft::Frame* frame = nullptr;
+  };
+  const auto before = [](const std::string& a, const std::string& b) {
+    return a.size() != b.size() ? a.size() < b.size() : a < b;
+  };
+  std::unordered_map<const Node*, Declared> declared;
   for (const auto& [name, frame] : draft.frames) {
     if (frame.key == nullptr || frame.key->foreign) continue;
-    bool& any = used[frame.key];
-    any = any || draft.markers.contains(name);
+    Declared& one = declared[frame.key];
+    one.used = one.used || draft.markers.contains(name);
+    if (one.name != nullptr && before(*one.name, name)) continue;
+    one.name = &name;
+    one.frame = &frame;
   }
-  if (std::ranges::all_of(used, [](const auto& one) { return one.second; })) return;
+  if (std::ranges::all_of(declared, [](const auto& one) { return one.second.used; })) return;
   const std::unordered_map<BodyId, std::string> holds = shared_holds(draft);
-  for (const auto& [name, frame] : draft.frames) {
-    if (frame.key == nullptr || frame.key->foreign || used[frame.key]) continue;
-    const auto hold = holds.find(frame.body);
-    CheckedValue(*frame.reading, *frame.value, frame.key, frame.key->text)
+  for (const auto& [key, one] : declared) {
+    if (one.used) continue;
+    const auto hold = holds.find(one.frame->body);
+    CheckedValue(*one.frame->reading, *one.frame->value, key, key->text)
         .warn_at_key("unused",
-                     fmt::format("frame '{}' is not used{}", frame.key->text, hold == holds.end() ? "" : hold->second));
+                     fmt::format("frame '{}' is not used{}", key->text, hold == holds.end() ? "" : hold->second));
   }
 }
 

@@ -221,6 +221,19 @@ class Plausibility(ProgramTest):
             self.assertIn("warning:", err)
             self.assertIn("[%s]" % wanted, err)
 
+    def test_instances_of_a_template_share_a_doubt(self):
+        text = """freeplay: 1
+templates:
+  leg:
+    bodies: {b: {mass: 300, inertia: 1e-4, com: [0.025, 0], frames: {tip: [0.05, 0]}}}
+    joints: {j: {type: revolute, between: [ground, b]}}
+instances: {leg: {template: leg, count: 300}}
+simulation: {end: 0.01, step: 1e-3}
+"""
+        found = self.messages(text, "--no-assemble")
+        self.assertEqual([("doubtful-mass", 4), ("unused", 4)], [(m["id"], m["line"]) for m in found])
+        self.assertIn("'leg1.b'", found[0]["message"])
+
     def test_facts_name_what_is_free_and_what_is_not_determined(self):
         self.write("m.yaml", CART)
         out, _ = self.freeplay("validate", "m.yaml")
