@@ -167,7 +167,7 @@ SOUND = [
     (CRANK, "[0.3, 0]", "[9 m, 0]"),
     (CRANK, "E: 207e9", "E: 1.5e6"),
     (CRANK, "mass: 0.14, inertia: 1e-4", "mass: 8, inertia: 1e-3"),
-    (CRANK, "{main: 1}", "{main: $a}", "parameters: {a: 7*pi/6 + 4*pi/3}\n"),
+    (CRANK, "{main: 1}", "{main: $a}", "parameters: {a: 7*pi/6 + 3*pi/2}\n"),
     (CRANK, "step: 1e-5", "step: 1e-4"),
     (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [0.01, 50], [0.02, 100]]}}}"),
     (CRANK, DRIVEN, "kind: angle, table: {unit: deg, points: [[0, 0], [0.01, 90], [0.02, 0]]}}}"),
