@@ -18,7 +18,8 @@ constexpr int order_by_ends = 5;           // of a method whose steps are known 
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
 constexpr double astray_inside = 0.1;      // and by which its ends may mislead
 constexpr int most_sweeps = 3;
-constexpr double largest_turn = 1.0;  // of a joint in one step [rad]: angles are continued over turns
+constexpr double largest_turn = 1.0;   // of a joint in one step [rad]: angles are continued over turns
+constexpr double barely = 1.0 - 1e-6;  // of a step: what is shorter by the rounding of times alone is as long
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
 // too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth
@@ -129,7 +130,7 @@ bool Simulation::Impl::adaptive_step() {
     }
     if (double resolved = trial.t() - accepted.t(); !resolves_joints(resolved)) {
       return false;
-    } else if (resolved < trial.t() - accepted.t()) {
+    } else if (resolved < barely * (trial.t() - accepted.t())) {
       ++outcome.rejected;
       hunted = {};
       dt = resolved;
