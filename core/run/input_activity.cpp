@@ -254,7 +254,7 @@ double InputActivity::resolved_table(Table& table, double t, double dt) {
 
 bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault) {
   for (TimedJoint& timed : joints_) {
-    if (dt <= unwatched(timed.shortest, timed.most)) continue;
+    if (dt <= unwatched(timed.shortest, timed.varies ? 0.0 : timed.most)) continue;
     bool good = true;
     const JointInput in = system_.input(timed.joint, here, e);
     const auto look = [&](double time, double* out) { return good = signals_of(timed, in, time, out, fault); };
@@ -266,6 +266,7 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
     const double length = resolution_.resolved(t, wanted, least, coarsest * timed.shortest, timed.signals, look,
                                                even(timed.shortest), light);
     if (!good) return false;
+    timed.varies = timed.varies || length < wanted || resolution_.saw_change();
     if (length < dt || here.t == t) timed.most = length < dt ? longer * length : unbounded;
     dt = length;
   }

@@ -66,6 +66,7 @@ class InputActivity {
     double shortest;
     std::size_t signals;
     double most = unbounded;
+    bool varies = false;  ///< it has been seen to: then the shortest steps are looked at, too
   };
 
   void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit);

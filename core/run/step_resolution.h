@@ -15,7 +15,7 @@ namespace freeplay {
 class StepResolution {
  public:
   static constexpr double tolerance = 0.1;   ///< of a signal's range in the step
-  static constexpr double strict = 0.01;     ///< the same, where no more than a corner can be inside
+  static constexpr double strict = 1e-3;     ///< the same, where no more than a corner can be inside
   static constexpr double rounding = 1e-12;  ///< of the largest signal: no change
 
   explicit StepResolution(std::size_t most_signals)
@@ -38,6 +38,9 @@ class StepResolution {
     }
     return dt;
   }
+
+  /// Whether a signal changed by more than is negligible in the last look.
+  bool saw_change() const { return saw_change_; }
 
  private:
   /// If the step is too long, the part of it before a signal changes; else -1.
@@ -75,7 +78,11 @@ class StepResolution {
       return worst_[c] > part * range && range > std::max(rounding * size, negligible(c, dt));
     };
     bool any = false;
-    for (std::size_t c = 0; c < count; ++c) any = any || coarse(c);
+    saw_change_ = false;
+    for (std::size_t c = 0; c < count; ++c) {
+      any = any || coarse(c);
+      saw_change_ = saw_change_ || high_[c] - low_[c] > std::max(rounding * size, negligible(c, dt));
+    }
     if (!any) return -1.0;
     double quiet = 0.0;
     next = instants(t, dt);
@@ -96,6 +103,7 @@ class StepResolution {
             a * b * c * d / 24.0};
   }
 
+  bool saw_change_ = false;
   std::vector<double> nodes_, now_, low_, high_, worst_;
 };
 
