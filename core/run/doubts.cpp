@@ -16,9 +16,12 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 // False where the row shows that going on makes no sense.
 bool Simulation::Impl::watch_row(double dt) {
   watch.add_regularity(solver.regularity(), accepted.t());
+  if (torn_from && accepted.t() >= *torn_from) return fail(4, "the mechanism is torn apart");
   if (!row_is_known && !watch.is_due(e_accepted)) return true;
   if (!know_row()) return false;
   const int joint = watch.add(row, e_accepted);
+  // A look at the drivers takes longer than many steps, so it waits until something is wrong.
+  if (!torn_from && watch.deeper_than_play()) torn_from = out_of_reach_from(all_bodies, first_start.state);
   if (joint < 0) return true;
   TrustReason reason = watch.why(joint, row);
   const std::string cause = likely_cause(system, e_accepted, dt, joint);
@@ -30,7 +33,6 @@ bool Simulation::Impl::watch_row(double dt) {
 
 // Once for each joint; the text is made when the run is over.
 bool Simulation::Impl::note_warnings() {
-  if (torn_from && accepted.t() >= *torn_from) return fail(4, "the mechanism is torn apart");
   for (const ForceBlock& block : system.force_blocks()) {
     Warning& warning = joint_warnings[at(block.joint)];
     if (warning.text != nullptr || system.rest(block.joint).now) continue;
@@ -42,7 +44,6 @@ bool Simulation::Impl::note_warnings() {
       return fail_with(fault, accepted.t());
     }
     if (warning.text == nullptr) continue;
-    if (!torn_from) torn_from = out_of_reach_from(all_bodies, first_start.state);
     if (!know_row()) return false;
     warning.time = accepted.t();
     std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,

@@ -28,6 +28,7 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     const bool strength_known = known && layout.contact_modulus > 0.0;
     contacts_.push_back({.joint = j,
                          .penetration = channels.joints[at(j)].penetration,
+                         .play = layout.clearance,
                          .deepest = layout.clearance + radius,
                          .strongest = strength_known
                                           ? trust::ideal_strength * layout.contact_modulus * 2.0 * radius * length

@@ -70,6 +70,13 @@ class RunWatch {
   /// Why add() returned this joint: the row is the same. Allocates.
   TrustReason why(int joint, std::span<const double> row) const;
 
+  /// Whether some journal was deeper in its bearing than its play is wide.
+  bool deeper_than_play() const {
+    for (const Contact& contact : contacts_) {
+      if (contact.depth.most > contact.play) return true;
+    }
+    return false;
+  }
   /// Whether the journal of a joint with play never moved in its bearing, nor touched it.
   bool never_moved(int joint) const;
   const RunExtremes& seen() const { return seen_; }
@@ -77,6 +84,7 @@ class RunWatch {
  private:
   struct Contact {
     int joint = 0, penetration = -1;
+    double play = 0.0;       // clearance [m]
     double deepest = 0.0;    // clearance and smaller radius [m]
     double strongest = 0.0;  // force that no material carries [N]
     RunExtremes::Range depth{};

@@ -170,7 +170,7 @@ struct Simulation::Impl {
   std::vector<TimeValue> motion_before, motion_behind;
   std::vector<double> q_before, v_before, driven_change, impulses;
   std::vector<std::string> warnings;
-  /// Time from which drivers pull the mechanism apart, looked for when a joint first warns of its load.
+  /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
   std::optional<double> torn_from;
   Outcome outcome;
   Fault plugin_fault;             // of the last attempt
