@@ -115,18 +115,19 @@ Json start_json(const Model& model, const Start& start) {
     const std::span<const double> pose = start.state.q().subspan(3 * i, 3);
     json[model.bodies[i].name] = {{"x", pose[0]}, {"y", pose[1]}, {"angle", pose[2]}};
   }
-  for (const MovedStart& moved : start.report.moved) {
-    json[moved.body]["moved"].push_back(
-        {{"quantity", moved.quantity}, {"by", moved.by}, {"unit", moved.unit}, {"far", moved.far}});
-  }
-  for (const ChosenSpeed& chosen : start.report.chosen) {
-    const JointElement& joint = model.joints[static_cast<std::size_t>(chosen.joint)];
-    BodyId body = model.markers[static_cast<std::size_t>(joint.marker_b)].body;
-    if (body == ground) body = model.markers[static_cast<std::size_t>(joint.marker_a)].body;
-    json[model.bodies[static_cast<std::size_t>(body)].name]["chosen"].push_back(
-        {{"joint", joint.name}, {"speed", chosen.speed}});
-  }
   return json;
+}
+
+Json start_changes_json(const Model& model, const StartReport& report) {
+  Json moved = Json::array(), chosen = Json::array();
+  for (const MovedStart& one : report.moved) {
+    moved.push_back(
+        {{"body", one.body}, {"quantity", one.quantity}, {"by", one.by}, {"unit", one.unit}, {"far", one.far}});
+  }
+  for (const ChosenSpeed& one : report.chosen) {
+    chosen.push_back({{"joint", model.joints[static_cast<std::size_t>(one.joint)].name}, {"speed", one.speed}});
+  }
+  return {{"moved", std::move(moved)}, {"chosen", std::move(chosen)}};
 }
 
 }  // namespace freeplay

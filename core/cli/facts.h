@@ -17,12 +17,14 @@ std::string structure_text(const Structure& structure);
 Json facts_json(const Model& model, const ModelFacts& facts, const Structure& structure = {});
 
 /// A line for each start value of the file that the start does not have, and for each joint speed that only least
-/// kinetic energy decides; the JSON of start_json() has all of them.
+/// kinetic energy decides; start_changes_json() has all of them.
 std::string moved_text(const Model& model, const StartReport& report);
 
-/// Assembled centres of mass by body; under `moved` how far what the file gives of a body's pose and velocity was
-/// moved, under
-/// `chosen` speeds of joints whose second body it is that only least kinetic energy decides.
+/// Assembled centres of mass [m] and angles [rad], or quaternions, by body.
 Json start_json(const Model& model, const Start& start);
+
+/// `moved`: how far what the file gives of bodies' poses and velocities was moved; `chosen`: speeds of joints [rad/s,
+/// m/s] that only least kinetic energy decides.
+Json start_changes_json(const Model& model, const StartReport& report);
 
 }  // namespace freeplay

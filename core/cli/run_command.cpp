@@ -317,6 +317,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
                     {"ok", true},
                     {"facts", facts_json(model, assembled.start.facts, assembled.start.structure)},
                     {"start", start_json(model, assembled.start)},
+                    {"start_changes", start_changes_json(model, assembled.start.report)},
                     {"messages", messages_json(loaded.diagnostics, common.max_errors)}});
   } else if (!common.quiet) {
     print(printable(model.file) + ": ok\n" + facts_text(model, assembled.start.facts) +

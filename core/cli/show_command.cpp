@@ -42,7 +42,7 @@ int show(ShowOptions options, const CommonOptions& common) {
   std::unique_ptr<AssembledModel> assembled;
   if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
   if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);
-  print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
+  if (result.name.empty()) print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
   std::string text;
   if (options.format == "svg") {
     text = mechanism_svg(assembled->system, assembled->start.state.q());

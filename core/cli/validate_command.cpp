@@ -27,13 +27,14 @@ struct Verdict {
   std::optional<ModelFacts> facts;
   Structure structure{};
   Json start = nullptr;
+  Json start_changes = nullptr;
   std::string moved{};
 
   bool ok() const { return loaded.exit_code == 0; }
 };
 
 Verdict judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
-  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}, {}, {}};
+  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}, {}, {}, {}};
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);
@@ -41,6 +42,7 @@ Verdict judge(const std::string& file, const ValidateOptions& options, const Com
     verdict.facts = assembled->start.facts;
     verdict.structure = assembled->start.structure;
     verdict.start = start_json(*verdict.loaded.model, assembled->start);
+    verdict.start_changes = start_changes_json(*verdict.loaded.model, assembled->start.report);
     verdict.moved = moved_text(*verdict.loaded.model, assembled->start.report);
   }
   return verdict;
@@ -52,6 +54,7 @@ Json verdict_json(const Verdict& verdict, int max_errors) {
       {"ok", verdict.ok()},
       {"facts", verdict.ok() ? facts_json(*verdict.loaded.model, *verdict.facts, verdict.structure) : Json(nullptr)},
       {"start", verdict.start},
+      {"start_changes", verdict.start_changes},
       {"messages", messages_json(verdict.loaded.diagnostics, max_errors)}};
 }
 

@@ -18,6 +18,7 @@ constexpr int order_by_ends = 5;           // of a method whose steps are known 
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
 constexpr double astray_inside = 0.1;      // and by which its ends may mislead
 constexpr int most_sweeps = 3;
+constexpr double most_growth = 2.0;    // of changes from sweep to sweep: more is a stiff force, less may be rounding
 constexpr double largest_turn = 1.0;   // of a joint in one step [rad]: angles are continued over turns
 constexpr double barely = 1.0 - 1e-6;  // of a step: what is shorter by the rounding of times alone is as long
 
@@ -192,7 +193,7 @@ bool Simulation::Impl::settle_between() {
 
 // Between its ends a step is known to the sixth order from these alone. Where that is not enough the equations of
 // motion are solved at places inside, over and over, until nothing changes that would matter. Where a joint cannot be
-// asked there, the ends have to do.
+// asked there, or changes grow as where forces are stiff against the step, the ends have to do.
 void Simulation::Impl::know_inside() {
   if (inner.known()) return;
   const std::size_t joints = e_accepted->internal_rate.size();
@@ -222,13 +223,17 @@ void Simulation::Impl::know_inside() {
   inner.fit_middle();
   if (change(InnerMotion::middle) <= unnoticed_inside) return;
   std::ranges::fill(inner_before, 0.0);
+  double last_change = unbounded;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     bool seen = look(InnerMotion::middle);
     if (seen && sweep == 0) inner.fit_middle();
     seen = seen && look(0) && look(2);
     if (!seen) return inner.forget();
     inner.fit();
-    if (change(0) <= unnoticed_inside) return;
+    const double now = change(0);
+    if (now <= unnoticed_inside) return;
+    if (!(now < most_growth * last_change)) return inner.forget();
+    last_change = now;
   }
 }
 

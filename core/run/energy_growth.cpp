@@ -87,11 +87,9 @@ std::string Simulation::Impl::why_beyond_bounds(double t, int joint) const {
   return text + (cause.empty() ? "; ask for an accuracy in place of a step" : "; likely cause: " + cause);
 }
 
-bool Simulation::Impl::is_built_in(const Component& component) const {
-  return std::ranges::none_of(model.instances.libraries(), [&](const RegisteredLibrary& library) {
-    return library.path != "built-in" &&
-           std::ranges::any_of(library.table->components(), [&](const Component& type) { return &type == &component; });
-  });
+bool Simulation::Impl::all_built_in() const {
+  return std::ranges::all_of(model.instances.libraries(),
+                             [](const RegisteredLibrary& library) { return library.path == "built-in"; });
 }
 
 }  // namespace freeplay

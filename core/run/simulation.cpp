@@ -181,7 +181,7 @@ bool Simulation::Impl::fail_with(const Fault& fault, double t) {
     return fail(4,
                 fmt::format("t = {:.9g} s: joint '{}': {} [{}]", t, joint.name, fault.message.text, fault.message.id));
   }
-  if (std::string_view(fault.message.text).ends_with("not a finite number") && is_built_in(*joint.component)) {
+  if (std::string_view(fault.message.text).ends_with("not a finite number") && all_built_in()) {
     return fail(4, why_beyond_bounds(t, fault.joint));
   }
   return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
@@ -375,7 +375,7 @@ bool Simulation::Impl::check_step(double dt) {
                                accepted.t(), integrator_words(model), expected, trial.t()));
   }
   if (is_finite(Span<const double>(trial.before_history()))) return true;
-  if (is_built_in(*settings.integrator_parameters.component)) {
+  if (all_built_in()) {
     left_bounds = true;  // a step that was too long for the forces: a shorter one may do
     return true;
   }

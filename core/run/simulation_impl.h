@@ -39,7 +39,7 @@ struct Simulation::Impl {
   bool gains_energy();
   std::string why_energy_grows(double dt);
   std::string why_beyond_bounds(double t, int joint) const;
-  bool is_built_in(const Component& component) const;
+  bool all_built_in() const;
   bool refresh();
   bool know_row();
   bool record_step();

@@ -1,5 +1,6 @@
 """Accuracy in place of a step, the second look of --verify, and `freeplay compare`."""
 import json
+import math
 import os
 import unittest
 
@@ -34,6 +35,22 @@ class Accuracy(ProgramTest):
         self.assertEqual("dopri5", self.run_json("a.yaml", "--accuracy", "1um")["settings"]["integrator"]["type"])
         fixed = self.run_json("a.yaml", "--step", "1ms")["settings"]
         self.assertEqual({"size": 1e-3, "adaptive": False}, fixed["step"])
+
+    def test_rows_between_steps_follow_a_stiff_damper(self):
+        # m x'' = -c x' - k (x - 1) creeps with the rate k/c = 1/s, while c/m = 1e6/s makes iterations inside a step grow.
+        self.write("stiff.yaml", """\
+freeplay: 1
+bodies: {m: {mass: 1 kg, inertia: 1 kg*m^2}}
+joints: {slide: {type: prismatic, between: [ground, m]}}
+forces: {hold: {type: spring-damper, between: [ground, m], stiffness: 1e6, damping: 1e6, free_length: 1 m}}
+initial: {joints: {slide: 1.1 m}}
+simulation: {end: 2 s, accuracy: 1 um}
+""")
+        for integrator in ("bathe", "newmark", "generalized-alpha"):
+            self.freeplay("run", "stiff.yaml", "--integrator", integrator, "--out", integrator)
+            rows = [line.split(",")[:2] for line in self.read(integrator, "results.csv").splitlines()[1:]]
+            for t, x in rows:
+                self.assertAlmostEqual(1 + 0.1 * math.exp(-float(t)), float(x), delta=4e-6)
 
     def test_step_and_accuracy_exclude_each_other(self):
         self.freeplay("run", mechanism("pendulum"), "--step", "1ms", "--accuracy", "1um", code=2)

@@ -66,6 +66,7 @@ class Start(ProgramTest):
 
     def start(self, text, *more):
         verdict = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json", *more)[0])
+        self.changes = verdict["start_changes"]
         return verdict["start"], verdict["messages"]
 
     # --- velocities --------------------------------------------------------------------------------------------------
@@ -116,7 +117,7 @@ class Start(ProgramTest):
             self.assertEqual([], messages)
             self.assertAlmostEqual(-90 + sign * 15, math.degrees(start["upper"]["angle"]), places=9)
             self.assertAlmostEqual(-90 - sign * 15, math.degrees(start["lower"]["angle"]), places=9)
-            moved = start["lower"]["moved"]
+            moved = [one for one in self.changes["moved"] if one["body"] == "lower"]
             self.assertEqual("angle", moved[0]["quantity"])
             self.assertAlmostEqual(abs(-90 - sign * 15 - lower), math.degrees(moved[0]["by"]), places=9)
             self.assertEqual(abs(-90 - sign * 15 - lower) > 10, moved[0]["far"])

@@ -39,6 +39,22 @@ SHORT_ROD = DRIVEN.replace("bodies:", "bodies:\n  slider: {mass: 1 kg, inertia: 
   guide: {type: prismatic, between: [ground, slider]}
   link: {type: distance, between: [rod/tip, slider], length: 0.5 m}
 drivers:""").replace("value: t", "value: 10*t")
+PULSE = """\
+freeplay: 1
+bodies: {m: {mass: 1 kg, inertia: 1 kg*m^2}}
+joints: {slide: {type: prismatic, between: [ground, m]}}
+forces: {hit: {type: force, at: m, value: ["1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", 0]}}
+simulation: {end: 2 s, step: 5 ms}
+"""
+# Damped so hard that an explicit method may take steps of some microseconds.
+STIFF = """\
+freeplay: 1
+bodies: {m: {mass: 1 kg, inertia: 1 kg*m^2}}
+joints: {slide: {type: prismatic, between: [ground, m]}}
+forces: {hold: {type: spring-damper, between: [ground, m], kind: linear, stiffness: 1e6, damping: 1e6, free_length: 1 m}}
+initial: {joints: {slide: 1.1 m}}
+simulation: {end: 2 s, integrator: bathe, accuracy: 1 um}
+"""
 NO_STEP = PENDULUM.replace("initial:", "forces: {kick: {type: torque, on: rod, value: 1e15}}\ninitial:")
 IN_LINE = SHORT_ROD.replace("drivers: {motor: {joint: pivot, kind: angle, value: 10*t}}", "initial: {joints: {guide: 1.2 m}}").replace(
     "frames: {tip: [1 m, 0]}", "frames: {tip: [1 m, 0]}, pose: {angle: 0}")
@@ -104,6 +120,9 @@ CASES = {
     "integrator '...' gives no error estimate: it takes fixed steps only":
         (2, PENDULUM, RUN + ["--accuracy", "1 um", "--integrator", "my-type", "--plugin", "TEMPLATE"]),
     "--integrator ...: there is no such integrator": (2, PENDULUM, RUN + ["--integrator", "rk4"]),
+    "... '...': it has corners at ... s and ... s, closer than the step of ... s, ...": (0, PULSE, RUN),
+    "--verify: THE RUNS DISAGREE: ...": (7, PULSE, RUN + ["--verify"]),
+    "--verify: the second run was given up at ... s after ... steps": (0, STIFF, RUN + ["--verify"]),
     # Doubted, and run all the same
     "'...' is ... rad, ... turns: write '... deg' if degrees are meant, else '... rad' [doubtful-angle]":
         (0, pendulum("0 deg", "60"), RUN),

@@ -168,7 +168,8 @@ class Trust(ProgramTest):
         with open(ROOT + "/docs/trust.md", encoding="utf-8") as file:
             page = file.read()
         sections = set(re.findall(r"^### ([a-z-]+)$", page, re.M))
-        self.assertEqual(sections, set(re.findall(r"\(#([a-z-]+)\)", page)))
+        chapters = {title.lower().replace(":", "").replace(" ", "-") for title in re.findall(r"^## (.*)$", page, re.M)}
+        self.assertEqual(sections, set(re.findall(r"\(#([a-z-]+)\)", page)) - chapters)
 
 
 if __name__ == "__main__":

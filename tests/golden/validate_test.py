@@ -45,7 +45,7 @@ class Validate(ProgramTest):
         for name, (facts, ideal) in FACTS.items():
             file = mechanism(name)
             verdict = json.loads(self.freeplay("validate", file, "--json")[0])
-            self.assertEqual(["file", "ok", "facts", "start", "messages"], list(verdict))
+            self.assertEqual(["file", "ok", "facts", "start", "start_changes", "messages"], list(verdict))
             self.assertEqual((file, True, []), (verdict["file"], verdict["ok"], verdict["messages"]))
             expected = dict(zip(NAMES, facts), ideal=dict(zip(IDEAL, ideal)) if ideal else None, left_free=[], undetermined=[])
             self.assertEqual(list(expected.items()), list(verdict["facts"].items()))

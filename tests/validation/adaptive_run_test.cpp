@@ -105,8 +105,8 @@ double unit_rebound(const std::string& integrator, double step, double phase) {
   return all.empty() ? 0.0 : all[0].end.fields.at(speed);
 }
 
-// The rebound of the known study, 0.901222060959, with a push that a wrong approach speed would show. The error of every
-// step is taken off, which makes the order one more than that of the method; the force law bends like x^1.5.
+// The rebound of the known study, 0.901222060959, with a push that a wrong approach speed would show. The error of
+// every step is taken off, which makes the order one more than that of the method; the force law bends like x^1.5.
 TEST(LocatedEvent, MethodsOfOrderTwoHaveOneMoreThroughAnImpact) {
   for (const char* integrator : {"bathe", "hht", "generalized-alpha", "newmark"}) {
     std::vector<double> errors;

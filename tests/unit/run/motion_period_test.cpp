@@ -37,7 +37,7 @@ TEST(MotionPeriod, OfATableIsThatAtWhichItIsRepeated) {
 }
 
 TEST(MotionPeriod, IsNoneOfAMotionThatDoesNotComeAgain) {
-  EXPECT_FALSE(period_of("kind: angle, value: smooth(t, 0, 1)"));
+  EXPECT_FALSE(period_of("kind: angle, value: 'smooth(t, 0, 1)'"));
   EXPECT_FALSE(period_of("kind: angle, value: t^2"));
   EXPECT_FALSE(period_of("kind: angle, value: exp(-t)*sin(2*pi*t)"));
   EXPECT_FALSE(period_of("kind: torque, value: 3"));

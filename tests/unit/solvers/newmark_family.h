@@ -127,7 +127,7 @@ inline void expect_newton_parameters(const std::string& name) {
   layout.sizes = {7, 6, 2, 3};
   integrator.call(&abi::IntegratorTable::declare, &layout);
   EXPECT_EQ(layout.memory, 13);        // A, Z, z', the last step
-  EXPECT_EQ(layout.scratch, 40 + 48);  // q, twice v, increment (or a) and z; what the error estimate needs
+  EXPECT_EQ(layout.scratch, 40 + 75);  // q, twice v, increment (or a) and z; what the error estimate needs
   EXPECT_EQ(layout.error_estimate, 1u);
   EXPECT_EQ(layout.newton_tolerance, 1e-8);
   EXPECT_EQ(layout.newton_max_iterations, 7);
