@@ -79,7 +79,7 @@ class Expression {
   /// How many derivatives are used: 0, 1 or, from the start, 2. The others may not exist.
   void need(int derivatives) { derivatives_ = derivatives; }
 
-  /// What can be told of the formula in (from, to] [s] without a run. Corners of any duration are found where what
+  /// What the formula alone shows of (from, to] [s], without a run. Corners of any duration are found where what
   /// decides between two forms is a straight line of t; else it is looked at 4096 times and more, with its rate. Very
   /// long formulas with many corners are not looked at to their end: then rates are infinite. Allocates.
   Outline outline(double from, double to) const;

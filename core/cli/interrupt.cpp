@@ -23,7 +23,7 @@ void on_interrupt(int) {
 }  // namespace
 
 void handle_signals() {
-  std::signal(SIGPIPE, SIG_IGN);  // a pipe that nobody reads is a failed write, which terminal.h keeps quiet about
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, which terminal.h does not report
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is a failed write, which is reported
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);

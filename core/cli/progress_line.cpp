@@ -71,7 +71,7 @@ double ProgressLine::elapsed() const { return std::chrono::duration<double>(last
 
 void ProgressLine::show(const std::string& line) {
   // Blanks over the rest of the last line: escape sequences are not for every terminal.
-  std::fputs(fmt::format("\r{:<{}}", line, width_).c_str(), stderr);  // fmt::print throws where nobody reads
+  std::fputs(fmt::format("\r{:<{}}", line, width_).c_str(), stderr);  // fmt::print throws on a closed pipe
   std::fflush(stderr);
   width_ = line.size();
 }

@@ -19,7 +19,7 @@ void print(std::string_view text);
 void print_data(std::string_view text);
 void print_json(const Json& json);
 
-/// Why stdout did not take all that was printed; empty if it did, or if it is a pipe that nobody reads any more.
+/// Why stdout did not take all that was printed; empty if it did, or if its pipe was closed.
 std::string stdout_failure();
 
 /// Writes messages to stderr, control characters replaced, with colour where it is wanted. A failure there is nobody's

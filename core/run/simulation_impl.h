@@ -146,7 +146,7 @@ struct Simulation::Impl {
   RunWatch watch;
   PeakSearch peaks;  ///< with error control
   std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
-  InnerMotion inner;  ///< of the step that was made last, where somebody looked inside
+  InnerMotion inner;  ///< of the step that was made last, where a row or a peak was sought inside
   std::vector<double> inner_before, rate_defect, start_rate, end_rate;
   std::vector<int> stop_columns, with_history;
   struct Turn {

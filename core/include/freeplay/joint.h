@@ -86,7 +86,7 @@ struct JointLayout {
   /// How fine the joint's own dependence on time (JointInput::t) is: the duration of its shortest change [s].
   /// `unbounded`: neither forces nor rows depend on t. 0: not known. Runs with error control look at forces and rows,
   /// as functions of t alone, so closely that no change of that duration is stepped over; where it is not known, none
-  /// as long as an output interval. What is shorter is met if next_corner() tells of it.
+  /// as long as an output interval. What is shorter is met if next_corner() reports it.
   double time_scale = 0.0;
 };
 
