@@ -16,7 +16,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr int order_by_ends = 5;           // of a method whose steps are known as well inside by their ends
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
-constexpr double astray_inside = 0.1;      // and by which its ends may mislead
+constexpr double astray_inside = 1.0;      // and by which its ends may mislead: no more than a step may err by
 constexpr int most_sweeps = 3;
 constexpr double most_growth = 2.0;    // of changes from sweep to sweep: more is a stiff force, less may be rounding
 constexpr double largest_turn = 1.0;   // of a joint in one step [rad]: angles are continued over turns
