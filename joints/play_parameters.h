@@ -68,7 +68,7 @@ inline void read_materials(const Parameters& p, ContactPair& pair) {
   }
 }
 
-/// What the host is told of the two surfaces; NaN where the file leaves it open.
+/// What the host may know of the two surfaces; NaN where the file does not give it.
 struct Surfaces {
   Surfaces() = default;
   explicit Surfaces(const ContactPair& pair)

@@ -179,7 +179,7 @@ struct Simulation::Impl {
   double gained = 0.0;            // without work, by the step that was looked at last [J]
   bool left_bounds = false;       // the last attempt ended with numbers that are not finite
   bool ended_inside = false;   // the step that is being accepted was cut short: the integrator has no memory of its end
-  bool ended_abruptly = true;  // the last step: at an event or a kink, behind which values go on otherwise
+  bool ended_abruptly = true;  // the last step: at an event or a kink, after which values change abruptly
   double allowed = 0.0;        // by which positions may err in one step, with error control [m]
   bool row_is_known = false;   // `row` is that of the accepted state
   long next_row = 1;
