@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "analysis/posture.h"
+#include "assembly/assembly.h"
 #include "base/error.h"
-#include "run/assembly.h"
 
 namespace freeplay {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "assembly/leg_modes.h"
 #include "base/error.h"
-#include "run/leg_modes.h"
 
 namespace freeplay {
 namespace {

@@ -31,6 +31,16 @@ std::string one_line(std::string_view text) {
 
 }  // namespace
 
+Diagnostic as_diagnostic(const Error& error) {
+  Diagnostic diagnostic;
+  diagnostic.id = error.id();
+  diagnostic.message = error.message();
+  diagnostic.location = error.location();
+  if (diagnostic.location.file.empty()) diagnostic.location = {program_as_file, 0, 0};
+  diagnostic.hint = error.hint();
+  return diagnostic;
+}
+
 Diagnostics::Source& Diagnostics::source(const std::string& file) {
   const auto [entry, added] = sources_.try_emplace(file);
   if (added) entry->second.order = sources_.size();

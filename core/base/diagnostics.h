@@ -28,6 +28,12 @@ struct Diagnostic {
   std::vector<std::string> notes{};  ///< more lines, such as "in instance 'leg2'"
 };
 
+/// Stands for the file of messages that belong to none.
+inline constexpr const char* program_as_file = "freeplay";
+
+/// The error as a message of its file; one that has no file belongs to the program.
+Diagnostic as_diagnostic(const Error& error);
+
 /// Collects messages and prints them. A reader goes on after an error as long as it makes sense. A message with the
 /// same place, id and text as an earlier one (an error in a template, say, once more for the next instance) is not
 /// kept.

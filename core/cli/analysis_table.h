@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "io/json_text.h"
+#include "base/json_text.h"
 
 namespace freeplay {
 

@@ -15,11 +15,12 @@
 #include "cli/analysis_watch.h"
 #include "cli/analyze_options.h"
 #include "cli/failure.h"
-#include "cli/load_model.h"
+#include "cli/loading.h"
 #include "cli/output_file.h"
 #include "cli/processors.h"
 #include "cli/terminal.h"
-#include "report/map_drawing.h"
+#include "drawing/map_drawing.h"
+#include "load/load.h"
 
 namespace freeplay {
 namespace {
@@ -483,7 +484,7 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
                 "freeplay analyze ik|workspace|singularity|error|inverse-dynamics MODEL");
   }
   require_word("kind of analysis", options.kind, {"ik", "workspace", "singularity", "error", "inverse-dynamics"});
-  LoadedModel loaded = load_model(options.model, build_options(options.build), common);
+  LoadedModel loaded = load_model(options.model, build_options(options.build), loading(common));
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   refuse_idle_options(options);
   if (options.kind == "workspace") require_planar(loaded, "analyze workspace");

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "cli/terminal.h"
-#include "io/number_text.h"
-#include "report/comparison.h"
+#include "results/comparison.h"
 
 namespace freeplay {
 namespace {

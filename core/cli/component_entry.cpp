@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "io/number_text.h"
-#include "model/format_table.h"
+#include "base/number_text.h"
+#include "format/key_table.h"
 
 namespace freeplay {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/json_text.h"
 #include "component/registry.h"
-#include "io/json_text.h"
 
 namespace freeplay {
 

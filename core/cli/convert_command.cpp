@@ -7,18 +7,19 @@
 
 #include <fmt/format.h>
 
+#include "base/whole_file.h"
 #include "cli/facts.h"
 #include "cli/failure.h"
-#include "cli/load_model.h"
+#include "cli/loading.h"
 #include "cli/terminal.h"
-#include "io/complete_model.h"
-#include "io/flat_model.h"
-#include "io/model_document.h"
-#include "io/moved_model.h"
-#include "io/urdf_text.h"
-#include "io/whole_file.h"
-#include "io/yaml_text.h"
-#include "model/readout.h"
+#include "convert/complete_model.h"
+#include "convert/flat_model.h"
+#include "convert/moved_model.h"
+#include "format/readout.h"
+#include "load/load.h"
+#include "load/model_file.h"
+#include "urdf/writer.h"
+#include "yaml/text.h"
 
 namespace freeplay {
 namespace {
@@ -78,7 +79,7 @@ void verify(const LoadedModel& loaded, const AssembledModel& source, const Renam
             const CommonOptions& common) {
   CommonOptions lenient = common;
   lenient.strict = false;
-  LoadedModel again = load_model(file, {}, lenient);
+  LoadedModel again = load_model(file, {}, loading(lenient));
   const auto assembled = again.exit_code == 0 ? assemble_model(again) : nullptr;
   const auto differs = [&](const std::string& what) {
     throw Error(Error::Category::internal, "internal", fmt::format("'{}' was written, but {}", file, what), {},
@@ -139,7 +140,7 @@ LoadedModel load_flat(const FlatModel& flat, const std::string& file, Readout& r
   lenient.strict = false;
   BuildOptions build;
   build.readout = &readout;
-  LoadedModel loaded = load_text(flat.text, file, build, lenient);
+  LoadedModel loaded = load_text(flat.text, file, build, loading(lenient));
   if (loaded.exit_code == 0) return loaded;
   throw Error(Error::Category::internal, "internal",
               "without its instances the model does not read back:\n" + loaded.diagnostics.format(1), {},
@@ -164,7 +165,7 @@ int convert(const ConvertOptions& options, const CommonOptions& common) {
   Readout readout;
   BuildOptions build = build_options(options.build);
   build.readout = &readout;
-  LoadedModel loaded = load_model(options.in, build, common);
+  LoadedModel loaded = load_model(options.in, build, loading(common));
   if (!is_yaml(options.out)) require_planar(loaded, "conversion to URDF");
   if (loaded.exit_code == 0) write_overrides(build, *loaded.document);
   const auto assembled = loaded.exit_code == 0 ? assemble_model(loaded) : nullptr;

@@ -8,12 +8,13 @@
 #include "base/error.h"
 #include "base/suggestion.h"
 #include "cli/component_entry.h"
-#include "cli/plugins.h"
+#include "cli/loading.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "contract/sample_layout.h"
+#include "load/plugins.h"
+#include "model/channel.h"
 #include "model/model.h"
-#include "run/channel.h"
 
 namespace freeplay {
 namespace {
@@ -96,7 +97,7 @@ std::string entry_text(const Json& entry) {
 
 int describe(const std::string& name, const CommonOptions& common) {
   if (name.empty()) throw Error(Error::Category::usage, "missing-argument", "describe needs the name of a type");
-  const Registry registry = load_registry(common, nullptr);
+  const Registry registry = load_registry(loading(common), nullptr);
   const std::vector<Json> entries = all_entries(registry);
   Json found = Json::array();  // names are unique within a kind only
   for (const Json& entry : entries) {

@@ -10,12 +10,12 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/version.h"
+#include "base/whole_file.h"
 #include "cli/component_entry.h"
 #include "cli/terminal.h"
 #include "component/library.h"
 #include "freeplay/plugin.h"
-#include "io/version.h"
-#include "io/whole_file.h"
 
 namespace freeplay {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "io/json_text.h"
+#include "assembly/assembly.h"
+#include "base/json_text.h"
 #include "model/model.h"
-#include "run/assembly.h"
 
 namespace freeplay {
 

@@ -7,15 +7,13 @@
 namespace freeplay {
 namespace {
 
-constexpr const char* program = "freeplay";
-
 /// A place in the file, or null: the program itself has no lines.
 Json place(int number) { return number > 0 ? Json(number) : Json(nullptr); }
 
 Json message_json(const Diagnostic& diagnostic) {
   const std::string& file = diagnostic.location.file;
   const std::string& remedy = diagnostic.suggestion.empty() ? diagnostic.hint : diagnostic.suggestion;
-  return {{"file", file.empty() || file == program ? Json(nullptr) : Json(file)},
+  return {{"file", file.empty() || file == program_as_file ? Json(nullptr) : Json(file)},
           {"line", place(diagnostic.location.line)},
           {"column", place(diagnostic.location.column)},
           {"severity", diagnostic.severity == Severity::error ? "error" : "warning"},
@@ -36,16 +34,6 @@ std::string in_short(const Diagnostics& diagnostics) {
 }
 
 }  // namespace
-
-Diagnostic as_diagnostic(const Error& error) {
-  Diagnostic diagnostic;
-  diagnostic.id = error.id();
-  diagnostic.message = error.message();
-  diagnostic.location = error.location();
-  if (diagnostic.location.file.empty()) diagnostic.location = {program, 0, 0};
-  diagnostic.hint = error.hint();
-  return diagnostic;
-}
 
 Json messages_json(const Diagnostics& diagnostics, int max_errors) {
   Json messages = Json::array();

@@ -5,13 +5,10 @@
 
 #include "base/diagnostics.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "cli/options.h"
-#include "io/json_text.h"
 
 namespace freeplay {
-
-/// The error as a message of its file; one that has no file belongs to the program.
-Diagnostic as_diagnostic(const Error& error);
 
 /// Fields of each message: file, line, column, severity, id, message, suggestion. At most `max_errors` errors (0: all).
 Json messages_json(const Diagnostics& diagnostics, int max_errors);

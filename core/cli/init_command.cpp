@@ -15,10 +15,11 @@
 
 #include "base/error.h"
 #include "cli/component_entry.h"
-#include "cli/plugins.h"
+#include "cli/loading.h"
 #include "cli/starter_files.h"
 #include "cli/terminal.h"
 #include "component/library.h"
+#include "load/plugins.h"
 
 namespace freeplay {
 namespace {
@@ -137,7 +138,7 @@ Written init_plugin(const InitOptions& options, const CommonOptions& common) {
                                  ComponentKind::integrator};
   const std::vector<std::string> words{"joint", "contact", "friction", "integrator"};
   const auto kind = kinds[std::ranges::find(words, options.type) - words.begin()];
-  check_plugin_name(name, kind, load_registry(common, nullptr));
+  check_plugin_name(name, kind, load_registry(loading(common), nullptr));
   std::ranges::replace(name, '_', '-');
   std::error_code error;
   if (fs::exists(fs::symlink_status(folder, error)) &&

@@ -7,12 +7,13 @@
 
 #include "cli/component_entry.h"
 #include "cli/failure.h"
-#include "cli/load_model.h"
-#include "cli/plugins.h"
+#include "cli/loading.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "contract/sample_layout.h"
-#include "run/channel.h"
+#include "load/load.h"
+#include "load/plugins.h"
+#include "model/channel.h"
 
 namespace freeplay {
 namespace {
@@ -68,7 +69,7 @@ Json entries_json(const Registry& registry, const std::string& kind) {
 }
 
 int list_components(const ListOptions& options, const CommonOptions& common) {
-  const Json list = entries_json(load_registry(common, nullptr), options.kind);
+  const Json list = entries_json(load_registry(loading(common), nullptr), options.kind);
   if (common.json) {
     print_json(list);
     return 0;
@@ -89,7 +90,7 @@ int list_channels(const ListOptions& options, const CommonOptions& common) {
   if (options.model.empty()) {
     throw Error(Error::Category::usage, "missing-argument", "list channels needs a model file");
   }
-  const LoadedModel loaded = load_model(options.model, {}, common);
+  const LoadedModel loaded = load_model(options.model, {}, loading(common));
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
   const Channels channels(*loaded.model);

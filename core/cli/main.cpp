@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/version.h"
 #include "cli/analyze_command.h"
 #include "cli/check_plugin_command.h"
 #include "cli/compare_command.h"
@@ -26,7 +27,6 @@
 #include "cli/unknown_word.h"
 #include "cli/validate_command.h"
 #include "freeplay/plugin.h"
-#include "io/version.h"
 
 namespace freeplay {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/unit.h"
-#include "model/build_options.h"
+#include "format/build_options.h"
 
 // The library's header is of options.cpp and of those who parse: it takes longer to compile than a command.
 namespace CLI {

@@ -1,7 +1,7 @@
 #include "cli/output_file.h"
 
+#include "base/whole_file.h"
 #include "cli/terminal.h"
-#include "io/whole_file.h"
 
 namespace freeplay {
 

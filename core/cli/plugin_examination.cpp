@@ -10,12 +10,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/version.h"
 #include "cli/allocation_watch.h"
 #include "cli/child_process.h"
 #include "cli/component_entry.h"
 #include "component/library.h"
 #include "contract/component_contract.h"
-#include "io/version.h"
 
 namespace freeplay {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/json_text.h"
 #include "contract/finding.h"
-#include "io/json_text.h"
 
 namespace freeplay {
 

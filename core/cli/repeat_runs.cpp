@@ -23,7 +23,7 @@
 #include "base/error.h"
 #include "cli/analyze_options.h"
 #include "cli/interrupt.h"
-#include "io/summary.h"
+#include "results/summary.h"
 #include "run/play_start.h"
 #include "run/simulation.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/repeat_summary.h"
 #include "model/model.h"
+#include "results/repeat_summary.h"
 #include "run/simulation.h"
 
 namespace freeplay {

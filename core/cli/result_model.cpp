@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "io/json_text.h"
+#include "base/json_text.h"
 
 namespace freeplay {
 namespace {

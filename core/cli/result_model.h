@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "model/build_options.h"
+#include "format/build_options.h"
 
 namespace freeplay {
 

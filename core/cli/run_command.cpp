@@ -8,10 +8,11 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "base/version.h"
 #include "cli/facts.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
-#include "cli/load_model.h"
+#include "cli/loading.h"
 #include "cli/processors.h"
 #include "cli/profile_table.h"
 #include "cli/progress_line.h"
@@ -20,16 +21,16 @@
 #include "cli/terminal.h"
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
-#include "io/channel_selection.h"
-#include "io/csv_sink.h"
-#include "io/event_sink.h"
-#include "io/model_document.h"
-#include "io/result_directory.h"
-#include "io/run_log.h"
-#include "io/summary.h"
-#include "io/version.h"
-#include "report/judgement.h"
-#include "report/row_memory.h"
+#include "load/load.h"
+#include "load/model_file.h"
+#include "model/channel_selection.h"
+#include "results/csv_sink.h"
+#include "results/directory.h"
+#include "results/event_sink.h"
+#include "results/judgement.h"
+#include "results/row_memory.h"
+#include "results/run_log.h"
+#include "results/summary.h"
 #include "run/simulation.h"
 
 namespace freeplay {
@@ -330,7 +331,7 @@ int run(const RunOptions& options, const CommonOptions& common) {
   if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
   refuse_idle_options(options);
   const RepeatPlan plan = repeat_plan(options.repeat, options.seed);
-  LoadedModel loaded = load_model(options.model, build_options(options), common);
+  LoadedModel loaded = load_model(options.model, build_options(options), loading(common));
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (!options.dry_run) check_result_directory(path, options.force);

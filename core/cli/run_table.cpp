@@ -8,7 +8,7 @@
 
 #include "cli/text_table.h"
 #include "cli/window_lines.h"
-#include "report/figure_text.h"
+#include "results/figure_text.h"
 
 namespace freeplay {
 namespace {

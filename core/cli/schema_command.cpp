@@ -2,10 +2,11 @@
 
 #include <memory>
 
-#include "cli/plugins.h"
+#include "cli/loading.h"
 #include "cli/terminal.h"
+#include "component/json_schema.h"
 #include "contract/sample_layout.h"
-#include "io/json_schema.h"
+#include "load/plugins.h"
 
 namespace freeplay {
 namespace {
@@ -17,7 +18,7 @@ int schema(const std::string& of, const CommonOptions& common) {
     print_json(summary_schema());
     return 0;
   }
-  const Registry registry = load_registry(common, nullptr);
+  const Registry registry = load_registry(loading(common), nullptr);
   print_json(model_schema(registry, force_types(registry)));
   return 0;
 }

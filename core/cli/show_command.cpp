@@ -3,13 +3,14 @@
 #include <memory>
 
 #include "cli/failure.h"
-#include "cli/load_model.h"
+#include "cli/loading.h"
 #include "cli/output_file.h"
 #include "cli/result_model.h"
 #include "cli/terminal.h"
-#include "io/model_json.h"
-#include "report/mechanism_drawing.h"
-#include "report/model_text.h"
+#include "convert/model_json.h"
+#include "drawing/mechanism_drawing.h"
+#include "drawing/model_text.h"
+#include "load/load.h"
 
 namespace freeplay {
 namespace {
@@ -29,14 +30,14 @@ int show(ShowOptions options, const CommonOptions& common) {
   }
   BuildOptions build = build_options(options.build);
   const ResultWords result = use_model_of_result(options.model, build);
-  LoadedModel loaded = load_model(options.model, build, common);
+  LoadedModel loaded = load_model(options.model, build, loading(common));
   const auto integrator_of = [](const Model& model) -> std::string_view {
     const Component* type = model.settings.integrator_parameters.component;
     return type == nullptr ? "" : type->description.name;
   };
   if (loaded.model && !result.integrator.empty() && result.integrator != integrator_of(*loaded.model)) {
     build.integrator = result.integrator;  // another than that of the file, with its default parameters
-    loaded = load_model(options.model, build, common);
+    loaded = load_model(options.model, build, loading(common));
   }
   if (loaded.model && !result.name.empty()) loaded.model->name = result.name;
   std::unique_ptr<AssembledModel> assembled;

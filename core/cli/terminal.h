@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/json_text.h"
+#include "base/json_text.h"
 
 namespace freeplay {
 

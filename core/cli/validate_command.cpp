@@ -8,8 +8,9 @@
 #include "base/text.h"
 #include "cli/facts.h"
 #include "cli/failure.h"
-#include "cli/load_model.h"
+#include "cli/loading.h"
 #include "cli/terminal.h"
+#include "load/load.h"
 
 namespace freeplay {
 namespace {
@@ -34,7 +35,7 @@ struct Verdict {
 };
 
 Verdict judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
-  Verdict verdict{file, load_model(file, build_options(options.model), common), {}, {}, {}, {}, {}};
+  Verdict verdict{file, load_model(file, build_options(options.model), loading(common)), {}, {}, {}, {}, {}};
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);

@@ -6,8 +6,9 @@
 #include <fmt/format.h>
 
 #include "cli/interrupt.h"
-#include "cli/plugins.h"
-#include "report/row_memory.h"
+#include "cli/loading.h"
+#include "load/plugins.h"
+#include "results/row_memory.h"
 
 namespace freeplay {
 namespace {
@@ -75,7 +76,7 @@ void run_to_end(OtherRun& other, long most_steps) {
 /// The model with an integrator of the other kind than the run's.
 LoadedModel load_by_other_kind(const VerifiedRun& run, BuildOptions& build) {
   const bool was_explicit = layout_of(run.system.model()).explicit_stages != 0;
-  const Registry registry = load_registry(run.common, nullptr);
+  const Registry registry = load_registry(loading(run.common), nullptr);
   std::vector<std::string> names;
   for (const std::uint32_t use : {2u, 1u}) {
     const Component* component = registry.preferred(ComponentKind::integrator, use);
@@ -86,7 +87,7 @@ LoadedModel load_by_other_kind(const VerifiedRun& run, BuildOptions& build) {
     build.integrator = name;
     LoadedModel loaded;
     try {
-      loaded = load_model(run.file, build, run.common);
+      loaded = load_model(run.file, build, loading(run.common));
     } catch (const Error&) {
       continue;  // it gives no error estimate
     }
@@ -173,7 +174,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   if (result.agreement == Agreement::agree) return result;
   OtherRun third;
   build.accuracy = third_accuracy * *build.accuracy;
-  third.loaded = load_model(run.file, build, run.common);
+  third.loaded = load_model(run.file, build, loading(run.common));
   run_to_end(third, most_steps);
   if (third.assembled && third.rows) judge(result, first, second.result(), third.result(), rules);
   return result;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "cli/load_model.h"
-#include "report/verification.h"
+#include "load/load.h"
+#include "results/verification.h"
 #include "run/simulation.h"
 
 namespace freeplay {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "io/json_text.h"
-#include "report/verification.h"
+#include "base/json_text.h"
+#include "results/verification.h"
 
 namespace freeplay {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/summary.h"
+#include "results/summary.h"
 
 namespace freeplay {
 

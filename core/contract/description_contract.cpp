@@ -10,9 +10,9 @@
 
 #include "base/expression_error.h"
 #include "base/unit.h"
-#include "model/format_table.h"
-#include "model/parameter_tree.h"
-#include "run/channel.h"
+#include "format/key_table.h"
+#include "format/parameter_tree.h"
+#include "model/channel.h"
 
 namespace freeplay {
 namespace {

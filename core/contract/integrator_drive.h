@@ -8,7 +8,7 @@
 #include "contract/finding.h"
 #include "contract/guarded_numbers.h"
 #include "contract/reference_system.h"
-#include "run/newton_stage_solver.h"
+#include "stage/newton_stage_solver.h"
 
 namespace freeplay {
 

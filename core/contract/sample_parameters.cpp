@@ -8,7 +8,7 @@
 #include "base/expression_error.h"
 #include "base/unit.h"
 #include "component/instances.h"
-#include "model/parameter_tree.h"
+#include "format/parameter_tree.h"
 
 namespace freeplay {
 namespace {

@@ -1,9 +1,7 @@
-// Rotations in space as model files give them.
+// Rotations in space.
 #pragma once
 
-#include <optional>
-
-#include "model/map_reader.h"
+#include "model/model.h"
 
 namespace freeplay {
 
@@ -19,13 +17,5 @@ Rotation least_rotation(const Vector3& from, const Vector3& to);
 
 /// Eigenvalues of a symmetric tensor, the least first.
 Vector3 principal_moments(const Rotation& tensor);
-
-/// The keys `rpy` and `quaternion` (w, x, y, z; made a unit one, with a warning) of a pose or frame; refused in planar
-/// models. Reports what is wrong.
-std::optional<Rotation> read_rotation(MapReader& map);
-
-/// A direction, made a unit vector, with the warning `not-unit` if it was none. Reports `out-of-range` for one without
-/// length.
-std::optional<Vector3> read_axis(const CheckedValue& value);
 
 }  // namespace freeplay

@@ -43,9 +43,9 @@ void set_function(ParameterValue& value, double constant) {
   value.function_owner = served;
 }
 
-void set_function(ParameterValue& value, Expression expression, const Node& node) {
-  const auto served = std::make_shared<const WrittenFunction>(
-      WrittenFunction{std::move(expression), node.location_at(0), node.verbatim});
+void set_function(ParameterValue& value, Expression expression, Location begin, bool places_inside) {
+  const auto served =
+      std::make_shared<const WrittenFunction>(WrittenFunction{std::move(expression), std::move(begin), places_inside});
   value.function = {&evaluate_written, served.get()};
   value.function_owner = served;
 }

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "run/drive_range.h"
+#include "assembly/drive_range.h"
 #include "run/likely_cause.h"
 #include "run/simulation_impl.h"
 

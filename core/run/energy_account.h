@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "run/channel.h"
+#include "model/channel.h"
+#include "stage/flows.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -21,13 +22,13 @@ double power(const double* wrench, const MarkerKinematics& k);
 /// order) are integrated over accepted steps by the cubic through their values at the ends of the last steps, by
 /// Simpson's rule where there are none yet, or by the integrator itself, along with z, where it can: then to its order;
 /// those of rows by the trapezoidal rule.
-class EnergyAccount {
+class EnergyAccount final : public Flows {
  public:
   explicit EnergyAccount(const System& system);
 
-  int flows() const { return static_cast<int>(power_.size()); }
+  int flows() const override { return static_cast<int>(power_.size()); }
   /// Powers [W] at an evaluated point (forces and coordinates), flows() numbers.
-  void flow(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const;
+  void flow(const Evaluation& e, std::span<const double> lambda, std::span<double> out) const override;
 
   /// The start of a run. `row` needs the observed columns.
   void start(const Evaluation& e, std::span<const double> lambda, const Channels& channels,

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "run/channel.h"
+#include "model/channel.h"
 #include "system/system.h"
 
 namespace freeplay {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "run/assembly.h"
+#include "assembly/assembly.h"
 
 namespace freeplay {
 

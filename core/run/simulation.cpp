@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "assembly/drive_range.h"
 #include "component/declared.h"
 #include "component/joint_answer.h"
-#include "run/drive_range.h"
 #include "run/simulation_impl.h"
 #include "system/finite.h"
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "run/assembly.h"
-#include "run/channel.h"
-#include "run/run_watch.h"
+#include "assembly/assembly.h"
+#include "model/channel.h"
 #include "run/sink.h"
 #include "run/statistics.h"
 #include "run/trust.h"
+#include "run/watch.h"
 #include "system/system.h"
 
 namespace freeplay {

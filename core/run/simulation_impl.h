@@ -8,13 +8,13 @@
 #include "run/event_storm.h"
 #include "run/inner_motion.h"
 #include "run/input_activity.h"
-#include "run/newton_stage_solver.h"
 #include "run/observer.h"
 #include "run/peak_search.h"
 #include "run/resting_joints.h"
 #include "run/simulation.h"
 #include "run/step_control.h"
 #include "run/step_events.h"
+#include "stage/newton_stage_solver.h"
 
 namespace freeplay {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "run/channel.h"
+#include "model/channel.h"
 
 namespace freeplay {
 

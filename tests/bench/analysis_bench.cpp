@@ -15,9 +15,9 @@
 #include "analysis/station.h"
 #include "analysis/workspace.h"
 #include "component/registry.h"
-#include "io/yaml_document.h"
-#include "model/model_builder.h"
+#include "format/model_builder.h"
 #include "source_folder.h"
+#include "yaml/document.h"
 
 namespace freeplay {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "base/number_text.h"
 #include "bench_model.h"
-#include "io/csv_sink.h"
-#include "io/number_text.h"
+#include "results/csv_sink.h"
 
 namespace freeplay::bench {
 namespace {

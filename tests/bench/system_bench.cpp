@@ -5,9 +5,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "assembly/assembly.h"
 #include "bench_model.h"
-#include "run/assembly.h"
-#include "run/stage_matrix.h"
+#include "stage/matrix.h"
 
 namespace freeplay::bench {
 namespace {

@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "io/complete_model.h"
-#include "io/model_document.h"
-#include "io/yaml_document.h"
-#include "model/model_builder.h"
+#include "convert/complete_model.h"
+#include "format/model_builder.h"
+#include "load/model_file.h"
+#include "yaml/document.h"
 
 namespace freeplay::fuzz {
 namespace {

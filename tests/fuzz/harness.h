@@ -8,7 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "component/registry.h"
-#include "model/document.h"
+#include "format/document.h"
 
 namespace freeplay::fuzz {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "format/csv_text.h"
 #include "fuzz/harness.h"
-#include "model/csv_text.h"
 
 namespace {
 

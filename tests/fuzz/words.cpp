@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/unit.h"
+#include "format/key_table.h"
 #include "fuzz/harness.h"
-#include "model/format_table.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "pulse_joint.h"
-#include "report/verification.h"
+#include "results/verification.h"
 #include "run_model.h"
 
 namespace freeplay::test {

@@ -15,10 +15,9 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/assembly.h"
 #include "component/registry.h"
-#include "io/yaml_document.h"
-#include "model/model_builder.h"
-#include "run/assembly.h"
+#include "load/load.h"
 #include "run/simulation.h"
 #include "source_folder.h"
 #include "system/system.h"
@@ -120,12 +119,9 @@ class RowKeeper final : public Sink {
 /// A checked model. Mistakes of the text are thrown as std::runtime_error with the report.
 inline std::unique_ptr<Model> load(const std::string& text, const BuildOptions& options = {},
                                    const Registry& registry = builtin_types()) {
-  Diagnostics diagnostics;
-  const std::optional<Document> document = parse_yaml(text, "model.yaml", diagnostics);
-  std::unique_ptr<Model> model;
-  if (document) model = build_model(*document, registry, options, diagnostics);
-  if (!model) throw std::runtime_error(diagnostics.format(0));
-  return model;
+  LoadedModel loaded = load_text(text, "model.yaml", options, registry);
+  if (!loaded.model) throw std::runtime_error(loaded.diagnostics.format(0));
+  return std::move(loaded.model);
 }
 
 /// A model that was put together and run to its end.

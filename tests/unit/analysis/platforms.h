@@ -10,7 +10,7 @@
 #include "analysis/clearance_error.h"
 #include "analysis/posture.h"
 #include "analysis/singularity.h"
-#include "io/json_text.h"
+#include "base/json_text.h"
 #include "source_folder.h"
 #include "validation/run_model.h"
 

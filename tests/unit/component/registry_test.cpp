@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../model/toy_components.h"
 #include "base/error.h"
+#include "unit/format/toy_components.h"
 
 namespace freeplay {
 namespace {

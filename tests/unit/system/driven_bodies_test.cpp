@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include "run/newton_stage_solver.h"
+#include "stage/newton_stage_solver.h"
 #include "validation/run_model.h"
 
 namespace freeplay {

@@ -1,0 +1,414 @@
+#include "assembly/assembly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "assembly/closed_mechanism.h"
+#include "assembly/drive_range.h"
+#include "assembly/force_turns.h"
+#include "assembly/leg_modes.h"
+#include "assembly/loop_gap.h"
+#include "assembly/placing.h"
+#include "assembly/start_branches.h"
+#include "assembly/start_rows.h"
+#include "assembly/start_velocities.h"
+#include "component/joint_answer.h"
+#include "stage/newton_stage_solver.h"
+#include "system/path_follower.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// The closed mechanism at the start time and the rows that hold it there.
+class Assembler {
+ public:
+  Assembler(System& system, const OffsetChange& change)
+      : system_(system),
+        change_(change),
+        model_(system.model()),
+        mechanism_(system),
+        closed_(mechanism_.system),
+        state_(mechanism_.state),
+        e_(mechanism_.e) {}
+
+  Start run() {
+    choose_held_coordinates();
+    place_bodies(closed_, held_, state_.q());
+    remember_turns();
+    if (std::ranges::any_of(followed_, [](char yes) { return yes != 0; })) follow_paths();
+    set_offsets({});
+    solve_positions();
+    check_paths();
+    report_.chosen = solve_velocities(mechanism_, system_.mass());
+    if (load_journals()) {
+      solve_positions();
+      report_.chosen = solve_velocities(mechanism_, system_.mass());
+    }
+    report_.moved = moved_starts(closed_, state_.q(), state_.v());
+    return release();
+  }
+
+ private:
+  void evaluate(unsigned terms) { mechanism_.evaluate(terms); }
+
+  // Values that joints lead or are driven to at the start. A driver of a speed starts where `initial` says.
+  void choose_held_coordinates() {
+    held_.assign(model_.joints.size(), nan);
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      if (model_.joints[j].start_coordinate) held_[j] = model_.joints[j].start_coordinate->value;
+    }
+    std::vector<char> driven(model_.joints.size(), 0);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (driver.kind != DriverKind::velocity) continue;
+      driven[at(driver.joint)] = 1;
+      if (const auto& start = model_.joints[at(driver.joint)].start_coordinate) {
+        system_.motions().set_start(d, start->value);
+      } else {
+        mechanism_.held_row[at(closed_.layout().driver_row(d))] = 0;
+      }
+    }
+    std::vector<TimeValue> motion(model_.drivers.size());
+    MotionFault fault;
+    if (!system_.motions().evaluate(state_.t(), {motion.data(), motion.size()}, fault)) {
+      throw_motion_fault(model_, fault, Error::Category::input);
+    }
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (!prescribes(driver.kind) || driver.kind == DriverKind::velocity) continue;
+      driven[at(driver.joint)] = 1;
+      if (closed_.motions().follows(d)) continue;
+      held_[at(driver.joint)] = motion[at(d)].value;
+    }
+    for (const Gear& gear : model_.gears) {
+      if (!gear.offset) mechanism_.held_row[at(closed_.layout().rows(gear.joint).offset)] = 0;
+    }
+    for (int k = 0; k < static_cast<int>(model_.kinematics.size()); ++k) {
+      followed_.push_back(closed_.motions().entry_follows(k) ? 1 : 0);
+    }
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const auto& start = model_.joints[at(j)].start_coordinate;
+      if (start && !driven[at(j)]) mechanism_.leads.push_back({j, start->value});
+    }
+  }
+
+  // Angles are counted from the value that a joint leads or is driven to, else as a gear says, else from (-pi, pi].
+  void remember_turns() {
+    count_gears(false);
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const int turn = closed_.layout().turn(j);
+      if (turn >= 0) state_.h()[at(turn)] = std::isnan(held_[at(j)]) ? 0.0 : held_[at(j)];
+    }
+  }
+
+  void count_gears(bool from_slides) {
+    std::vector<bool> counted;
+    for (const double held : held_) counted.push_back(!std::isnan(held));
+    mechanism_.count_gears(std::move(counted), from_slides);
+  }
+
+  // Driven joints without a closed form: the ideal mechanism stands on the paths, which tells where the joints are now
+  // and, followed from here, at any time.
+  void follow_paths() {
+    hold_followed_drivers(false);
+    solve_positions();
+    bool bent = false;
+    for (std::size_t k = 0; k < followed_.size(); ++k) {
+      if (followed_[k]) bent = bend_legs(model_, model_.kinematics[k], state_.q()) || bent;
+    }
+    if (bent) solve_positions();
+    check_paths();
+    system_.motions().follow(std::make_shared<const PathFollower>(closed_, state_.q(), state_.h()));
+    hold_followed_drivers(true);
+    e_.forget_motions();
+  }
+
+  // Either the drivers of these entries hold the mechanism, or the paths do.
+  void hold_followed_drivers(bool drivers) {
+    mechanism_.paths.clear();
+    for (int k = 0; k < static_cast<int>(model_.kinematics.size()); ++k) {
+      if (!followed_[at(k)]) continue;
+      const InverseKinematics& entry = model_.kinematics[at(k)];
+      for (int d = 0; d < entry.driver_count; ++d) {
+        mechanism_.held_row[at(closed_.layout().driver_row(entry.first_driver + d))] = drivers ? 1 : 0;
+      }
+      const std::vector<PathRow> rows = path_rows(model_, k);
+      if (!drivers) mechanism_.paths.insert(mechanism_.paths.end(), rows.begin(), rows.end());
+    }
+  }
+
+  // Starts of the joints with play; `reactions` hold a force for each joint, or nothing yet.
+  bool set_offsets(const std::vector<std::array<double, 3>>& reactions) {
+    bool moved = false;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (!joint.has_play) continue;
+      std::array<double, 3> force = reactions.empty() ? std::array<double, 3>{} : reactions[at(j)];
+      InitialOffset offset{};
+      Message message;
+      if (!reactions.empty()) offset.rotation = e_.markers[at(joint.marker_a)].rotation;
+      if (!joint.joint.initial_offset({force.data(), force.size()}, offset, message)) {
+        throw Error(Error::Category::input, "assembly-failed",
+                    fmt::format("joint '{}' has no start: {}", joint.name, message.text), joint.location);
+      }
+      offset.rotation = nullptr;
+      if (change_) change_(j, offset);
+      moved = moved || !reactions.empty();
+      closed_.set_offset(j, offset);
+    }
+    return moved;
+  }
+
+  // A rack that other joints put far away has turned its pinion more than half a turn.
+  bool converge_from_slides(const std::vector<double>& guess) {
+    const auto fixed = [](const Gear& gear) { return gear.offset.has_value(); };
+    if (std::ranges::none_of(model_.gears, fixed)) return false;
+    count_gears(true);
+    std::ranges::copy(guess, state_.q().begin());
+    if (mechanism_.holds(mechanism_.converge())) return true;
+    count_gears(false);
+    return false;
+  }
+
+  // Newton cannot leave a guess with all links in one line, where no small turn changes the gap at first order: files
+  // that give no pose begin so. Then the bodies are turned a little, each by another fixed angle.
+  bool converge_from_turned(const std::vector<double>& guess) {
+    for (const double turn : {0.1, 0.5, 1.5}) {
+      std::ranges::copy(guess, state_.q().begin());
+      std::vector<double> increment(state_.v().size(), 0.0);
+      for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
+        if (!closed_.is_turn(i)) continue;
+        const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
+        increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
+      }
+      closed_.retract(guess, increment, state_.q());
+      if (mechanism_.holds(mechanism_.converge())) return true;
+    }
+    return false;
+  }
+
+  // The first time the nearest position is looked for; later ones stay close to it.
+  void solve_positions() {
+    const std::vector<double> guess(state_.q().begin(), state_.q().end());
+    bool found = mechanism_.holds(mechanism_.converge()), chosen_by_turn = false;
+    const std::vector<double> nearest(state_.q().begin(), state_.q().end());
+    if (!found) found = converge_from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
+    if (!std::exchange(nearest_is_known_, true)) found = take_nearest(guess, found, chosen_by_turn);
+    if (!found) {
+      std::ranges::copy(nearest, state_.q().begin());
+      if (!mechanism_.paths.empty()) check_paths();
+      report_gap(mechanism_.position_rows());
+    }
+    keep_gear_offsets();
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (driver.kind == DriverKind::velocity && !model_.joints[at(driver.joint)].start_coordinate) {
+        system_.motions().set_start(d, e_.coordinate[at(driver.joint)]);
+        e_.forget_motions();
+      }
+    }
+  }
+
+  // Where Newton has left a given pose, or came from a guess from which it could not tell two ways apart.
+  bool take_nearest(const std::vector<double>& guess, bool found, bool chosen_by_turn) {
+    if (found && !chosen_by_turn && StartBranches::keeps(GivenPoses(closed_), state_.q())) return true;
+    StartBranches branches(mechanism_, guess);
+    if (found) branches.add_found();
+    branches.search();
+    if (!branches.any()) return false;
+    branches.take_nearest();
+    if (const auto other = branches.as_near()) report_.twins.push_back(twin_start(closed_, state_.q(), *other));
+    return true;
+  }
+
+  // A gear without an offset of its own keeps the one that it finds.
+  void keep_gear_offsets() {
+    for (int g = 0; g < static_cast<int>(model_.gears.size()); ++g) {
+      const Gear& gear = model_.gears[at(g)];
+      if (gear.offset) continue;
+      const double offset = e_.coordinate[at(gear.second)] - gear.ratio * e_.coordinate[at(gear.first)];
+      closed_.set_gear_offset(g, offset);
+      system_.set_gear_offset(g, offset);
+    }
+  }
+
+  double worst_allowed() const { return model_.settings.assembly_tolerance; }
+
+  [[noreturn]] void report_gap(const ClosedMechanism::Rows& rows) {
+    double worst = -1.0;
+    std::string text;
+    Location location;
+    const auto consider = [&](double gap, const std::string& words, const Location& place) {
+      if (!(gap <= worst)) worst = gap, text = words, location = place;
+    };
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const Slice slice = closed_.layout().rows(j);
+      if (slice.size > 0 && !mechanism_.held_row[at(slice.offset)]) continue;
+      double gap = 0.0;
+      for (int r = 0; r < slice.size; ++r) gap = std::hypot(gap, e_.phi[at(slice.offset + r)]);
+      consider(gap, fmt::format("joint '{}' stays open by {:.6g} m", model_.joints[at(j)].name, gap),
+               model_.joints[at(j)].location);
+    }
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      if (rows.path[i] < 0 || std::abs(rows.residual[static_cast<Eigen::Index>(i)]) <= worst_allowed()) continue;
+      const InverseKinematics& entry = model_.kinematics[at(mechanism_.paths[at(rows.path[i])].kinematics)];
+      throw Error(Error::Category::input, "ik-unreachable",
+                  fmt::format("the mechanism cannot bring the frame of '{}' to its path at the start time {} s",
+                              entry.name, state_.t()),
+                  entry.path_location, "if it can, give the bodies a `pose` closer to the wanted one");
+    }
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
+      if (rows.lead[i] >= 0) {
+        const JointElement& joint = model_.joints[at(rows.lead[i])];
+        consider(gap, fmt::format("joint '{}' misses its start value by {:.6g}", joint.name, gap), joint.location);
+      }
+    }
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const int r = closed_.layout().driver_row(d);
+      if (r < 0 || !mechanism_.held_row[at(r)]) continue;
+      const double gap = std::abs(e_.phi[at(r)]);
+      consider(gap, fmt::format("driver '{}' misses its value by {:.6g}", model_.drivers[at(d)].name, gap),
+               model_.drivers[at(d)].location);
+    }
+    if (const std::optional<LoopGap> gap = loop_gap(mechanism_)) {
+      const JointElement& joint = model_.joints[at(gap->joint)];
+      text = fmt::format("joint '{}' stays open by {:.6g} m with all others closed", joint.name, gap->size);
+      location = joint.location;
+    }
+    if (const auto elsewhere = closes_elsewhere(mechanism_)) text += "; " + *elsewhere;
+    throw Error(Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
+                "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
+  }
+
+  void check_paths() {
+    evaluate(term_position | term_velocity);
+    freeplay::check_paths(closed_, e_);
+  }
+
+  // Journals that rest in their bearings need the reactions of the ideal mechanism.
+  bool load_journals() {
+    if (model_.clearance_joints() == 0) return false;
+    NewtonStageSolver solver(closed_, {});
+    solver.use_history(state_.h());
+    StateView view = state_.view();
+    if (!solver.accelerate(view, view.z)) return false;  // the released mechanism decides
+    evaluate(term_position | term_velocity | term_force);
+    std::vector<std::array<double, 3>> reactions(model_.joints.size());
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      double wrench[6];
+      closed_.reaction(j, e_, state_.lambda(), wrench);
+      reactions[at(j)] = {wrench[0], wrench[1], wrench[2]};
+    }
+    return set_offsets(reactions);
+  }
+
+  Start release() {
+    ConstraintFacts ideal;
+    if (model_.clearance_joints() > 0) ideal = facts_of(closed_);
+    evaluate(term_position | term_velocity);
+    Start start{State(system_.layout(), 0), count_facts(model_), {}, std::move(report_)};
+    State& state = start.state;
+    state.t() = state_.t();
+    std::ranges::copy(state_.q(), state.q().begin());
+    std::ranges::copy(state_.v(), state.v().begin());
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (const int turn = system_.layout().turn(j); turn >= 0) {
+        state.h()[at(turn)] = start_angle(model_, e_.coordinate, j);
+      }
+    }
+    initialize_joints(state);
+    Evaluation released(system_);
+    if (!system_.evaluate(point(state), term_position | term_velocity, released)) throw_fault(model_, released.fault);
+    refuse_massless_motion(system_, released);
+    NewtonStageSolver solver(system_, {});
+    solver.use_history(state.h());
+    StateView view = state.view();
+    std::vector<double> z_rate(state.z().size());
+    if (!solver.accelerate(view, {z_rate.data(), z_rate.size()})) {
+      if (solver.fault().kind != Fault::Kind::none) throw_fault(model_, solver.fault());
+      throw Error(Error::Category::input, "singular-mass", solver.trouble());
+    }
+    start.facts.actual = facts_of(system_);
+    if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
+    start.structure = examine_structure(system_, released, closed_, e_);
+    return start;
+  }
+
+  void initialize_joints(State& state) {
+    Evaluation e(system_);
+    if (!system_.evaluate(point(state), term_coordinate, e)) throw_fault(model_, e.fault);
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const Slice z = system_.layout().internal(j), h = system_.layout().history(j);
+      Message message;
+      const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
+                         history = Span<double>(state.h()).part(at(h.offset), at(h.size));
+      if (!system_.joint(j).initialize(system_.input(j, point(state), e), internal, history, message) ||
+          !keeps_finite(internal, history, "initialize", message)) {
+        throw Error(Error::Category::plugin, "plugin-failed",
+                    fmt::format("joint '{}' of {} failed at its start: {}", model_.joints[at(j)].name,
+                                model_.instances.words_of(*model_.joints[at(j)].component), message.text),
+                    model_.joints[at(j)].location);
+      }
+    }
+  }
+
+  ConstraintFacts facts_of(const System& system) {
+    const bool closed = system.variant() == Variant::closed;
+    Evaluation e(system);
+    State state(system.layout(), 0);
+    state.t() = state_.t();
+    std::ranges::copy(state_.q(), state.q().begin());
+    std::ranges::copy(state_.v(), state.v().begin());
+    if (closed) std::ranges::copy(state_.h(), state.h().begin());
+    if (!system.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
+    return constraint_facts(system, e);
+  }
+
+  System& system_;
+  const OffsetChange& change_;
+  const Model& model_;
+  ClosedMechanism mechanism_;
+  System& closed_;
+  State& state_;
+  Evaluation& e_;
+  std::vector<double> held_;    // by joint
+  std::vector<char> followed_;  // inverse-kinematics entries with drivers without a closed form
+  StartReport report_;
+  bool nearest_is_known_ = false;
+};
+
+}  // namespace
+
+ModelFacts count_facts(const Model& model) {
+  ModelFacts facts;
+  facts.bodies = static_cast<int>(model.bodies.size());
+  facts.joints = static_cast<int>(std::ranges::count(model.joints, false, &JointElement::is_force));
+  facts.clearance_joints = model.clearance_joints();
+  facts.drivers = static_cast<int>(model.drivers.size());
+  const auto count = [&](Variant variant, ConstraintFacts& out) {
+    const Layout layout(model, variant);
+    facts.coordinates = layout.nq();
+    facts.velocities = layout.nv();
+    facts.driver_constraints = layout.nc() - layout.first_driver_row();
+    out = {layout.first_driver_row(), -1, -1, -1, -1, -1};
+  };
+  if (facts.clearance_joints > 0) count(Variant::closed, facts.ideal.emplace());
+  count(Variant::released, facts.actual);
+  return facts;
+}
+
+Start assemble(System& system, const OffsetChange& change) { return Assembler(system, change).run(); }
+
+}  // namespace freeplay

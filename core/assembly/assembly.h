@@ -1,0 +1,46 @@
+// Assembly: consistent start of a model: positions, velocities, accelerations, and what the constraints leave free.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "assembly/start_report.h"
+#include "assembly/structure.h"
+#include "model/model.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Counts of rows and freedoms at the assembled start (cli.md, section 3).
+struct ConstraintFacts {
+  int constraints = 0, rank = 0, redundant = 0, dof = 0, dof_driven = 0, driver_redundant = 0;
+};
+
+/// What `freeplay validate` reports.
+struct ModelFacts {
+  int bodies = 0, joints = 0, clearance_joints = 0, drivers = 0, coordinates = 0, velocities = 0;
+  int driver_constraints = 0;
+  ConstraintFacts actual;
+  std::optional<ConstraintFacts> ideal;  ///< with every clearance closed; absent without clearance
+};
+
+/// Facts that need no assembly: rank, redundant and dof are -1.
+ModelFacts count_facts(const Model& model);
+
+/// The start of a run.
+struct Start {
+  State state;  ///< accepted state at Settings::start, clearance joints released
+  ModelFacts facts;
+  Structure structure;
+  StartReport report{};  ///< start values of the file that were not kept
+};
+
+/// Moves the start of a joint with play, given its index and where its second marker would stand in the first.
+using OffsetChange = std::function<void(int joint, InitialOffset& offset)>;
+
+/// Finds the start of `model` as model-format section 9 describes and hands the drivers' start values to `system`.
+/// Throws Error{input}: "assembly-failed" (names the worst joint and its gap in m or rad), "singular-mass",
+/// "ik-unreachable" (names the leg and the time), "ik-underdetermined".
+Start assemble(System& system, const OffsetChange& change = {});
+
+}  // namespace freeplay

@@ -1,0 +1,21 @@
+// LoopGap: how far the loops of a mechanism are from closing.
+#pragma once
+
+#include <optional>
+
+#include "assembly/closed_mechanism.h"
+
+namespace freeplay {
+
+/// A joint that stays open while everything else holds.
+struct LoopGap {
+  int joint = 0;      ///< index into Model::joints
+  double size = 0.0;  ///< root of the sum of squares of what its rows miss [m, rad]
+};
+
+/// The smallest opening of one joint with which all other rows of `mechanism` hold, looked for from its state on, where
+/// it stays: of the joint whose rows miss most where the sum of squares of all is least. Empty when the other rows do
+/// not hold either, as where drivers contradict each other, and in large models.
+std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism);
+
+}  // namespace freeplay

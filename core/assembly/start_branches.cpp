@@ -1,0 +1,227 @@
+#include "assembly/start_branches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Shifts over the size of the model, turns in rad.
+constexpr double same_place = 1e-6;    // of two positions
+constexpr double other_place = 1e-3;   // positions that differ by less are one, reached on two ways
+constexpr double kept = 1e-6;          // a pose that is missed by less is kept
+constexpr double equally_near = 0.01;  // of the distance
+constexpr double longest_turn = 0.5;   // in one step towards the rows
+constexpr double weight_of_guess = 1e-2;
+constexpr int steps_by_weight = 6;
+constexpr Eigen::Index most_columns = 180, columns_for_many = 45, columns_for_some = 90;
+
+VectorXd scaled(const System& system, VectorXd increment) {
+  for (int i = 0; i < static_cast<int>(increment.size()); ++i) {
+    increment[i] =
+        system.is_turn(i) ? std::remainder(increment[i], 2.0 * std::numbers::pi) : increment[i] / system.size();
+  }
+  return increment;
+}
+
+}  // namespace
+
+StartBranches::StartBranches(ClosedMechanism& mechanism, std::span<const double> guess)
+    : mechanism_(mechanism), system_(mechanism.system), given_(mechanism.system), guess_(guess.begin(), guess.end()) {}
+
+bool StartBranches::keeps(const GivenPoses& given, std::span<const double> q) {
+  return !given.any() || given.misses(q).lpNorm<Eigen::Infinity>() <= kept;
+}
+
+VectorXd StartBranches::difference(std::span<const double> from, std::span<const double> to) const {
+  VectorXd out(system_.layout().nv());
+  system_.difference(from, to, {out.data(), static_cast<std::size_t>(out.size())});
+  return out;
+}
+
+// Of bodies, and parts of them, for which the file gives no pose.
+double StartBranches::from_guess(std::span<const double> q) const {
+  const VectorXd away = scaled(system_, difference(guess_, q));
+  const int width = system_.body_velocities();
+  double sum = 0.0;
+  for (int i = 0; i < static_cast<int>(away.size()); ++i) {
+    const Body& body = mechanism_.model().bodies[at(i / width)];
+    const bool given = system_.is_turn(i) ? body.angle || body.rotation : body.position.has_value();
+    if (!given) sum += away[i] * away[i];
+  }
+  return std::sqrt(sum);
+}
+
+void StartBranches::add(std::vector<double> q) {
+  for (const Position& known : found_) {
+    if (scaled(system_, difference(known.q, q)).lpNorm<Eigen::Infinity>() <= other_place) return;
+  }
+  const double from_given = given_.any() ? given_.misses(q).norm() : 0.0, away = from_guess(q);
+  found_.push_back({std::move(q), from_given, away});
+}
+
+void StartBranches::add_found() {
+  come_nearer();
+  add({mechanism_.state.q().begin(), mechanism_.state.q().end()});
+}
+
+// Gauss and Newton along the motions that the rows leave free, as far as the given poses say where to.
+void StartBranches::come_nearer() {
+  if (system_.layout().nv() > most_columns || !given_.any()) return;
+  const std::span<double> q = mechanism_.state.q();
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const VectorXd misses = given_.misses(q);
+    if (misses.lpNorm<Eigen::Infinity>() <= same_place) return;
+    const MatrixXd rows = mechanism_.position_rows().matrix;
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
+    held.setThreshold(1e-9);
+    held.compute(rows.transpose());
+    const Eigen::Index columns = rows.cols();
+    if (rows.rows() > 0 && held.rank() == columns) return;
+    MatrixXd free = MatrixXd::Identity(columns, columns);
+    if (rows.rows() > 0) free = (held.householderQ() * free).rightCols(columns - held.rank()).eval();
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> ways;
+    ways.setThreshold(1e-6);
+    ways.compute(given_.derivative(q) * free);
+    const VectorXd step = free * ways.solve(-misses);
+    if (step.lpNorm<Eigen::Infinity>() <= 1e-9) return;
+    const std::vector<double> before(q.begin(), q.end());
+    bool better = false;
+    double length = std::min(1.0, longest_turn / scaled(system_, step).lpNorm<Eigen::Infinity>());
+    for (int halving = 0; halving < 8 && !better; ++halving, length *= 0.5) {
+      const VectorXd increment = length * step;
+      system_.retract(before, {increment.data(), at(static_cast<int>(increment.size()))}, q);
+      better = mechanism_.holds(mechanism_.converge()) && given_.misses(q).norm() < (1.0 - 1e-9) * misses.norm();
+    }
+    if (better) continue;
+    std::ranges::copy(before, q.begin());
+    return;
+  }
+}
+
+// From a start to the rows, by damped steps that count them more and more against the given poses and the start: unlike
+// Newton's these do not leap where links are nearly in line.
+void StartBranches::approach(std::span<const double> start) {
+  const std::span<double> q = mechanism_.state.q();
+  std::ranges::copy(start, q.begin());
+  const Eigen::Index columns = system_.layout().nv();
+  VectorXd scale(columns);
+  for (int i = 0; i < static_cast<int>(columns); ++i) scale[i] = system_.is_turn(i) ? 1.0 : system_.size();
+  const auto cost = [&](const ClosedMechanism::Rows& rows, double weight) {
+    const double away = weight_of_guess * scaled(system_, difference(start, q)).norm();
+    const double given = given_.any() ? given_.misses(q).norm() : 0.0;
+    return std::hypot(weight * rows.residual.norm() / system_.size(), given, away);
+  };
+  ClosedMechanism::Rows rows = mechanism_.position_rows();
+  for (const double weight : {1.0, 3.0, 10.0, 30.0, 100.0, 1000.0}) {
+    for (int iteration = 0; iteration < steps_by_weight; ++iteration) {
+      const MatrixXd j = MatrixXd(rows.matrix) * scale.asDiagonal() * (weight / system_.size());
+      MatrixXd normal = j.transpose() * j;
+      VectorXd right = -j.transpose() * (rows.residual * (weight / system_.size()));
+      const double anchor = weight_of_guess * weight_of_guess;
+      normal.diagonal().array() += anchor;
+      right -= anchor * scaled(system_, difference(start, q));
+      if (given_.any()) {
+        const MatrixXd g = given_.derivative(q) * scale.asDiagonal();
+        normal += g.transpose() * g;
+        right -= g.transpose() * given_.misses(q);
+      }
+      VectorXd step = normal.ldlt().solve(right);
+      const double longest = step.lpNorm<Eigen::Infinity>();
+      if (!(longest > 1e-12)) break;
+      step *= std::min(1.0, longest_turn / longest);
+      step = scale.cwiseProduct(step).eval();
+      const std::vector<double> before(q.begin(), q.end());
+      const double now = cost(rows, weight);
+      bool better = false;
+      for (int halving = 0; halving < 6 && !better; ++halving, step *= 0.5) {
+        system_.retract(before, {step.data(), at(static_cast<int>(columns))}, q);
+        rows = mechanism_.position_rows();
+        better = cost(rows, weight) < now;
+      }
+      if (better) continue;
+      std::ranges::copy(before, q.begin());
+      rows = mechanism_.position_rows();
+      break;
+    }
+  }
+}
+
+void StartBranches::add_approached(std::span<const double> start) {
+  approach(start);
+  if (mechanism_.holds(mechanism_.converge())) add_found();
+}
+
+// Bodies without a given angle are turned far, the others a little; each by another angle.
+std::vector<double> StartBranches::turned(int seed) const {
+  VectorXd increment = VectorXd::Zero(system_.layout().nv());
+  const int width = system_.body_velocities();
+  for (int i = 0, count = 0; i < static_cast<int>(increment.size()); ++i) {
+    if (!system_.is_turn(i)) continue;
+    const Body& body = mechanism_.model().bodies[at(i / width)];
+    const bool given = body.angle || body.rotation;
+    // Golden ratio and its square: spread evenly.
+    const double share = ++count * 0.6180339887498949 + seed * 0.7548776662466927;
+    increment[i] = (given ? 0.3 : std::numbers::pi) * (2.0 * (share - std::floor(share)) - 1.0);
+  }
+  std::vector<double> q = guess_;
+  system_.retract(guess_, {increment.data(), static_cast<std::size_t>(increment.size())}, q);
+  return q;
+}
+
+void StartBranches::search() {
+  const Eigen::Index columns = system_.layout().nv();
+  if (columns > most_columns) return;
+  const std::vector<double> state(mechanism_.state.q().begin(), mechanism_.state.q().end());
+  add_approached(guess_);
+  const int seeds = columns <= columns_for_many ? 12 : columns <= columns_for_some ? 4 : 0;
+  for (int seed = 0; seed < seeds; ++seed) add_approached(turned(seed));
+  const std::size_t mirrors = columns <= columns_for_some ? 6 : 1;
+  const std::vector<Position> known(found_.begin(),
+                                    found_.begin() + static_cast<std::ptrdiff_t>(std::min(found_.size(), mirrors)));
+  for (const Position& one : known) {
+    const VectorXd back = -difference(guess_, one.q);
+    std::vector<double> mirrored = guess_;
+    system_.retract(guess_, {back.data(), static_cast<std::size_t>(back.size())}, mirrored);
+    add_approached(mirrored);
+  }
+  std::ranges::copy(state, mechanism_.state.q().begin());
+}
+
+bool StartBranches::nearer(const Position& a, const Position& b) const {
+  const auto clearly = [](double less, double more) { return less < (1.0 - equally_near) * more - same_place; };
+  if (clearly(a.from_given, b.from_given) || clearly(b.from_given, a.from_given)) return a.from_given < b.from_given;
+  return clearly(a.from_guess, b.from_guess);
+}
+
+const StartBranches::Position& StartBranches::nearest() const {
+  const Position* best = &found_.front();
+  for (const Position& one : found_) {
+    if (nearer(one, *best)) best = &one;
+  }
+  return *best;
+}
+
+void StartBranches::take_nearest() {
+  std::ranges::copy(nearest().q, mechanism_.state.q().begin());
+  mechanism_.evaluate(term_position | term_velocity);
+}
+
+std::optional<std::vector<double>> StartBranches::as_near() const {
+  const Position& best = nearest();
+  for (const Position& one : found_) {
+    if (&one != &best && !nearer(best, one)) return one.q;
+  }
+  return std::nullopt;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,114 @@
+#include "assembly/start_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "assembly/given_poses.h"
+#include "assembly/placing.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double noticed = 1e-4;  // of the size, of a radian, of a velocity
+constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
+
+double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
+
+}  // namespace
+
+std::vector<MovedStart> moved_starts(const System& closed, std::span<const double> q, std::span<const double> v) {
+  const Model& model = closed.model();
+  const GivenPoses poses(closed);
+  std::vector<double> given(v.size());
+  start_velocities(closed, q, given);
+  std::vector<MovedStart> out;
+  const auto add = [&](const Body& body, const char* quantity, const char* unit, double by, double unit_size,
+                       double far, const Location& location) {
+    if (by > noticed * unit_size) out.push_back({body.name, quantity, unit, by, by > far, location});
+  };
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const Body& body = model.bodies[at(b)];
+    const double size = closed.size();
+    if (body.position) add(body, "position", "m", poses.shift(b, q), size, far_part * size, body.pose_location);
+    if (body.angle) add(body, "angle", "rad", poses.turn(b, q), 1.0, far_turn, body.pose_location);
+    if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), 1.0, far_turn, body.pose_location);
+    if (!body.velocity_given && !body.angular_velocity_given) continue;
+    double wanted[6], is[6];
+    closed.body_twist(b, q, given, wanted);
+    closed.body_twist(b, q, v, is);
+    const auto length = [](double x, double y, double z) { return std::hypot(x, y, z); };
+    const double turn = length(is[3] - wanted[3], is[4] - wanted[4], is[5] - wanted[5]);
+    const double asked = length(wanted[3], wanted[4], wanted[5]);
+    if (body.angular_velocity_given) {
+      const double unit = std::max(asked, 1e-3);
+      add(body, "angular velocity", "rad/s", turn, unit, far_part * unit, body.velocity_location);
+    }
+    if (!body.velocity_given) continue;
+    // Of the origin of the body's frame.
+    const Pose frame = closed.frame_pose(b, q);
+    double miss[3], arm[3] = {};
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) arm[r] -= frame.rotation[3 * r + c] * body.com[c];
+    }
+    const double w[3] = {is[3], is[4], is[5]};
+    miss[0] = is[0] + w[1] * arm[2] - w[2] * arm[1] - body.velocity[0];
+    miss[1] = is[1] + w[2] * arm[0] - w[0] * arm[2] - body.velocity[1];
+    miss[2] = is[2] + w[0] * arm[1] - w[1] * arm[0] - body.velocity[2];
+    const double unit = std::max(length(body.velocity[0], body.velocity[1], body.velocity[2]), 1e-3 * size);
+    add(body, "velocity", "m/s", length(miss[0], miss[1], miss[2]), unit, far_part * unit, body.velocity_location);
+  }
+  return out;
+}
+
+TwinStart twin_start(const System& closed, std::span<const double> taken, std::span<const double> other) {
+  const Model& model = closed.model();
+  std::vector<double> difference(at(closed.layout().nv()));
+  closed.difference(taken, other, difference);
+  const int width = closed.body_velocities();
+  int worst = 0;
+  double largest = -1.0;
+  bool turns = true;
+  for (int i = 0; i < static_cast<int>(difference.size()); ++i) {
+    const double size = closed.is_turn(i) ? std::abs(std::remainder(difference[at(i)], 2.0 * std::numbers::pi))
+                                          : std::abs(difference[at(i)]) / closed.size();
+    if (size > largest * (1.0 + 1e-6)) largest = size, worst = i / width, turns = closed.is_turn(i);
+  }
+  const Body& body = model.bodies[at(worst)];
+  const auto where = [&](std::span<const double> q) {
+    if (turns && width == 3)
+      return fmt::format("{:.1f} deg", degrees(std::remainder(q[3 * at(worst) + 2], 2.0 * std::numbers::pi)));
+    const Pose pose = closed.frame_pose(worst, q);
+    if (width == 3) return fmt::format("[{:.4g}, {:.4g}] m", pose.position[0], pose.position[1]);
+    if (!turns) return fmt::format("[{:.4g}, {:.4g}, {:.4g}] m", pose.position[0], pose.position[1], pose.position[2]);
+    const double* r = pose.rotation;
+    return fmt::format("rpy [{:.1f}, {:.1f}, {:.1f}] deg", degrees(std::atan2(r[7], r[8])),
+                       degrees(std::asin(std::clamp(-r[6], -1.0, 1.0))), degrees(std::atan2(r[3], r[0])));
+  };
+  return {body.name, where(taken), where(other), body.pose_location.line > 0 ? body.pose_location : body.location};
+}
+
+std::string sentence(const MovedStart& moved) {
+  const bool turns = moved.unit == "rad", speed = moved.unit.ends_with("/s");
+  const std::string by =
+      turns ? fmt::format("{:.3g} deg", degrees(moved.by)) : fmt::format("{:.3g} {}", moved.by, moved.unit);
+  return fmt::format("body '{}' starts {} from the {} that its `{}` gives{}", moved.body, by, moved.quantity,
+                     speed ? "velocity" : "pose", moved.far ? ": that is far, correct it or leave it out" : "");
+}
+
+std::string sentence(const TwinStart& twin) {
+  return fmt::format("two positions are equally near to what the file gives: body '{}' at {} (taken) or at {}",
+                     twin.body, twin.taken, twin.other);
+}
+
+std::string sentence(const Model& model, const ChosenSpeed& chosen) {
+  const JointElement& joint = model.joints[at(chosen.joint)];
+  const bool turns = joint.ideal_layout.coordinate == Coordinate::angle;
+  return fmt::format("joint '{}' starts at {:.4g} {} by least kinetic energy: the file leaves its speed open",
+                     joint.name, chosen.speed, turns ? "rad/s" : "m/s");
+}
+
+}  // namespace freeplay

@@ -1,0 +1,276 @@
+#include "assembly/start_velocities.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "assembly/placing.h"
+#include "linear/row_solutions.h"
+#include "linear/stacked_rows.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to tell than to find
+constexpr double kept = 1e-9;                    // of the largest velocity: a given one that differs by less is kept
+
+class Velocities {
+ public:
+  Velocities(ClosedMechanism& mechanism, std::span<const double> mass)
+      : mechanism_(mechanism),
+        system_(mechanism.system),
+        model_(mechanism.model()),
+        mass_(Eigen::Map<const VectorXd>(mass.data(), system_.layout().nv())) {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (const auto& speed = model_.joints[at(j)].start_speed) leading_.push_back({j, speed->value});
+    }
+  }
+
+  std::vector<ChosenSpeed> solve() {
+    start_velocities(system_, mechanism_.state.q(), mechanism_.state.v());
+    const VectorXd given = velocities();
+    solve_least_change();
+    if (!gives_any() || system_.layout().nv() > most_dense_columns) return {};
+    if (!keeps(given)) keep_what_can_be_kept(given);
+    return system_.layout().nv() <= most_told_columns ? chosen() : std::vector<ChosenSpeed>{};
+  }
+
+ private:
+  VectorXd velocities() const { return Eigen::Map<const VectorXd>(mechanism_.state.v().data(), system_.layout().nv()); }
+  void set(const VectorXd& v) { std::copy(v.begin(), v.end(), mechanism_.state.v().begin()); }
+  void add(const VectorXd& change) {
+    for (Eigen::Index i = 0; i < change.size(); ++i) mechanism_.state.v()[static_cast<std::size_t>(i)] += change[i];
+  }
+  double allowed() const { return 1e-8 * std::max(1.0, velocities().norm()); }
+
+  // All given velocities, and rest for the others, changed least in kinetic energy.
+  void solve_least_change() {
+    // Repeated because the rate of a coordinate is linear in v only to rounding.
+    for (int pass = 0; pass < 3; ++pass) {
+      const ClosedMechanism::Rows now = mechanism_.speed_rows(leading_);
+      if (now.row.empty()) return;
+      add(pass == 0 ? least_weighted_solution(now.matrix, mass_, -now.residual)
+                    : least_norm_solution(now.matrix, -now.residual));
+    }
+    const ClosedMechanism::Rows last = mechanism_.speed_rows(leading_);
+    if (last.largest() > allowed()) report_contradiction(last, allowed());
+  }
+
+  void polish() {
+    for (int pass = 0; pass < 2; ++pass) {
+      const ClosedMechanism::Rows now = mechanism_.speed_rows(leading_);
+      if (!now.row.empty()) add(least_norm_solution(exact(now), -exact_residual(now)));
+    }
+  }
+
+  // What differs from what is wanted by rounding alone does not differ.
+  void keep_exactly(const VectorXd& wanted) {
+    const double rounding = 1e-13 * velocities().lpNorm<Eigen::Infinity>();
+    VectorXd v = velocities();
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      if (std::abs(v[i] - wanted[i]) <= rounding) v[i] = wanted[i] + 0.0;
+    }
+    set(v);
+  }
+
+  bool gives_any() const {
+    return !leading_.empty() || std::ranges::any_of(model_.bodies, [](const Body& body) {
+      return body.velocity_given || body.angular_velocity_given;
+    });
+  }
+
+  bool keeps(const VectorXd& given) {
+    const MatrixXd rows = given_rows();
+    return rows.rows() == 0 || (rows * (velocities() - given)).lpNorm<Eigen::Infinity>() <=
+                                   kept * std::max(1.0, given.lpNorm<Eigen::Infinity>());
+  }
+
+  // --- rows of each rank -------------------------------------------------------------------------------------------
+
+  // Of the rows of a joint with play whose block gives no velocity.
+  bool is_implied(int row) const {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (!model_.joints[at(j)].has_play || gives_velocity(j)) continue;
+      const Slice slice = system_.layout().rows(j);
+      if (row >= slice.offset && row < slice.offset + slice.size) return true;
+    }
+    return false;
+  }
+  bool gives_velocity(int joint) const {
+    InitialOffset offset{};
+    Message message;
+    std::array<double, 3> none{};
+    if (!model_.joints[at(joint)].joint.initial_offset({none.data(), none.size()}, offset, message)) return false;
+    return std::ranges::any_of(offset.velocity, [](double v) { return v != 0.0; });
+  }
+
+  std::vector<Eigen::Index> rows_of(const ClosedMechanism::Rows& rows, bool implied) const {
+    std::vector<Eigen::Index> chosen;
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      if ((rows.row[i] >= 0 && is_implied(rows.row[i])) == implied) chosen.push_back(static_cast<Eigen::Index>(i));
+    }
+    return chosen;
+  }
+  SparseMatrix exact(const ClosedMechanism::Rows& rows) const {
+    return MatrixXd(MatrixXd(rows.matrix)(rows_of(rows, false), Eigen::all)).sparseView();
+  }
+  VectorXd exact_residual(const ClosedMechanism::Rows& rows) const { return rows.residual(rows_of(rows, false)); }
+
+  // Rates of what the file gives bodies: of the frame's origin where it gives `linear` alone, of the centre of mass
+  // where it gives both, which says the same.
+  MatrixXd given_rows() const {
+    const int width = system_.body_velocities(), turns = width - linear();
+    std::vector<VectorXd> rows;
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const Body& body = model_.bodies[at(b)];
+      for (int c = 0; c < linear() && body.velocity_given; ++c) {
+        VectorXd row = VectorXd::Zero(system_.layout().nv());
+        row[width * b + c] = 1.0;
+        for (int k = 0; k < turns && !body.angular_velocity_given; ++k)
+          row[width * b + linear() + k] = arm_rate(b, k, c);
+        rows.push_back(std::sqrt(mass_[width * b + c]) * row);
+      }
+      for (int k = 0; k < turns && body.angular_velocity_given; ++k) {
+        VectorXd row = VectorXd::Zero(system_.layout().nv());
+        row[width * b + linear() + k] = std::sqrt(std::max(mass_[width * b + linear() + k], 1e-12 * mass_.maxCoeff()));
+        rows.push_back(row);
+      }
+    }
+    MatrixXd out(static_cast<Eigen::Index>(rows.size()), system_.layout().nv());
+    for (std::size_t i = 0; i < rows.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = rows[i];
+    return out;
+  }
+  int linear() const { return system_.body_velocities() == 3 ? 2 : 3; }
+
+  // Component c of the velocity of a body's origin against its centre of mass at unit rate of its k-th turn.
+  double arm_rate(int body, int k, int c) const {
+    const Pose frame = system_.frame_pose(body, mechanism_.state.q());
+    std::vector<double> v(mechanism_.state.v().size(), 0.0);
+    v[at(system_.body_velocities() * body + linear() + k)] = 1.0;
+    double twist[6];
+    system_.body_twist(body, mechanism_.state.q(), v, twist);
+    const Vector3& com = model_.bodies[at(body)].com;
+    double arm[3] = {};
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t i = 0; i < 3; ++i) arm[r] -= frame.rotation[3 * r + i] * com[i];
+    }
+    const double* w = twist + 3;
+    const double rate[3] = {w[1] * arm[2] - w[2] * arm[1], w[2] * arm[0] - w[0] * arm[2],
+                            w[0] * arm[1] - w[1] * arm[0]};
+    return rate[c];
+  }
+
+  // All of it as a change of the given velocities.
+  StackedRows ranked(const VectorXd& given) {
+    const ClosedMechanism::Rows rows = mechanism_.speed_rows(leading_);
+    const MatrixXd all = rows.matrix, own = given_rows();
+    const auto implied = rows_of(rows, true);
+    StackedRows stack(given.size());
+    stack.add(all(rows_of(rows, false), Eigen::all), -exact_residual(rows));
+    stack.add(own, VectorXd::Zero(own.rows()));
+    stack.add(all(implied, Eigen::all), -rows.residual(implied));
+    return stack;
+  }
+
+  void keep_what_can_be_kept(const VectorXd& given) {
+    const VectorXd least = velocities();
+    set(given);
+    StackedRows stack = ranked(given);
+    const MatrixXd energy = mass_.cwiseMax(1e-12 * mass_.maxCoeff()).cwiseSqrt().asDiagonal();
+    stack.add(energy, VectorXd::Zero(given.size()));
+    add(stack.solution());
+    polish();
+    keep_exactly(given);
+    // Where rounding takes part, near a singular position, the plain rule is surer.
+    if (!(exact_residual(mechanism_.speed_rows(leading_)).norm() <= allowed())) set(least);
+  }
+
+  // Speeds of joints that nothing determines but the least kinetic energy.
+  std::vector<ChosenSpeed> chosen() {
+    const MatrixXd free = ranked(velocities()).free();
+    if (free.cols() == 0) return {};
+    std::vector<ClosedMechanism::Lead> joints;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (joint.is_force || joint.gear >= 0 || joint.ideal_layout.coordinate == Coordinate::none) continue;
+      joints.push_back({j, 0.0});
+    }
+    const ClosedMechanism::Rows rows = mechanism_.speed_rows(joints);
+    const MatrixXd all = rows.matrix;
+    std::vector<ChosenSpeed> out;
+    for (std::size_t i = 0; i < rows.lead.size(); ++i) {
+      const auto index = static_cast<Eigen::Index>(i);
+      if (rows.lead[i] < 0 || (all.row(index) * free).norm() <= kept * all.row(index).norm()) continue;
+      if (std::abs(rows.residual[index]) <= kept * velocities().lpNorm<Eigen::Infinity>()) continue;
+      out.push_back({rows.lead[i], rows.residual[index]});
+    }
+    return out;
+  }
+
+  // --- contradictions ----------------------------------------------------------------------------------------------
+
+  // What a row stands for, and how directly the file asks for it: a start speed 2, a driver 1, a joint 0.
+  struct Origin {
+    int asked = -1;
+    std::string words{};
+    Location location{};
+  };
+
+  // Least squares share a contradiction among all rows that take part; what was asked for is told before joints.
+  [[noreturn]] void report_contradiction(const ClosedMechanism::Rows& rows, double tolerance) const {
+    Origin worst;
+    double gap = 0.0;
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      const double missed = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
+      if (missed <= tolerance) continue;
+      Origin origin = origin_of(rows.row[i], rows.lead[i]);
+      if (origin.asked < worst.asked || (origin.asked == worst.asked && missed <= gap)) continue;
+      gap = missed;
+      worst = std::move(origin);
+    }
+    throw Error(
+        Error::Category::input, "assembly-failed",
+        fmt::format("drivers and start speeds contradict each other: {} misses its speed by {:.6g}", worst.words, gap),
+        worst.location);
+  }
+
+  Origin origin_of(int row, int lead) const {
+    if (lead >= 0) {
+      const JointElement& joint = model_.joints[at(lead)];
+      return {2, fmt::format("joint '{}'", joint.name), joint.start_speed->location};
+    }
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (system_.layout().driver_row(d) == row) {
+        return {1, fmt::format("driver '{}'", driver.name), driver.location};
+      }
+    }
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const Slice slice = system_.layout().rows(j);
+      if (row < slice.offset || row >= slice.offset + slice.size) continue;
+      return {0, fmt::format("joint '{}'", model_.joints[at(j)].name), model_.joints[at(j)].location};
+    }
+    return {0, "a constraint"};
+  }
+
+  ClosedMechanism& mechanism_;
+  const System& system_;
+  const Model& model_;
+  const VectorXd mass_;
+  std::vector<ClosedMechanism::Lead> leading_;  // joints with a start speed
+};
+
+}  // namespace
+
+std::vector<ChosenSpeed> solve_velocities(ClosedMechanism& mechanism, std::span<const double> mass) {
+  return Velocities(mechanism, mass).solve();
+}
+
+}  // namespace freeplay

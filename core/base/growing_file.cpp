@@ -1,0 +1,82 @@
+#include "base/growing_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t many = 1 << 16;
+
+[[noreturn]] void fail(const std::filesystem::path& path, int reason) {
+  throw Error(Error::Category::file, "cannot-write",
+              fmt::format("cannot write '{}': {}", path.string(), std::strerror(reason)));
+}
+
+}  // namespace
+
+GrowingFile::GrowingFile(std::filesystem::path path)
+    : path_(std::move(path)),
+      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
+      last_flush_(std::chrono::steady_clock::now()) {
+  if (descriptor_ < 0) fail(path_, errno);
+  text_.reserve(2 * many);
+}
+
+GrowingFile::~GrowingFile() {
+  if (descriptor_ < 0) return;
+  flush();
+  ::close(descriptor_);
+}
+
+void GrowingFile::end_line() {
+  text_ += '\n';
+  if (text_.size() >= many) {
+    flush();
+  } else {
+    flush_if_due();
+  }
+}
+
+void GrowingFile::flush_if_due() {
+  if (std::chrono::steady_clock::now() - last_flush_ >= std::chrono::seconds(1)) flush();
+}
+
+void GrowingFile::flush() {
+  std::string_view rest = text_;
+  while (!rest.empty() && failure_ == 0) {
+    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    if (written > 0) {
+      rest.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EINTR) {
+      failure_ = errno;
+    }
+  }
+  if (failure_ != 0 && rest.size() < text_.size()) {
+    // A full disk may take part of a line: cut it off, so that only whole rows stay.
+    const std::string_view taken = std::string_view(text_).substr(0, text_.size() - rest.size());
+    const std::size_t line_end = taken.rfind('\n') + 1;  // npos + 1 is 0: not even one line
+    const off_t size = ::lseek(descriptor_, 0, SEEK_CUR) - static_cast<off_t>(taken.size() - line_end);
+    if (::ftruncate(descriptor_, size) != 0) failure_ = errno;
+  }
+  text_.clear();
+  last_flush_ = std::chrono::steady_clock::now();
+}
+
+void GrowingFile::close() {
+  if (descriptor_ >= 0) {
+    flush();
+    if (::close(descriptor_) != 0 && failure_ == 0) failure_ = errno;
+    descriptor_ = -1;
+  }
+  if (failure_ != 0) fail(path_, failure_);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,54 @@
+#include "drawing/joint_freedom.h"
+
+#include <vector>
+
+#include <Eigen/LU>
+
+namespace freeplay {
+namespace {
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/// Of the rows r.x = 0: how many directions x are free, and the one that is, or where two are, their normal.
+int free_directions(const Rows& rows, Eigen::Vector3d& direction) {
+  if (rows.rows() == 0) return 3;
+  // Rows are of unit vectors, but for roundings.
+  const auto factor = Eigen::FullPivLU<Eigen::MatrixXd>(rows).setThreshold(1e-9);
+  const int free = 3 - static_cast<int>(factor.rank());
+  if (free == 1) direction = Eigen::Vector3d(factor.kernel().col(0)).normalized();
+  if (free == 2)
+    direction = Eigen::Vector3d(factor.kernel().col(0)).cross(Eigen::Vector3d(factor.kernel().col(1))).normalized();
+  return free;
+}
+
+}  // namespace
+
+JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
+                           const MarkerKinematics& b) {
+  JointFreedom freedom;
+  const int count = layout.constraint_rows;
+  if (count == 0) return freedom;
+  std::vector<double> phi(static_cast<std::size_t>(count)), nu(phi), gamma(phi);
+  Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor> jacobian =
+      Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor>::Zero(count, 12);
+  ConstraintRows rows{{phi.data(), phi.size()},
+                      {jacobian.data(), static_cast<std::size_t>(jacobian.size())},
+                      {nu.data(), nu.size()},
+                      {gamma.data(), gamma.size()}};
+  JointInput in{};
+  in.a = &a;
+  in.b = &b;
+  Message message;
+  if (!joint.constrain(in, rows, message)) return {0, 0, freedom.slide, freedom.turn};
+  const Rows along = jacobian.middleCols<3>(6), about = jacobian.rightCols<3>();
+  freedom.slides = free_directions(along, freedom.slide);
+  // Turns are free where the second origin can follow: sums of rows that do not see it must not see them.
+  Eigen::MatrixXd blind = Eigen::MatrixXd::Identity(count, count);
+  const auto factor = Eigen::FullPivLU<Eigen::MatrixXd>(along.transpose()).setThreshold(1e-9);
+  if (factor.rank() > 0) blind = factor.kernel();
+  if (factor.rank() == count) blind.resize(count, 0);
+  freedom.turns = free_directions(blind.transpose() * about, freedom.turn);
+  return freedom;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,196 @@
+#include "format/doubtful_motion.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "format/doubtful_body.h"
+#include "format/doubtful_number.h"
+
+namespace freeplay {
+namespace {
+
+constexpr int samples = 128;                // of a motion over the run
+constexpr std::size_t most_drivers = 2000;  // that are looked at
+constexpr double table_beyond = 50.0;       // the end of a table, in runs
+constexpr double largest_turn = 0.5;        // in a fixed step [rad]
+
+/// What a prescribed motion does during the run.
+struct Course {
+  bool known = false;
+  double begin = 0.0, low = 0.0, high = 0.0, fastest = 0.0;
+  bool returns = false;  // it turns back, or comes to rest at the end
+};
+
+Course course_of(const Expression& motion, const Settings& settings, double spans = 1.0) {
+  Course course;
+  double forward = 0.0, back = 0.0, last_rate = 0.0;
+  for (int i = 0; i <= samples; ++i) {
+    const double t = settings.start + spans * (settings.end - settings.start) * i / samples;
+    Jet jet;
+    EvaluationFailure failure;
+    if (!motion.evaluate(t, jet, failure)) return {};
+    if (i == 0) course.begin = course.low = course.high = jet.value;
+    course.low = std::min(course.low, jet.value);
+    course.high = std::max(course.high, jet.value);
+    forward = std::max(forward, jet.rate);
+    back = std::max(back, -jet.rate);
+    last_rate = std::abs(jet.rate);
+  }
+  course.fastest = std::max(forward, back);
+  const double noise = 1e-9 * course.fastest;
+  course.returns = (forward > noise && back > noise) || last_rate <= noise;
+  course.known = std::isfinite(course.fastest) && std::isfinite(course.high - course.low);
+  return course;
+}
+
+/// Numbers that are written in the text, and those of its parameters that have no dimension.
+std::vector<double> numbers_in(const CheckedValue& written) {
+  const std::string& text = written.node().text;
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
+    if (digit(i) || (text[i] == '.' && digit(i + 1))) {
+      double number = 0.0;
+      const auto read = std::from_chars(text.data() + i, text.data() + text.size(), number);
+      numbers.push_back(number);
+      i = std::max(static_cast<std::size_t>(read.ptr - text.data()), i + 1);
+    } else if (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_') {
+      while (i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_')) ++i;
+    } else {
+      ++i;
+    }
+  }
+  for (const std::string& name : referenced_parameters(text)) {
+    const Quantity* quantity = written.reading().scope->find(name);
+    if (quantity != nullptr && quantity->kind != DimensionKind::dimensioned) numbers.push_back(quantity->value);
+  }
+  return numbers;
+}
+
+class MotionDoubts {
+ public:
+  explicit MotionDoubts(const Draft& draft) : draft_(draft), settings_(draft.model.settings) {}
+
+  void judge(const Driver& driver) const {
+    const Coordinate coordinate = draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout.coordinate;
+    const Course course = course_of(driver.value, settings_);
+    if (!course.known) return;
+    const auto written = key_of(driver, "value");
+    if (!written) return;
+    if (coordinate == Coordinate::angle) {
+      judge_turns(driver, course, *written);
+    } else if (driver.kind == DriverKind::position) {
+      judge_slide(course, *written);
+    }
+  }
+
+  void judge_table(const Driver& driver) const {
+    const auto written = key_of(driver, "table");
+    if (!written || says_unit(*written)) return;
+    const TimeTable& table = *driver.table;
+    const double last = table.times().back(), span = settings_.end - settings_.start;
+    if (driver.table_source.time_unit.empty() && last - settings_.start > table_beyond * span) {
+      written->warn("doubtful-time", fmt::format("'{}' goes on to {:.4g} s, but the run takes {:.4g} s: write "
+                                                 "'time_unit: ms' if milliseconds are meant",
+                                                 written->path(), last, span));
+    }
+    if (driver.kind == DriverKind::angle && driver.table_source.unit.empty() && looks_like_degrees(table.values())) {
+      const auto [low, high] = std::ranges::minmax(table.values());
+      written->warn("doubtful-angle",
+                    fmt::format("'{}' turns to and fro by {:.6g} rad: write 'unit: deg' if degrees are "
+                                "meant, else 'unit: rad'",
+                                written->path(), high - low));
+    }
+  }
+
+ private:
+  std::optional<CheckedValue> key_of(const Driver& driver, const char* key) const {
+    const auto entry = entry_of(draft_, "drivers", driver.name);
+    if (!entry || !entry->node().is_map()) return std::nullopt;
+    return MapReader(*entry, "driver").find(key);
+  }
+
+  /// Whole numbers up to two turns in degrees, to and fro by more than a turn in radians.
+  static bool looks_like_degrees(std::span<const double> values) {
+    bool forward = false, back = false;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] != std::round(values[i]) || std::abs(values[i]) > 720.0) return false;
+      if (i > 0) (values[i] > values[i - 1] ? forward : back) |= values[i] != values[i - 1];
+    }
+    const auto [low, high] = std::ranges::minmax(values);
+    return forward && back && high - low > bare_limit::angle;
+  }
+
+  void judge_turns(const Driver& driver, const Course& course, const CheckedValue& written) const {
+    const bool angle = driver.kind == DriverKind::angle;
+    const double speed = angle ? course.fastest : std::max(std::abs(course.low), std::abs(course.high));
+    judge_step(speed, written);
+    if (names_a_unit(written)) return;
+    if (angle && settings_.start == 0.0 && std::abs(course.begin) > bare_limit::angle) {
+      return doubt_angle(written, course.begin);
+    }
+    const double swing = angle ? amplitude(driver.value, written) : 0.0;
+    if (swing > bare_limit::angle) {
+      written.warn("doubtful-angle", fmt::format("'{0}' swings or turns by {1:.6g} rad: write '{1:.6g} deg' if degrees "
+                                                 "are meant, else '{1:.6g} rad'",
+                                                 written.path(), swing));
+    } else {
+      doubt_angular_speed(written, speed);
+    }
+  }
+
+  /// The written number by which the motion swings to each side, or which it goes through in all, in the run or in a
+  /// longer one; 0 when there is none.
+  double amplitude(const Expression& motion, const CheckedValue& written) const {
+    for (const double spans : {1.0, 30.0, 1000.0}) {
+      const Course course = course_of(motion, settings_, spans);
+      if (!course.known || !course.returns) continue;
+      const double range = course.high - course.low;
+      for (const double number : numbers_in(written)) {
+        const auto is = [&](double value) { return std::abs(value - number) <= 0.03 * number; };
+        if (number > bare_limit::angle && (is(range) || is(0.5 * range))) return number;
+      }
+    }
+    return 0.0;
+  }
+
+  void judge_slide(const Course& course, const CheckedValue& written) const {
+    const double range = course.high - course.low, scale = draft_.length_scale;
+    if (!course.returns || !(scale > 0.0) || range <= bare_limit::length * scale || names_a_unit(written)) return;
+    written.warn("doubtful-length", fmt::format("'{}' moves by {:.4g} m where the lengths of the mechanism are about "
+                                                "{:.3g} m: write the unit behind the number, as in 'mm'",
+                                                written.path(), range, scale));
+  }
+
+  void judge_step(double speed, const CheckedValue& written) const {
+    if (settings_.adaptive || speed * settings_.step <= largest_turn) return;
+    written.warn("doubtful-time",
+                 fmt::format("'{}' turns the joint by {:.3g} rad in one step of {:.3g} s: shorten 'step', or give "
+                             "'accuracy' in its place",
+                             written.path(), speed * settings_.step, settings_.step));
+  }
+
+  const Draft& draft_;
+  const Settings& settings_;
+};
+
+}  // namespace
+
+void doubt_motions(const Draft& draft) {
+  const MotionDoubts doubts(draft);
+  const std::vector<Driver>& drivers = draft.model.drivers;
+  for (std::size_t i = 0; i < std::min(drivers.size(), most_drivers); ++i) {
+    if (drivers[i].kinematics >= 0) continue;
+    if (drivers[i].table != nullptr) {
+      doubts.judge_table(drivers[i]);
+    } else if (prescribes(drivers[i].kind)) {
+      doubts.judge(drivers[i]);
+    }
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,195 @@
+#include "format/doubtful_number.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "format/parameter_scope.h"
+
+namespace freeplay {
+namespace {
+
+using std::numbers::pi;
+
+/// What engineering knows of a quantity. Values outside are doubted with a unit, too; 0 means "none of it".
+struct UsualRange {
+  std::string_view unit;   ///< as in the table of a component
+  std::string_view names;  ///< last words of keys that it is for, each between blanks; empty: all of this unit
+  double least, most;      ///< with a unit
+  double least_bare;       ///< without
+  std::string_view words;  ///< of the range
+};
+
+// Moduli: gels have some 10 kPa, rubber 1 MPa (Ashby, Materials Selection), diamond 1.2 TPa. Densities: aerogel 1
+// kg/m^3, osmium 22 590. Stiffness: a steel cube of 1 m has 2e11 N/m.
+constexpr UsualRange usual_ranges[] = {
+    {"Pa", " E modulus youngs_modulus young ", 1e3, 2e12, 1e6, "moduli go from 1 MPa (rubber) to 1200 GPa (diamond)"},
+    {"N/m", "", 0.0, 1e12, 0.0, "a steel cube of 1 m has 2e11 N/m"},
+    {"N*m/rad", "", 0.0, 1e12, 0.0, "a steel shaft of 1 m has 1e10 N*m/rad"},
+    {"kg/m^3", "", 1.0, 3e4, 1.0, "densities go from 1 (aerogel) to 22590 kg/m^3 (osmium)"},
+};
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+bool is_word_part(char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)); }
+
+/// Calls `use(word, is_parameter)` for every word of an expression; the exponent of a number is none.
+template <class Use>
+bool any_word(std::string_view text, Use&& use) {
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    const bool micro = c >= 0x80;  // of µm
+    if (!is_letter(text[i]) && !micro) {
+      // 1e5: digits, then the letter of the exponent
+      const bool number = std::isdigit(c) || c == '.';
+      ++i;
+      if (number && i < text.size() && (text[i] == 'e' || text[i] == 'E')) ++i;
+      continue;
+    }
+    const std::size_t begin = i;
+    while (i < text.size() && (is_word_part(text[i]) || static_cast<unsigned char>(text[i]) >= 0x80)) ++i;
+    const bool parameter = begin > 0 && (text[begin - 1] == '$' || text[begin - 1] == '{');
+    if (use(text.substr(begin, i - begin), parameter)) return true;
+  }
+  return false;
+}
+
+bool says_pi(const CheckedValue& written) {
+  return any_word(written.node().text,
+                  [](std::string_view word, bool parameter) { return !parameter && word == "pi"; });
+}
+
+bool is_round(double value) { return std::abs(2.0 * value - std::round(2.0 * value)) <= 1e-9; }
+
+/// Index of the alternative of a unit such as "kind: N/m | N*m/rad", and the alternative itself.
+std::string unit_text(const Parameter& parameter, const ParameterBlock& block) {
+  const std::string text = parameter.unit;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return text;
+  const auto chooser = block.values.find(text.substr(0, colon));
+  int wanted = chooser == block.values.end() ? 0 : std::max(chooser->second.word, 0);
+  std::size_t begin = colon + 1;
+  while (wanted-- > 0) begin = std::min(text.find('|', begin), text.size() - 1) + 1;
+  std::string one = text.substr(begin, text.find('|', begin) - begin);
+  std::erase(one, ' ');
+  return one;
+}
+
+std::string_view last_word(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string_view::npos ? path : path.substr(dot + 1);
+}
+
+void doubt_range(const CheckedValue& written, std::string_view unit, double value) {
+  for (const UsualRange& range : usual_ranges) {
+    if (range.unit != unit || value == 0.0) continue;
+    if (!range.names.empty() && range.names.find(fmt::format(" {} ", last_word(written.path()))) == range.names.npos) {
+      continue;
+    }
+    const bool bare = !names_a_unit(written);
+    if (value <= range.most && value >= (bare ? range.least_bare : range.least)) continue;
+    written.warn("doubtful-value", fmt::format("'{}' is {:.4g} {}, but {}{}", written.path(), value, unit, range.words,
+                                               bare ? ": write the unit behind the number" : ": check the number"));
+  }
+}
+
+void doubt_length(const CheckedValue& written, double value, double scale) {
+  if (!(scale > 0.0) || std::abs(value) <= bare_limit::length * scale || names_a_unit(written)) return;
+  written.warn("doubtful-length",
+               fmt::format("'{}' is {:.4g} m where the lengths of the mechanism are about {:.3g} m: write the unit "
+                           "behind the number, as in '{:.4g} mm'",
+                           written.path(), value, scale, value));
+}
+
+}  // namespace
+
+bool names_a_unit(const CheckedValue& written) {
+  if (!written.node().is_scalar()) return false;
+  return any_word(written.node().text, [&](std::string_view word, bool parameter) {
+    if (!parameter) return is_unit_name(word);
+    const Quantity* quantity = written.reading().scope->find(word);
+    return quantity != nullptr && quantity->kind == DimensionKind::dimensioned;
+  });
+}
+
+bool says_unit(const CheckedValue& value) {
+  if (value.node().is_scalar()) return names_a_unit(value);
+  for (std::size_t k = 0; k < value.node().items.size(); ++k) {
+    if (says_unit(value.item(k))) return true;
+  }
+  for (const Node::Entry& entry : value.node().entries) {
+    if (says_unit(CheckedValue(value.reading(), *entry.value, entry.key, value.path()))) return true;
+  }
+  return false;
+}
+
+void doubt_angle(const CheckedValue& written, double radians) {
+  if (std::abs(radians) <= bare_limit::angle * (1.0 + 1e-12) || names_a_unit(written)) return;
+  // A parameter may hold a multiple of pi; round numbers are none.
+  if (says_pi(written) || (!is_round(radians) && written.node().text.find('$') != std::string::npos)) return;
+  written.warn("doubtful-angle",
+               fmt::format("'{0}' is {1:.6g} rad, {2:.3g} turns: write '{1:.6g} deg' if degrees are meant, else "
+                           "'{1:.6g} rad'",
+                           written.path(), radians, std::abs(radians) / (2.0 * pi)));
+}
+
+void doubt_angular_speed(const CheckedValue& written, double speed) {
+  if (std::abs(speed) <= bare_limit::angular_speed || names_a_unit(written)) return;
+  written.warn("doubtful-speed", fmt::format("'{0}' is {1:.6g} rad/s, that is {2:.0f} rpm: write '{1:.6g} rpm' if "
+                                             "revolutions per minute are meant, else '{1:.6g} rad/s'",
+                                             written.path(), speed, std::abs(speed) * 30.0 / pi));
+}
+
+void doubt_gravity(const CheckedValue& written, const Vector3& gravity) {
+  const double size = std::hypot(gravity[0], gravity[1], gravity[2]);
+  if (size <= bare_limit::gravity || !written.node().is_list()) return;
+  for (std::size_t i = 0; i < written.node().items.size(); ++i) {
+    if (std::abs(gravity[i]) > 0.5 * size && names_a_unit(written.item(i))) return;
+  }
+  written.warn("doubtful-value", fmt::format("'{0}' is {1:.4g} m/s^2, {2:.0f} times that of the earth: write the unit "
+                                             "behind the number, as in '{1:.4g} mm/s^2'",
+                                             written.path(), size, size / 9.81));
+}
+
+void doubt_step(const CheckedValue& written, double step, double span) {
+  const bool coarse = step >= bare_limit::step && step >= 0.02 * span;
+  if ((!coarse && step < bare_limit::long_step) || names_a_unit(written)) return;
+  written.warn("doubtful-time", fmt::format("'{0}' is {1:.4g} s in a run of {2:.4g} s: write '{1:.4g} ms' if "
+                                            "milliseconds are meant, else '{1:.4g} s'",
+                                            written.path(), step, span));
+}
+
+void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale) {
+  for (const auto& [path, written] : places) {
+    // A law's own parameters stand behind the path of the law.
+    const ParameterBlock* owner = &block;
+    std::string name = path;
+    for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1)) {
+      const auto law = owner->values.find(name.substr(0, dot));
+      if (law == owner->values.end() || law->second.law == nullptr) continue;
+      owner = law->second.law.get();
+      name = name.substr(dot + 1);
+      break;
+    }
+    const auto value = owner->values.find(name);
+    if (value == owner->values.end() || !std::isfinite(value->second.number) || !written.node().is_scalar()) continue;
+    const auto& table = owner->component->description.parameters;
+    const auto row = std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
+    if (row == table.end() || row->kind != ParameterKind::number) continue;
+    const std::string unit = unit_text(*row, *owner);
+    const double number = value->second.number;
+    if (unit == "rad") {
+      doubt_angle(written, number);
+    } else if (unit == "rad/s") {
+      doubt_angular_speed(written, number);
+    } else if (unit == "m") {
+      doubt_length(written, number, scale);
+    } else {
+      doubt_range(written, unit, number);
+    }
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,41 @@
+// DoubtfulNumber: single numbers of the model file that look like those of another unit, or of no material.
+#pragma once
+
+#include "component/parameter_block.h"
+#include "format/checked_value.h"
+#include "format/parameter_check.h"
+
+namespace freeplay {
+
+/// A number without a unit is doubted beyond these, as it may be meant in another unit: degrees, rpm, mm/s^2, ms, mm.
+/// Sources: 1000 rad/s are 9549 rpm, beyond what linkages turn at; 50 m/s^2 are five times the earth's gravity.
+namespace bare_limit {
+inline constexpr double angle = 6.2831853071795864769;  ///< one turn [rad]
+inline constexpr double angular_speed = 1000.0;         ///< [rad/s]
+inline constexpr double gravity = 50.0;                 ///< [m/s^2]
+inline constexpr double step = 5e-3;                    ///< and a fiftieth of the run [s]
+inline constexpr double long_step = 0.1;                ///< in whatever run [s]
+inline constexpr double length = 100.0;                 ///< in terms of the lengths around it
+}  // namespace bare_limit
+
+/// True if a unit stands in the text of the value or in that of a parameter that it refers to. Such a value is never
+/// doubted for its unit.
+bool names_a_unit(const CheckedValue& written);
+/// The same for any text within a list or a map.
+bool says_unit(const CheckedValue& value);
+
+/// `doubtful-angle`: beyond a turn, without a unit, and no multiple of pi.
+void doubt_angle(const CheckedValue& written, double radians);
+/// `doubtful-speed`.
+void doubt_angular_speed(const CheckedValue& written, double speed);
+/// `doubtful-value`.
+void doubt_gravity(const CheckedValue& written, const Vector3& gravity);
+/// `doubtful-time`: of fixed steps, or the first one, in a run of length `span` [s].
+void doubt_step(const CheckedValue& written, double step, double span);
+
+/// Doubts the numbers of one component by the units of its table: angles and speeds as above, `doubtful-value` for
+/// moduli and stiffnesses that no material and no spring has. `scale` [m]: of the mechanism's lengths, 0 when
+/// unknown; a length without a unit that is beyond bare_limit::length of it is `doubtful-length`.
+void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale);
+
+}  // namespace freeplay

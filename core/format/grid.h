@@ -1,0 +1,17 @@
+// Grid: several values of one quantity, as `analysis` and `sweep` write them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "format/checked_value.h"
+#include "model/grid_values.h"
+
+namespace freeplay {
+
+inline constexpr long largest_grid = 100'000'000;  ///< points
+
+/// A grid of whatever dimension, or of `dimension` if that is given. Nothing after an error.
+std::optional<GridValues> read_grid(const CheckedValue& value, std::optional<Dimension> dimension);
+
+}  // namespace freeplay

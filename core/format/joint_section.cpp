@@ -1,0 +1,296 @@
+#include "format/joint_section.h"
+
+#include <fmt/format.h>
+
+#include "base/name_pattern.h"
+#include "component/declared.h"
+#include "format/doubtful_number.h"
+#include "format/gear.h"
+#include "format/parameter_check.h"
+#include "format/rotation_keys.h"
+#include "model/rotation.h"
+
+namespace freeplay {
+namespace {
+
+// Of bearings: clearances are 0.1 to 1 % of the radius, worn ones 5 %; polished surfaces are rough by 10 nm.
+constexpr double widest_play = 0.5;      // in smaller radii
+constexpr double narrowest_play = 1e-8;  // [m]
+
+bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
+
+bool serves(Space space, Space model_space) {
+  return (static_cast<unsigned>(space) & static_cast<unsigned>(model_space)) != 0;
+}
+
+/// Reads one entry of `joints`, or one of `forces` that is a joint.
+class JointEntry {
+ public:
+  JointEntry(Draft& draft, const Part& part, const CheckedValue& entry, std::size_t index)
+      : draft_(draft), part_(part), entry_(entry), map_(entry, Uses::presets), index_(index) {}
+
+  void read() {
+    if (!map_.good()) return;
+    const auto type = map_.require("type");
+    if (!element().is_force && type && type->node().is_scalar() && type->node().text == gear_word) {
+      make_gear(element());
+      draft_.joint_usable[index_] = true;
+      return;
+    }
+    if (element().is_force && type && type->node().is_scalar() && type->node().text == gear_word) {
+      return refuse_as_force(*type);
+    }
+    const Component* named = type ? find_type(draft_.registry, ComponentKind::joint, *type, other_words()) : nullptr;
+    // The other keys are judged by the type that was meant.
+    known_ = named != nullptr;
+    if (!known_ && type) named = meant_type(draft_.registry, ComponentKind::joint, *type, other_words());
+    read_ends(named);
+    // Without a type nobody knows which keys are allowed.
+    if (named == nullptr || !serves_space(*named, *type)) return;
+    choose_twins(*named);
+    read_turn(named->description.axis);
+    create();
+    map_.finish();
+    if (known_ && element().is_force) require_force(*type);
+  }
+
+ private:
+  JointElement& element() { return draft_.model.joints[index_]; }
+
+  /// Words that are not in the registry and that this section knows.
+  std::vector<std::string> other_words() const {
+    if (draft_.model.joints[index_].is_force) return {"force", "torque", "gravity"};
+    return {gear_word};
+  }
+
+  void require_force(const CheckedValue& type) {
+    if (component_ == ideal_ && (!draft_.joint_usable[index_] || element().layout.constraint_rows == 0)) return;
+    refuse_as_force(type);
+  }
+
+  static void refuse_as_force(const CheckedValue& type) {
+    type.fail("unknown-type", "the type '" + type.node().text + "' is a joint, not a force", {},
+              "write it under 'joints'");
+  }
+
+  bool serves_space(const Component& named, const CheckedValue& type) {
+    const Space space = draft_.model.space;
+    if (serves(named.description.space, space)) return true;
+    std::vector<std::string> others;
+    for (const RegisteredComponent& other : draft_.registry.components()) {
+      if (other.component->kind != ComponentKind::joint || !serves(other.component->description.space, space)) continue;
+      others.emplace_back(other.component->description.name);
+    }
+    const std::string word = space == Space::planar ? "planar" : "spatial";
+    type.fail("type-space",
+              std::string("the type '") + named.description.name + "' does not work in " + word + " models", {},
+              "types that do: " + either(others));
+    return false;
+  }
+
+  // In space the joint's axis is an axis of its frames: both markers are turned until it is the given one, by the same
+  // turn, so that the coordinate keeps its zero.
+  void read_turn(MarkerAxis axis) {
+    if (draft_.model.space == Space::planar) return map_.refuse("axis", "only in spatial models");
+    if (axis == MarkerAxis::none) return map_.refuse("axis", "this type has none");
+    const auto value = map_.find("axis");
+    const std::optional<Vector3> direction = value ? read_axis(*value) : std::nullopt;
+    element().axis = direction;
+    if (!direction || element().marker_a == element().marker_b) return;
+    const Vector3 own = axis == MarkerAxis::x ? Vector3{1.0, 0.0, 0.0} : Vector3{0.0, 0.0, 1.0};
+    if (*direction == own) return;
+    const Rotation turn = least_rotation(own, *direction);
+    element().marker_a = draft_.turned_marker(element().marker_a, turn);
+    element().marker_b = draft_.turned_marker(element().marker_b, turn);
+  }
+
+  /// A type with the block of its twin is that twin; a type with play names its ideal twin itself.
+  void choose_twins(const Component& named) {
+    component_ = &named;
+    ideal_ = &named;
+    for (const RegisteredComponent& other : draft_.registry.components()) {
+      const Description& twin = other.component->description;
+      if (other.component->kind != ComponentKind::joint || !same_text(twin.ideal, named.description.name)) continue;
+      if (twin.block == nullptr) continue;
+      if (map_.has(twin.block)) component_ = other.component;
+      map_.find(twin.block);
+    }
+    const char* ideal = component_->description.ideal;
+    if (ideal == nullptr) return;
+    ideal_ = draft_.registry.find(ComponentKind::joint, ideal);
+    if (ideal_ == nullptr) {
+      throw Error(Error::Category::plugin, "plugin-failed",
+                  std::string("the ideal type '") + ideal + "' of '" + component_->description.name + "' is missing",
+                  entry_.key_location());
+    }
+  }
+
+  // --- ends ------------------------------------------------------------------------------------------------------
+
+  void read_ends(const Component* named) {
+    const char* first = named == nullptr ? nullptr : named->description.first_end;
+    const char* second = named == nullptr ? nullptr : named->description.second_end;
+    const auto between = map_.find("between");
+    const bool by_ends = first != nullptr && second != nullptr && (map_.has(first) || map_.has(second));
+    if (between) {
+      if (by_ends) {
+        map_.find(first);
+        map_.find(second);
+        if (!map_.conflict("between", first)) map_.conflict("between", second);
+      }
+      if (const auto ends = between->list(2)) join((*ends)[0], (*ends)[1], *between);
+      return;
+    }
+    if (!by_ends) {
+      if (named != nullptr) map_.report_missing("between");
+      return;
+    }
+    const auto a = map_.require(first), b = map_.require(second);
+    if (a && b) join(*a, *b, *b);
+  }
+
+  void join(const CheckedValue& first, const CheckedValue& second, const CheckedValue& place) {
+    const std::optional<int> a = draft_.marker(first, part_), b = draft_.marker(second, part_);
+    if (!a || !b) return;
+    const auto body_of = [&](int marker) { return draft_.model.markers[static_cast<std::size_t>(marker)].body; };
+    if (body_of(*a) == body_of(*b)) {
+      place.fail("same-body", "both frames of '" + entry_.path() + "' are on '" + body_word(first) + "'");
+    }
+    element().marker_a = *a;
+    element().marker_b = *b;
+  }
+
+  /// The body as the file names it, so that the instances of a template share a message.
+  static std::string body_word(const CheckedValue& reference) {
+    return reference.node().text.substr(0, reference.node().text.find('/'));
+  }
+
+  // --- components ------------------------------------------------------------------------------------------------
+
+  bool is_made_ideal() {
+    bool made = false;
+    for (std::size_t i = 0; i < draft_.options.ideal.size(); ++i) {
+      const std::string& pattern = draft_.options.ideal[i];
+      if (pattern != "all" && !matches(pattern, element().name)) continue;
+      draft_.ideal_matched[i] = true;
+      made = true;
+    }
+    return made;
+  }
+
+  void create() {
+    JointRef joint, ideal;
+    const CheckedParameters ideal_parameters = check_parameters(*ideal_, map_, draft_.registry);
+    const bool twins = ideal_ != component_;
+    const bool usable = make(ideal_parameters, ideal, element().ideal_layout);
+    JointLayout layout = element().ideal_layout;
+    joint = ideal;
+    const CheckedParameters parameters =
+        twins ? check_parameters(*component_, map_, draft_.registry) : ideal_parameters;
+    if (twins) make(parameters, joint, layout);
+    if (parameters.block) doubt_parameters(*parameters.block, parameters.places, draft_.length_scale);
+    if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
+    const bool play = twins && !is_made_ideal();
+    if (twins && !play) draft_.model.ideal.push_back(element().name);
+    element().ideal_component = ideal_;
+    element().ideal = ideal;
+    element().component = play ? component_ : ideal_;
+    element().joint = play ? joint : ideal;
+    element().layout = play ? layout : element().ideal_layout;
+    element().has_play = play;
+    if (twins) doubt_play(layout);
+    draft_.joint_usable[index_] = usable && known_;
+  }
+
+  void doubt_play(const JointLayout& layout) {
+    const double share = layout.clearance / layout.smaller_radius, scale = draft_.length_scale;
+    std::string against;
+    if (share > widest_play) {
+      against = fmt::format("{:.2g} times the smaller radius of its surfaces", share);
+    } else if (scale > 0.0 && layout.clearance > scale) {
+      against = fmt::format("more than the lengths of the mechanism, about {:.3g} m", scale);
+    } else if (layout.clearance > 0.0 && layout.clearance < narrowest_play) {
+      against = "less than the roughness of any surface";
+    }
+    if (against.empty()) return;
+    entry_.warn_at_key("doubtful-clearance", fmt::format("the clearance of joint '{}' is {:.4g} m, {}: check it, the "
+                                                         "radii and their units",
+                                                         entry_.key(), layout.clearance, against));
+  }
+
+  bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {
+    joint = JointRef();
+    layout = JointLayout();
+    layout.space = draft_.model.space;
+    if (!parameters.block) return false;
+    CreationFault fault;
+    joint = draft_.model.instances.create_joint(*parameters.block, draft_.model.space, fault);
+    if (!joint) {
+      report_fault(fault, parameters, entry_);
+      return false;
+    }
+    Message message;
+    const std::string fault_text = joint.declare(layout, message) ? declaration_fault(layout) : message.text;
+    if (fault_text.empty()) return true;
+    throw Error(Error::Category::plugin, "plugin-failed",
+                "in '" + entry_.path() + "': " + draft_.model.instances.words_of(*parameters.block->component) +
+                    " failed: " + fault_text,
+                entry_.key_location());
+  }
+
+  Draft& draft_;
+  const Part& part_;
+  const CheckedValue& entry_;
+  MapReader map_;
+  std::size_t index_;
+  bool known_ = false;  // else the type is the one that was probably meant
+  const Component* component_ = nullptr;
+  const Component* ideal_ = nullptr;
+};
+
+}  // namespace
+
+void add_joints(Draft& draft, const Part& part) {
+  const auto section = part.section("joints");
+  if (!section) return;
+  for (const CheckedValue& entry : entries_of(*section)) {
+    Draft::check_name(entry);
+    const std::string name = part.full(entry.key());
+    if (!draft.joints.add(name)) continue;  // only after an instance name was refused
+    JointElement& element = draft.model.joints.emplace_back();
+    element.name = name;
+    element.location = entry.key_location();
+    draft.joint_usable.push_back(false);
+    const int errors = draft.diagnostics.errors();
+    JointEntry(draft, part, entry, draft.model.joints.size() - 1).read();
+    const bool good = draft.joint_usable.back() && draft.diagnostics.errors() == errors;
+    if (!good) draft.unsure_columns.push_back("joint." + name + ".");
+  }
+}
+
+void add_force_joint(Draft& draft, const Part& part, const CheckedValue& entry) {
+  const int index = static_cast<int>(draft.model.joints.size());
+  JointElement& element = draft.model.joints.emplace_back();
+  element.name = part.full(entry.key());
+  element.location = entry.key_location();
+  element.is_force = true;
+  draft.joint_usable.push_back(false);
+  draft.model.force_elements.push_back({-1, index});
+  JointEntry(draft, part, entry, static_cast<std::size_t>(index)).read();
+}
+
+void require_ideal_matches(const Draft& draft) {
+  for (std::size_t i = 0; i < draft.options.ideal.size(); ++i) {
+    const std::string& pattern = draft.options.ideal[i];
+    if (pattern == "all" || draft.ideal_matched[i]) continue;
+    std::vector<std::string> with_play;
+    for (const JointElement& joint : draft.model.joints) {
+      if (joint.has_play) with_play.push_back(joint.name);
+    }
+    const std::string suggested = nearest(pattern, with_play);
+    throw Error(Error::Category::usage, "usage", "--ideal " + pattern + ": no joint with clearance has such a name", {},
+                suggested.empty() ? "" : "did you mean '" + suggested + "'?");
+  }
+}
+
+}  // namespace freeplay

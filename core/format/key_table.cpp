@@ -1,0 +1,295 @@
+#include "format/key_table.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+
+namespace freeplay {
+namespace {
+
+constexpr FormatKey use{"use", "name | list of name", "", "", "Presets whose keys are copied here.", "steel"};
+
+constexpr FormatKey model[] = {
+    {"freeplay", "integer", "", "required", "Version of the format: 1.", "1"},
+    {"name", "text", "", "name of the file", "Used in reports and for the folder of results.", "four-bar"},
+    {"description", "text", "", "", "Free text.", "A loose four-bar"},
+    {"space", "'planar' | 'spatial'", "", "planar", "Length of vectors and kind of bodies.", "planar"},
+    {"gravity", "vector", "m/s^2", "zero", "Acceleration of free fall.", "[0, -9.81]"},
+    {"parameters", "entries of quantity", "", "", "Named numbers for expressions: $name.", "{l: 240 mm}"},
+    {"presets", "entries of contents", "", "", "Named keys that entries copy with `use`.", "{steel: {mass: 1 kg}}"},
+    {"plugins", "list of text", "", "", "Libraries with more types: paths from the model's folder, or names.",
+     "[./my_joint.so]"},
+    {"urdf", "text | map urdf", "", "", "A URDF file that this file adds to.", "robot.urdf"},
+    {"bodies", "entries of map body", "", "", "What moves; `ground` may carry frames.",
+     "{rod: {mass: 1, inertia: 0.1}}"},
+    {"frames", "entries of frame value", "", "", "More frames; the keys are BODY/NAME.", "{rod/tip: [1, 0]}"},
+    {"joints", "entries of map joint", "", "", "What connects bodies.", "{pin: {type: TYPE, between: [ground, rod]}}"},
+    {"drivers", "entries of map driver", "", "", "What moves joints.",
+     "{motor: {joint: pin, kind: angle, value: 10*t}}"},
+    {"forces", "entries of map force", "", "", "Forces and torques.", "{push: {type: force, at: rod, value: [1, 0]}}"},
+    {"templates", "entries of map template", "", "", "Pieces of mechanism that instances repeat.",
+     "{leg: {bodies: {crank: {mass: 1, inertia: 0.1}}}}"},
+    {"instances", "entries of map instance", "", "", "Copies of templates.", "{leg: {template: leg, count: 3}}"},
+    {"initial", "map initial", "", "", "Where and how fast the mechanism starts.", "{joints: {pin: 30 deg}}"},
+    {"simulation", "map simulation", "", "", "Time span, steps, output.", "{end: 2 s, step: 1 ms}"},
+    {"analysis", "map analysis", "", "", "Platform, inputs and grids of `freeplay analyze`.", "{frame: platform}"},
+    {"sweep", "map sweep", "", "", "Grids of parameters and what is kept of each run.",
+     "{parameters: {l: [0.1, 0.2]}}"}};
+
+constexpr FormatKey urdf[] = {
+    {"file", "text", "", "required", "Path from the model's folder.", "robot.urdf"},
+    {"plane", "'xy' | 'xz' | 'yz'", "", "xy", "Plane of a planar mechanism, in axes of the root link.", "xz"},
+    {"base", "'fixed' | 'floating'", "", "fixed", "How a root link with mass meets ground.", "floating"},
+    {"loops", "'elements' | 'two-parents'", "", "elements", "Whether a second parent closes a loop.", "two-parents"},
+    {"repair", "'inertia'", "", "", "Mend impossible inertia instead of refusing it.", "inertia"},
+    {"merge_fixed", "boolean", "", "false", "Bodies on fixed joints become part of what carries them.", "true"},
+    {"limits", "'ignore' | 'stop'", "", "ignore", "Whether joint limits become stops.", "stop"}};
+
+constexpr FormatKey body[] = {
+    {"mass", "quantity", "kg", "required", "Greater than 0.", "0.2 kg"},
+    {"inertia", "quantity", "kg*m^2", "required", "About the centre of mass; 0 for a point mass.", "1 kg*m^2 / 12"},
+    {"com", "vector", "m", "zero", "Centre of mass in the body frame.", "[$l/2, 0]"},
+    {"pose", "map pose", "", "", "Guess of the start.", "{angle: 30 deg}"},
+    {"velocity", "map velocity", "", "zero", "Guess of the start.", "{angular: 3 rad/s}"},
+    {"frames", "entries of frame value", "", "", "Points with axes that joints hold.", "{tip: [0.24, 0]}"},
+    use};
+
+constexpr FormatKey ground[] = {
+    {"frames", "entries of frame value", "", "", "Points with axes that joints hold.", "{anchor: [0.5, 0]}"}};
+
+constexpr FormatKey pose[] = {{"position", "vector", "m", "follows from the joints", "Of the body frame.", "[0, 0.1]"},
+                              {"angle", "quantity", "rad", "follows from the joints", "Counter-clockwise.", "30 deg"},
+                              {"rpy", "list of quantity", "rad", "follows from the joints",
+                               "In space: roll, pitch, yaw about fixed x, y, z.", "[0, 0, 90 deg]"},
+                              {"quaternion", "list of quantity", "", "follows from the joints",
+                               "In space: w, x, y, z; made a unit one.", "[1, 0, 0, 0]"}};
+
+constexpr FormatKey velocity[] = {
+    {"linear", "vector", "m/s", "zero", "Of the body frame's origin, global axes.", "[1, 0]"},
+    {"angular", "quantity", "rad/s", "0", "Counter-clockwise.", "60 rpm"}};
+
+constexpr FormatKey frame[] = {
+    {"position", "vector", "m", "zero", "In the body frame.", "[0.1, 0]"},
+    {"polar", "list of quantity", "", "", "Instead of `position`: radius and angle.", "[0.1, 120 deg]"},
+    {"angle", "quantity", "rad", "0", "Of the frame's x axis in the body frame.", "90 deg"},
+    {"rpy", "list of quantity", "rad", "0", "In space: roll, pitch, yaw about the body's x, y, z.", "[0, 0, 90 deg]"},
+    {"quaternion", "list of quantity", "", "[1, 0, 0, 0]", "In space: w, x, y, z; made a unit one.", "[1, 0, 0, 0]"}};
+
+constexpr FormatKey joint[] = {
+    {"type", "name", "", "required", "A type that `freeplay list joints` shows, or gear.", "TYPE"},
+    {"between", "list of frame", "", "required", "First and second frame; some types have names of their own for them.",
+     "[ground/anchor, rod]"},
+    use};
+
+constexpr FormatKey gear[] = {
+    {"type", "'gear'", "", "required", "coordinate(second) = ratio coordinate(first) + offset.", "gear"},
+    {"of", "list of name", "", "required", "Two joints that have a coordinate.", "[input, output]"},
+    {"ratio", "quantity", "", "required", "Plain, or length per angle between a turn and a slide.", "-2"},
+    {"offset", "quantity | 'auto'", "", "auto", "auto: what the assembled start has.", "0"},
+    use};
+
+constexpr FormatKey driver[] = {
+    {"joint", "name", "", "required unless inverse_kinematics", "The joint that it moves.", "pin"},
+    {"kind", "'angle' | 'position' | 'velocity' | 'torque' | 'force'", "", "required unless inverse_kinematics",
+     "What is prescribed, or the effort that acts.", "angle"},
+    {"value", "time function", "by kind", "", "Function of t; either this or `table`.", "2*pi*t"},
+    {"table", "text | map table", "", "", "Values from a file or a list.", "motor.csv"},
+    {"inverse_kinematics", "map inverse_kinematics", "", "", "Instead of all these: a frame follows a path.",
+     "{frame: platform, path: {x: 0.1*t}, joints: [A]}"},
+    use};
+
+constexpr FormatKey inverse_kinematics[] = {
+    {"frame", "frame", "", "required", "What follows the path.", "platform"},
+    {"path", "map path", "", "required", "At least one component.", "{x: 0.1*cos(t), y: 0.1*sin(t)}"},
+    {"joints", "name | list of name", "", "required", "The joints that are driven; patterns with * are allowed.",
+     "leg*.A"},
+    {"elbow", "integer | list of integer", "", "1", "Working mode of each leg, 1 or -1.", "[1, -1, 1]"}};
+
+constexpr FormatKey path[] = {
+    {"x", "time function", "m", "follows from the mechanism", "Global position of the frame.", "0.1*cos(t)"},
+    {"y", "time function", "m", "follows from the mechanism", "Global position of the frame.", "0.1*sin(t)"},
+    {"angle", "time function", "rad", "follows from the mechanism", "Angle of the frame.", "0"}};
+
+constexpr FormatKey table[] = {
+    {"file", "text", "", "", "CSV file: comma, point, # comments, a header row of names.", "motor.csv"},
+    {"points", "list of list of quantity", "", "", "Instead of `file`: pairs of time and value.",
+     "[[0 s, 0 deg], [1 s, 90 deg]]"},
+    {"time", "text", "", "first column", "Column of times, with `file`.", "t"},
+    {"value", "text", "", "second column", "Column of values, with `file`.", "angle"},
+    {"time_unit", "text", "", "s", "Unit of the times.", "ms"},
+    {"unit", "text", "", "SI", "Unit of the values.", "deg"},
+    {"interpolation", "'cubic' | 'linear'", "", "cubic", "Spline with continuous second derivative, or lines.",
+     "linear"},
+    {"ends", "'natural' | 'clamped' | 'periodic'", "", "natural",
+     "Second derivative zero, first derivative zero, or periodic.", "clamped"},
+    {"outside", "'hold' | 'repeat' | 'error'", "", "hold", "Before the first and after the last time.", "repeat"}};
+
+constexpr FormatKey force[] = {
+    {"type", "name", "", "required", "force, torque, gravity, or a joint type without rows.", "force"}, use};
+
+constexpr FormatKey applied_force[] = {
+    {"type", "'force'", "", "required", "A force on a point.", "force"},
+    {"at", "frame", "", "required", "Where it acts.", "rod/tip"},
+    {"value", "list of time function", "N", "required", "Components.", "[10 N * sin(t), 0]"},
+    {"axes", "'global' | 'frame'", "", "global", "Axes of the components.", "frame"},
+    use};
+
+constexpr FormatKey applied_torque[] = {{"type", "'torque'", "", "required", "A torque on a body.", "torque"},
+                                        {"on", "name", "", "required", "The body.", "rod"},
+                                        {"value", "time function", "N*m", "required", "Counter-clockwise.", "2 N*m"},
+                                        use};
+
+constexpr FormatKey gravity[] = {
+    {"type", "'gravity'", "", "required", "Another gravity for some bodies.", "gravity"},
+    {"on", "list of name", "", "required", "Bodies; patterns with * are allowed.", "[rod]"},
+    {"value", "vector", "m/s^2", "required", "In place of the model's gravity.", "[0, 0]"},
+    use};
+
+constexpr FormatKey template_keys[] = {
+    {"parameters", "entries of quantity | entries of 'required'", "", "", "Values that hold where `with` gives none.",
+     "{at: 0, l: required}"},
+    {"bodies", "entries of map body", "", "", "As at top level.", "{crank: {mass: 1, inertia: 0.1}}"},
+    {"frames", "entries of frame value", "", "", "As at top level.", "{ground/A: [$at, 0]}"},
+    {"joints", "entries of map joint", "", "", "As at top level.", "{A: {type: TYPE, between: [ground/A, crank]}}"},
+    {"drivers", "entries of map driver", "", "", "As at top level.", "{motor: {joint: A, kind: angle, value: t}}"},
+    {"forces", "entries of map force", "", "", "As at top level.", "{push: {type: torque, on: crank, value: 1}}"}};
+
+constexpr FormatKey instance[] = {
+    {"template", "name", "", "required", "What is copied.", "leg"},
+    {"count", "integer", "", "", "Copies NAME1, NAME2 and so on; without it one copy NAME.", "3"},
+    {"with", "entries of quantity", "", "", "Values of the template's parameters; $i is the copy's number.",
+     "{at: 0.1*$i}"}};
+
+constexpr FormatKey initial[] = {
+    {"joints", "entries of quantity", "rad or m", "", "Coordinates that hold exactly at the start.", "{pin: 30 deg}"},
+    {"speeds", "entries of quantity", "rad/s or m/s", "", "Speeds that hold exactly at the start.", "{pin: 60 rpm}"},
+    {"assembly", "map assembly", "", "", "How the start is found.", "{tolerance: 1e-12}"}};
+
+constexpr FormatKey assembly[] = {
+    {"tolerance", "quantity", "m or rad", "1e-10", "Largest constraint residual.", "1e-12"},
+    {"max_iterations", "integer", "", "50", "Of Newton's method.", "100"}};
+
+constexpr FormatKey simulation[] = {
+    {"start", "quantity", "s", "0", "When the run begins.", "0 s"},
+    {"end", "quantity", "s", "1 s", "When it ends, after its start.", "2 s"},
+    {"step", "quantity | map step", "s", "0.1 ms", "Fixed steps; a map may let the error choose.", "10 us"},
+    {"accuracy", "quantity", "m", "", "In place of `step`: positions err by about this much per second.", "1 um"},
+    {"integrator", "name | map integrator", "", "the preferred one", "`freeplay list integrators` shows them.",
+     "{type: TYPE}"},
+    {"output", "map output", "", "", "Rows and columns of the results.", "{interval: 1 ms}"},
+    {"stop", "list of map stop", "", "", "Conditions that end the run, successfully.",
+     "[{channel: body.rod.y, below: 0 m}]"}};
+
+constexpr FormatKey step[] = {
+    {"size", "quantity", "s", "0.1 ms", "Of fixed steps; where the error chooses, of the first.", "10 us"},
+    {"adaptive", "boolean", "", "false", "The error chooses the steps, and they end where contacts begin and end.",
+     "true"},
+    {"tolerance", "quantity", "", "1e-6", "Error of one step relative to the model, or to the smallest clearance.",
+     "1e-8"},
+    {"min", "quantity", "s", "a thousandth of size", "Smallest step.", "1 ns"},
+    {"max", "quantity", "s", "10 times size", "Largest step.", "1 ms"},
+    {"per_contact", "quantity", "", "20", "Steps that an impact should take.", "40"}};
+
+constexpr FormatKey integrator[] = {
+    {"type", "name", "", "required", "The other keys are the parameters of the type.", "TYPE"}};
+
+constexpr FormatKey output[] = {
+    {"interval", "quantity", "s", "a thousandth of the run", "Between rows.", "1 ms"},
+    {"channels", "list of text", "", "[\"*\"]", "Patterns of the columns; `freeplay list channels FILE` shows all.",
+     "[\"joint.*.fx\", \"energy.*\"]"},
+    {"frames", "list of frame", "", "", "Frames whose pose and velocity are reported.", "[rod/tip]"},
+    {"format", "'csv'", "", "csv", "Of the results.", "csv"},
+    {"discard", "quantity", "s", "0", "Time from the start that statistics leave out.", "5 ms"}};
+
+constexpr FormatKey stop[] = {
+    {"channel", "text", "", "required", "A column of the results.", "body.rod.y"},
+    {"above", "quantity", "of the channel", "", "Ends the run when the channel is above; either this or `below`.",
+     "1 m"},
+    {"below", "quantity", "of the channel", "", "Ends the run when the channel is below.", "0 m"},
+    {"after", "quantity", "s", "", "Not before this time.", "1 ms"}};
+
+constexpr FormatKey analysis[] = {
+    {"frame", "frame", "", "that of the inverse kinematics", "The platform.", "platform"},
+    {"joints", "name | list of name", "", "those of the inverse kinematics", "The inputs.", "leg*.A"},
+    {"elbow", "integer | list of integer", "", "that of the inverse kinematics", "Working modes.", "1"},
+    {"path", "map path", "", "that of the inverse kinematics", "Path of the frame.", "{x: 0.1*t, y: 0, angle: 0}"},
+    {"time", "grid", "s", "the run, 101 points", "Instants on the path.", "{linspace: [0, 1, 101]}"},
+    {"grid", "map pose_grid", "", "", "Poses.", "{x: {linspace: [0, 0.1, 11]}, y: 0}"},
+    {"error", "map error", "", "", "Play that is looked at.", "{input: 0.1 deg}"}};
+
+constexpr FormatKey pose_grid[] = {{"x", "grid", "m", "", "Of the frame.", "{linspace: [0, 0.1, 11]}"},
+                                   {"y", "grid", "m", "", "Of the frame.", "[0, 0.05]"},
+                                   {"angle", "grid", "rad", "0", "Of the frame.", "10 deg"}};
+
+constexpr FormatKey grid[] = {
+    {"linspace", "list of quantity", "", "", "First value, last value, number of points.", "[0, 1, 11]"},
+    {"logspace", "list of quantity", "", "", "First value, last value, number of points.", "[0.01, 1, 3]"},
+    {"list", "list of quantity", "", "", "Values.", "[0, 0.5, 2]"}};
+
+constexpr FormatKey error[] = {
+    {"clearance", "entries of quantity", "m", "that of each joint", "Radius of the play by joint.", "{leg1.B: 0.1 mm}"},
+    {"input", "quantity", "rad", "0", "Error of each driven joint.", "0.1 deg"}};
+
+constexpr FormatKey sweep[] = {
+    {"parameters", "entries of grid", "", "required", "Grid of each parameter.", "{l: {linspace: [0.1, 0.2, 11]}}"},
+    {"combine", "'grid' | 'zip'", "", "grid", "All combinations, or side by side.", "zip"},
+    {"ideal", "name | list of name", "", "", "Joints whose clearance is closed, or all.", "all"},
+    {"reducers", "entries of map reducer", "", "", "What is kept of each run.",
+     "{force: {channel: joint.pin.fx, reduce: absmax}}"}};
+
+constexpr FormatKey reducer[] = {{"channel", "text", "", "required", "A column of the results.", "joint.pin.fx"},
+                                 {"reduce", "'max' | 'min' | 'absmax' | 'mean' | 'rms' | 'final' | 'peak-to-peak'", "",
+                                  "required", "What of the column.", "absmax"},
+                                 {"from", "quantity", "s", "output.discard", "Not before this time.", "5 ms"}};
+
+constexpr FormatMap maps[] = {
+    {"model", "", "The whole file.", model},
+    {"urdf", "urdf", "How a URDF file is read.", urdf},
+    {"body", "bodies.NAME", "A rigid body. Positions are in its body frame.", body},
+    {"ground", "bodies.ground", "What does not move.", ground},
+    {"pose", "bodies.NAME.pose", "Guess of a body's start.", pose},
+    {"velocity", "bodies.NAME.velocity", "Guess of a body's start.", velocity},
+    {"frame", "bodies.NAME.frames.NAME", "A point with axes on a body. A vector alone is its position.", frame},
+    {"joint", "joints.NAME", "A joint; its other keys are the parameters of its type.", joint},
+    {"gear", "joints.NAME", "A gear, or a rack and pinion: it ties two joints.", gear},
+    {"driver", "drivers.NAME", "What moves one joint, or several along a path.", driver},
+    {"inverse_kinematics", "drivers.NAME.inverse_kinematics", "A path that a frame follows.", inverse_kinematics},
+    {"path", "drivers.NAME.inverse_kinematics.path", "Functions of time.", path},
+    {"table", "drivers.NAME.table", "Values over time.", table},
+    {"force", "forces.NAME", "A force element; its other keys depend on its type.", force},
+    {"force force", "forces.NAME", "A force that acts on a point.", applied_force},
+    {"force torque", "forces.NAME", "A torque that acts on a body.", applied_torque},
+    {"force gravity", "forces.NAME", "Gravity of some bodies.", gravity},
+    {"template", "templates.NAME", "A piece of mechanism.", template_keys},
+    {"instance", "instances.NAME", "One or more copies of a template.", instance},
+    {"initial", "initial", "The start.", initial},
+    {"assembly", "initial.assembly", "How the start is found.", assembly},
+    {"simulation", "simulation", "The run.", simulation},
+    {"step", "simulation.step", "Step size.", step},
+    {"integrator", "simulation.integrator", "Integrator and its parameters.", integrator},
+    {"output", "simulation.output", "Results.", output},
+    {"stop", "simulation.stop", "A condition that ends the run.", stop},
+    {"analysis", "analysis", "Analyses of the ideal mechanism.", analysis},
+    {"pose_grid", "analysis.grid", "Poses of the platform.", pose_grid},
+    {"error", "analysis.error", "Play and input errors.", error},
+    {"grid", "where a grid may stand", "Values of one quantity. A list or a single value will do as well.", grid},
+    {"sweep", "sweep", "Many runs.", sweep},
+    {"reducer", "sweep.reducers.NAME", "A number that is kept of each run.", reducer}};
+
+}  // namespace
+
+const FormatKey* FormatMap::find(std::string_view key) const {
+  const auto found = std::ranges::find(keys, key, &FormatKey::name);
+  return found == keys.end() ? nullptr : &*found;
+}
+
+std::span<const FormatMap> format_maps() { return maps; }
+
+const FormatMap& format_map(std::string_view name) {
+  const auto found = std::ranges::find(maps, name, &FormatMap::name);
+  if (found != std::end(maps)) return *found;
+  throw Error(Error::Category::internal, "internal", "the model format has no map '" + std::string(name) + "'");
+}
+
+}  // namespace freeplay

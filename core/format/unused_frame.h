@@ -1,0 +1,13 @@
+// UnusedFrame: frames that nothing stands on.
+#pragma once
+
+#include "format/draft.h"
+
+namespace freeplay {
+
+/// Warns `unused` for every declared frame that no joint, driver, force, output or analysis names; one of a template
+/// counts as used when it is in any instance. Frames of imported robots are left out. Where two joints hold the body at
+/// another of its frames, the warning asks whether one of them is meant here.
+void warn_unused_frames(const Draft& draft);
+
+}  // namespace freeplay

@@ -1,0 +1,126 @@
+#include "load/channel_check.h"
+
+#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "base/name_pattern.h"
+#include "base/suggestion.h"
+#include "base/text.h"
+#include "base/unit.h"
+#include "format/checked_value.h"
+#include "format/name_rule.h"
+#include "model/channel.h"
+#include "model/channel_selection.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t most_comparisons = 50'000'000;  // of patterns with names of channels
+
+std::vector<std::string> channel_names(const Channels& channels) {
+  std::vector<std::string> names;
+  for (const ChannelInfo& channel : channels.all()) names.push_back(channel.name);
+  return names;
+}
+
+/// Place of item `index` of simulation.output.channels; the file where the text does not say it.
+Location pattern_location(const Document& document, std::size_t index) {
+  const Node* node = &document.root();
+  for (const char* key : {"simulation", "output", "channels"}) {
+    node = node->is_map() ? node->find(key) : nullptr;
+    if (node == nullptr) return {document.file_name(), 0, 0};
+  }
+  if (node->is_list() && index < node->items.size()) return node->items[index]->location();
+  return node->location();
+}
+
+/// The columns that a sweep keeps something of. Their section has been checked.
+std::vector<const Node*> reduced_channels(const Document& document) {
+  const Node* node = &document.root();
+  for (const char* key : {"sweep", "reducers"}) {
+    node = node->is_map() ? node->find(key) : nullptr;
+    if (node == nullptr) return {};
+  }
+  std::vector<const Node*> channels;
+  for (const Node::Entry& entry : node->entries) {
+    const Node* channel = !is_note(entry.key->text) && entry.value->is_map() ? entry.value->find("channel") : nullptr;
+    if (channel != nullptr && channel->is_scalar()) channels.push_back(channel);
+  }
+  return channels;
+}
+
+/// A limit must have the dimension of its channel.
+void check_limit(const StopCondition& condition, const ChannelInfo& channel, Diagnostics& diagnostics) {
+  const Dimension wanted = channel.unit.empty() ? dimension::none : parse_unit(channel.unit).dimension;
+  if (fits(condition.quantity, wanted)) return;
+  diagnostics.error(condition.quantity_location, 1, "dimension-mismatch",
+                    fmt::format("the limit of '{}' must be of {}, not of {}", channel.name, dimension_name(wanted),
+                                dimension_name(condition.quantity.dimension)));
+}
+
+/// First words of channels, as `body`.
+std::vector<std::string> kinds_of(const std::vector<std::string>& channels) {
+  std::vector<std::string> kinds;
+  for (const std::string& channel : channels) {
+    const std::string_view word = std::string_view(channel).substr(0, channel.find('.'));
+    if (kinds.empty() || kinds.back() != word) kinds.emplace_back(word);
+  }
+  return kinds;
+}
+
+/// The channel or pattern that was meant: another kind of column where its first word is none.
+std::string nearest_channel(const std::string& name, const std::vector<std::string>& names,
+                            const std::vector<std::string>& kinds) {
+  const std::size_t dot = std::min(name.find('.'), name.size());
+  const std::string kind = name.substr(0, dot);
+  if (std::ranges::find(kinds, kind) != kinds.end()) return is_pattern(name) ? "" : nearest(name, names);
+  const std::string meant = nearest(kind, kinds);
+  return meant.empty() ? "" : meant + name.substr(dot);
+}
+
+}  // namespace
+
+void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
+                    Diagnostics& diagnostics) {
+  const Channels channels(model);
+  const std::vector<std::string> names = channel_names(channels), kinds = kinds_of(names);
+  const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
+    const std::string_view fixed = std::string_view(name).substr(0, name.find('*'));
+    if (std::ranges::any_of(unsure, [&](const std::string& beginning) {
+          return fixed.starts_with(beginning) || (is_pattern(name) && beginning.starts_with(fixed));
+        })) {
+      return;
+    }
+    diagnostics.error(location, character_count(name), "unknown-name", message, nearest_channel(name, names, kinds));
+  };
+  std::unordered_map<std::string_view, const ChannelInfo*> by_name;
+  for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
+  for (const StopCondition& condition : model.settings.stop) {
+    if (const auto known = by_name.find(condition.channel); known != by_name.end()) {
+      check_limit(condition, *known->second, diagnostics);
+      continue;
+    }
+    unknown(condition.location, condition.channel, fmt::format("there is no channel '{}'", condition.channel));
+  }
+  const auto patterns = static_cast<std::size_t>(std::ranges::count_if(model.settings.channels, is_pattern));
+  if (patterns * names.size() > most_comparisons) {
+    diagnostics.error(pattern_location(document, 0), 1, "too-large",
+                      fmt::format("{} patterns for {} channels are too many", patterns, names.size()));
+    return;
+  }
+  for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {
+    const std::string& pattern = model.settings.channels[i];
+    if (!is_pattern(pattern) && by_name.contains(pattern)) continue;
+    if (is_pattern(pattern) && matches_channel(pattern, channels)) continue;
+    unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
+  }
+  for (const Node* channel : reduced_channels(document)) {
+    if (channels.find(channel->text) >= 0) continue;
+    unknown(channel->location(), channel->text, fmt::format("there is no channel '{}'", channel->text));
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,19 @@
+// ChannelCheck: columns that a model file names and that its mechanism must have.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "format/document.h"
+#include "model/model.h"
+
+namespace freeplay {
+
+/// Reports patterns and names of columns in `simulation` and `sweep` that fit none, and limits of another dimension
+/// than their column. Columns are known only when the whole mechanism is, so this comes last; names that begin with one
+/// of `unsure` (of elements that could not be read) are not judged.
+void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
+                    Diagnostics& diagnostics);
+
+}  // namespace freeplay

@@ -1,0 +1,118 @@
+#include "load/load.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "format/model_builder.h"
+#include "load/channel_check.h"
+#include "load/model_file.h"
+#include "load/plugins.h"
+#include "run/simulation.h"
+#include "yaml/document.h"
+
+namespace freeplay {
+namespace {
+
+/// Takes what was thrown while `loaded` was made into its messages.
+void keep(const Error& error, LoadedModel& loaded, bool strict) {
+  if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw error;
+  Diagnostic diagnostic = as_diagnostic(error);
+  if (error.location().file.empty() && loaded.document) diagnostic.location = {loaded.document->file_name(), 0, 0};
+  loaded.exit_code = error.exit_code();
+  if (error.category() == Error::Category::plugin) {
+    // Reported alone: without the plugin the rest of the file cannot be judged.
+    loaded.diagnostics = Diagnostics(strict);
+    loaded.diagnostics.add_source(loaded.document->file_name(), loaded.document->text());
+  }
+  loaded.diagnostics.add(std::move(diagnostic));
+}
+
+using Types = std::function<Registry(const Document&)>;
+using Read = std::function<std::optional<Document>(Diagnostics&)>;
+
+LoadedModel load(const Read& read, const BuildOptions& build, const LoadOptions& options, const Types& types) {
+  LoadedModel loaded{Diagnostics(options.strict), {}, {}, 0};
+  try {
+    loaded.document = read(loaded.diagnostics);
+    if (loaded.document) {
+      const Registry registry = types(*loaded.document);
+      loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics,
+                                 [&](const Model& model, const std::vector<std::string>& unsure) {
+                                   check_channels(model, *loaded.document, unsure, loaded.diagnostics);
+                                 });
+    }
+  } catch (const Error& error) {
+    keep(error, loaded, options.strict);
+  }
+  if (loaded.diagnostics.has_errors() || !loaded.model) {
+    loaded.model.reset();
+    if (loaded.exit_code == 0) loaded.exit_code = 3;
+  } else if (options.note && loaded.model->ideal.empty() && !build.largest_step &&
+             std::ranges::find(build.ideal, "all") != build.ideal.end()) {
+    options.note(
+        fmt::format("--ideal all: no joint of '{}' has clearance, nothing was made ideal", loaded.model->file));
+  }
+  return loaded;
+}
+
+}  // namespace
+
+LoadedModel load_model(const std::string& file, const BuildOptions& build, const LoadOptions& options) {
+  return load([&](Diagnostics& diagnostics) { return read_model(file, diagnostics); }, build, options,
+              [&](const Document& document) { return load_registry(options, &document); });
+}
+
+LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build,
+                      const LoadOptions& options) {
+  return load([&](Diagnostics& diagnostics) { return parse_yaml(std::move(text), file, diagnostics); }, build, options,
+              [&](const Document& document) { return load_registry(options, &document); });
+}
+
+LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build, const Registry& registry) {
+  return load([&](Diagnostics& diagnostics) { return parse_yaml(std::move(text), file, diagnostics); }, build, {},
+              [&](const Document&) { return registry; });
+}
+
+void require_planar(const LoadedModel& loaded, const std::string& what) {
+  if (!loaded.model || loaded.model->space == Space::planar) return;
+  throw Error(Error::Category::input, "type-space",
+              what + " works on planar models only, but '" + loaded.model->file + "' is spatial");
+}
+
+namespace {
+
+/// Warns of starts that could as well be others.
+void judge_start(const StartReport& report, Diagnostics& diagnostics) {
+  for (const TwinStart& twin : report.twins) {
+    diagnostics.warning(twin.location, 1, "ambiguous-start", sentence(twin), {},
+                        fmt::format("give '{}' a `pose` that is nearer to one of them", twin.body));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
+  try {
+    System system(*loaded.model);
+    Start start = assemble(system);
+    require_attainable_accuracy(system);
+    for (const StructureDoubt& doubt : start.structure.doubts) {
+      loaded.diagnostics.warning(doubt.location, doubt.length, doubt.id, doubt.message);
+    }
+    judge_start(start.report, loaded.diagnostics);
+    if (loaded.diagnostics.has_errors()) {  // with --strict
+      loaded.exit_code = 3;
+      return nullptr;
+    }
+    // Not make_unique: clang 14 knows no aggregates in parentheses.
+    return std::unique_ptr<AssembledModel>(new AssembledModel{std::move(system), std::move(start)});
+  } catch (const Error& error) {
+    keep(error, loaded, false);
+    return nullptr;
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,126 @@
+#include "model/channel.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace freeplay {
+
+Channels::Channels(const Model& model) : planar_(model.space == Space::planar) {
+  struct Column {
+    const char *name, *unit;
+  };
+  constexpr Column in_plane[] = {{".x", "m"},    {".y", "m"},    {".angle", "rad"},
+                                 {".vx", "m/s"}, {".vy", "m/s"}, {".omega", "rad/s"}};
+  constexpr Column in_space[] = {{".x", "m"},      {".y", "m"},      {".z", "m"},     {".qw", "1"},   {".qx", "1"},
+                                 {".qy", "1"},     {".qz", "1"},     {".vx", "m/s"},  {".vy", "m/s"}, {".vz", "m/s"},
+                                 {".wx", "rad/s"}, {".wy", "rad/s"}, {".wz", "rad/s"}};
+  time = add("time", "s");
+  const auto pose = [&](const std::string& prefix) {
+    const int first = static_cast<int>(all_.size());
+    for (const Column& column : planar_ ? std::span<const Column>(in_plane) : in_space) {
+      add(prefix + column.name, column.unit);
+    }
+    return first;
+  };
+  for (const Body& body : model.bodies) bodies.push_back(pose("body." + body.name));
+  joints.resize(model.joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!model.joints[j].is_force) joints[j] = add_joint(model.joints[j], "joint." + model.joints[j].name);
+  }
+  add_drivers(model);
+  forces.resize(model.forces.size());
+  for (const ForceElement& element : model.force_elements) {
+    if (element.joint >= 0) {
+      const std::size_t j = static_cast<std::size_t>(element.joint);
+      joints[j] = add_joint(model.joints[j], "force." + model.joints[j].name);
+      continue;
+    }
+    const std::size_t f = static_cast<std::size_t>(element.applied);
+    const std::string prefix = "force." + model.forces[f].name;
+    forces[f].force = add_wrench(prefix);
+    forces[f].power = add(prefix + ".power", "W");
+  }
+  for (const int frame : model.settings.frames) {
+    frames.push_back(pose("frame." + model.markers[static_cast<std::size_t>(frame)].name));
+  }
+  energy.kinetic = add("energy.kinetic", "J");
+  energy.potential = add("energy.potential", "J");
+  energy.dissipated = add("energy.dissipated", "J");
+  energy.work = add("energy.work", "J");
+  energy.residual = add("energy.residual", "J");
+}
+
+JointColumns Channels::add_joint(const JointElement& joint, const std::string& prefix) {
+  JointColumns columns;
+  const auto add_coordinate = [&] {
+    if (joint.layout.coordinate == Coordinate::none) return;
+    const bool angle = joint.layout.coordinate == Coordinate::angle;
+    columns.coordinate = add(prefix + (angle ? ".angle" : ".position"), angle ? "rad" : "m");
+    if (!joint.is_force) columns.speed = add(prefix + ".speed", angle ? "rad/s" : "m/s");
+  };
+  if (!joint.is_force) add_coordinate();
+  columns.force = add_wrench(prefix);
+  if (joint.is_force) {
+    columns.power = add(prefix + ".power", "W");
+    add_coordinate();
+  }
+  columns.own = static_cast<int>(all_.size());
+  for (const Channel& channel : joint.layout.channels) {
+    const int index = add(prefix + "." + channel.name, channel.unit);
+    const std::string_view name = channel.name;
+    // The names that the contract gives a meaning in summaries, whatever type publishes them.
+    if (name == "ex") columns.eccentricity_x = index;
+    if (name == "ey") columns.eccentricity_y = index;
+    if (name == "ez") columns.eccentricity_z = index;
+    if (name == "delta") columns.penetration = index;
+    if (name == "fn") columns.normal_force = index;
+    if (name == "contact") columns.contact = index;
+  }
+  return columns;
+}
+
+int Channels::add_wrench(const std::string& prefix) {
+  const int first = add(prefix + ".fx", "N");
+  add(prefix + ".fy", "N");
+  if (planar_) {
+    add(prefix + ".torque", "N*m");
+    return first;
+  }
+  add(prefix + ".fz", "N");
+  for (const char* moment : {".tx", ".ty", ".tz"}) add(prefix + moment, "N*m");
+  return first;
+}
+
+void Channels::add_drivers(const Model& model) {
+  for (const Driver& driver : model.drivers) {
+    const std::string prefix = "driver." + driver.name;
+    const bool angle = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
+    const bool effort = !prescribes(driver.kind);
+    DriverColumns columns;
+    const bool speed = driver.kind == DriverKind::velocity;
+    const char* prescribed = speed ? (angle ? "rad/s" : "m/s") : (angle ? "rad" : "m");
+    columns.value = add(prefix + ".value", effort ? (angle ? "N*m" : "N") : prescribed);
+    columns.effort = add(prefix + (angle ? ".torque" : ".force"), angle ? "N*m" : "N");
+    columns.power = add(prefix + ".power", "W");
+    drivers.push_back(columns);
+    if (driver.kinematics < 0) continue;
+    const InverseKinematics& entry = model.kinematics[static_cast<std::size_t>(driver.kinematics)];
+    const std::size_t index = static_cast<std::size_t>(driver.kinematics);
+    if (&driver != &model.drivers[static_cast<std::size_t>(entry.first_driver + entry.driver_count - 1)]) continue;
+    if (paths.size() <= index) paths.resize(index + 1);
+    const std::string path = "driver." + entry.name;
+    paths[index] = {add(path + ".ex", "m"), add(path + ".ey", "m"), add(path + ".eangle", "rad")};
+  }
+}
+
+int Channels::add(std::string name, const char* unit) {
+  all_.push_back({std::move(name), unit});
+  return static_cast<int>(all_.size()) - 1;
+}
+
+int Channels::find(std::string_view name) const {
+  const auto found = std::ranges::find(all_, name, &ChannelInfo::name);
+  return found == all_.end() ? -1 : static_cast<int>(found - all_.begin());
+}
+
+}  // namespace freeplay

@@ -1,0 +1,58 @@
+#include "results/contact_advice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace freeplay {
+
+ContactAdvice::ContactAdvice(const Model& model)
+    : from_(model.settings.start + model.settings.discard), per_contact_(model.settings.per_contact) {
+  for (const JointElement& joint : model.joints) {
+    auto& events = fields_.emplace_back();
+    joints_.emplace_back().fewest_steps.fill(std::numeric_limits<double>::infinity());
+    for (const Event& event : joint.layout.events) {
+      Fields& fields = events.emplace_back();
+      const bool begins = std::string_view(event.name).ends_with("contact_begin");
+      for (std::size_t i = 0; i < event.fields.size; ++i) {
+        if (event.fields[i].name == std::string_view("duration")) fields.duration = static_cast<int>(i);
+        if (event.fields[i].name == std::string_view("steps")) fields.steps = static_cast<int>(i);
+        if (event.fields[i].name == std::string_view("max_fn")) fields.force = static_cast<int>(i);
+        if (event.fields[i].name == std::string_view("speed") && begins) fields.speed = static_cast<int>(i);
+      }
+    }
+  }
+}
+
+double ContactAdvice::fewest_steps_of_hard() const {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (const OfJoint& joint : joints_) {
+    const auto hardest = std::find_if(joint.fewest_steps.rbegin(), joint.fewest_steps.rend(),
+                                      [](double steps) { return std::isfinite(steps); });
+    if (hardest != joint.fewest_steps.rend()) fewest = std::fmin(fewest, *hardest);
+  }
+  return fewest;
+}
+
+void ContactAdvice::event(const EventRecord& record) {
+  const Fields& at = fields_[static_cast<std::size_t>(record.joint)][static_cast<std::size_t>(record.event)];
+  OfJoint& joint = joints_[static_cast<std::size_t>(record.joint)];
+  if (at.speed >= 0) joint.speed = std::fmax(joint.speed, record.fields[static_cast<std::size_t>(at.speed)]);
+  if (at.duration < 0 || at.steps < 0 || record.time < from_) return;
+  const double steps = record.fields[static_cast<std::size_t>(at.steps)];
+  const double duration = record.fields[static_cast<std::size_t>(at.duration)];
+  if (std::isnan(steps)) return;
+  ++ended_;
+  fewest_steps_ = std::fmin(fewest_steps_, steps);
+  if (at.force >= 0) {
+    const double force = record.fields[static_cast<std::size_t>(at.force)];
+    const double decade = force > 0.0 ? std::floor(std::log10(force)) + 9.0 : 0.0;
+    double& fewest = joint.fewest_steps[static_cast<std::size_t>(std::clamp(decade, 0.0, decades - 1.0))];
+    fewest = std::fmin(fewest, steps);
+  }
+  if (steps >= per_contact_) return;
+  ++under_resolved_;
+  step_ = std::fmin(step_, duration / per_contact_);
+}
+
+}  // namespace freeplay

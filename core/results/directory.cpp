@@ -1,0 +1,108 @@
+#include "results/directory.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/whole_file.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* own_files[] = {"results.csv", "results.h5", "summary.json",   "events.csv", "model.yaml",
+                                     "model.urdf",  "inputs",     "checkpoint.bin", "run.log"};
+
+[[noreturn]] void fail(std::string message, std::string hint = {}) {
+  throw Error(Error::Category::file, "cannot-write", std::move(message), {}, std::move(hint));
+}
+
+void require(const std::error_code& error, const char* what, const fs::path& path) {
+  if (error) fail(fmt::format("cannot {} '{}': {}", what, path.string(), error.message()));
+}
+
+bool holds_result(const fs::path& path) {
+  std::ifstream file(path / "summary.json");
+  if (!file) return false;
+  const Json summary = Json::parse(file, nullptr, false);
+  return summary.is_object() && summary.contains("freeplay") && summary["freeplay"].is_object() &&
+         summary["freeplay"].contains("schema");
+}
+
+/// What a run leaves that was ended before it could write its summary: its log and nothing but files of a result.
+bool holds_unfinished_result(const fs::path& path) {
+  std::error_code error;
+  bool log = false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool part = name.starts_with('.') && name.ends_with(".part");
+    if (!part && std::ranges::find(own_files, name) == std::end(own_files)) return false;
+    log = log || name == "run.log";
+  }
+  return log && !error;
+}
+
+}  // namespace
+
+std::string result_name(std::string_view model_name, bool ideal) {
+  std::string name;
+  bool leading = true;
+  for (const char c : model_name) {
+    leading = leading && c == '.';
+    const bool plain = (static_cast<unsigned char>(c) < 128 && std::isalnum(static_cast<unsigned char>(c)) != 0) ||
+                       c == '_' || c == '.' || c == '-';
+    // One '_' for each character, not for each byte of it.
+    if ((static_cast<unsigned char>(c) & 0xC0U) == 0x80U) continue;
+    name += plain && !leading ? c : '_';
+  }
+  return ideal ? name + "-ideal" : name;
+}
+
+void check_result_directory(const fs::path& path, bool force) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) return;
+  require(error, "use", path);
+  if (status.type() != fs::file_type::directory) fail(fmt::format("'{}' is not a directory", path.string()));
+  const bool empty = fs::is_empty(path, error);
+  require(error, "read", path);
+  if (empty || force || holds_result(path)) return;
+  if (holds_unfinished_result(path)) {
+    fail(fmt::format("'{}' holds the result of a run that did not end: it has no summary.json", path.string()),
+         "if that run is not going on, replace it with --force, or choose another directory with --out");
+  }
+  fail(fmt::format("'{}' holds other files than a result", path.string()),
+       "choose another directory with --out, or write beside them with --force");
+}
+
+ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(path)) {
+  check_result_directory(path_, force);
+  std::error_code error;
+  fs::create_directories(path_, error);
+  require(error, "make the directory", path_);
+  for (const char* name : own_files) {
+    fs::remove_all(path_ / name, error);
+    require(error, "remove", path_ / name);
+  }
+}
+
+void ResultDirectory::write(std::string_view name, std::string_view text) const {
+  write_whole_file(path_ / name, text);
+}
+
+std::vector<std::string> ResultDirectory::files() const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace freeplay

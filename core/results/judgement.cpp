@@ -1,0 +1,264 @@
+#include "results/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "run/motion_period.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Limits of a number from which on a run is doubtful and bad. docs/trust.md says where they come from.
+struct Limits {
+  double doubtful, bad;
+};
+constexpr Limits of_energy{1e-2, 1e-1};     // residual by what was moved
+constexpr double part_of_kinetic = 0.1;     // of the largest kinetic energy counts as moved
+constexpr double least_energy = 1e-6;       // by masses lifted by the model's size, or crossing it in the run
+constexpr Limits of_position{1e-6, 1e-3};   // residual of the constraints by the model's size
+constexpr double fewest_steps = 10.0;       // of a hard impact
+constexpr Limits of_radius{1e-2, 1e-1};     // penetration by the smaller radius
+constexpr double of_clearance = 1.0;        // penetration by the clearance
+constexpr double of_strength = 0.1;         // mean pressure by that at which a run ends
+constexpr double typical_density = 7800.0;  // steel [kg/m^3]
+constexpr Limits of_sound{2e-3, 1e-1};      // approach speed by that of sound
+constexpr double of_reach = 1.1;            // distance by what the lengths allow
+constexpr Limits of_drives{1e3, 1e6};       // force of a joint by those that drive and move the mechanism
+constexpr double singular = 1e-8;           // regularity: 1e-4 of the way to a singular position
+constexpr double most_play = 0.1;           // clearance by the model's size
+constexpr double fewest_impacts = 10.0;     // in a window of statistics without a period
+constexpr double longest_period = 20.0;     // looked for, by the length of the run
+
+/// One reason, if `value` passes a limit.
+void judge(double value, const Limits& limits, TrustReason reason, Verdict& verdict) {
+  if (!(value > limits.doubtful)) return;
+  reason.level = value > limits.bad ? Trust::bad : Trust::doubtful;
+  reason.value = value;
+  reason.limit = value > limits.bad ? limits.bad : limits.doubtful;
+  verdict.add(std::move(reason));
+}
+
+std::string name(const JointElement& joint) { return fmt::format("joint '{}'", joint.name); }
+
+double mass(const Model& model) {
+  double sum = 0.0;
+  for (const Body& body : model.bodies) sum += body.mass;
+  return sum;
+}
+double weight(const Model& model) {
+  double sum = 0.0;
+  for (const Body& body : model.bodies)
+    sum += body.mass * std::hypot(body.gravity[0], body.gravity[1], body.gravity[2]);
+  return sum;
+}
+
+void judge_end(const RunRecord& record, Verdict& verdict) {
+  const Outcome& outcome = record.outcome;
+  if (outcome.status != RunStatus::failed || verdict.level() == Trust::bad) return;
+  verdict.add(
+      {.id = "run-failed",
+       .level = Trust::bad,
+       .message = fmt::format("the run failed at t = {:.9g} s, and what came just before may be wrong", outcome.time)});
+}
+
+void judge_energy(const RunRecord& record, Verdict& verdict) {
+  const RunExtremes& seen = record.extremes;
+  const double time = record.outcome.time - record.model.settings.start, size = seen.size;
+  const double speed = time > 0.0 ? size / time : 0.0;
+  const double least = least_energy * (weight(record.model) * size + mass(record.model) * speed * speed);
+  const double moved = seen.kinetic.span() + seen.potential.span() +
+                       std::max(std::abs(seen.work.least), std::abs(seen.work.most)) +
+                       std::max(0.0, seen.dissipated.most) + part_of_kinetic * seen.kinetic.most;
+  if (!std::isfinite(moved)) return;  // no row was seen
+  const double part = seen.residual / std::max(moved, least);
+  std::string text = fmt::format("the energy residual of {:.2g} J is {:.3g} % of the {:.3g} J that were moved",
+                                 seen.residual, 100.0 * part, std::max(moved, least));
+  if (seen.least_regularity < singular) {
+    text += fmt::format("; a singular position was passed at t = {:.6g} s", seen.singular_time);
+  } else {
+    text += fmt::format("; most of it came from t = {:.4g} s on", seen.residual_time);
+  }
+  judge(part, of_energy, {.id = "energy-residual", .level = {}, .message = text}, verdict);
+}
+
+void judge_constraints(const RunRecord& record, Verdict& verdict) {
+  const double residual = record.statistics.position_residual(), part = residual / record.extremes.size;
+  judge(part, of_position,
+        {.id = "constraint-residual",
+         .level = {},
+         .message = fmt::format("joints are up to {:.2g} m apart where they should hold", residual)},
+        verdict);
+}
+
+void judge_steps_per_impact(const RunRecord& record, Verdict& verdict) {
+  const double steps = record.advice.fewest_steps_of_hard();
+  if (!(steps < fewest_steps)) return;
+  verdict.add({.id = "impact-steps",
+               .level = Trust::doubtful,
+               .message = fmt::format("a hard impact took {:g} steps, fewer than {:g}", steps, fewest_steps),
+               .value = steps,
+               .limit = fewest_steps});
+}
+
+void judge_redundancy(const RunRecord& record, Verdict& verdict) {
+  const int redundant = record.facts.actual.redundant;
+  if (redundant <= 0) return;
+  verdict.add({.id = "undetermined-forces",
+               .level = Trust::doubtful,
+               .message = fmt::format("{} of the constraints follow{} from the others: how forces are shared among the "
+                                      "joints in these loops is not determined, and the least ones are shown",
+                                      redundant, redundant == 1 ? "s" : ""),
+               .value = static_cast<double>(redundant),
+               .limit = 0.0});
+}
+
+void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
+  const JointElement& joint = record.model.joints[at(j)];
+  const JointLayout& layout = joint.layout;
+  const JointStatistics seen = record.statistics.joint(j);
+  const double depth = seen.max_penetration, radius = layout.smaller_radius;
+  if (radius > 0.0 && layout.clearance > most_play * record.extremes.size) {
+    verdict.add({.id = "clearance-size",
+                 .level = Trust::doubtful,
+                 .message = fmt::format("{}: its clearance of {:.3g} m is no play in a mechanism of {:.2g} m",
+                                        name(joint), layout.clearance, record.extremes.size),
+                 .element = name(joint),
+                 .value = layout.clearance,
+                 .limit = most_play * record.extremes.size});
+  }
+  const auto deep = [&](const char* of, double length) {
+    return TrustReason{.id = "penetration",
+                       .level = {},
+                       .message = fmt::format("{}: its surfaces are up to {:.2g} m deep in each other, {:.2g} times {}",
+                                              name(joint), depth, depth / length, of),
+                       .element = name(joint)};
+  };
+  const std::size_t before = verdict.reasons().size();
+  if (radius > 0.0) judge(depth / radius, of_radius, deep("the smaller radius", radius), verdict);
+  if (verdict.reasons().size() == before) {
+    judge(depth / layout.clearance, {of_clearance, unbounded}, deep("the clearance", layout.clearance), verdict);
+  }
+  const double length = layout.contact_length > 0.0 ? layout.contact_length : 2.0 * radius;
+  const double pressure = seen.max_normal_force / (2.0 * radius * length);
+  judge(pressure / (trust::ideal_strength * layout.contact_modulus), {of_strength, 1.0},
+        {.id = "material-strength",
+         .level = {},
+         .message = fmt::format("{}: {:.3g} N press with {:.2g} Pa on average, more than a hundredth of E*",
+                                name(joint), seen.max_normal_force, pressure),
+         .element = name(joint)},
+        verdict);
+  const double sound = std::sqrt(layout.contact_modulus / typical_density), speed = record.advice.approach_speed(j);
+  judge(
+      speed / sound, of_sound,
+      {.id = "impact-speed",
+       .level = {},
+       .message = fmt::format("{}: surfaces meet with {:.3g} m/s, {:.2g} % of the speed of sound; impacts so fast are "
+                              "not elastic",
+                              name(joint), speed, 100.0 * speed / sound),
+       .element = name(joint)},
+      verdict);
+}
+
+void judge_contacts(const RunRecord& record, Verdict& verdict) {
+  for (int j = 0; j < static_cast<int>(record.model.joints.size()); ++j) {
+    const bool touches = has_contact_statistics(record.channels.joints[at(j)]);
+    if (touches && record.model.joints[at(j)].layout.clearance > 0.0) judge_contact(record, j, verdict);
+  }
+}
+
+void judge_reach(const RunRecord& record, Verdict& verdict) {
+  const RunExtremes& seen = record.extremes;
+  if (!(seen.beyond_reach > of_reach)) return;
+  const std::string body = fmt::format("body '{}'", record.model.bodies[at(seen.farthest_body)].name);
+  verdict.add({.id = "out-of-reach",
+               .level = Trust::bad,
+               .message = fmt::format("{} was {:.3g} times as far away as the lengths of its joints and links allow",
+                                      body, seen.beyond_reach),
+               .element = body,
+               .value = seen.beyond_reach,
+               .limit = of_reach});
+}
+
+/// The largest force of a constraint against everything that moves the mechanism: weights, applied forces and contacts,
+/// prescribed motions times the masses, and the kinetic energy of the other parts of the run over the model's size.
+void judge_largest_force(const RunRecord& record, Verdict& verdict) {
+  const RunExtremes& seen = record.extremes;
+  if (seen.row_force_joint < 0) return;
+  const auto peak = std::ranges::max_element(seen.part_force);
+  double kinetic = 0.0;
+  for (std::size_t i = 0; i < RunExtremes::parts; ++i) {
+    if (&seen.part_force[i] != &*peak) kinetic = std::max(kinetic, seen.part_kinetic[i]);
+  }
+  const double drives = std::max({weight(record.model), seen.applied_force, seen.drive_effort,
+                                  mass(record.model) * seen.drive_motion, kinetic / seen.size});
+  if (!(drives > 0.0)) return;
+  const JointElement& joint = record.model.joints[at(seen.row_force_joint)];
+  judge(seen.row_force / drives, of_drives,
+        {.id = "largest-force",
+         .level = {},
+         .message = fmt::format("{}: {:.3g} N at t = {:.6g} s are {:.2g} times what drives, weights, loads and inertia "
+                                "come to: the mechanism is close to a singular position, or the numbers are",
+                                name(joint), seen.row_force, seen.row_force_time, seen.row_force / drives),
+         .element = name(joint)},
+        verdict);
+}
+
+void judge_window(const RunRecord& record, Verdict& verdict) {
+  const Settings& settings = record.model.settings;
+  const double from = settings.start + settings.discard, window = record.outcome.time - from;
+  if (record.model.bodies.empty() || record.outcome.status == RunStatus::failed) return;
+  if (!(window > 0.0)) {
+    verdict.add({.id = "statistics-window",
+                 .level = Trust::doubtful,
+                 .message = "the run ended before its statistics began: 'discard' leaves nothing",
+                 .value = std::max(window, 0.0),
+                 .limit = 0.0});
+    return;
+  }
+  double longest = 0.0;
+  const Driver* slowest = nullptr;
+  for (const Driver& driver : record.model.drivers) {
+    const auto period = motion_period(record.model, driver, from, longest_period * (settings.end - settings.start));
+    if (period && *period > longest) longest = *period, slowest = &driver;
+  }
+  if (slowest != nullptr) {
+    if (window >= longest * (1.0 - 1e-6)) return;
+    verdict.add({.id = "statistics-window",
+                 .level = Trust::doubtful,
+                 .message = fmt::format("statistics cover {:.3g} s, less than the period of {:.3g} s of driver '{}'",
+                                        window, longest, slowest->name),
+                 .element = fmt::format("driver '{}'", slowest->name),
+                 .value = window,
+                 .limit = longest});
+    return;
+  }
+  // Without a period what was left out at the start says that a lasting state is looked for.
+  const auto impacts = static_cast<double>(record.statistics.contacts());
+  if (settings.discard == 0.0 || record.statistics.contacts_total() == 0 || impacts >= fewest_impacts) return;
+  verdict.add({.id = "statistics-window",
+               .level = Trust::doubtful,
+               .message = fmt::format("statistics from {:.3g} s on hold {:g} impacts, fewer than {:g}", from, impacts,
+                                      fewest_impacts),
+               .value = impacts,
+               .limit = fewest_impacts});
+}
+
+}  // namespace
+
+void judge(const RunRecord& record, Verdict& verdict) {
+  judge_end(record, verdict);
+  judge_energy(record, verdict);
+  judge_constraints(record, verdict);
+  judge_redundancy(record, verdict);
+  judge_contacts(record, verdict);
+  judge_steps_per_impact(record, verdict);
+  judge_reach(record, verdict);
+  judge_largest_force(record, verdict);
+  judge_window(record, verdict);
+}
+
+}  // namespace freeplay

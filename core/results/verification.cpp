@@ -1,0 +1,166 @@
+#include "results/verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace freeplay {
+namespace {
+
+constexpr double sure = 30.0;      // differences that the second method does not explain, over those that it does
+constexpr double loud = 10.0;      // limits
+constexpr double loud_way = 0.01;  // of the farthest way, with fixed steps
+constexpr double chaotic = 30.0;   // limits, by which runs of one method part
+constexpr double same_peak = 0.1;  // of the larger one
+constexpr double negligible_peak = 1e-6;  // of the largest of the same kind
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+struct Moments {
+  double squares = 0.0, largest = 0.0;
+  std::size_t count = 0;
+
+  void add(double x) {
+    if (std::isnan(x)) return;
+    squares += x * x;
+    largest = std::max(largest, std::abs(x));
+    ++count;
+  }
+  double rms() const { return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : none; }
+  double maximum() const { return count > 0 ? largest : none; }
+};
+
+/// Rows of both at the same times: a run that a condition stops ends with one of its own.
+std::size_t common_rows(const ResultTable& a, const ResultTable& b) {
+  const std::vector<double>&x = a.time(), &y = b.time();
+  const double same = x.size() < 2 ? 0.0 : 1e-9 * (x[1] - x[0]);
+  std::size_t rows = 0;
+  while (rows < std::min(x.size(), y.size()) && std::abs(x[rows] - y[rows]) <= same) ++rows;
+  return rows;
+}
+
+/// Largest difference of the positions, by row.
+std::vector<double> differences(const ResultTable& a, const ResultTable& b, const VerificationRules& rules) {
+  std::vector<double> largest(common_rows(a, b), 0.0);
+  for (const std::string& name : rules.positions) {
+    const int i = a.find(name), k = b.find(name);
+    if (i < 0 || k < 0) continue;
+    for (std::size_t r = 0; r < largest.size(); ++r) {
+      const double off = std::abs(a.values[static_cast<std::size_t>(i)][r] - b.values[static_cast<std::size_t>(k)][r]);
+      if (off > largest[r]) largest[r] = off;
+    }
+  }
+  return largest;
+}
+
+double limit_at(const ResultTable& table, std::size_t row, const VerificationRules& rules) {
+  return rules.limit * std::max(1.0, table.time()[row] - table.time().front());
+}
+
+/// How far the body that goes farthest does, in one direction.
+double farthest_way(const ResultTable& table, const VerificationRules& rules) {
+  double way = 0.0;
+  for (const std::string& name : rules.positions) {
+    const int i = table.find(name);
+    if (i < 0 || table.time().empty()) continue;
+    const auto [low, high] = std::ranges::minmax_element(table.values[static_cast<std::size_t>(i)]);
+    way = std::max(way, *high - *low);
+  }
+  return way;
+}
+
+/// What peaks are compared with: the largest of their kind, which is told by the last word of the name.
+double largest_of_kind(std::span<const PeakPair> peaks, const std::string& name) {
+  const auto kind = [](const std::string& text) { return text.substr(text.rfind(' ') + 1); };
+  double largest = 0.0;
+  for (const PeakPair& peak : peaks) {
+    if (kind(peak.name) == kind(name))
+      largest = std::fmax(largest, std::fmax(std::abs(peak.run), std::abs(peak.second)));
+  }
+  return largest;
+}
+
+void compare_peaks(const RunResult& run, const RunResult& second, Verification& out) {
+  for (std::size_t i = 0; i < std::min(run.peaks.size(), second.peaks.size()); ++i) {
+    out.peaks.push_back({run.peaks[i].name, run.peaks[i].value, second.peaks[i].value});
+  }
+  for (PeakPair& peak : out.peaks) {
+    const double larger = std::fmax(std::abs(peak.run), std::abs(peak.second));
+    const double off = std::abs(peak.run - peak.second);
+    peak.differs = off > same_peak * larger && off > negligible_peak * largest_of_kind(out.peaks, peak.name);
+  }
+}
+
+}  // namespace
+
+Verification compare_runs(const RunResult& run, const RunResult& second, const VerificationRules& rules) {
+  const ResultTable &a = *run.rows, &b = *second.rows;
+  Verification out;
+  out.limit = rules.limit;
+  const std::vector<double> off = differences(a, b, rules);
+  std::size_t agreeing = 0;
+  while (agreeing < off.size() && off[agreeing] <= limit_at(a, agreeing, rules)) ++agreeing;
+  out.agree_until = agreeing > 0 ? a.time()[agreeing - 1] : (a.time().empty() ? 0.0 : a.time().front());
+  out.until = off.empty() ? 0.0 : a.time()[off.size() - 1];
+  if (const auto worst = std::ranges::max_element(off); worst != off.end()) {
+    out.largest = *worst;
+    out.at = a.time()[static_cast<std::size_t>(worst - off.begin())];
+  }
+  for (std::size_t c = 1; c < a.names.size(); ++c) {
+    ChannelError channel{.name = a.names[c]};
+    Moments first, other;
+    for (std::size_t r = 0; r < off.size(); ++r) {
+      const double x = a.values[c][r], y = b.values[c][r];
+      if (r >= agreeing) {
+        first.add(x);
+        other.add(y);
+      } else if (std::abs(x - y) > channel.error) {
+        channel.error = std::abs(x - y);
+      }
+    }
+    channel.rms = first.rms();
+    channel.second_rms = other.rms();
+    channel.largest = first.maximum();
+    channel.second_largest = other.maximum();
+    out.channels.push_back(std::move(channel));
+  }
+  compare_peaks(run, second, out);
+  const bool good = agreeing == off.size() && std::ranges::none_of(out.peaks, &PeakPair::differs);
+  out.agreement = good ? Agreement::agree : Agreement::err;
+  return out;
+}
+
+void judge(Verification& verification, const RunResult& run, const RunResult& second, const RunResult& third,
+           const VerificationRules& rules) {
+  const std::vector<double> off = differences(*run.rows, *second.rows, rules);
+  const std::vector<double> explained = differences(*second.rows, *third.rows, rules);
+  const double way = farthest_way(*second.rows, rules);
+  double spread = 0.0;
+  bool parts = false, explains = false;
+  for (std::size_t r = 0; r < std::min(off.size(), explained.size()); ++r) {
+    const double limit = limit_at(*run.rows, r, rules);
+    spread = std::max(spread, explained[r]);
+    parts = parts || spread > chaotic * limit;
+    // Fixed steps may err much more at first than the second method does: they part earlier.
+    explains = explains || spread > (rules.fixed ? limit : chaotic * limit);
+    const double heard = rules.fixed ? std::max(loud * limit, loud_way * way) : loud * limit;
+    if (!explains && off[r] > heard && off[r] > sure * spread) {
+      verification.agreement = Agreement::disagree;
+      return;
+    }
+  }
+  if (parts) {
+    verification.agreement = Agreement::part;
+    return;
+  }
+  for (std::size_t i = 0; i < std::min(verification.peaks.size(), third.peaks.size()); ++i) {
+    const PeakPair& peak = verification.peaks[i];
+    const double by_method = std::abs(peak.second - third.peaks[i].value);
+    if (peak.differs && 5.0 * by_method < std::abs(peak.run - peak.second)) {
+      verification.agreement = Agreement::disagree;
+      return;
+    }
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,165 @@
+#include "run/watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "run/reach.h"
+
+namespace freeplay {
+namespace {
+constexpr double look_again = 1.21;  // where the square of a force has grown so much since the last look
+constexpr double unmoved = 1e-6;     // of the clearance
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+RunWatch::RunWatch(const System& system, const Channels& channels)
+    : system_(system), channels_(channels), planar_(system.model().space == Space::planar) {
+  const Model& model = system.model();
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointLayout& layout = system.joint_layout(j);
+    has_rows_.push_back(layout.constraint_rows > 0 && model.joints[at(j)].gear < 0 ? 1 : 0);
+    if (!(layout.clearance > 0.0) || channels.joints[at(j)].penetration < 0) continue;
+    const bool known = layout.smaller_radius > 0.0;
+    const double radius = known ? layout.smaller_radius : trust::radius_by_clearance * layout.clearance;
+    // Without a length the contact is taken to be as long as it is wide.
+    const double length = layout.contact_length > 0.0 ? layout.contact_length : 2.0 * radius;
+    const bool strength_known = known && layout.contact_modulus > 0.0;
+    contacts_.push_back({.joint = j,
+                         .penetration = channels.joints[at(j)].penetration,
+                         .play = layout.clearance,
+                         .deepest = layout.clearance + radius,
+                         .strongest = strength_known
+                                          ? trust::ideal_strength * layout.contact_modulus * 2.0 * radius * length
+                                          : unbounded});
+  }
+  const std::vector<double> reached = reach(model);
+  for (int b = 0; b < static_cast<int>(reached.size()); ++b) {
+    if (const double far = reached[at(b)]; far < unbounded && far > 0.0)
+      reaches_.push_back({b, channels.bodies[at(b)], 1.0 / (far * far)});
+  }
+  seen_.size = system.size();
+}
+
+int RunWatch::add(std::span<const double> row, const Evaluation& e) {
+  const Settings& settings = system_.model().settings;
+  const double passed = (row[at(channels_.time)] - settings.start) / (settings.end - settings.start);
+  const double last = static_cast<double>(RunExtremes::parts - 1);
+  const auto part = static_cast<std::size_t>(std::clamp(passed * (last + 1.0), 0.0, last));
+  add_energy(row, part);
+  add_forces(row, part);
+  add_drivers(row, e);
+  add_places(row);
+  int found = -1;
+  for (Contact& contact : contacts_) {
+    const double squared = force_squared(e, contact.joint);
+    contact.depth.add(row[at(contact.penetration)]);
+    contact.due = std::max(contact.due, look_again * squared);
+    const bool senseless =
+        row[at(contact.penetration)] > contact.deepest || squared > contact.strongest * contact.strongest;
+    if (senseless && found < 0) found = contact.joint;
+  }
+  return found;
+}
+
+void RunWatch::add_energy(std::span<const double> row, std::size_t part) {
+  const EnergyColumns& columns = channels_.energy;
+  const double kinetic = row[at(columns.kinetic)], residual = std::abs(row[at(columns.residual)]);
+  seen_.kinetic.add(kinetic);
+  seen_.potential.add(row[at(columns.potential)]);
+  seen_.work.add(row[at(columns.work)]);
+  seen_.dissipated.add(row[at(columns.dissipated)]);
+  seen_.part_kinetic[part] = std::max(seen_.part_kinetic[part], kinetic);
+  if (!(residual > seen_.residual)) return;
+  if (residual > 2.0 * seen_.residual) seen_.residual_time = row[at(channels_.time)];
+  seen_.residual = residual;
+}
+
+void RunWatch::add_places(std::span<const double> row) {
+  double farthest = seen_.beyond_reach * seen_.beyond_reach;
+  for (const Reach& reach : reaches_) {
+    const double* place = &row[at(reach.column)];
+    const double squared = place[0] * place[0] + place[1] * place[1] + (planar_ ? 0.0 : place[2] * place[2]);
+    if (!(squared * reach.inverse_squared > farthest)) continue;
+    farthest = squared * reach.inverse_squared;
+    seen_.farthest_body = reach.body;
+  }
+  seen_.beyond_reach = std::sqrt(farthest);
+}
+
+void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
+  const auto squared = [&](int column) {
+    const double* f = &row[at(column)];
+    return f[0] * f[0] + f[1] * f[1] + (planar_ ? 0.0 : f[2] * f[2]);
+  };
+  double of_rows = 0.0, others = 0.0;
+  int joint = -1;
+  for (std::size_t j = 0; j < has_rows_.size(); ++j) {
+    const double force = squared(channels_.joints[j].force);
+    if (has_rows_[j] == 0) {
+      others = std::max(others, force);
+    } else if (force > of_rows) {
+      of_rows = force, joint = static_cast<int>(j);
+    }
+  }
+  for (const ForceColumns& force : channels_.forces) others = std::max(others, squared(force.force));
+  of_rows = std::sqrt(of_rows);
+  seen_.applied_force = std::max(seen_.applied_force, std::sqrt(others));
+  seen_.part_force[part] = std::max(seen_.part_force[part], of_rows);
+  if (of_rows > seen_.row_force) {
+    seen_.row_force = of_rows;
+    seen_.row_force_joint = joint;
+    seen_.row_force_time = row[at(channels_.time)];
+  }
+}
+
+void RunWatch::add_drivers(std::span<const double> row, const Evaluation& e) {
+  const Model& model = system_.model();
+  for (std::size_t d = 0; d < model.drivers.size(); ++d) {
+    const Driver& driver = model.drivers[d];
+    const bool turns = system_.joint_layout(driver.joint).coordinate == Coordinate::angle;
+    if (!prescribes(driver.kind)) {
+      const double effort = std::abs(row[at(channels_.drivers[d].effort)]);
+      seen_.drive_effort = std::max(seen_.drive_effort, turns ? effort / seen_.size : effort);
+      continue;
+    }
+    const double rate = e.motion[d].rate, second = std::abs(e.motion[d].acceleration);
+    const double motion = turns ? seen_.size * (second + rate * rate) : second + rate * rate / seen_.size;
+    seen_.drive_motion = std::max(seen_.drive_motion, motion);
+  }
+}
+
+bool RunWatch::never_moved(int joint) const {
+  const auto contact = std::ranges::find(contacts_, joint, &Contact::joint);
+  if (contact == contacts_.end() || !(contact->depth.most < 0.0)) return false;
+  return contact->depth.span() <= unmoved * system_.joint_layout(joint).clearance;
+}
+
+TrustReason RunWatch::why(int joint, std::span<const double> row) const {
+  const auto contact = std::ranges::find(contacts_, joint, &Contact::joint);
+  const JointLayout& layout = system_.joint_layout(joint);
+  TrustReason reason{.id = {}, .level = Trust::bad, .message = {}};
+  reason.element = fmt::format("joint '{}'", system_.model().joints[at(joint)].name);
+  const double penetration = row[at(contact->penetration)];
+  if (penetration > contact->deepest) {
+    reason.id = "penetration";
+    reason.value = penetration, reason.limit = contact->deepest;
+    const char* what = layout.smaller_radius > 0.0 ? "clearance and smaller radius together" : "a thousand clearances";
+    reason.message =
+        fmt::format("{} at t = {:.9g} s: its surfaces are {:.3g} m deep in each other, more than {} ({:.3g} m)",
+                    reason.element, row[at(channels_.time)], penetration, what, contact->deepest);
+    return reason;
+  }
+  const int column = channels_.joints[at(joint)].force;
+  const double force = std::hypot(row[at(column)], row[at(column + 1)], planar_ ? 0.0 : row[at(column + 2)]);
+  reason.id = "material-strength";
+  reason.value = force, reason.limit = contact->strongest;
+  reason.message = fmt::format(
+      "{} at t = {:.9g} s: a force of {:.3g} N presses with more than a tenth of the elastic "
+      "modulus E* = {:.3g} Pa, which no material bears",
+      reason.element, row[at(channels_.time)], force, layout.contact_modulus);
+  return reason;
+}
+
+}  // namespace freeplay

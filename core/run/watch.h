@@ -1,0 +1,115 @@
+// RunWatch: what a run must remember of itself to be judged, and what ends it because going on makes no sense.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/channel.h"
+#include "run/trust.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Limits of docs/trust.md that are looked at while the run goes on.
+namespace trust {
+/// A bearing is at most so many times as large as its play: stands for a radius that is not known.
+inline constexpr double radius_by_clearance = 1000.0;
+/// Mean pressure F/(2 R L) by E*: beyond the strength that a perfect crystal would have (Frenkel 1926: about G/2 pi).
+inline constexpr double ideal_strength = 0.1;
+}  // namespace trust
+
+/// Largest values over a run, from its start on and whatever `discard` says.
+struct RunExtremes {
+  struct Range {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    void add(double x) {
+      if (x < least) least = x;
+      if (x > most) most = x;
+    }
+    double span() const { return most >= least ? most - least : 0.0; }
+  };
+  Range kinetic, potential, work, dissipated;  ///< [J]
+  double residual = 0.0;                       ///< largest |energy residual| [J]
+  double residual_time = 0.0;                  ///< when it had reached half of that [s]
+  /// Of each of sixteen parts of the run: largest kinetic energy [J] and largest force of a joint's rows [N].
+  static constexpr std::size_t parts = 16;
+  std::array<double, parts> part_kinetic{}, part_force{};
+  double row_force = 0.0, row_force_time = 0.0;  ///< largest force of rows [N] and when [s]
+  int row_force_joint = -1;
+  double applied_force = 0.0;  ///< largest force of contacts, springs and applied forces [N]
+  double drive_motion = 0.0;   ///< largest of |alpha| L + omega^2 L, or |a| + v^2/L, of a prescribing driver [m/s^2]
+  double drive_effort = 0.0;   ///< largest force, or torque by L, of a driver that applies one [N]
+  double beyond_reach = 0.0;   ///< largest distance of a body from the origin by what the lengths allow
+  int farthest_body = -1;
+  double size = 0.0;                                   ///< L: of the model [m]
+  double least_regularity = 1.0, singular_time = 0.0;  ///< nearest to a singular position, and when [s]
+};
+
+class RunWatch {
+ public:
+  RunWatch(const System& system, const Channels& channels);
+
+  /// Whether the force of some joint with play has grown so much that its row should be looked at: one comparison a
+  /// joint.
+  bool is_due(const Evaluation& e) const {
+    for (const Contact& contact : contacts_) {
+      if (force_squared(e, contact.joint) > contact.due) return true;
+    }
+    return false;
+  }
+  /// The row of an accepted state; `e` is evaluated there. Of the joints with play the first that is where no journal
+  /// can be, or carries what no material does; else -1.
+  int add(std::span<const double> row, const Evaluation& e);
+  /// How near to a singular position the last step came (NewtonStageSolver::regularity).
+  void add_regularity(double regularity, double t) {
+    if (regularity < seen_.least_regularity) seen_.least_regularity = regularity, seen_.singular_time = t;
+  }
+  /// Why add() returned this joint: the row is the same. Allocates.
+  TrustReason why(int joint, std::span<const double> row) const;
+
+  /// Whether some journal was deeper in its bearing than its play is wide.
+  bool deeper_than_play() const {
+    for (const Contact& contact : contacts_) {
+      if (contact.depth.most > contact.play) return true;
+    }
+    return false;
+  }
+  /// Whether the journal of a joint with play never moved in its bearing, nor touched it.
+  bool never_moved(int joint) const;
+  const RunExtremes& seen() const { return seen_; }
+
+ private:
+  struct Contact {
+    int joint = 0, penetration = -1;
+    double play = 0.0;       // clearance [m]
+    double deepest = 0.0;    // clearance and smaller radius [m]
+    double strongest = 0.0;  // force that no material carries [N]
+    RunExtremes::Range depth{};
+    double due = 0.0;  // square of the force from which on the row is looked at again [N^2]
+  };
+  static double force_squared(const Evaluation& e, int joint) {
+    const double* f = &e.wrench[12 * static_cast<std::size_t>(joint) + 6];
+    return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  }
+  void add_places(std::span<const double> row);
+  void add_energy(std::span<const double> row, std::size_t part);
+  void add_forces(std::span<const double> row, std::size_t part);
+  void add_drivers(std::span<const double> row, const Evaluation& e);
+
+  const System& system_;
+  const Channels& channels_;
+  std::vector<Contact> contacts_;
+  struct Reach {
+    int body, column;
+    double inverse_squared;  // of the largest distance from the origin [1/m^2]
+  };
+  std::vector<Reach> reaches_;
+  std::vector<char> has_rows_;  // by joint
+  bool planar_;
+  RunExtremes seen_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,404 @@
+#include "stage/index_one_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "freeplay/pairs.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double smallest = std::numeric_limits<double>::min();
+constexpr double near_singular = 1e-2;    // regularity below which errors across the motion count less
+constexpr double off_constraints = 10.0;  // relative change of Phi_q by relative size of Phi, about
+constexpr int refinement_limit = 30;
+constexpr int quick_passes = 3;        // of a projection of velocities
+constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
+constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+double largest(std::span<const double> numbers) {
+  double size = 0.0;
+  for (const double x : numbers) size = std::max(size, std::abs(x));
+  return size;
+}
+
+}  // namespace
+
+IndexOneSolver::IndexOneSolver(const System& system, int max_iterations)
+    : system_(system),
+      max_iterations_(max_iterations),
+      e_(system),
+      rows_(system.layout().nc(), system.layout().nv()),
+      matrix_(system) {
+  const int nv = system.layout().nv(), nc = system.layout().nc();
+  for (int i = 0; i < nv; ++i) unit_.push_back(system.is_turn(i) ? 1.0 : system.size());
+  for (const double unit : unit_) per_unit_.push_back(1.0 / unit);
+  factored_at_.resize(at(system.layout().nq()));
+  update_.resize(at(nv + nc));
+  increment_.resize(at(nv));
+  right_a_.resize(at(nv));
+  right_c_.resize(at(nc));
+  work_.resize(at(nv + nc));
+  size_.resize(at(nv + nc));
+  multipliers_.resize(at(nc));
+  first_multipliers_.resize(at(nc));
+  dependent_.assign(at(nc), 0);
+  loads_.resize(at(system.layout().all_rows()));
+  set_pattern();
+}
+
+bool IndexOneSolver::evaluate(const StateView& s, unsigned terms) {
+  const Point point{*s.t, s.q, s.v, s.z, h_};
+  if (system_.evaluate(point, terms | only_asked, e_)) return true;
+  trouble_ = e_->fault.kind == Fault::Kind::plugin ? e_->fault.message.text : e_->fault.motion.text;
+  return false;
+}
+
+double IndexOneSolver::norm(std::span<const double> increment) const {
+  const std::span<const double> per_unit = per_unit_;
+  return largest_in_pairs(unit_.size(), [&](auto at) { return at(increment) * at(per_unit); });
+}
+
+void IndexOneSolver::know_rows() {
+  if (rank_ >= 0) return;
+  const Profile::Timer start(system_.profile(), Phase::start);
+  if (!rows_are_independent()) find_dependent_rows();
+}
+
+void IndexOneSolver::set_pattern() {
+  const Profile::Timer start(system_.profile(), Phase::start);
+  matrix_.set_pattern(dependent_);
+  has_pattern_ = true;
+}
+
+double IndexOneSolver::factor_once() {
+  if (!has_pattern_) set_pattern();
+  ++factorizations_;
+  return matrix_.factor(e_);
+}
+
+bool IndexOneSolver::factor() {
+  const Profile::Timer timer(system_.profile(), Phase::factorization);
+  know_rows();
+  double pivot = factor_once();
+  factored_time_ = e_->time;
+  std::copy_n(e_->q.begin(), factored_at_.size(), factored_at_.begin());
+  largest_pivot_ = std::max(largest_pivot_, pivot);
+  last_regularity_ = pivot / largest_pivot_;
+  regularity_ = std::min(regularity_, last_regularity_);
+  // The rank may have changed along the motion: rows that say nothing new are then left out.
+  if (!(pivot > singular_pivot) && find_dependent_rows()) pivot = factor_once();
+  valid_ = pivot > 0.0 && std::isfinite(pivot);
+  if (!valid_) trouble_ = "the equations of motion are singular";
+  return valid_;
+}
+
+// Much cheaper than to look which ones depend on others, and mostly enough.
+bool IndexOneSolver::rows_are_independent() {
+  if (!(factor_once() > singular_pivot) || !matrix_.has_independent_rows()) return false;
+  rank_ = system_.layout().nc();
+  return true;
+}
+
+bool IndexOneSolver::find_dependent_rows() {
+  system_.jacobian_entries(e_, entries_);
+  rows_.analyse(entries_);
+  return keep_independent_rows();
+}
+
+bool IndexOneSolver::keep_independent_rows() {
+  // Fewer than before: this is a singular position.
+  if (rank_ >= 0 && rows_.rank() < rank_) regularity_ = last_regularity_ = 0.0;
+  rank_ = rows_.rank();
+  const bool same = std::ranges::equal(rows_.dependent(), dependent_);
+  std::ranges::copy(rows_.dependent(), dependent_.begin());
+  any_dependent_ = rank_ < system_.layout().nc();
+  if (!same) {
+    valid_ = has_pattern_ = false;
+    ++choice_of_rows_;
+  }
+  return !same;
+}
+
+int IndexOneSolver::weakest_row() {
+  system_.jacobian_entries(e_, entries_);
+  rows_.analyse(entries_);
+  return rows_.weakest();
+}
+
+bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
+  const std::size_t nv = x_a.size(), nc = x_c.size();
+  const std::span<double> motion = std::span(update_).first(nv), pressure = std::span(update_).subspan(nv);
+  bool fresh = false;
+  if (!valid_) {
+    if (!factor()) return false;
+    fresh = true;
+  }
+  double previous = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < refinement_limit; ++iteration) {
+    std::ranges::fill(motion, 0.0);
+    system_.add_transposed(e_, x_c, motion);
+    system_.multiply(e_, x_a, pressure);
+    for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.mass()[i] * x_a[i] - motion[i];
+    for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent_[r] ? 0.0 : right_c_[r] - pressure[r];
+    matrix_.solve(motion, pressure);
+    for (std::size_t i = 0; i < nv; ++i) x_a[i] += motion[i];
+    for (std::size_t r = 0; r < nc; ++r) x_c[r] += pressure[r];
+    const double moved = norm(motion), pressed = largest(pressure);
+    if (!std::isfinite(moved) || !std::isfinite(pressed)) {
+      trouble_ = "a number in the state is not finite";
+      return false;
+    }
+    double change = moved / std::max({norm(x_a), scale, smallest});
+    if (multipliers) {
+      // Multipliers that vanish are right to the rounding of the forces and inertias that leave nothing over.
+      double forces = std::max(largest(x_c), largest(right_a_));
+      for (std::size_t i = 0; i < nv; ++i) forces = std::max(forces, std::abs(system_.mass()[i] * x_a[i]));
+      change = std::max(change, pressed / std::max(forces, smallest));
+    }
+    // What becomes exactly zero has no relative change.
+    change = std::min(change, std::numeric_limits<double>::max());
+    const double ratio = change / previous;
+    previous = change;
+    const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
+    if (iteration > 0 && (left <= 1e-15 || (ratio >= 0.3 && change <= 1e-12))) return true;
+    if (change == 0.0) return true;
+    if (!fresh && iteration > 0 && ratio > slow_contraction) {
+      if (!factor()) return false;
+      fresh = true;
+      previous = std::numeric_limits<double>::infinity();
+    }
+  }
+  // A badly conditioned position (close to a singular one) stagnates above the target; what it reached is the best
+  // there is.
+  return true;
+}
+
+template <int width>
+bool IndexOneSolver::equations_hold(std::span<const double> x_a, std::span<const double> x_c) {
+  const std::size_t nv = x_a.size();
+  for (std::size_t i = 0; i < nv; ++i) {
+    const double inertia = system_.mass()[i] * x_a[i];
+    work_[i] = right_a_[i] - inertia;
+    size_[i] = std::abs(right_a_[i]) + std::abs(inertia);
+  }
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    const double* entry = &e_->jacobian[at(block.offset)];
+    double *left = &work_[at(width * block.body)], *size = &size_[at(width * block.body)];
+    for (int r = block.row; r < block.row + block.rows; ++r, entry += width) {
+      const double multiplier = x_c[at(r)];
+      for (int c = 0; c < width; ++c) {
+        const double force = entry[c] * multiplier;
+        left[c] -= force;
+        size[c] += std::abs(force);
+      }
+    }
+  }
+  int failing = 0;
+  for (std::size_t i = 0; i < nv; ++i) failing += std::abs(work_[i]) <= 8.0 * rounding * size_[i] ? 0 : 1;
+  return failing == 0;
+}
+
+// Leaves what is missing in `left`, by row. One row that does not hold is enough.
+template <int width>
+bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
+                                  std::span<double> left) {
+  const auto each_number = [&](std::size_t r, auto&& use) {
+    for (const System::RowPiece& piece : system_.row_pieces(r)) {
+      const double *entry = &e_->jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
+      for (int c = 0; c < width; ++c) use(entry[c] * rate[c]);
+    }
+  };
+  for (std::size_t r = 0; r < right.size(); ++r) {
+    double gap = right[r];
+    each_number(r, [&](double moved) { gap -= moved; });
+    left[r] = gap;
+  }
+  for (std::size_t r = 0; r < right.size(); ++r) {
+    if (dependent_[r] != 0) continue;
+    double size = std::abs(right[r]);
+    each_number(r, [&](double moved) { size += std::abs(moved); });
+    if (!(std::abs(left[r]) <= tolerance * rounding * size)) return false;
+  }
+  return true;
+}
+
+bool IndexOneSolver::rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance,
+                               std::span<double> left) {
+  return system_.body_velocities() == 3 ? rows_hold_in<3>(right, x_a, tolerance, left)
+                                        : rows_hold_in<6>(right, x_a, tolerance, left);
+}
+
+bool IndexOneSolver::holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c) {
+  return rows_hold(right_c_, x_a, 8.0, std::span(work_).first(right_c_.size())) &&
+         (system_.body_velocities() == 3 ? equations_hold<3>(x_a, x_c) : equations_hold<6>(x_a, x_c));
+}
+
+bool IndexOneSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_->nu, v, 4.0, right_c_); }
+
+// Phi_q depends on time and coordinates alone.
+bool IndexOneSolver::is_factored_here() const {
+  return valid_ && factored_time_ == e_->time &&
+         std::memcmp(factored_at_.data(), e_->q.data(), factored_at_.size() * sizeof(double)) == 0;
+}
+
+bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
+  if (e_->is_at({*state.t, state.q, state.v, state.z, h_}, index_one & ~unsigned{term_acceleration})) {
+    system_.complete_rates(term_acceleration, e_);
+  } else if (!evaluate(state, index_one)) {
+    return false;
+  }
+  if (any_dependent_) {
+    const Profile::Timer timer(system_.profile(), Phase::factorization);
+    system_.jacobian_entries(e_, entries_);
+    // Rows that were left out in a singular position count again; not those that seem to say something new only because
+    // a stage is a little off the constraints.
+    if (rows_.analyse(entries_, off_constraints * largest(e_->phi) / system_.size()) > rank_) keep_independent_rows();
+  }
+  if (!is_factored_here() && !factor()) return false;
+  // Nothing of the past enters, so that the same state always has the same accelerations.
+  const std::size_t nv = state.a.size, nc = state.lambda.size;
+  in_pairs(nv, [&](auto at) { at(state.a) = at(e_->force); });
+  for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = dependent_[r] ? 0.0 : e_->gamma[r];
+  matrix_.solve(state.a, state.lambda);
+  if (!matrix_.is_well_conditioned()) {
+    std::copy_n(e_->force.begin(), nv, right_a_.begin());
+    std::ranges::copy(e_->gamma, right_c_.begin());
+    // Where drivers alone decide the motion, a is right at once and the multipliers are not.
+    if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
+  }
+  std::ranges::copy(e_->internal_rate, z_rate.begin());
+  if (any_dependent_) {
+    const Profile::Timer timer(system_.profile(), Phase::solution);
+    rows_.least_norm(state.lambda, system_.layout().first_driver_row());
+  }
+  if (flows_ != nullptr) {
+    std::ranges::copy(state.lambda, loads_.begin());
+    system_.recover_loads(e_, loads_);
+    flows_->flow(e_, loads_, z_rate.part(e_->internal_rate.size(), at(flows_->flows())));
+  }
+  return true;
+}
+
+bool IndexOneSolver::project_velocity(StateView& state) {
+  if (state.lambda.size == 0) return true;
+  const Point here{*state.t, state.q, state.v, state.z, h_};
+  if (!e_->has_rows_at(here)) {
+    if (!evaluate(state, rows)) return false;
+  } else {
+    system_.complete_rates(term_velocity, e_);
+  }
+  std::ranges::fill(multipliers_, 0.0);
+  if (velocities_hold(state.v)) return true;
+  const double speed = norm(state.v);
+  if (!is_factored_here() && !factor()) return false;
+  for (int pass = 0; pass < quick_passes; ++pass) {
+    solve_rows(right_c_);
+    if (!(norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
+    in_pairs(increment_.size(), [&](auto at) { at(state.v) += at(update_); });
+    in_pairs(multipliers_.size(),
+             [&](auto at) { at(multipliers_) += at(std::span(update_).subspan(increment_.size())); });
+    // Factors of a regular matrix leave so little of a small change that it is less than v rounds to.
+    if (matrix_.is_well_conditioned() || velocities_hold(state.v)) return true;
+  }
+  std::ranges::fill(right_a_, 0.0);
+  std::ranges::fill(increment_, 0.0);
+  std::ranges::copy(multipliers_, first_multipliers_.begin());
+  std::ranges::fill(multipliers_, 0.0);
+  // The change is a small part of v: digits below the rounding of v are not asked for.
+  if (!refine(increment_, multipliers_, speed)) return false;
+  for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += increment_[i];
+  for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += first_multipliers_[r];
+  return true;
+}
+
+/// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
+void IndexOneSolver::solve_rows(std::span<const double> gap) {
+  const std::size_t nv = increment_.size();
+  std::fill_n(update_.begin(), nv, 0.0);
+  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
+  matrix_.solve(std::span(update_).first(nv), std::span(update_).subspan(nv));
+}
+
+bool IndexOneSolver::project_position(StateView& state) {
+  if (state.lambda.size == 0) return true;
+  const double target = 1e-14 * system_.size();
+  double previous = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < max_iterations_; ++iteration) {
+    // Where the last projection moved nothing, as of bodies that drivers alone move, accelerate() will follow here.
+    if (!evaluate(state, drifts_ ? rows : index_one)) return false;
+    const double gap = largest(e_->phi);
+    drifts_ = !(gap <= target);
+    if (gap <= target || (gap < 1e-12 * system_.size() && gap > 0.5 * previous)) return true;
+    const bool slow = gap > slow_contraction * previous;
+    if ((!valid_ || slow) && !factor()) return false;
+    previous = gap;
+    for (std::size_t r = 0; r < e_->phi.size(); ++r) right_c_[r] = -e_->phi[r];
+    solve_rows(right_c_);
+    system_.retract(state.q, std::span(update_).first(increment_.size()), state.q);
+  }
+  trouble_ = "positions could not be projected on the constraints";
+  return false;
+}
+
+bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<double> along) {
+  if (!(regularity_ < near_singular && valid_ && !right_c_.empty())) return false;
+  for (std::size_t i = 0; i < error.size(); ++i) along[i] = system_.mass()[i] * error[i];
+  const std::span<double> multipliers = std::span(update_).subspan(error.size());
+  std::ranges::fill(multipliers, 0.0);
+  matrix_.solve(along, multipliers);
+  return true;
+}
+
+bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> out) {
+  if (!system_.evaluate(point(state), term_position | only_asked, e_)) return false;
+  if (!is_factored_here() && !factor()) return false;
+  const JointElement& element = system_.model().joints[at(joint)];
+  const int markers[2] = {element.marker_a, element.marker_b};
+  std::ranges::fill(out, 0.0);
+  std::ranges::fill(right_c_, 0.0);
+  const std::size_t directions = system_.model().space == Space::planar ? 2 : 3;
+  for (std::size_t direction = 0; direction < directions; ++direction) {
+    std::ranges::fill(right_a_, 0.0);
+    double wrench[6] = {};
+    for (const int end : {0, 1}) {
+      wrench[direction] = end == 0 ? -1.0 : 1.0;
+      if (system_.unknown_of(markers[end]) != ground) {
+        system_.add_wrench(markers[end], wrench, e_, right_a_);
+      }
+    }
+    if (!move_by_forces()) return false;
+    const std::size_t width = at(system_.body_velocities());
+    for (const int end : {0, 1}) {
+      const BodyId body = system_.unknown_of(markers[end]);
+      if (body == ground) continue;
+      for (std::size_t i = 0; i < directions; ++i) {
+        double g[6] = {}, row[6];
+        g[i] = end == 0 ? -1.0 : 1.0;
+        system_.marker_row(markers[end], g, e_, row);
+        for (std::size_t c = 0; c < width; ++c) out[3 * i + direction] += row[c] * increment_[width * at(body) + c];
+      }
+    }
+  }
+  return true;
+}
+
+// increment_ <- the accelerations by the forces right_a_ alone, of rows that stay.
+bool IndexOneSolver::move_by_forces() {
+  if (!matrix_.is_well_conditioned()) {
+    std::ranges::fill(increment_, 0.0);
+    std::ranges::fill(multipliers_, 0.0);
+    return refine(increment_, multipliers_, 0.0);
+  }
+  const std::span<double> multipliers = std::span(update_).subspan(increment_.size());
+  std::ranges::copy(right_a_, increment_.begin());
+  std::ranges::fill(multipliers, 0.0);
+  matrix_.solve(increment_, multipliers);
+  return true;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,253 @@
+#include "stage/matrix.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stage/block_inverse.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr MatrixEntry nowhere{-1, -1};
+constexpr int left_out = 0;  // the number that nobody reads
+constexpr int first_block = 1;
+constexpr int largest_whole = 20;  // unknowns: taking some of them out costs more than it saves
+
+}  // namespace
+
+// Every entry that factor() fills, in its order, at its place in the whole system.
+std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) const {
+  const int nv = system_.layout().nv(), nc = system_.layout().nc(), width = system_.body_velocities();
+  std::size_t of_rows = 0;
+  for (const JacobianBlock& block : system_.jacobian_blocks()) of_rows += at(2 * width * block.rows);
+  std::vector<MatrixEntry> all;
+  all.reserve(at(nv + nc) + (forces_ ? at(4 * width * width) * system_.force_blocks().size() + at(3 * nv) : 0) +
+              of_rows);
+  for (int i = 0; i < nv; ++i) all.push_back({i, i});
+  for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
+  if (forces_) {
+    for (const ForceBlock& block : system_.force_blocks()) {
+      const BodyId bodies[2] = {block.a, block.b};
+      for (int r = 0; r < 2 * width; ++r) {
+        for (int c = 0; c < 2 * width; ++c) {
+          const BodyId row = bodies[r / width], column = bodies[c / width];
+          const bool inside = row != ground && column != ground;
+          all.push_back(inside ? MatrixEntry{width * row + r % width, width * column + c % width} : nowhere);
+        }
+      }
+    }
+    for (int b = 0; width == 6 && b < nv / 6; ++b) {
+      for (int r = 6 * b + 3; r < 6 * b + 6; ++r) {
+        for (int c = 6 * b + 3; c < 6 * b + 6; ++c) all.push_back({r, c});
+      }
+    }
+  }
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    for (int r = block.row; r < block.row + block.rows; ++r) {
+      for (int c = width * block.body; c < width * (block.body + 1); ++c) {
+        all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{nv + r, c});
+        all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{c, nv + r});
+      }
+    }
+  }
+  return all;
+}
+
+void StageMatrix::set_pattern(std::span<const char> dependent) {
+  const int nv = system_.layout().nv(), size = nv + system_.layout().nc(), width = system_.body_velocities();
+  prescribed_.clear();
+  std::vector<int> owner(at(size), -1);  // of a coordinate or row: its prescribed body
+  const bool tiny = size <= largest_whole;
+  for (const PrescribedBody& body : tiny ? std::vector<PrescribedBody>{} : prescribed_bodies(system_, dependent)) {
+    const int index = static_cast<int>(prescribed_.size());
+    for (int c = 0; c < width; ++c) owner[at(width * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
+    prescribed_.emplace_back().who = body;
+  }
+  const std::vector<MatrixEntry> all = entries(dependent);
+  std::vector<char> coupled(at(size), tiny ? 1 : 0);  // shares a row or column with another free unknown
+  for (const auto [row, column] : all) {
+    if (row < 0 || row == column || owner[at(row)] >= 0 || owner[at(column)] >= 0) continue;
+    coupled[at(row)] = coupled[at(column)] = 1;
+  }
+  alone_.clear();
+  unknowns_.clear();
+  std::vector<int> place(at(size), -1);  // in alone_ or in rest_
+  for (int i = 0; i < size; ++i) {
+    if (owner[at(i)] >= 0) continue;
+    std::vector<int>& list = coupled[at(i)] ? unknowns_ : alone_;
+    place[at(i)] = static_cast<int>(list.size());
+    list.push_back(i);
+  }
+
+  std::vector<int> slots(all.size(), left_out);
+  std::vector<MatrixEntry> factored;
+  std::vector<int> factored_entry, alone_entry;
+  factored.reserve(all.size());
+  factored_entry.reserve(all.size());
+  // Couplings in the order in which they are used: by kind and body.
+  struct Sorted {
+    int kind, body;
+    std::size_t entry;
+  };
+  std::vector<Sorted> sorted;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [row, column] = all[i];
+    if (row < 0) continue;
+    const int row_owner = owner[at(row)], column_owner = owner[at(column)];
+    if (row_owner < 0 && column_owner < 0) {
+      if (coupled[at(row)]) {
+        factored.push_back({place[at(row)], place[at(column)]});
+        factored_entry.push_back(static_cast<int>(i));
+      } else {
+        alone_entry.push_back(static_cast<int>(i));
+      }
+    } else if (row_owner == column_owner && (row < nv) != (column < nv)) {
+      if (row < nv) continue;  // the transposed block
+      const PrescribedBody& who = prescribed_[at(row_owner)].who;
+      const auto r = std::ranges::find(who.rows, row - nv) - who.rows.begin();
+      slots[i] = first_block + width * (width * row_owner + column - width * who.body) + static_cast<int>(r);
+    } else if (row_owner < 0) {
+      if (column < nv) sorted.push_back({2, 0, i});  // multipliers of prescribed bodies act on them alone
+    } else {
+      sorted.push_back({row < nv ? 1 : 0, row_owner, i});
+    }
+  }
+  std::ranges::stable_sort(sorted, {}, [](const Sorted& s) { return std::pair(s.kind, s.body); });
+  first_coupling_ = at(first_block) + at(width * width) * prescribed_.size();
+  couplings_.clear();
+  for (const auto& [kind, body, entry] : sorted) {
+    slots[entry] = static_cast<int>(first_coupling_ + couplings_.size());
+    couplings_.push_back({all[entry].row, all[entry].column});
+  }
+  const auto first_of = [&](int kind, int body) {
+    return static_cast<std::size_t>(
+        std::ranges::lower_bound(sorted, std::pair(kind, body), {},
+                                 [](const Sorted& s) { return std::pair(s.kind, s.body); }) -
+        sorted.begin());
+  };
+  for (int p = 0; p < static_cast<int>(prescribed_.size()); ++p) {
+    Prescribed& body = prescribed_[at(p)];
+    body.first_row_part = first_of(0, p);
+    body.end_row_part = first_of(0, p + 1);
+    body.first_motion_part = first_of(1, p);
+    body.end_motion_part = first_of(1, p + 1);
+  }
+  first_free_part_ = first_of(2, 0);
+  first_alone_ = first_coupling_ + couplings_.size();
+  for (const int i : alone_entry) slots[at(i)] = static_cast<int>(first_alone_) + place[at(all[at(i)].row)];
+  first_rest_ = first_alone_ + alone_.size();
+  const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    slots[at(factored_entry[i])] = static_cast<int>(first_rest_) + found[i];
+  rest_right_.assign(unknowns_.size(), 0.0);
+  rest_update_.assign(unknowns_.size(), 0.0);
+
+  const auto first_forces = slots.begin() + size;
+  const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.force_blocks().size() : 0;
+  const auto first_turning = first_forces + static_cast<std::ptrdiff_t>(of_forces);
+  const auto first_rows = first_turning + (forces_ && width == 6 ? 9 * (nv / 6) : 0);
+  slots_ = {{slots.begin(), first_forces},
+            {first_forces, first_turning},
+            {first_turning, first_rows},
+            {first_rows, slots.end()}};
+  values_.assign(first_rest_ + rest_.values().size(), 0.0);
+}
+
+double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
+  std::ranges::fill(values_, 0.0);
+  const std::span<const double> mass = system_.mass();
+  for (std::size_t i = 0; i < slots_.constant.size(); ++i) {
+    values_[at(slots_.constant[i])] += i < mass.size() ? mass[i] : 1.0;
+  }
+  if (forces_) {
+    const int* slot = slots_.forces.data();
+    if (!internal_.empty()) {
+      internal_.prepare(e, beta_q, beta_v, beta_z);
+      const std::size_t columns = at(2 * system_.body_velocities());
+      internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
+        values_[at(slot[columns * (columns * block + at(r)) + at(c)])] += value;
+      });
+    }
+    for (std::size_t i = 0; i < e.force_v.size(); ++i) {
+      values_[at(*slot++)] -= beta_v * e.force_v[i] + beta_q * e.force_q[i];
+    }
+    for (std::size_t i = 0; i < slots_.turning.size(); ++i) {
+      values_[at(slots_.turning[i])] -= beta_v * e.gyroscopic_v[i];
+    }
+  }
+  const int* slot = slots_.rows.data();
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    const double* entry = &e.jacobian[at(block.offset)];
+    for (int i = 0; i < block.rows * system_.body_velocities(); ++i, ++entry) {
+      values_[at(*slot++)] += *entry;
+      values_[at(*slot++)] += *entry;
+    }
+  }
+  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first_rest_), rest_.values().size(),
+              rest_.values().begin());
+  double smallest = rest_.factor();
+  for (std::size_t i = first_alone_; i < first_rest_; ++i) {
+    if (values_[i] == 0.0 || !std::isfinite(values_[i])) smallest = 0.0;
+  }
+  return std::min(smallest, system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>());
+}
+
+template <int width>
+double StageMatrix::invert_blocks() {
+  using Square = Eigen::Matrix<double, width, width>;
+  double smallest = 1.0;
+  const double* numbers = values_.data() + first_block;
+  for (Prescribed& body : prescribed_) {
+    const Square block = Eigen::Map<const Square>(numbers);
+    numbers += width * width;
+    smallest = std::min(smallest, invert_block<width>(block, body.inverse));
+  }
+  return smallest;
+}
+
+void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const double> update,
+                           std::span<double> right) const {
+  const double* value = values_.data() + first_coupling_;
+  for (std::size_t i = first; i < end; ++i) {
+    const Coupling& c = couplings_[i];
+    right[at(c.row)] -= value[i] * update[at(c.column)];
+  }
+}
+
+void StageMatrix::solve(std::span<double> right, std::span<double> update) const {
+  const Profile::Timer timer(system_.profile(), Phase::solution);
+  system_.body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
+}
+
+template <int width>
+void StageMatrix::substitute(std::span<double> right, std::span<double> update) const {
+  using Square = Eigen::Matrix<double, width, width>;
+  using Vector = Eigen::Matrix<double, width, 1>;
+  const int nv = system_.layout().nv();
+  if (unknowns_.size() == update.size()) return rest_.solve(right, update);
+  for (const Prescribed& body : prescribed_) {
+    subtract(body.first_row_part, body.end_row_part, update, right);
+    Vector b;
+    for (int r = 0; r < width; ++r) b[r] = right[at(nv + body.who.rows[at(r)])];
+    const Vector change = Eigen::Map<const Square>(body.inverse) * b;
+    std::copy_n(change.data(), width, &update[at(width * body.who.body)]);
+  }
+  subtract(first_free_part_, couplings_.size(), update, right);
+  const double* value = values_.data() + first_alone_;
+  for (std::size_t i = 0; i < alone_.size(); ++i) update[at(alone_[i])] = right[at(alone_[i])] / value[i];
+  if (!unknowns_.empty()) {
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) rest_right_[i] = right[at(unknowns_[i])];
+    rest_.solve(rest_right_, rest_update_);
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) update[at(unknowns_[i])] = rest_update_[i];
+  }
+  for (std::size_t p = prescribed_.size(); p-- > 0;) {
+    const Prescribed& body = prescribed_[p];
+    subtract(body.first_motion_part, body.end_motion_part, update, right);
+    const Vector multipliers = Eigen::Map<const Square>(body.inverse).transpose() *
+                               Eigen::Map<const Vector>(&right[at(width * body.who.body)]);
+    for (int r = 0; r < width; ++r) update[at(nv + body.who.rows[at(r)])] = multipliers[r];
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,107 @@
+// UrdfElement: the one way in which elements of a URDF file are read; it knows which attributes and children were asked
+// for, and what is left over is reported.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "urdf/robot.h"
+#include "urdf/xml_document.h"
+
+namespace freeplay::urdf {
+
+Spot spot_of(const XmlAttribute& attribute);
+/// Of the name of an element, and of its '<'.
+Spot name_spot(const XmlElement& element);
+Spot begin_spot(const XmlElement& element);
+
+/// Where messages about one file go.
+class Messages {
+ public:
+  Messages(std::string file, Diagnostics& diagnostics) : file_(std::move(file)), diagnostics_(diagnostics) {}
+
+  void error(const Spot& spot, const char* id, std::string message, std::string suggestion = {}, std::string hint = {});
+  void warning(const Spot& spot, const char* id, std::string message, std::string hint = {});
+  bool failed() const { return errors_ > 0; }
+  int errors() const { return errors_; }
+
+  /// The word that was probably meant, or ""; of a hostile file only the first hundred are looked for.
+  std::string suggest(const std::string& word, const std::vector<std::string>& words);
+
+  /// Counts something that is read and not used, such as "visual"; all of it becomes one warning.
+  void ignore(const std::string& what, const std::string& name = {});
+  void report_ignored(const Spot& spot);
+
+ private:
+  std::string file_;
+  Diagnostics& diagnostics_;
+  int errors_ = 0;
+  int suggested_ = 0;
+  std::vector<std::pair<std::string, std::vector<std::string>>> ignored_;  ///< kinds and the names of each
+  std::unordered_map<std::string, std::size_t> ignored_index_;
+};
+
+/// The one of `words` of which an element's name is a slip of the pen, or "": other case, one letter too many or too
+/// few or two that changed places; in words of six letters or more two such slips, replaced letters among them. Other
+/// programs have elements of their own, so nothing that is merely near will do.
+std::string misspelt(const std::string& word, const std::vector<std::string>& words);
+
+/// A finite decimal number, whatever the locale. On failure says why: "'0,5' is not a number".
+std::optional<double> read_number(std::string_view text, std::string& why, std::string& hint);
+
+class Element {
+ public:
+  /// With `exact`, an attribute that nobody asked for is an error; without, one that looks like a misspelt one is.
+  /// `owner` names it in messages: "link 'arm'".
+  Element(const XmlElement& xml, std::string owner, Messages& messages, bool exact);
+
+  const XmlElement& xml() const { return xml_; }
+  const std::string& owner() const { return owner_; }
+  Spot name_spot() const { return urdf::name_spot(xml_); }
+  Spot begin_spot() const { return urdf::begin_spot(xml_); }
+
+  /// Text of an attribute.
+  const XmlAttribute* find(const std::string& name);
+  /// Reports its absence at the element's name.
+  const XmlAttribute* require(const std::string& name);
+  /// A number; `standard` when it is not there or, after a message, when it is none.
+  double number(const std::string& name, double standard);
+  std::optional<double> required_number(const std::string& name);
+  std::optional<Eigen::Vector3d> vector(const std::string& name);
+  /// `count` (3 or 4) numbers; empty when they are not there or, after a message, when they are not that.
+  std::vector<double> numbers(const std::string& name, std::size_t count);
+
+  /// The child of that name. A second one is reported, and so is an absent one at the '<' of this element.
+  const XmlElement* child(const std::string& name);
+  const XmlElement* required_child(const std::string& name);
+  /// Children that are known and not used: counted.
+  void pass_over(const std::string& name);
+
+  /// Reports unknown attributes, children and text. Unknown children of an `exact` element are errors, too.
+  void finish(bool text_allowed = false);
+
+ private:
+  void finish_attributes();
+  void finish_children();
+  std::optional<double> parse(const XmlAttribute& attribute);
+
+  const XmlElement& xml_;
+  std::string owner_;
+  Messages& messages_;
+  bool exact_;
+  std::vector<std::string> attributes_, children_, passed_;
+};
+
+/// The `origin` child of an element as a frame; identity when there is none.
+Eigen::Isometry3d read_origin(Element& element, Messages& messages, Spot* spot = nullptr);
+/// xyz and rpy of an element itself.
+Eigen::Isometry3d read_pose(Element& element);
+/// R = Rz(yaw) Ry(pitch) Rx(roll).
+Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy);
+
+}  // namespace freeplay::urdf

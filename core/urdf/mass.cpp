@@ -1,0 +1,38 @@
+#include "urdf/mass.h"
+
+namespace freeplay::urdf {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+}  // namespace
+
+std::vector<MassProperties> body_masses(const Robot& robot, const std::vector<Mount>& mounts) {
+  std::vector<std::vector<MassProperties>> parts(robot.links.size());
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const Link& link = robot.links[i];
+    if (mounts[i].body == world_link || !link.has_mass()) continue;
+    const Eigen::Isometry3d frame = mounts[i].pose * link.inertial;
+    parts[at(mounts[i].body)].push_back(
+        {link.mass, frame.translation(), frame.linear() * link.inertia * frame.linear().transpose()});
+  }
+  std::vector<MassProperties> bodies(robot.links.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (parts[i].size() == 1) bodies[i] = parts[i].front();
+    if (parts[i].size() <= 1) continue;
+    MassProperties& body = bodies[i];
+    for (const MassProperties& part : parts[i]) {
+      body.mass += part.mass;
+      body.com += part.mass * part.com;
+    }
+    body.com /= body.mass;
+    for (const MassProperties& part : parts[i]) {
+      const Eigen::Vector3d arm = part.com - body.com;
+      body.inertia +=
+          part.inertia + part.mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+    }
+  }
+  return bodies;
+}
+
+}  // namespace freeplay::urdf

@@ -1,0 +1,29 @@
+#include "format/name_rule.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace freeplay {
+namespace {
+
+TEST(NameRule, TellsNamesFromOtherWords) {
+  for (const char* good : {"a", "_", "leg-2", "A_b9", "x"}) EXPECT_TRUE(is_name(good)) << good;
+  for (const char* bad : {"", "4D", "-a", "a.b", "a/b", "x-note", "ä", "a b"}) EXPECT_FALSE(is_name(bad)) << bad;
+  EXPECT_TRUE(is_name(std::string(64, 'a')));
+  EXPECT_FALSE(is_name(std::string(65, 'a')));
+  EXPECT_FALSE(is_parameter_name("l-2"));
+}
+
+TEST(NameRule, MatchesPatterns) {
+  EXPECT_TRUE(matches("leg*.A", "leg12.A"));
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("a*b*c", "a.b.b.c"));
+  EXPECT_TRUE(matches("abc", "abc"));
+  EXPECT_FALSE(matches("leg*.A", "leg1.B"));
+  EXPECT_FALSE(matches("a*", "ba"));
+  EXPECT_FALSE(matches("", "a"));
+}
+
+}  // namespace
+}  // namespace freeplay

@@ -1,0 +1,58 @@
+#include "results/directory.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/sha256.h"
+#include "unit/scratch_folder.h"
+
+namespace freeplay {
+namespace {
+
+TEST(ResultName, ReplacesWhatAFolderShouldNotBeCalled) {
+  EXPECT_EQ("3-rrr_v1.2", result_name("3-rrr_v1.2", false));
+  EXPECT_EQ("__a_b_c", result_name("..a b/c", false));
+  EXPECT_EQ("_ber", result_name("\xc3\xbc"
+                                "ber",
+                                false));
+  EXPECT_EQ("rod-ideal", result_name("rod", true));
+}
+
+TEST(ResultDirectory, RemovesAnEarlierResultAndNothingElse) {
+  const ScratchFolder folder;
+  folder.write("summary.json", R"({"freeplay": {"version": "0", "schema": 1}})");
+  folder.write("results.csv", "old");
+  folder.write("notes.txt", "mine");
+  const ResultDirectory directory(folder.path(), false);
+  EXPECT_EQ(std::vector<std::string>{"notes.txt"}, directory.files());
+}
+
+TEST(ResultDirectory, RefusesOtherContentUnlessForced) {
+  const ScratchFolder folder;
+  folder.write("notes.txt", "mine");
+  EXPECT_THROW(check_result_directory(folder.path(), false), Error);
+  EXPECT_NO_THROW(check_result_directory(folder.path(), true));
+  EXPECT_NO_THROW(check_result_directory(folder.file("not/there/yet"), false));
+}
+
+TEST(ResultDirectory, WritesWholeFiles) {
+  const ScratchFolder folder;
+  const ResultDirectory directory(folder.file("a/b"), false);
+  directory.write("summary.json", "text");
+  EXPECT_EQ("text", folder.read("a/b/summary.json"));
+  EXPECT_EQ(std::vector<std::string>{"summary.json"}, directory.files());
+}
+
+TEST(ResultDirectory, WritesIntoAFolderOfItsOwn) {
+  const ScratchFolder folder;
+  const ResultDirectory directory(folder.file("a"), false);
+  directory.write("inputs/motor.csv", "t,x");
+  EXPECT_EQ("t,x", folder.read("a/inputs/motor.csv"));
+  EXPECT_EQ(std::vector<std::string>{"inputs"}, directory.files());
+}
+
+// FIPS 180-2, appendix B.1.
+TEST(Sha256, OfAbc) { EXPECT_EQ("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad", sha256("abc")); }
+
+}  // namespace
+}  // namespace freeplay

@@ -1,0 +1,101 @@
+// What a second and a third run say about the first.
+#include "results/verification.h"
+
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+namespace freeplay {
+namespace {
+
+const double nothing = std::nan("");
+
+/// Rows of 10 s, ten in each second.
+ResultTable moving(const std::function<double(double)>& x) {
+  ResultTable t{"", {"time", "body.a.x"}, {{}, {}}};
+  for (int i = 0; i <= 100; ++i) {
+    t.values[0].push_back(0.1 * i);
+    t.values[1].push_back(x(0.1 * i));
+  }
+  return t;
+}
+
+VerificationRules rules(double limit, bool fixed = false) { return {{"body.a.x"}, limit, fixed}; }
+
+Agreement judged(const ResultTable& first, const ResultTable& second, const ResultTable& third,
+                 const VerificationRules& by) {
+  const RunResult a{&first, {}}, b{&second, {}}, c{&third, {}};
+  Verification v = compare_runs(a, b, by);
+  if (v.agreement != Agreement::agree) judge(v, a, b, c, by);
+  return v.agreement;
+}
+
+double smooth_motion(double t) { return std::sin(t); }
+
+TEST(Verification, ErrorsAreOfTheTimeOfAgreementAndStatisticsOfTheRest) {
+  const ResultTable a{"", {"time", "body.a.x", "body.a.y"}, {{0, 1, 2, 3}, {0, 0, 3, -4}, {1, 1, 1, 1}}};
+  const ResultTable b{"", {"time", "body.a.x", "body.a.y"}, {{0, 1, 2, 3}, {0, 0.1, -3, 4}, {1, 1.5, 2, 2}}};
+  const Verification v = compare_runs({&a, {}}, {&b, {}}, rules(0.2));
+  EXPECT_EQ(v.agree_until, 1.0);
+  EXPECT_EQ(v.agreement, Agreement::err);
+  EXPECT_EQ(v.largest, 8.0);
+  EXPECT_EQ(v.at, 3.0);
+  ASSERT_EQ(v.channels.size(), 2u);
+  EXPECT_EQ(v.channels[0].error, 0.1);
+  EXPECT_EQ(v.channels[1].error, 0.5);
+  EXPECT_NEAR(v.channels[0].rms, std::sqrt(12.5), 1e-15);
+  EXPECT_NEAR(v.channels[0].second_rms, std::sqrt(12.5), 1e-15);
+  EXPECT_EQ(v.channels[1].second_largest, 2.0);
+}
+
+// An accuracy is promised for each second.
+TEST(Verification, RunsThatDriftByLessThanTheLimitInEachSecondAgree) {
+  const ResultTable a = moving(smooth_motion), b = moving([](double t) { return smooth_motion(t) + 0.9e-6 * t; });
+  EXPECT_EQ(compare_runs({&a, {}}, {&b, {}}, rules(1e-6)).agreement, Agreement::agree);
+  EXPECT_EQ(compare_runs({&a, {}}, {&b, {}}, rules(0.5e-6)).agreement, Agreement::err);
+}
+
+TEST(Verification, ARunThatOverlookedALoadDisagrees) {
+  const ResultTable blind = moving([](double) { return 0.0; });
+  const ResultTable second = moving([](double t) { return std::max(0.0, t - 0.5); });
+  const ResultTable third = moving([](double t) { return std::max(0.0, t - 0.5) * (1.0 + 1e-6); });
+  EXPECT_EQ(judged(blind, second, third, rules(1e-6)), Agreement::disagree);
+  EXPECT_EQ(judged(blind, second, third, rules(1e-6, true)), Agreement::disagree);
+}
+
+TEST(Verification, AChaoticMotionPartsAndDoesNotDisagree) {
+  const auto parted = [](double error) {
+    return moving([=](double t) { return smooth_motion(t) + std::min(error * std::exp(3.0 * t), 0.3); });
+  };
+  EXPECT_EQ(judged(moving(smooth_motion), parted(1e-7), parted(4e-7), rules(1e-6)), Agreement::part);
+  // Fixed steps err more from the first on.
+  EXPECT_EQ(judged(parted(1e-5), moving(smooth_motion), parted(1e-7), rules(1e-6, true)), Agreement::part);
+}
+
+// A pendulum by a method that keeps less than it should.
+TEST(Verification, ASmoothMotionWithALargerErrorErrs) {
+  const auto late = [](double by) { return moving([=](double t) { return smooth_motion(t + by * t); }); };
+  EXPECT_EQ(judged(late(8e-6), late(0.0), late(1e-6), rules(1e-6)), Agreement::err);
+  EXPECT_EQ(judged(late(1e-4), late(0.0), late(1e-8), rules(1e-6, true)), Agreement::err);
+  EXPECT_EQ(judged(late(1e-2), late(0.0), late(1e-8), rules(1e-6, true)), Agreement::disagree);
+}
+
+TEST(Verification, PeaksDecideWherePositionsDoNot) {
+  const ResultTable rows = moving(smooth_motion);
+  const auto force = [&](double value, double other) {
+    return RunResult{&rows, {{"joint B max |F|", value}, {"joint C max |F|", other}, {"path P max error", nothing}}};
+  };
+  const auto judged_peaks = [&](double first, double second, double third) {
+    const RunResult a = force(first, 1e-9), b = force(second, 2e-9), c = force(third, 1e-9);
+    Verification v = compare_runs(a, b, rules(1e-6));
+    if (v.agreement != Agreement::agree) judge(v, a, b, c, rules(1e-6));
+    return v.agreement;
+  };
+  EXPECT_EQ(judged_peaks(5017.0, 5010.0, 5000.0), Agreement::agree);
+  EXPECT_EQ(judged_peaks(32.9, 5017.0, 5000.0), Agreement::disagree);
+  EXPECT_EQ(judged_peaks(32.9, 5017.0, 3000.0), Agreement::err);
+}
+
+}  // namespace
+}  // namespace freeplay
