@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include "base/expression.h"
 #include "base/number_text.h"
@@ -28,6 +31,26 @@ Place compose(const Place& a, double x, double y, double angle) {
 }
 
 bool same(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(1.0, std::abs(a)); }
+
+/// Prints elements, two blanks for each level.
+class Printer : public tinyxml2::XMLPrinter {
+ public:
+  using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
+
+  void open(const char* name, const Attributes& attributes) {
+    OpenElement(name);
+    for (const auto& [key, value] : attributes) PushAttribute(key, value.c_str());
+  }
+  void element(const char* name, const Attributes& attributes) {
+    open(name, attributes);
+    CloseElement();
+  }
+
+ private:
+  void PrintSpace(int depth) override {
+    for (int level = 0; level < depth; ++level) Write("  ", 2);
+  }
+};
 
 class UrdfWriter {
  public:
@@ -165,12 +188,20 @@ class UrdfWriter {
   static std::string n(double value) { return number_text(value + 0.0); }
 
   std::string robot_text() {
-    std::string out = "<?xml version=\"1.0\"?>\n<robot name=\"" + robot_name() + "\">\n  <link name=\"ground\"/>\n";
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b) out += link_text(static_cast<BodyId>(b));
+    Printer xml;
+    xml.PushDeclaration("xml version=\"1.0\"");
+    xml.open("robot", {{"name", robot_name()}});
+    xml.element("link", {{"name", "ground"}});
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) print_link(xml, static_cast<BodyId>(b));
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      out += tree_joint_[b] < 0 ? floating_text(static_cast<BodyId>(b)) : joint_text(static_cast<BodyId>(b));
+      if (tree_joint_[b] < 0) {
+        print_floating(xml, static_cast<BodyId>(b));
+      } else {
+        print_tree_joint(xml, static_cast<BodyId>(b));
+      }
     }
-    return out + "</robot>\n";
+    xml.CloseElement();
+    return xml.CStr();
   }
 
   std::string robot_name() const {
@@ -179,51 +210,51 @@ class UrdfWriter {
     return name.empty() ? "robot" : name;
   }
 
+  static std::string point_text(double x, double y) { return fmt::format("{} {} 0", n(x), n(y)); }
+
   /// Only the moment about the normal is known; as of a flat body, the others are half of it.
-  std::string link_text(BodyId id) const {
+  void print_link(Printer& xml, BodyId id) const {
     const Body& body = model_.bodies[at(id)];
     const Place moved = shift(id);
-    const double moment = body.inertia[8];
-    return fmt::format(
-        "  <link name=\"{}\">\n    <inertial>\n      <origin xyz=\"{} {} 0\" rpy=\"0 0 0\"/>\n      <mass "
-        "value=\"{}\"/>\n"
-        "      <inertia ixx=\"{}\" ixy=\"0\" ixz=\"0\" iyy=\"{}\" iyz=\"0\" izz=\"{}\"/>\n    </inertial>\n  </link>\n",
-        body.name, n(body.com[0] - moved.x), n(body.com[1] - moved.y), n(body.mass), n(moment / 2), n(moment / 2),
-        n(moment));
+    const std::string moment = n(body.inertia[8]), half = n(body.inertia[8] / 2);
+    xml.open("link", {{"name", body.name}});
+    xml.open("inertial", {});
+    xml.element("origin", {{"xyz", point_text(body.com[0] - moved.x, body.com[1] - moved.y)}, {"rpy", "0 0 0"}});
+    xml.element("mass", {{"value", n(body.mass)}});
+    xml.element("inertia", {{"ixx", half}, {"ixy", "0"}, {"ixz", "0"}, {"iyy", half}, {"iyz", "0"}, {"izz", moment}});
+    xml.CloseElement();
+    xml.CloseElement();
   }
 
-  std::string joint_text(BodyId child) const {
+  void print_tree_joint(Printer& xml, BodyId child) const {
     const JointElement& joint = model_.joints[at(tree_joint_[at(child)])];
     const BodyId parent = first(joint).body;
-    const Place place = origin(joint);
     const double along = second(joint).angle;
     const std::string_view type = joint.ideal_component->description.name;
-    std::string own;
-    if (type == "revolute") own = "    <axis xyz=\"0 0 1\"/>\n";
+    open_joint(xml, joint.name, type == "revolute" ? "continuous" : std::string(type),
+               parent == ground ? "ground" : model_.bodies[at(parent)].name, child, origin(joint));
+    if (type == "revolute") xml.element("axis", {{"xyz", "0 0 1"}});
     if (type == "prismatic") {
-      own = fmt::format(
-          "    <axis xyz=\"{} {} 0\"/>\n    <limit lower=\"-1000\" upper=\"1000\" effort=\"1000\" "
-          "velocity=\"1000\"/>\n",
-          n(along == 0.0 ? 1.0 : std::cos(along)), n(std::sin(along)));
+      xml.element("axis", {{"xyz", point_text(along == 0.0 ? 1.0 : std::cos(along), std::sin(along))}});
+      xml.element("limit", {{"lower", "-1000"}, {"upper", "1000"}, {"effort", "1000"}, {"velocity", "1000"}});
     }
-    return joint_element(joint.name, type == "revolute" ? "continuous" : type,
-                         parent == ground ? "ground" : model_.bodies[at(parent)].name, model_.bodies[at(child)].name,
-                         place, own);
+    xml.CloseElement();
   }
 
-  std::string floating_text(BodyId child) const {
+  void print_floating(Printer& xml, BodyId child) const {
     std::string name = model_.bodies[at(child)].name.substr(0, 50) + "-floating";
     const auto taken = [&](const JointElement& joint) { return joint.name == name; };
     while (std::ranges::any_of(model_.joints, taken)) name += "_";
-    return joint_element(name, "floating", "ground", model_.bodies[at(child)].name, start(child), "");
+    open_joint(xml, name, "floating", "ground", child, start(child));
+    xml.CloseElement();
   }
 
-  static std::string joint_element(const std::string& name, std::string_view type, const std::string& parent,
-                                   const std::string& child, const Place& place, const std::string& own) {
-    return fmt::format(
-        "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n"
-        "    <origin xyz=\"{} {} 0\" rpy=\"0 0 {}\"/>\n{}  </joint>\n",
-        name, type, parent, child, n(place.x), n(place.y), n(place.angle), own);
+  void open_joint(Printer& xml, const std::string& name, const std::string& type, const std::string& parent,
+                  BodyId child, const Place& place) const {
+    xml.open("joint", {{"name", name}, {"type", type}});
+    xml.element("parent", {{"link", parent}});
+    xml.element("child", {{"link", model_.bodies[at(child)].name}});
+    xml.element("origin", {{"xyz", point_text(place.x, place.y)}, {"rpy", "0 0 " + n(place.angle)}});
   }
 
   // --- side-car --------------------------------------------------------------------------------------------------
