@@ -158,9 +158,8 @@ class StrictReader {
   void pass_declaration() {
     const std::string_view rest = text_.substr(stop_.token);
     const std::size_t end = rest.find("?>");
-    const bool declared =
-        rest.size() > 5 && rest.starts_with("<?xml") && blanks.find(rest[5]) != std::string_view::npos;
-    if (!declared) return;
+    const bool named = rest.size() > 5 && rest.starts_with("<?xml");
+    if (!named || (rest[5] != '?' && blanks.find(rest[5]) == std::string_view::npos)) return;
     check_encoding(stop_.token, rest.substr(0, end));
     if (end == std::string_view::npos || failed_) return;
     instructions_.push_back({stop_.token, stop_.token + end + 2});
