@@ -233,7 +233,7 @@ UrdfdomModel::UrdfdomModel(const XmlElement& root) : root_(root) {
 }
 
 bool UrdfdomModel::may_ask_again() {
-  constexpr std::size_t too_many = 2000;
+  constexpr std::size_t too_many = 20'000;
   return whole_ != nullptr || ++asked_again_ <= too_many;
 }
 

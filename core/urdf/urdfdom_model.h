@@ -24,9 +24,9 @@ class UrdfdomModel {
   explicit UrdfdomModel(const XmlElement& root);
 
   /// A link or joint of the robot. One with mistakes of its own, or of a robot that is refused, is handed over by
-  /// itself, as it stands in the document by now: with guesses where numbers were none. So mistakes of one element do
-  /// not hide those of another. What is refused even so has no inertial, or the type UNKNOWN; so has what comes after
-  /// the first two thousand of a robot with mistakes.
+  /// itself, as it stands in the document by then: with guesses where numbers were none. So mistakes of one element do
+  /// not hide those of another. What is refused even so has no inertial, or the type UNKNOWN, and so has, in a robot
+  /// that is refused, what comes after the first 20 000.
   ::urdf::LinkConstSharedPtr link(const XmlElement& element, bool has_mistakes);
   ::urdf::JointConstSharedPtr joint(const XmlElement& element, bool has_mistakes);
 

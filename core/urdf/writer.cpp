@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <initializer_list>
 #include <map>
 #include <set>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
-#include "base/expression.h"
 #include "base/number_text.h"
 #include "format/name_rule.h"
+#include "urdf/kept_sections.h"
+#include "urdf/xml_printer.h"
 
 namespace freeplay {
 namespace {
@@ -31,26 +29,6 @@ Place compose(const Place& a, double x, double y, double angle) {
 }
 
 bool same(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(1.0, std::abs(a)); }
-
-/// Prints elements, two blanks for each level.
-class Printer : public tinyxml2::XMLPrinter {
- public:
-  using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
-
-  void open(const char* name, const Attributes& attributes) {
-    OpenElement(name);
-    for (const auto& [key, value] : attributes) PushAttribute(key, value.c_str());
-  }
-  void element(const char* name, const Attributes& attributes) {
-    open(name, attributes);
-    CloseElement();
-  }
-
- private:
-  void PrintSpace(int depth) override {
-    for (int level = 0; level < depth; ++level) Write("  ", 2);
-  }
-};
 
 class UrdfWriter {
  public:
@@ -188,7 +166,7 @@ class UrdfWriter {
   static std::string n(double value) { return number_text(value + 0.0); }
 
   std::string robot_text() {
-    Printer xml;
+    XmlPrinter xml;
     xml.PushDeclaration("xml version=\"1.0\"");
     xml.open("robot", {{"name", robot_name()}});
     xml.element("link", {{"name", "ground"}});
@@ -213,7 +191,7 @@ class UrdfWriter {
   static std::string point_text(double x, double y) { return fmt::format("{} {} 0", n(x), n(y)); }
 
   /// Only the moment about the normal is known; as of a flat body, the others are half of it.
-  void print_link(Printer& xml, BodyId id) const {
+  void print_link(XmlPrinter& xml, BodyId id) const {
     const Body& body = model_.bodies[at(id)];
     const Place moved = shift(id);
     const std::string moment = n(body.inertia[8]), half = n(body.inertia[8] / 2);
@@ -226,7 +204,7 @@ class UrdfWriter {
     xml.CloseElement();
   }
 
-  void print_tree_joint(Printer& xml, BodyId child) const {
+  void print_tree_joint(XmlPrinter& xml, BodyId child) const {
     const JointElement& joint = model_.joints[at(tree_joint_[at(child)])];
     const BodyId parent = first(joint).body;
     const double along = second(joint).angle;
@@ -241,7 +219,7 @@ class UrdfWriter {
     xml.CloseElement();
   }
 
-  void print_floating(Printer& xml, BodyId child) const {
+  void print_floating(XmlPrinter& xml, BodyId child) const {
     std::string name = model_.bodies[at(child)].name.substr(0, 50) + "-floating";
     const auto taken = [&](const JointElement& joint) { return joint.name == name; };
     while (std::ranges::any_of(model_.joints, taken)) name += "_";
@@ -249,7 +227,7 @@ class UrdfWriter {
     xml.CloseElement();
   }
 
-  void open_joint(Printer& xml, const std::string& name, const std::string& type, const std::string& parent,
+  void open_joint(XmlPrinter& xml, const std::string& name, const std::string& type, const std::string& parent,
                   BodyId child, const Place& place) const {
     xml.open("joint", {{"name", name}, {"type", type}});
     xml.element("parent", {{"link", parent}});
@@ -289,8 +267,11 @@ class UrdfWriter {
     Node& content = map();
     content.entries = rest;
     if (!joints.entries.empty()) put(content, "joints", joints);
-    keep_presets(root, content);
-    keep_parameters(root, content);
+    KeptSections kept(*source_, target_);
+    kept.add_presets(root, content);
+    if (kept.add_parameters(root, content)) {
+      notes_.push_back("bodies and frames are written as numbers: parameters no longer change them");
+    }
     // A URDF with a joint of the type floating is read in space where nobody says otherwise.
     const bool floats = std::ranges::any_of(tree_joint_, [](int joint) { return joint < 0; });
     if (floats && source_->find("space") == nullptr) put(root, "space", scalar("planar"));
@@ -427,70 +408,6 @@ class UrdfWriter {
       if (found != nullptr) return found;
     }
     return nullptr;
-  }
-
-  // --- what the rest refers to -----------------------------------------------------------------------------------
-
-  static void collect_uses(const Node& node, std::set<std::string>& names) {
-    for (const Node* item : node.items) collect_uses(*item, names);
-    for (const Node::Entry& entry : node.entries) {
-      if (entry.key->text == "use") {
-        if (entry.value->is_scalar()) names.insert(entry.value->text);
-        for (const Node* item : entry.value->items) names.insert(item->text);
-      }
-      collect_uses(*entry.value, names);
-    }
-  }
-
-  static void collect_parameters(const Node& node, std::set<std::string>& names) {
-    if (node.is_scalar()) {
-      for (const std::string& name : referenced_parameters(node.text)) names.insert(name);
-    }
-    for (const Node* item : node.items) collect_parameters(*item, names);
-    for (const Node::Entry& entry : node.entries) collect_parameters(*entry.value, names);
-  }
-
-  /// Keeps the entries of a section of the source that `wanted` names, and what these name in turn.
-  template <class Collect>
-  void keep(Node& root, Node& content, const char* section, std::set<std::string> wanted, Collect collect) {
-    const Node* all = source_->find(section);
-    if (all == nullptr || !all->is_map()) return;
-    for (std::size_t before = 0; before != wanted.size();) {
-      before = wanted.size();
-      for (const Node::Entry& entry : all->entries) {
-        if (wanted.contains(entry.key->text)) collect(*entry.value, wanted);
-      }
-    }
-    Node& kept = map();
-    for (const Node::Entry& entry : all->entries) {
-      if (wanted.contains(entry.key->text)) kept.entries.push_back(entry);
-    }
-    if (kept.entries.empty()) return;
-    put(root, section, kept);
-    content.entries.push_back({&scalar(section), &kept});
-  }
-
-  void keep_presets(Node& root, Node& content) {
-    std::set<std::string> wanted;
-    collect_uses(content, wanted);
-    keep(root, content, "presets", wanted,
-         [](const Node& node, std::set<std::string>& names) { collect_uses(node, names); });
-  }
-
-  void keep_parameters(Node& root, Node& content) {
-    const Node* all = source_->find("parameters");
-    if (all == nullptr || !all->is_map() || all->entries.empty()) return;
-    std::set<std::string> wanted;
-    collect_parameters(content, wanted);
-    if (const Node* sweep = source_->find("sweep"); sweep != nullptr && sweep->is_map()) {
-      const Node* swept = sweep->find("parameters");
-      for (const Node::Entry& entry : swept == nullptr ? std::vector<Node::Entry>{} : swept->entries) {
-        wanted.insert(entry.key->text);
-      }
-    }
-    keep(root, content, "parameters", wanted,
-         [](const Node& node, std::set<std::string>& names) { collect_parameters(node, names); });
-    notes_.push_back("bodies and frames are written as numbers: parameters no longer change them");
   }
 
   const Document& document_;

@@ -37,8 +37,8 @@ class StrictReader {
   }
 
   bool read() {
-    if (const auto fault =
-            fault_of_characters(text_)) {  // Expat takes UTF-16 for what it is, whatever encoding it is given
+    // Not left to Expat, which takes UTF-16 for what it is, whatever encoding it is given.
+    if (const auto fault = fault_of_characters(text_)) {
       fail(*fault);
       return false;
     }
