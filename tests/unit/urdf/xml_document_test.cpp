@@ -151,8 +151,50 @@ TEST(ParseXml, ReadsNoOtherEncodingThanUtf8) {
   EXPECT_EQ(message("<?xml version='1.0'?><a n='\xE4'/>"), "this is not UTF-8 text");
 }
 
-TEST(ParseXml, SaysWhatAnEndTagHolds) {
-  EXPECT_EQ(message("<a></a n='b'>"), "an end tag holds nothing but its name: </a>");
+TEST(ParseXml, SaysWhatIsWrongWhereItIs) {
+  constexpr std::pair<const char*, const char*> cases[] = {
+      {"", "1:1 the file holds no element: it is empty"},
+      {"<!-- only -->\n", "1:1 the file holds no element: it is empty"},
+      {"<a>\n<b>\n</a>", "2:4 the element 'b' is opened here and never closed"},
+      {"<a>\n<b></b>", "1:4 the element 'a' is opened here and never closed"},
+      {"<a></b></a>", "1:4 the end tag </b> closes nothing"},
+      {"<a></a n='b'>", "1:4 an end tag holds nothing but its name: </a>"},
+      {"<a></>", "1:4 the end tag </> closes nothing"},
+      {"<a/>\n<b/>", "2:1 a second root element; a file holds one"},
+      {"<a/>\n text", "2:2 text outside of the root element"},
+      {"\n text <a/>", "2:2 text outside of the root element"},
+      {"<a/><![CDATA[ b ]]>", "1:15 text outside of the root element"},
+      {"< a/>", "1:1 a name must follow '<'"},
+      {"<a b='1'", "1:9 the tag of 'a' is not closed: '>' is missing"},
+      {"<a %/>", "1:4 an attribute or '>' is expected in 'a'"},
+      {"<a b='1'c='2'/>", "1:9 a blank is missing between two attributes"},
+      {"<a\n b/>", "2:2 the attribute 'b' has no value"},
+      {"<a b=1/>", "1:4 the value of 'b' must stand in quotes"},
+      {"<a b='<'/>", "1:4 the value of 'b' is not closed: ' is missing"},
+      {"<a b='1' b='2'/>", "1:10 the attribute 'b' is given twice"},
+      {"<a\u00E4 \u00D7='1'/>", "1:5 XML does not allow this character in a name"},
+      {"<a>x & y</a>", "1:6 '&' begins a reference; write '&amp;'"},
+      {"<a>&lt;&who;</a>", "1:8 unknown entity '&who;'"},
+      {"<a>x]]>y</a>", "1:5 ']]>' cannot stand in text"},
+      {"<a>\n<!-- b", "2:1 the comment never ends: '--' is missing"},
+      {"<a><!-- - -- - --></a>", "1:11 '--' cannot stand inside of a comment"},
+      {"<a><![CDATA[ b", "1:4 the CDATA section never ends: ']]>' is missing"},
+      {"<a><?b", "1:4 the processing instruction never ends: '?>' is missing"},
+      {"<a><? b?></a>", "1:4 a processing instruction begins with a name that is not 'xml'"},
+      {"\n<?xml version='1.0'?><a/>", "2:1 the declaration '<?xml ...?>' can only begin the file"},
+      {"<!DOCTYPE a [<!ENTITY b 'c'>]><a/>", "1:1 a document type (<!DOCTYPE>) with its entities is not allowed"},
+      {"<a>\n<!ELEMENT b></a>", "2:1 a document type (<!DOCTYPE>) with its entities is not allowed"},
+      {"<?xml version='1.0' encoding='UTF-16'?><a/>", "1:31 the file says that it is 'utf-16', but it is UTF-8"},
+      {"<a>\u00E4\xFF</a>", "1:5 this is not UTF-8 text"},
+      {"<a>\x01</a>", "1:4 XML allows no control characters"},
+      {"<a n='\uFFFE'/>", "1:7 U+FFFE and U+FFFF are no characters"}};
+  for (const auto& [xml, expected] : cases) {
+    Diagnostics diagnostics;
+    EXPECT_EQ(parse_xml(xml, "r.xml", "bad-xml", diagnostics), nullptr) << xml;
+    ASSERT_EQ(diagnostics.sorted().size(), 1u) << xml;
+    const Diagnostic found = diagnostics.sorted().front();
+    EXPECT_EQ(text({found.location.line, found.location.column}) + " " + found.message, expected) << xml;
+  }
 }
 
 }  // namespace
