@@ -75,10 +75,9 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const StageOptions& o
              [](void* self, double beta_q, double beta_v, Span<const double> missed) noexcept {
                return static_cast<NewtonStageSolver*>(self)->unsolved_error(beta_q, beta_v, missed);
              }},
-      index_one_(system, options.max_iterations),
-      e_(index_one_.evaluation()),
-      dependent_(index_one_.dependent()),
-      unit_(index_one_.units()) {
+      equations_(system),
+      index_one_(equations_, options.max_iterations),
+      e_(equations_.evaluation()) {
   const int nv = system.layout().nv(), nc = system.layout().nc();
   for (int i = 0; i < kept_factors; ++i) factors_.push_back({.matrix = StageMatrix(system, true)});
   right_.resize(at(nv + nc));
@@ -131,7 +130,7 @@ void NewtonStageSolver::set_pattern(Factor& factor) {
   const Profile::Timer start(system_.profile(), Phase::start);
   for (Factor& each : factors_) {
     if (&each != &factor && update_.size() > few_unknowns) continue;
-    each.matrix.set_pattern(dependent_);
+    each.matrix.set_pattern(equations_.dependent());
     each.has_pattern = true;
   }
 }
@@ -148,22 +147,23 @@ bool NewtonStageSolver::refactor(Factor& factor) {
   follow_choice_of_rows();
   double pivot = factor_once(factor);
   // The rank may have changed along the motion: rows that say nothing new are then left out.
-  if (!(pivot > IndexOneSolver::singular_pivot) && find_dependent_rows()) pivot = factor_once(factor);
+  if (!(pivot > IndependentRows::singular_pivot) && find_dependent_rows()) pivot = factor_once(factor);
   note_rounding_of_phi();
   factor.valid = pivot > 0.0 && std::isfinite(pivot);
-  if (!factor.valid) index_one_.note_trouble("the equations of motion are singular");
+  if (!factor.valid) equations_.note_trouble("the equations of motion are singular");
   return factor.valid;
 }
 
 // A row rounds as the coordinates do that it is made of: by units, where they are not many units large.
 void NewtonStageSolver::note_rounding_of_phi() {
   const std::size_t width = at(system_.body_velocities());
+  const std::span<const double> unit = equations_.units();
   coarse_ = 1.0;
-  for (std::size_t i = 0; i < unit_.size(); ++i) {
+  for (std::size_t i = 0; i < equations_.units().size(); ++i) {
     const std::size_t body = i / width, c = i % width;
     const bool told = width == 3 || c < 3;  // else part of a quaternion
-    const double size = told ? std::abs(e_->q[(width == 3 ? 3 : 7) * body + c]) / (few_units * unit_[i]) : 0.0;
-    work_[i] = unit_[i] * std::max(1.0, size);
+    const double size = told ? std::abs(e_->q[(width == 3 ? 3 : 7) * body + c]) / (few_units * unit[i]) : 0.0;
+    work_[i] = unit[i] * std::max(1.0, size);
     coarse_ = std::max(coarse_, size);
   }
   for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
@@ -189,15 +189,15 @@ void NewtonStageSolver::note_turns() {
 }
 
 bool NewtonStageSolver::find_dependent_rows() {
-  const bool others = index_one_.find_dependent_rows();
+  const bool others = equations_.rows().find(e_);
   follow_choice_of_rows();
   return others;
 }
 
 // Factors with other rows than those that are kept are of no use.
 void NewtonStageSolver::follow_choice_of_rows() {
-  if (choice_of_rows_ == index_one_.choice_of_rows()) return;
-  choice_of_rows_ = index_one_.choice_of_rows();
+  if (choice_of_rows_ == equations_.rows().choice()) return;
+  choice_of_rows_ = equations_.rows().choice();
   for (Factor& factor : factors_) factor.valid = factor.has_pattern = false;
 }
 
@@ -214,11 +214,12 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
   const int nv = system_.layout().nv(), nc = system_.layout().nc();
   const double beta_v = stage.beta_v, beta_q = stage.beta_q;
   const double way = std::max(beta_q, beta_v);
+  const std::span<const char> dependent = equations_.dependent();
   double allowed = options_.tolerance;  // in velocity, with a unit time of 1 s
   const bool position = stage.level == ConstraintLevel::position;
   result = {0, 0};
   worst_row_ = -1;
-  index_one_.note_trouble("");
+  equations_.note_trouble("");
   *out.t = stage.t;
   std::ranges::fill(z_rate_, 0.0);
   Factor& factor = factor_for(beta_q, beta_v);
@@ -232,7 +233,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     const unsigned terms = term_position | term_force | (nc == 0 ? term_velocity | term_acceleration : 0u) |
                            (position ? 0u : term_velocity);
     const bool renew = !factor.valid || (!fresh && ratio > IndexOneSolver::slow_contraction && iteration > 1);
-    if (!index_one_.evaluate(out, terms | (renew ? term_derivative : 0u))) return false;
+    if (!equations_.evaluate(out, terms | (renew ? term_derivative : 0u))) return false;
     if (renew) {
       if (!refactor(factor)) return true;  // singular: not converged, a shorter step may do
       fresh = true;
@@ -256,16 +257,16 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
       system_.multiply(e_, out.v, std::span(work_).first(at(nc)));
       for (std::size_t r = 0; r < at(nc); ++r) right_[at(nv) + r] = (e_->nu[r] - work_[r]) / beta_v;
     }
-    if (index_one_.any_dependent()) {
+    if (equations_.rows().any_dependent()) {
       for (std::size_t r = 0; r < at(nc); ++r) {
-        if (dependent_[r]) right_[at(nv) + r] = 0.0;
+        if (dependent[r]) right_[at(nv) + r] = 0.0;
       }
     }
     if (!factor.matrix.internal().empty()) {
       factor.matrix.internal().add_to_right(e_->internal_rate, z_rate_, std::span(right_).first(at(nv)));
     }
     factor.matrix.solve(right_, update_);
-    const double change = index_one_.norm(std::span(update_).first(at(nv)));
+    const double change = equations_.norm(std::span(update_).first(at(nv)));
     if (iteration == 0) {
       const double most = options_.tolerance * std::max(1.0, 1.0 / (many_steps * beta_v));
       allowed = std::clamp(small_part * change * beta_v, options_.tolerance, most);
@@ -285,7 +286,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     }
 
     if (!std::isfinite(change)) {
-      index_one_.note_trouble("a number in the state is not finite");
+      equations_.note_trouble("a number in the state is not finite");
       return true;
     }
     const double change_before = previous;
@@ -318,13 +319,13 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (internal_settled &&
         (accurate || noise || change == 0.0 || (stagnates && is_rounding_of_phi(factor, way, drifted)))) {
       follow_accelerations(stage, out);
-      if (index_one_.any_dependent()) {
+      if (equations_.rows().any_dependent()) {
         // Rows that were left out must hold by themselves.
         for (std::size_t r = 0; r < at(nc); ++r) {
-          if (dependent_[r] && position && std::abs(e_->phi[r]) > 1e-9 * system_.size()) {
+          if (dependent[r] && position && std::abs(e_->phi[r]) > 1e-9 * system_.size()) {
             worst_row_ = static_cast<int>(r);
             if (find_dependent_rows()) break;
-            index_one_.note_trouble("redundant constraints contradict each other");
+            equations_.note_trouble("redundant constraints contradict each other");
             return true;
           }
         }
@@ -342,7 +343,7 @@ bool NewtonStageSolver::solve(const Stage& stage, StateView& out, StageResult& r
     if (fresh && ratio > IndexOneSolver::slow_contraction && iteration > 2)
       factor.valid = false;  // full Newton from here
   }
-  index_one_.note_trouble("the iteration of a stage did not converge");
+  equations_.note_trouble("the iteration of a stage did not converge");
   double farthest = -1.0;
   for (int r = 0; r < nc; ++r) {
     if (std::abs(e_->phi[at(r)]) > farthest) farthest = std::abs(e_->phi[at(r)]), worst_row_ = r;
@@ -355,22 +356,24 @@ double NewtonStageSolver::unsolved_error(double beta_q, double beta_v, std::span
   note_turns();
   if (!rows_hold(drift)) return std::numeric_limits<double>::infinity();
   ++factor.held;
-  return index_one_.norm(missed) * std::max(beta_q, beta_v) / options_.tolerance;
+  return equations_.norm(missed) * std::max(beta_q, beta_v) / options_.tolerance;
 }
 
 void NewtonStageSolver::ask_for_rows(double beta_q, bool drifted) {
+  const std::span<const char> dependent = equations_.dependent();
   const double* const phi = e_->phi.data();
-  double* const right = &right_[unit_.size()];
+  double* const right = &right_[equations_.units().size()];
   const double quiet = drifted ? drift : 1.0;
   for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
-    right[r] = std::abs(phi[r]) <= quiet * quiet_phi_[r] || dependent_[r] ? 0.0 : -phi[r] / beta_q;
+    right[r] = std::abs(phi[r]) <= quiet * quiet_phi_[r] || dependent[r] ? 0.0 : -phi[r] / beta_q;
   }
 }
 
 bool NewtonStageSolver::rows_hold(double times) const {
+  const std::span<const char> dependent = equations_.dependent();
   int off = 0;
   for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
-    off += std::abs(e_->phi[r]) <= times * quiet_phi_[r] || dependent_[r] ? 0 : 1;
+    off += std::abs(e_->phi[r]) <= times * quiet_phi_[r] || dependent[r] ? 0 : 1;
   }
   return off == 0;
 }
@@ -384,11 +387,12 @@ bool NewtonStageSolver::is_drift(Factor& factor, bool held) const {
 }
 
 void NewtonStageSolver::learn_drift(Factor& factor, StateView& out) {
-  const std::size_t nv = unit_.size(), nc = e_->phi.size();
+  const std::size_t nv = equations_.units().size(), nc = e_->phi.size();
+  const std::span<const char> dependent = equations_.dependent();
   const double part = 1.0 / factor.held;
   factor.held = 0;
   std::fill(right_.begin(), right_.end(), 0.0);
-  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent_[r] ? 0.0 : -e_->phi[r] / factor.beta_q;
+  for (std::size_t r = 0; r < nc; ++r) right_[nv + r] = dependent[r] ? 0.0 : -e_->phi[r] / factor.beta_q;
   factor.matrix.solve(right_, work_);
   in_pairs(nv, [&](auto at) {
     at(out.a) += part * at(work_);
@@ -401,12 +405,12 @@ bool NewtonStageSolver::is_rounding_of_phi(const Factor& factor, double way, boo
   for (std::size_t r = 0; r < quiet_phi_.size(); ++r) {
     if (!(std::abs(e_->phi[r]) <= std::max(8.0 * rounding * system_.size(), quiet_phi_[r]))) return false;
   }
-  const std::size_t nv = unit_.size();
+  const std::size_t nv = equations_.units().size();
   std::fill(right_.begin(), right_.end(), 0.0);
   ask_for_rows(factor.beta_q, drifted);
   factor.matrix.solve(right_, work_);
   for (std::size_t i = 0; i < nv; ++i) work_[i] = update_[i] - work_[i];
-  return index_one_.norm(std::span(work_).first(nv)) * way <= options_.tolerance;
+  return equations_.norm(std::span(work_).first(nv)) * way <= options_.tolerance;
 }
 
 double NewtonStageSolver::error_norm(std::span<const double> position, std::span<const double> velocity) {
@@ -420,14 +424,15 @@ double NewtonStageSolver::error_norm(std::span<const double> position, std::span
 }
 
 double NewtonStageSolver::part_of_allowed(std::span<const double> error, double allowed) {
-  const std::span<double> motion = std::span(update_).first(unit_.size());
+  const std::span<double> motion = std::span(update_).first(equations_.units().size());
   const bool split = index_one_.part_along_motion(error, motion);
+  const std::span<const double> unit = equations_.units();
   const double across_allowed = std::sqrt(allowed * system_.size());
   double largest = 0.0;
   worst_component_ = 0;
-  for (std::size_t i = 0; i < unit_.size(); ++i) {
+  for (std::size_t i = 0; i < equations_.units().size(); ++i) {
     // `allowed` is a length: an angle may err by it over the size of the model.
-    const double scale = system_.size() / unit_[i], along = split ? motion[i] : error[i];
+    const double scale = system_.size() / unit[i], along = split ? motion[i] : error[i];
     const double part = scale * (std::abs(along) / allowed + std::abs(error[i] - along) / across_allowed);
     if (!(part <= largest)) largest = part, worst_component_ = static_cast<int>(i);
   }
@@ -447,9 +452,10 @@ double NewtonStageSolver::internal_error_norm(double dt, const StateView& end, s
   index_one_.integrate_flows(flows);
   // What a joint refuses is no state to go on from.
   if (!solved) return std::numeric_limits<double>::infinity();
+  const std::span<const double> unit = equations_.units();
   double largest = 0.0;
-  for (std::size_t i = 0; i < unit_.size(); ++i) {
-    const double part = system_.size() / unit_[i] * dt * std::abs(other_a_[i] - end.a[i]) / allowed_rate_;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const double part = system_.size() / unit[i] * dt * std::abs(other_a_[i] - end.a[i]) / allowed_rate_;
     if (!(part <= largest)) largest = part, worst_component_ = static_cast<int>(i);
   }
   return largest;

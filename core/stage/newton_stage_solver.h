@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "freeplay/integrator.h"
+#include "stage/equations.h"
 #include "stage/flows.h"
 #include "stage/index_one_solver.h"
 #include "stage/matrix.h"
@@ -33,7 +34,7 @@ class NewtonStageSolver {
 
   const abi::StageSolverTable& table() const { return table_; }
   /// h of the states handed in from now on; views must stay valid.
-  void use_history(std::span<const double> h) { index_one_.use_history(h); }
+  void use_history(std::span<const double> h) { equations_.use_history(h); }
 
   bool solve(const Stage& stage, StateView& out, StageResult& result);
   /// See StageSolver::unsolved_error, at the present evaluation. Counts the stage.
@@ -53,8 +54,8 @@ class NewtonStageSolver {
   }
   /// The velocities at the start of the attempt. Their rounding is no error.
   void use_velocity(std::span<const double> v) {
-    index_one_.begin_attempt();
-    allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * index_one_.norm(v);
+    equations_.rows().begin_attempt();
+    allowed_rate_ = allowed_slow_ + std::max(allowed_part_, 2e-14) * system_.size() * equations_.norm(v);
   }
   double error_norm(std::span<const double> position, std::span<const double> velocity);
   double velocity_error(std::span<const double> velocity) { return part_of_allowed(velocity, allowed_rate_); }
@@ -71,17 +72,17 @@ class NewtonStageSolver {
   /// The equations where they were looked at last.
   KeptEvaluation& evaluation() { return e_; }
   /// Why the last call failed: an element's fault, or kind none with `trouble()`.
-  const Fault& fault() const { return index_one_.fault(); }
-  const char* trouble() const { return index_one_.trouble(); }
+  const Fault& fault() const { return equations_.fault(); }
+  const char* trouble() const { return equations_.trouble(); }
   /// Row with the largest position residual when the last stage gave up, or -1.
   int worst_row() const { return worst_row_; }
   long iterations() const { return iterations_; }
   long factorizations() const { return factorizations_ + index_one_.factorizations(); }
   /// Smallest pivot of the index-1 matrix in the present attempt, or in the last that had one, in parts of its largest
   /// value in the run. It falls with the square of the distance from a singular position of the constraints.
-  double regularity() const { return index_one_.regularity(); }
+  double regularity() const { return equations_.rows().regularity(); }
   /// Row that comes closest to depending on the others where the equations were looked at last, or -1. Slow.
-  int weakest_row() { return index_one_.weakest_row(); }
+  int weakest_row() { return equations_.rows().weakest(e_); }
 
  private:
   struct Factor {
@@ -129,11 +130,9 @@ class NewtonStageSolver {
   const System& system_;
   StageOptions options_;
   abi::StageSolverTable table_;
+  StageEquations equations_;
   IndexOneSolver index_one_;
-  // Views of what it holds.
-  KeptEvaluation& e_;
-  std::span<const char> dependent_;
-  std::span<const double> unit_;
+  KeptEvaluation& e_;            // of equations_
   std::vector<Factor> factors_;  // one for each pair of betas
   int choice_of_rows_ = 0;       // that they were made with
   std::vector<double> right_, update_, increment_, drift_, z_rate_, work_;
