@@ -1,5 +1,5 @@
-// StageEquations: the equations of motion at the points that the solvers of a stage look at, and what both judge them
-// by: units, redundant rows, and why an evaluation failed.
+// StageEquations: the equations of motion at the points where the solvers of a stage evaluate them, and what both
+// solvers share: units, redundant rows, and why an evaluation failed.
 #pragma once
 
 #include <span>
@@ -26,6 +26,7 @@ class StageEquations {
   }
   /// The equations where they were evaluated last.
   KeptEvaluation& evaluation() { return e_; }
+  const KeptEvaluation& evaluation() const { return e_; }
 
   IndependentRows& rows() { return rows_; }
   const IndependentRows& rows() const { return rows_; }

@@ -11,7 +11,7 @@
 
 namespace freeplay {
 
-/// Redundant equations are left out of the matrices, and checked to hold by themselves. They are looked for at the
+/// Redundant equations are left out of the matrices, and checked to hold by themselves. The choice is made at the
 /// first factorization, and again where a pivot vanishes, as the rank may change along the motion.
 class IndependentRows {
  public:
@@ -24,10 +24,10 @@ class IndependentRows {
   bool any_dependent() const { return any_dependent_; }
   /// Grows whenever others than before are left out: factors and patterns made before are of no use then.
   int choice() const { return choice_; }
-  /// Whether they have been looked for.
+  /// Whether a choice has been made.
   bool is_known() const { return rank_ >= 0; }
   void keep_all() { rank_ = system_.layout().nc(); }
-  /// Looks at Phi_q of `e`. Returns whether the choice is another one than before.
+  /// Makes the choice anew from Phi_q of `e`. Returns whether it is another one than before.
   bool find(const Evaluation& e);
   /// The same, but only a rank that is larger than before counts. `error`: see RowRank::analyse().
   void find_more(const Evaluation& e, double error);
@@ -58,7 +58,7 @@ class IndependentRows {
   std::vector<SparseEntry> entries_;
   std::vector<char> dependent_;
   bool any_dependent_ = false;
-  int rank_ = -1;  // of the rows that are kept; -1 before the first look
+  int rank_ = -1;  // of the rows that are kept; -1 before the first choice
   int choice_ = 0;
   double largest_pivot_ = 0.0, regularity_ = 1.0, last_regularity_ = 1.0;
 };

@@ -10,7 +10,7 @@
 namespace freeplay {
 namespace {
 
-constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double rounding = ConvergenceParameters::rounding;
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr double near_singular = 1e-2;    // regularity below which errors across the motion count less
 constexpr double off_constraints = 10.0;  // relative change of Phi_q by relative size of Phi, about
@@ -28,11 +28,12 @@ double largest(std::span<const double> numbers) {
 
 }  // namespace
 
-IndexOneSolver::IndexOneSolver(StageEquations& equations, int max_iterations)
+IndexOneSolver::IndexOneSolver(StageEquations& equations, const ConvergenceParameters& parameters)
     : equations_(equations),
       system_(equations.system()),
       e_(equations.evaluation()),
-      max_iterations_(max_iterations),
+      dependent_(equations.dependent()),
+      parameters_(parameters),
       matrix_(system_) {
   const int nv = system_.layout().nv(), nc = system_.layout().nc();
   factored_at_.resize(at(system_.layout().nq()));
@@ -48,7 +49,7 @@ IndexOneSolver::IndexOneSolver(StageEquations& equations, int max_iterations)
   set_pattern();
 }
 
-// Much cheaper than to look which rows depend on others, and mostly enough: the pivots of all of them.
+// The pivots of all rows are much cheaper than a rank-revealing decomposition, and mostly enough.
 void IndexOneSolver::know_rows() {
   if (equations_.rows().is_known()) return;
   const Profile::Timer start(system_.profile(), Phase::start);
@@ -58,7 +59,7 @@ void IndexOneSolver::know_rows() {
 
 void IndexOneSolver::set_pattern() {
   const Profile::Timer start(system_.profile(), Phase::start);
-  matrix_.set_pattern(equations_.dependent());
+  matrix_.set_pattern(dependent_);
   pattern_choice_ = equations_.rows().choice();
   valid_ = false;
 }
@@ -102,7 +103,7 @@ bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double
     const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
     if (iteration > 0 && (left <= 1e-15 || (ratio >= 0.3 && change <= 1e-12))) return true;
     if (change == 0.0) return true;
-    if (!fresh && iteration > 0 && ratio > slow_contraction) {
+    if (!fresh && iteration > 0 && ratio > parameters_.slow_rate) {
       if (!factor()) return false;
       fresh = true;
       previous = std::numeric_limits<double>::infinity();
@@ -115,13 +116,12 @@ bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double
 
 double IndexOneSolver::refine_once(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
   const std::size_t nv = x_a.size(), nc = x_c.size();
-  const std::span<const char> dependent = equations_.dependent();
   const std::span<double> motion = std::span(update_).first(nv), pressure = std::span(update_).subspan(nv);
   std::ranges::fill(motion, 0.0);
   system_.add_transposed(e_, x_c, motion);
   system_.multiply(e_, x_a, pressure);
   for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.mass()[i] * x_a[i] - motion[i];
-  for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent[r] ? 0.0 : right_c_[r] - pressure[r];
+  for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent_[r] ? 0.0 : right_c_[r] - pressure[r];
   matrix_.solve(motion, pressure);
   for (std::size_t i = 0; i < nv; ++i) x_a[i] += motion[i];
   for (std::size_t r = 0; r < nc; ++r) x_c[r] += pressure[r];
@@ -173,14 +173,13 @@ bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const
       for (int c = 0; c < width; ++c) use(entry[c] * rate[c]);
     }
   };
-  const std::span<const char> dependent = equations_.dependent();
   for (std::size_t r = 0; r < right.size(); ++r) {
     double gap = right[r];
     each_number(r, [&](double moved) { gap -= moved; });
     left[r] = gap;
   }
   for (std::size_t r = 0; r < right.size(); ++r) {
-    if (dependent[r] != 0) continue;
+    if (dependent_[r] != 0) continue;
     double size = std::abs(right[r]);
     each_number(r, [&](double moved) { size += std::abs(moved); });
     if (!(std::abs(left[r]) <= tolerance * rounding * size)) return false;
@@ -201,7 +200,7 @@ bool IndexOneSolver::holds_to_rounding(std::span<const double> x_a, std::span<co
 
 bool IndexOneSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_->nu, v, 4.0, right_c_); }
 
-// Phi_q depends on time and coordinates alone.
+// Phi_q depends on time and coordinates only.
 bool IndexOneSolver::is_factored_here() const {
   return has_factors() && factored_time_ == e_->time &&
          std::memcmp(factored_at_.data(), e_->q.data(), factored_at_.size() * sizeof(double)) == 0;
@@ -216,21 +215,20 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   }
   if (choice.any_dependent()) {
     const Profile::Timer timer(system_.profile(), Phase::factorization);
-    // Rows that were left out in a singular position count again; not those that seem to say something new only because
-    // a stage is a little off the constraints.
+    // Rows that were left out in a singular position count again, but not those that seem independent only because a
+    // stage is a little off the constraints.
     choice.find_more(e_, off_constraints * largest(e_->phi) / system_.size());
   }
   if (!is_factored_here() && !factor()) return false;
   // Nothing of the past enters, so that the same state always has the same accelerations.
   const std::size_t nv = state.a.size, nc = state.lambda.size;
   in_pairs(nv, [&](auto at) { at(state.a) = at(e_->force); });
-  const std::span<const char> dependent = choice.dependent();
-  for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = dependent[r] ? 0.0 : e_->gamma[r];
+  for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = dependent_[r] ? 0.0 : e_->gamma[r];
   matrix_.solve(state.a, state.lambda);
   if (!matrix_.is_well_conditioned()) {
     std::copy_n(e_->force.begin(), nv, right_a_.begin());
     std::ranges::copy(e_->gamma, right_c_.begin());
-    // Where drivers alone decide the motion, a is right at once and the multipliers are not.
+    // Where drivers determine the motion completely, a is right at once and the multipliers are not.
     if (!holds_to_rounding(state.a, state.lambda) && !refine(state.a, state.lambda, 0.0, true)) return false;
   }
   std::ranges::copy(e_->internal_rate, z_rate.begin());
@@ -270,7 +268,7 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   std::ranges::fill(increment_, 0.0);
   std::ranges::copy(multipliers_, first_multipliers_.begin());
   std::ranges::fill(multipliers_, 0.0);
-  // The change is a small part of v: digits below the rounding of v are not asked for.
+  // The change is a small part of v: digits below the rounding of v are not needed.
   if (!refine(increment_, multipliers_, speed)) return false;
   for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += increment_[i];
   for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += first_multipliers_[r];
@@ -280,9 +278,8 @@ bool IndexOneSolver::project_velocity(StateView& state) {
 /// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
 void IndexOneSolver::solve_rows(std::span<const double> gap) {
   const std::size_t nv = increment_.size();
-  const std::span<const char> dependent = equations_.dependent();
   std::fill_n(update_.begin(), nv, 0.0);
-  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent[r] ? 0.0 : gap[r];
+  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
   matrix_.solve(std::span(update_).first(nv), std::span(update_).subspan(nv));
 }
 
@@ -290,13 +287,13 @@ bool IndexOneSolver::project_position(StateView& state) {
   if (state.lambda.size == 0) return true;
   const double target = 1e-14 * system_.size();
   double previous = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < max_iterations_; ++iteration) {
-    // Where the last projection moved nothing, as of bodies that drivers alone move, accelerate() will follow here.
+  for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
+    // Where the last projection moved nothing, as of bodies that drivers move, accelerate() follows at this very point.
     if (!equations_.evaluate(state, drifts_ ? rows : index_one)) return false;
     const double gap = largest(e_->phi);
     drifts_ = !(gap <= target);
     if (gap <= target || (gap < 1e-12 * system_.size() && gap > 0.5 * previous)) return true;
-    const bool slow = gap > slow_contraction * previous;
+    const bool slow = gap > parameters_.slow_rate * previous;
     if ((!has_factors() || slow) && !factor()) return false;
     previous = gap;
     for (std::size_t r = 0; r < e_->phi.size(); ++r) right_c_[r] = -e_->phi[r];
@@ -349,7 +346,7 @@ bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> o
   return true;
 }
 
-// increment_ <- the accelerations by the forces right_a_ alone, of rows that stay.
+// increment_ <- the accelerations by the forces right_a_, with gamma = 0.
 bool IndexOneSolver::move_by_forces() {
   if (!matrix_.is_well_conditioned()) {
     std::ranges::fill(increment_, 0.0);

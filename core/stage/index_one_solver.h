@@ -12,6 +12,7 @@
 
 #include "freeplay/integrator.h"
 #include "stage/acceleration_matrix.h"
+#include "stage/convergence_parameters.h"
 #include "stage/equations.h"
 #include "stage/flows.h"
 #include "system/system.h"
@@ -20,9 +21,7 @@ namespace freeplay {
 
 class IndexOneSolver {
  public:
-  static constexpr double slow_contraction = 0.1;  ///< stale factors that contract less are renewed
-
-  IndexOneSolver(StageEquations& equations, int max_iterations);
+  IndexOneSolver(StageEquations& equations, const ConvergenceParameters& parameters);
 
   /// Redundant multipliers come out with driver efforts, then reactions, of least norm. Factors are those of the very
   /// position, so that the same state always has the same accelerations.
@@ -75,8 +74,9 @@ class IndexOneSolver {
 
   StageEquations& equations_;
   const System& system_;
-  KeptEvaluation& e_;  // of equations_
-  int max_iterations_;
+  KeptEvaluation& e_;                // of equations_
+  std::span<const char> dependent_;  // IndependentRows::dependent() of equations_
+  const ConvergenceParameters parameters_;
   AccelerationMatrix matrix_;
   bool valid_ = false;               // its factors
   int pattern_choice_ = -1;          // IndependentRows::choice() of its pattern
