@@ -73,7 +73,7 @@ bool ConvergenceMonitor::is_noise(double coordinate_rounding) {
     record_->noise = std::max(size_, p.memory_decay * record_->noise);
     record_->noise_age = 0;
   } else if (++record_->noisy_updates > p.most_noisy_updates) {
-    // Noise, or an effect of stale factors: new ones decide.
+    // Stagnation at rounding is noise, or comes of stale factors: new ones decide.
     record_->noisy_updates = 0;
     record_->usable = false;
   }

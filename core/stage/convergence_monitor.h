@@ -33,7 +33,7 @@ enum class Convergence {
   at_rounding,     ///< the update is noise: the iteration stands at the rounding floor
   contracting,     ///< go on
   stale_jacobian,  ///< go on with new factors
-  stagnated,       ///< larger than noise, and does not shrink with new factors: rounding of Phi, or go_on()
+  stagnated,       ///< larger than noise, and hardly shrinks with new factors: accept rounding of Phi, else go_on()
   diverged,        ///< grows again and again with new factors
   not_finite       ///< a number in the state is infinite or none
 };
@@ -71,7 +71,7 @@ class ConvergenceMonitor {
   Convergence judge(double size, double coordinate_rounding, bool internal_converged);
   /// After `stagnated`, where Phi is more than rounding: the iteration goes on.
   Convergence go_on();
-  /// Other equations than before are solved from here: the next update is no measure of the last.
+  /// Other equations than before are solved from here on: the next update has a rate of 0.
   void forget_updates() { size_ = std::numeric_limits<double>::infinity(); }
   /// The last update is so small that to leave it out changes nothing.
   bool is_negligible() const {

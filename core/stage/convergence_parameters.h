@@ -23,45 +23,44 @@ struct ConvergenceParameters {
   /// Updates after the first [1]. A stage that needs more is given up, and the step is halved.
   int max_iterations = 20;
 
-  // Tolerance in velocity: tau_v = p d_0 beta_v, at least tau per second, at most tau / (n beta_v).
+  // Tolerance in velocity: tau_v = p d_0 beta_v, but at least tau (per second) and at most tau max(1, 1/(n beta_v)).
   /// p [1]. Where the predictor is far off, as in contacts, the step itself errs by much more than this part of d_0.
   double velocity_error_part = 1e-4;
-  /// n [1]. So many steps of such errors together move positions by tau. Acts in steps shorter than 1 s / n.
+  /// n [1]. So many steps of such errors together move positions by tau. Acts where beta_v < 1 s / n.
   double velocity_error_steps = 5000.0;
 
   // The first update has no rate of its own; the rate of an earlier stage may stand for it.
-  /// Rate assumed of a first update where none is known, with the forces of the stage before [1].
+  /// Rate assumed where none is remembered, but the forces of the stage before still act [1].
   double assumed_rate = 0.5;
-  /// r of a stage counts as safety r in the following ones [1].
+  /// The remembered rate is this times r [1].
   double rate_safety = 10.0;
   /// Least rate that is remembered [1].
   double least_rate = 1e-5;
-  /// Part of what is remembered (rates, noise) that a better value leaves of it [1].
+  /// A remembered rate or noise falls to this part of itself at most, each time that it is measured [1].
   double memory_decay = 0.5;
-  /// Stages for which a remembered rate may be used [1].
+  /// A remembered rate serves so many stages [1] ...
   int rate_memory = 8;
-  /// It may be used where it is below this [1] ...
+  /// ... where it is below this [1] ...
   double single_update_rate = 0.1;
-  /// ... and the first update is at most so many tolerances: max(beta_q, beta_v) d_0 <= this tau_v [1].
+  /// ... for first updates of at most so many tolerances: max(beta_q, beta_v) d_0 <= this tau_v [1].
   double single_update_size = 100.0;
-  /// Rates are measured where the update before was larger than this, d_(k-1) beta_q > this eps [1]: smaller ones are
-  /// rounding.
+  /// r is remembered where the update before was not rounding: d_(k-1) beta_q > this eps [1].
   double measurable_roundings = 8.0;
 
   // Stale Jacobian.
-  /// Factors of an earlier point are renewed after the second update where r is larger [1]. Where r is larger with new
-  /// factors, each update from the fourth on has its own (full Newton).
+  /// Factors of an earlier stage are renewed after the second update or a later one where r is above this [1]. Where r
+  /// is above it with new factors, too, each update from the fifth on has factors of its own (full Newton).
   double slow_rate = 0.1;
 
   // Rounding floor: nothing can be gained below it.
   /// Converged, too: e_k beta_q <= this u [1]. Without constraint equations an update with
   /// max(beta_q, beta_v) d_k <= this tau_v is not applied, and the evaluated point serves accelerate().
   double negligible_part = 0.1;
-  /// An update of d_k beta_q <= this u moves positions by roundings alone [1].
+  /// An update of d_k beta_q <= this u moves positions by no more than roundings [1].
   double noise_roundings = 50.0;
-  /// Such an update with r at or above this is noise [1]; a larger one stagnates, see singular_roundings.
+  /// Such an update is noise where r is at least this [1]; a larger one then stagnates, see singular_roundings.
   double stagnation_rate = 0.3;
-  /// Noise may also come of stale factors: they are renewed after so many noisy updates [1].
+  /// Noise may come of stale factors: they are renewed after more than so many updates that were noise [1].
   int most_noisy_updates = 3;
   /// d_0 is noise where d_0 <= this times the noise of new factors, seen with the same forces [1] ...
   double noise_margin = 2.0;
@@ -81,14 +80,15 @@ struct ConvergenceParameters {
   double drift_roundings = 4.0;
 
   // Failure.
-  /// A rate above this with new factors diverges [1] ...
+  /// With new factors an update of a larger rate diverges [1] ...
   double divergence_rate = 2.0;
-  /// ... at the so many-th time [1]: the stage is given up.
+  /// ... and so many of them in a stage end it without a result [1].
   int most_divergent_updates = 2;
-  /// |Phi_r| of a redundant equation that was left out [model sizes]: more says that constraints contradict each other.
+  /// Largest |Phi_r| of a redundant equation after the iteration [model sizes]: if it is larger, the rank has changed
+  /// or constraints contradict each other.
   double redundancy_tolerance = 1e-9;
 
-  /// Last change of internal variables, relative to their size [1]: the next one is about its square.
+  /// Largest last change of internal variables, relative to their size [1]: the next one is about its square.
   double internal_tolerance = 1e-8;
 
   /// eps [1].

@@ -15,8 +15,13 @@ constexpr double smallest = std::numeric_limits<double>::min();
 constexpr double near_singular = 1e-2;    // regularity below which errors across the motion count less
 constexpr double off_constraints = 10.0;  // relative change of Phi_q by relative size of Phi, about
 constexpr int refinement_limit = 30;
-constexpr int quick_passes = 3;        // of a projection of velocities
-constexpr double small_change = 1e-5;  // of velocities, relative, that these may make
+constexpr double refined = 1e-15;          // relative error that a refinement may leave
+constexpr double stagnation_rate = 0.3;    // of updates that gain nothing more where they are as small as ...
+constexpr double stagnation_size = 1e-12;  // ... this, relative
+constexpr double on_position = 1e-14;      // Phi that a projection may leave [model sizes] ...
+constexpr double near_position = 1e-12;    // ... and where it does not halve any more
+constexpr int quick_passes = 3;            // of a projection of velocities
+constexpr double small_change = 1e-5;      // of velocities, relative, that these may make
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -101,7 +106,7 @@ bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double
     const double ratio = change / previous;
     previous = change;
     const double left = ratio < 1.0 ? ratio / (1.0 - ratio) * change : change;
-    if (iteration > 0 && (left <= 1e-15 || (ratio >= 0.3 && change <= 1e-12))) return true;
+    if (iteration > 0 && (left <= refined || (ratio >= stagnation_rate && change <= stagnation_size))) return true;
     if (change == 0.0) return true;
     if (!fresh && iteration > 0 && ratio > parameters_.slow_rate) {
       if (!factor()) return false;
@@ -285,14 +290,14 @@ void IndexOneSolver::solve_rows(std::span<const double> gap) {
 
 bool IndexOneSolver::project_position(StateView& state) {
   if (state.lambda.size == 0) return true;
-  const double target = 1e-14 * system_.size();
+  const double target = on_position * system_.size();
   double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
     // Where the last projection moved nothing, as of bodies that drivers move, accelerate() follows at this very point.
     if (!equations_.evaluate(state, drifts_ ? rows : index_one)) return false;
     const double gap = largest(e_->phi);
     drifts_ = !(gap <= target);
-    if (gap <= target || (gap < 1e-12 * system_.size() && gap > 0.5 * previous)) return true;
+    if (gap <= target || (gap < near_position * system_.size() && gap > 0.5 * previous)) return true;
     const bool slow = gap > parameters_.slow_rate * previous;
     if ((!has_factors() || slow) && !factor()) return false;
     previous = gap;

@@ -166,7 +166,7 @@ bool NewtonStageSolver::update_internal(const Stage& stage, const StateView& out
 
 void NewtonStageSolver::update_unknowns(StateView& out, StageFactor& factor) {
   const std::size_t nv = increment_.size(), nc = update_.size() - nv;
-  // Negligible: a stay at the evaluated point saves accelerate() another evaluation.
+  // Negligible: the evaluated point is kept, so that accelerate() can reuse it.
   if (nc == 0 && factor.matrix.internal().empty() && monitor_.is_negligible()) std::ranges::fill(update_, 0.0);
   in_pairs(nv, [&](auto at) { at(out.a) += at(update_); });
   in_pairs(nc, [&](auto at) { at(out.lambda) += at(std::span(update_).subspan(nv)); });

@@ -66,11 +66,33 @@ TEST_F(Monitor, DoesNotTrustTheFirstUpdateOfOtherForces) {
   EXPECT_EQ(Convergence::converged, judge(1e-9));
 }
 
-TEST_F(Monitor, LetsARateStandForTheFirstUpdatesOfEightStages) {
+TEST_F(Monitor, RemembersTenTimesARate) {
+  record.rate = 0.015;
   begin();
   judge(1e-4);
-  ASSERT_EQ(Convergence::converged, judge(1e-7));  // r = 1e-3 counts as 1e-2
+  judge(1e-7);
   EXPECT_DOUBLE_EQ(1e-2, record.rate);
+}
+
+TEST_F(Monitor, ForgetsABadRateByHalves) {
+  ASSERT_EQ(1.0, record.rate);
+  for (const double remembered : {0.5, 0.25, 0.125}) {
+    begin();
+    judge(1e-4);
+    judge(1e-8);
+    EXPECT_DOUBLE_EQ(remembered, record.rate);
+  }
+}
+
+TEST_F(Monitor, MeasuresNoRateOfRounding) {
+  begin();
+  judge(8.0 * eps / 1e-6 * 0.99);
+  judge(1e-12);
+  EXPECT_EQ(1.0, record.rate);
+}
+
+TEST_F(Monitor, LetsARateStandForTheFirstUpdatesOfEightStages) {
+  record.rate = 1e-2;
   for (int stage = 0; stage < 8; ++stage) {
     begin();
     EXPECT_EQ(Convergence::converged, judge(5e-6)) << stage;  // 5.05e-8 is left
@@ -87,12 +109,14 @@ TEST_F(Monitor, LetsARateStandForSmallFirstUpdatesAlone) {
   EXPECT_EQ(Convergence::contracting, judge(1.01e-5));
 }
 
-TEST_F(Monitor, ForgetsARateWithOtherForces) {
+TEST_F(Monitor, ForgetsRateAndNoiseWithOtherForces) {
   record.rate = 1e-3;
+  record.noise = 1e-8;
   acting = 1;
   begin();
   judge(1e-6);
   EXPECT_EQ(1.0, record.rate);
+  EXPECT_EQ(0.0, record.noise);
 }
 
 TEST_F(Monitor, RenewsAStaleJacobianAfterTheSecondUpdate) {
@@ -158,6 +182,22 @@ TEST_F(Monitor, EndsAtTheRoundingFloor) {
   EXPECT_EQ(0.9e-8, record.noise);
 }
 
+TEST_F(Monitor, ConvergesWhereATenthOfARoundingIsLeft) {
+  begin(1e-6, 10.0);
+  EXPECT_EQ(Convergence::converged, judge(0.09 * eps / 1e-6));
+  begin(1e-6, 10.0);
+  EXPECT_EQ(Convergence::contracting, judge(0.11 * eps / 1e-6));
+}
+
+TEST_F(Monitor, EndsWhereALaterUpdateIsLessThanARounding) {
+  begin_fresh(1e-6, 10.0);
+  judge(4.0 * eps / 1e-6);
+  EXPECT_EQ(Convergence::at_rounding, judge(0.9 * eps / 1e-6));
+  begin_fresh(1e-6, 10.0);
+  judge(4.0 * eps / 1e-6);
+  EXPECT_EQ(Convergence::contracting, judge(1.1 * eps / 1e-6));
+}
+
 TEST_F(Monitor, GoesOnAboveTheRoundingFloor) {
   begin_fresh(noisy_q, noisy_v);
   judge(1.5e-8);
@@ -189,6 +229,7 @@ TEST_F(Monitor, RenewsFactorsThatNoiseMayComeOf) {
     EXPECT_EQ(0.0, record.noise);  // of old factors it is no measure
   }
   EXPECT_FALSE(record.usable);
+  EXPECT_EQ(0, record.noisy_updates);  // of the new ones
 }
 
 TEST_F(Monitor, WaitsForInternalVariables) {
