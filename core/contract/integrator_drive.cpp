@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "component/declared.h"
+#include "stage/solver_table.h"
 
 namespace freeplay {
 namespace {
@@ -58,54 +59,14 @@ bool GuardedState::finite() const {
   return std::all_of(all.begin(), all.end(), [](double x) { return std::isfinite(x); });
 }
 
-FailingStageSolver::FailingStageSolver(const abi::StageSolverTable& inner, int good_stages)
-    : inner_(inner),
-      table_{sizeof(abi::StageSolverTable),
-             this,
-             [](void* self, const Stage* stage, StateView* out, StageResult* result, Message* m) noexcept {
-               auto& me = *static_cast<FailingStageSolver*>(self);
-               if (me.stages_++ != me.good_stages_) return me.inner_.solve(me.inner_.self, stage, out, result, m);
-               *result = {0, 1};
-               return Status::ok;
-             },
-             [](void* self, StateView* state, Message* m) noexcept {
-               auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.project_velocity(me.inner_.self, state, m);
-             },
-             [](void* self, StateView* state, Message* m) noexcept {
-               auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.project_position(me.inner_.self, state, m);
-             },
-             [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
-               auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.accelerate(me.inner_.self, state, z_rate, m);
-             },
-             [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
-               const auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.error_norm(me.inner_.self, position, velocity);
-             },
-             [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
-               const auto& me = *static_cast<FailingStageSolver*>(self);
-               me.inner_.retract(me.inner_.self, q_base, increment, q);
-             },
-             inner.estimates,
-             [](void* self, double dt, const StateView* end, Span<const double> error) noexcept {
-               const auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.internal_error_norm(me.inner_.self, dt, end, error);
-             },
-             [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
-               const auto& me = *static_cast<FailingStageSolver*>(self);
-               me.inner_.increment_rate(me.inner_.self, increment, v, rate);
-             },
-             [](void* self) noexcept {
-               const auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.guess_error(me.inner_.self);
-             },
-             [](void* self, double beta_q, double beta_v, Span<const double> missed) noexcept {
-               const auto& me = *static_cast<FailingStageSolver*>(self);
-               return me.inner_.unsolved_error(me.inner_.self, beta_q, beta_v, missed);
-             }},
-      good_stages_(good_stages) {}
+FailingStageSolver::FailingStageSolver(const System& system, const ConvergenceParameters& parameters, int good_stages)
+    : NewtonStageSolver(system, parameters), table_(stage_solver_table(*this)), good_stages_(good_stages) {}
+
+bool FailingStageSolver::solve(const Stage& stage, StateView& out, StageResult& result) {
+  if (stages_++ != good_stages_) return NewtonStageSolver::solve(stage, out, result);
+  result = {0, 1};
+  return true;
+}
 
 IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const ReferenceSystem& reference, double tolerance,
                                  const Conditions& conditions, Findings& findings)
@@ -114,8 +75,9 @@ IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const Referenc
       conditions_(conditions),
       findings_(findings),
       layout_(declare(integrator, reference.system().layout(), conditions, findings)),
-      options_{std::min(tolerance, layout_.newton_tolerance), std::max(layout_.newton_max_iterations, 1)},
-      solver_(std::make_unique<NewtonStageSolver>(reference.system(), options_)),
+      parameters_{.tolerance = std::min(tolerance, layout_.newton_tolerance),
+                  .max_iterations = std::max(layout_.newton_max_iterations, 1)},
+      solver_(std::make_unique<NewtonStageSolver>(reference.system(), parameters_)),
       accepted_(reference.system().layout(), layout_.memory),
       trial_(reference.system().layout(), layout_.memory),
       scratch_(at(layout_.scratch)),
@@ -182,8 +144,7 @@ bool IntegratorDrive::step(double dt) {
 }
 
 std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good_stages, bool& converged, int& stages) {
-  NewtonStageSolver fresh(reference_.system(), options_);
-  FailingStageSolver solver(fresh.table(), good_stages);
+  FailingStageSolver solver(reference_.system(), parameters_, good_stages);
   GuardedState to = accepted_;
   GuardedNumbers work(at(layout_.scratch), scratch);
   Attempt attempt{};
@@ -197,10 +158,10 @@ std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good
 
 double IntegratorDrive::estimate(double dt, double tolerance, double& truth, const KnownState& now,
                                  const KnownState& end) {
-  NewtonStageSolver solver(reference_.system(), options_);
+  NewtonStageSolver solver(reference_.system(), parameters_);
   solver.control_error(tolerance, tolerance, 0.0);
   GuardedState to = accepted_;
-  solver.use_velocity(to.v.span());
+  solver.local_error().begin_attempt(to.v.span());
   Attempt attempt{};
   GuardedNumbers scratch(at(layout_.scratch), 0.0);
   if (!call_attempt(dt, to, scratch, solver.table(), false, attempt) || attempt.converged == 0) return 0.0;

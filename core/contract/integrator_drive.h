@@ -24,15 +24,16 @@ class GuardedState {
   GuardedNumbers t, q, v, a, lambda, z, memory;
 };
 
-/// A stage solver that passes everything on, and gives up at one of the stages.
-class FailingStageSolver {
+/// A stage solver that gives up at one of the stages: the one after `good_stages` others, none where these are
+/// negative.
+class FailingStageSolver : public NewtonStageSolver {
  public:
-  FailingStageSolver(const abi::StageSolverTable& inner, int good_stages);
+  FailingStageSolver(const System& system, const ConvergenceParameters& parameters, int good_stages);
   const abi::StageSolverTable& table() const { return table_; }
+  bool solve(const Stage& stage, StateView& out, StageResult& result);
   int stages() const { return stages_; }
 
  private:
-  const abi::StageSolverTable& inner_;
   abi::StageSolverTable table_;
   int good_stages_, stages_ = 0;
 };
@@ -67,7 +68,7 @@ class IntegratorDrive {
   Conditions conditions_;
   Findings& findings_;
   IntegratorLayout layout_;
-  StageOptions options_;
+  ConvergenceParameters parameters_;
   std::unique_ptr<NewtonStageSolver> solver_;
   GuardedState accepted_, trial_;
   GuardedNumbers scratch_;

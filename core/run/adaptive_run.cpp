@@ -315,7 +315,7 @@ std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const 
   std::string text = fmt::format("t = {:.9g} s: a step of {:.3g} s is needed, the smallest allowed is {:.3g} s",
                                  accepted.t(), dt, control.limits().smallest);
   if (limiting_joint >= 0) return text + fmt::format("; joint '{}' asks for it", model.joints[at(limiting_joint)].name);
-  const int worst = solver.worst_component();
+  const int worst = solver.local_error().worst_component();
   if (worst < 0) return text;
   const int width = system.body_velocities(), part = worst % width;
   const BodyId body = system.layout().body_at(worst / width);

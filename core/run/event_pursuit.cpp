@@ -115,7 +115,7 @@ double Simulation::Impl::aim_past(const StepEvents::Passage& end, double dt) con
 // the missing acceleration would make.
 double Simulation::Impl::defect_inside(double dt) {
   for (std::size_t i = 0; i < defect.size(); ++i) defect[i] = dt * (defect[i] - between.a()[i]);
-  return solver.velocity_error(defect);
+  return solver.local_error().velocity_norm(defect);
 }
 
 // Ends the step that was just made at the event inside it or a little behind, about `dt` after its start and before

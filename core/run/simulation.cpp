@@ -99,7 +99,8 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       integrator_layout(declare(system, energy.flows())),
       adaptive(settings.adaptive || integrator_layout.always_adaptive != 0),
       flows(integrator_layout.explicit_stages != 0 ? energy.flows() : 0),
-      solver(system, {integrator_layout.newton_tolerance, integrator_layout.newton_max_iterations}),
+      solver(system, {.tolerance = integrator_layout.newton_tolerance,
+                      .max_iterations = integrator_layout.newton_max_iterations}),
       control(step_limits(settings),
               integrator_layout.error_order > 0 ? integrator_layout.error_order : integrator_layout.order + 1),
       accepted(system.layout(), integrator_layout.memory, flows),
@@ -334,7 +335,7 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   trial.assign(accepted);
   if (!begin_steps(dt, trial)) return false;
   solver.use_history(trial.h());
-  if (adaptive) solver.use_velocity(accepted.v());
+  if (adaptive) solver.local_error().begin_attempt(accepted.v());
   const Profile::Timer timer(system.profile(), Phase::integrator);
   StateView view = trial.view();
   Attempt attempt{};

@@ -23,62 +23,9 @@ void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
   whole_.reset();
   by_normal_ = false;
   unit_ = 0.0;
-
-  prescribed_.clear();
-  std::vector<int> owner_of_row(dependent.size(), -1), owner_of_body(at(nv / width), -1);
-  for (const PrescribedBody& body : prescribed_bodies(system_, dependent)) {
-    const int index = static_cast<int>(prescribed_.size());
-    owner_of_body[at(body.body)] = index;
-    for (int c = 0; c < width; ++c) owner_of_row[at(body.rows[at(c)])] = index;
-    prescribed_.emplace_back().who = body;
-  }
-  free_rows_.clear();
-  std::vector<int> place(dependent.size(), -1);  // in free_rows_
-  for (int r = 0; r < static_cast<int>(dependent.size()); ++r) {
-    if (dependent[at(r)] || owner_of_row[at(r)] >= 0) continue;
-    place[at(r)] = static_cast<int>(free_rows_.size());
-    free_rows_.push_back(r);
-  }
-
-  struct Source {
-    bool held;  // by a prescribed body
-    int row, body, offset;
-    bool same_piece(const Source& other) const { return row == other.row && body == other.body; }
-  };
-  std::vector<Source> sources;
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
-    for (int r = 0; r < block.rows; ++r) {
-      if (dependent[at(block.row + r)]) continue;
-      sources.push_back({owner_of_body[at(block.body)] >= 0, block.row + r, block.body, block.offset + r * width});
-    }
-  }
-  std::ranges::sort(sources, {}, [](const Source& s) { return std::tuple(s.held, s.row, s.body, s.offset); });
-  offsets_.clear();
-  additions_.clear();
-  by_row_.clear();
-  std::vector<NormalMatrix::Piece> free_pieces;
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const Source& source = sources[i];
-    if (i > 0 && source.same_piece(sources[i - 1])) {
-      additions_.push_back({offsets_.size() - 1, source.offset});
-      continue;
-    }
-    const std::size_t piece = offsets_.size();
-    offsets_.push_back(source.offset);
-    if (!source.held) {
-      free_pieces.push_back({place[at(source.row)], source.body});
-      continue;
-    }
-    Prescribed& body = prescribed_[at(owner_of_body[at(source.body)])];
-    const auto own = std::find(body.who.rows.begin(), body.who.rows.begin() + width, source.row);
-    if (own != body.who.rows.begin() + width) {
-      body.pieces[static_cast<std::size_t>(own - body.who.rows.begin())] = piece;
-    } else {
-      by_row_.push_back({source.row, source.body, piece});
-    }
-  }
-  numbers_.assign(at(width) * offsets_.size(), 0.0);
-  sort_couplings(owner_of_row, owner_of_body);
+  const Owners owners = find_prescribed();
+  const std::vector<NormalMatrix::Piece> free_pieces = place_pieces(owners);
+  sort_couplings(owners);
 
   // Prescribed bodies have no pieces there.
   std::vector<double> mass(system_.mass().begin(), system_.mass().end());
@@ -92,13 +39,76 @@ void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
   all_free_ = free_rows_.size() == dependent.size();
 }
 
-void AccelerationMatrix::sort_couplings(std::span<const int> owner_of_row, std::span<const int> owner_of_body) {
+AccelerationMatrix::Owners AccelerationMatrix::find_prescribed() {
+  const int width = system_.body_velocities();
+  const std::size_t rows = dependent_.size();
+  Owners owners{std::vector<int>(rows, -1), std::vector<int>(at(system_.layout().nv() / width), -1)};
+  prescribed_.clear();
+  for (const PrescribedBody& body : prescribed_bodies(system_, dependent_)) {
+    const int index = static_cast<int>(prescribed_.size());
+    owners.of_body[at(body.body)] = index;
+    for (int c = 0; c < width; ++c) owners.of_row[at(body.rows[at(c)])] = index;
+    prescribed_.emplace_back().who = body;
+  }
+  free_rows_.clear();
+  for (int r = 0; r < static_cast<int>(rows); ++r) {
+    if (!dependent_[at(r)] && owners.of_row[at(r)] < 0) free_rows_.push_back(r);
+  }
+  return owners;
+}
+
+std::vector<NormalMatrix::Piece> AccelerationMatrix::place_pieces(const Owners& owners) {
+  const int width = system_.body_velocities();
+  const std::vector<Source> sources = sorted_sources(owners);
+  offsets_.clear();
+  additions_.clear();
+  by_row_.clear();
+  std::vector<NormalMatrix::Piece> free_pieces;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const Source& source = sources[i];
+    if (i > 0 && source.same_piece(sources[i - 1])) {
+      additions_.push_back({offsets_.size() - 1, source.offset});
+      continue;
+    }
+    const std::size_t piece = offsets_.size();
+    offsets_.push_back(source.offset);
+    if (!source.held) {
+      const auto place = std::ranges::lower_bound(free_rows_, source.row) - free_rows_.begin();
+      free_pieces.push_back({static_cast<int>(place), source.body});
+      continue;
+    }
+    Prescribed& body = prescribed_[at(owners.of_body[at(source.body)])];
+    const auto own = std::find(body.who.rows.begin(), body.who.rows.begin() + width, source.row);
+    if (own != body.who.rows.begin() + width) {
+      body.pieces[static_cast<std::size_t>(own - body.who.rows.begin())] = piece;
+    } else {
+      by_row_.push_back({source.row, source.body, piece});
+    }
+  }
+  numbers_.assign(at(width) * offsets_.size(), 0.0);
+  return free_pieces;
+}
+
+std::vector<AccelerationMatrix::Source> AccelerationMatrix::sorted_sources(const Owners& owners) const {
+  const int width = system_.body_velocities();
+  std::vector<Source> sources;
+  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+    for (int r = 0; r < block.rows; ++r) {
+      if (dependent_[at(block.row + r)]) continue;
+      sources.push_back({owners.of_body[at(block.body)] >= 0, block.row + r, block.body, block.offset + r * width});
+    }
+  }
+  std::ranges::sort(sources, {}, [](const Source& s) { return std::tuple(s.held, s.row, s.body, s.offset); });
+  return sources;
+}
+
+void AccelerationMatrix::sort_couplings(const Owners& owners) {
   const int count = static_cast<int>(prescribed_.size());
   const auto of_row = [&](const Coupling& c) {
-    const int owner = owner_of_row[at(c.row)];
+    const int owner = owners.of_row[at(c.row)];
     return owner < 0 ? count : owner;
   };
-  const auto of_body = [&](const Coupling& c) { return owner_of_body[at(c.body)]; };
+  const auto of_body = [&](const Coupling& c) { return owners.of_body[at(c.body)]; };
   by_body_ = by_row_;
   std::ranges::sort(by_row_, {}, [&](const Coupling& c) { return std::tuple(of_row(c), c.row, c.body); });
   std::ranges::sort(by_body_, {}, [&](const Coupling& c) { return std::tuple(of_body(c), c.row, c.body); });

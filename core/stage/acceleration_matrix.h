@@ -49,7 +49,22 @@ class AccelerationMatrix {
     std::size_t first_motion_part = 0, end_motion_part = 0;  // of by_body_: its columns
     double inverse[36];                                      // by columns; in the plane 3 x 3
   };
-  void sort_couplings(std::span<const int> owner_of_row, std::span<const int> owner_of_body);
+  /// Prescribed bodies by row and by body; -1: none.
+  struct Owners {
+    std::vector<int> of_row, of_body;
+  };
+  /// What a row has in the columns of one body, in Evaluation::jacobian.
+  struct Source {
+    bool held;  // by a prescribed body
+    int row, body, offset;
+    bool same_piece(const Source& other) const { return row == other.row && body == other.body; }
+  };
+  /// Finds prescribed_ and free_rows_.
+  Owners find_prescribed();
+  /// Finds numbers_ and what they are used for. Returns the pieces of free rows and bodies.
+  std::vector<NormalMatrix::Piece> place_pieces(const Owners& owners);
+  std::vector<Source> sorted_sources(const Owners& owners) const;
+  void sort_couplings(const Owners& owners);
   double factor_whole(Evaluation& e, double normal);
   template <int width>
   void gather(std::span<const double> jacobian);
@@ -80,7 +95,7 @@ class AccelerationMatrix {
   double smallest_ = 0.0;  // pivot of the normal matrix and of the blocks that prescribe bodies
   static constexpr double well_conditioned = 1e-2;
   std::unique_ptr<StageMatrix> whole_;
-  double unit_ = 0.0;  // pivot of whole_ over that of normal_, where both were asked last; 0: not yet
+  double unit_ = 0.0;  // pivot of whole_ over that of normal_, where both were factored last; 0: not yet
   mutable std::vector<double> multipliers_;  // of free rows
   mutable std::vector<double> forces_;       // on prescribed bodies
   mutable std::vector<double> right_, update_;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr MatrixEntry nowhere{-1, -1};
-constexpr int left_out = 0;  // the number that nobody reads
+constexpr int left_out = 0;  // a number that is never read
 constexpr int first_block = 1;
 constexpr int largest_whole = 20;  // unknowns: taking some of them out costs more than it saves
 
@@ -26,23 +26,7 @@ std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) c
               of_rows);
   for (int i = 0; i < nv; ++i) all.push_back({i, i});
   for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
-  if (forces_) {
-    for (const ForceBlock& block : system_.force_blocks()) {
-      const BodyId bodies[2] = {block.a, block.b};
-      for (int r = 0; r < 2 * width; ++r) {
-        for (int c = 0; c < 2 * width; ++c) {
-          const BodyId row = bodies[r / width], column = bodies[c / width];
-          const bool inside = row != ground && column != ground;
-          all.push_back(inside ? MatrixEntry{width * row + r % width, width * column + c % width} : nowhere);
-        }
-      }
-    }
-    for (int b = 0; width == 6 && b < nv / 6; ++b) {
-      for (int r = 6 * b + 3; r < 6 * b + 6; ++r) {
-        for (int c = 6 * b + 3; c < 6 * b + 6; ++c) all.push_back({r, c});
-      }
-    }
-  }
+  if (forces_) add_force_entries(all);
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     for (int r = block.row; r < block.row + block.rows; ++r) {
       for (int c = width * block.body; c < width * (block.body + 1); ++c) {
@@ -54,96 +38,144 @@ std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) c
   return all;
 }
 
+// Of forces, in space of gyroscopic moments, too.
+void StageMatrix::add_force_entries(std::vector<MatrixEntry>& all) const {
+  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  for (const ForceBlock& block : system_.force_blocks()) {
+    const BodyId bodies[2] = {block.a, block.b};
+    for (int r = 0; r < 2 * width; ++r) {
+      for (int c = 0; c < 2 * width; ++c) {
+        const BodyId row = bodies[r / width], column = bodies[c / width];
+        const bool inside = row != ground && column != ground;
+        all.push_back(inside ? MatrixEntry{width * row + r % width, width * column + c % width} : nowhere);
+      }
+    }
+  }
+  for (int b = 0; width == 6 && b < nv / 6; ++b) {
+    for (int r = 6 * b + 3; r < 6 * b + 6; ++r) {
+      for (int c = 6 * b + 3; c < 6 * b + 6; ++c) all.push_back({r, c});
+    }
+  }
+}
+
 void StageMatrix::set_pattern(std::span<const char> dependent) {
+  const std::vector<MatrixEntry> all = entries(dependent);
+  const Division division = divide(all, dependent);
+  std::vector<int> slots(all.size(), left_out);
+  place_blocks(all, division, slots);
+  place_couplings(all, division, slots);
+  place_free(all, division, slots);
+  share_out(slots);
+  values_.assign(first_rest_ + rest_.values().size(), 0.0);
+  rest_right_.assign(unknowns_.size(), 0.0);
+  rest_update_.assign(unknowns_.size(), 0.0);
+}
+
+StageMatrix::Division StageMatrix::divide(std::span<const MatrixEntry> all, std::span<const char> dependent) {
   const int nv = system_.layout().nv(), size = nv + system_.layout().nc(), width = system_.body_velocities();
-  prescribed_.clear();
-  std::vector<int> owner(at(size), -1);  // of a coordinate or row: its prescribed body
   const bool tiny = size <= largest_whole;
+  Division division{std::vector<int>(at(size), -1), std::vector<int>(at(size), -1),
+                    std::vector<char>(at(size), tiny ? 1 : 0)};
+  prescribed_.clear();
   for (const PrescribedBody& body : tiny ? std::vector<PrescribedBody>{} : prescribed_bodies(system_, dependent)) {
     const int index = static_cast<int>(prescribed_.size());
-    for (int c = 0; c < width; ++c) owner[at(width * body.body + c)] = owner[at(nv + body.rows[at(c)])] = index;
+    for (int c = 0; c < width; ++c) {
+      division.owner[at(width * body.body + c)] = division.owner[at(nv + body.rows[at(c)])] = index;
+    }
     prescribed_.emplace_back().who = body;
   }
-  const std::vector<MatrixEntry> all = entries(dependent);
-  std::vector<char> coupled(at(size), tiny ? 1 : 0);  // shares a row or column with another free unknown
   for (const auto [row, column] : all) {
-    if (row < 0 || row == column || owner[at(row)] >= 0 || owner[at(column)] >= 0) continue;
-    coupled[at(row)] = coupled[at(column)] = 1;
+    if (row < 0 || row == column || !division.is_free(row) || !division.is_free(column)) continue;
+    division.coupled[at(row)] = division.coupled[at(column)] = 1;
   }
   alone_.clear();
   unknowns_.clear();
-  std::vector<int> place(at(size), -1);  // in alone_ or in rest_
   for (int i = 0; i < size; ++i) {
-    if (owner[at(i)] >= 0) continue;
-    std::vector<int>& list = coupled[at(i)] ? unknowns_ : alone_;
-    place[at(i)] = static_cast<int>(list.size());
+    if (!division.is_free(i)) continue;
+    std::vector<int>& list = division.coupled[at(i)] ? unknowns_ : alone_;
+    division.place[at(i)] = static_cast<int>(list.size());
     list.push_back(i);
   }
+  return division;
+}
 
-  std::vector<int> slots(all.size(), left_out);
-  std::vector<MatrixEntry> factored;
-  std::vector<int> factored_entry, alone_entry;
-  factored.reserve(all.size());
-  factored_entry.reserve(all.size());
-  // Couplings in the order in which they are used: by kind and body.
+// Phi_q of the rows of prescribed bodies in their own columns. The transposed blocks are left out.
+void StageMatrix::place_blocks(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots) const {
+  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [row, column] = all[i];
+    if (row < nv || !division.is_block(row, column, nv)) continue;
+    const int owner = division.owner[at(row)];
+    const PrescribedBody& who = prescribed_[at(owner)].who;
+    const auto r = std::ranges::find(who.rows, row - nv) - who.rows.begin();
+    slots[i] = first_block + width * (width * owner + column - width * who.body) + static_cast<int>(r);
+  }
+}
+
+// Couplings in the order in which they are used: by kind and body.
+void StageMatrix::place_couplings(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots) {
+  enum Kind { of_rows, of_motion, of_free };
   struct Sorted {
-    int kind, body;
+    std::pair<int, int> when;  // kind and body
     std::size_t entry;
   };
+  const int nv = system_.layout().nv(), width = system_.body_velocities();
   std::vector<Sorted> sorted;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [row, column] = all[i];
-    if (row < 0) continue;
-    const int row_owner = owner[at(row)], column_owner = owner[at(column)];
-    if (row_owner < 0 && column_owner < 0) {
-      if (coupled[at(row)]) {
-        factored.push_back({place[at(row)], place[at(column)]});
-        factored_entry.push_back(static_cast<int>(i));
-      } else {
-        alone_entry.push_back(static_cast<int>(i));
-      }
-    } else if (row_owner == column_owner && (row < nv) != (column < nv)) {
-      if (row < nv) continue;  // the transposed block
-      const PrescribedBody& who = prescribed_[at(row_owner)].who;
-      const auto r = std::ranges::find(who.rows, row - nv) - who.rows.begin();
-      slots[i] = first_block + width * (width * row_owner + column - width * who.body) + static_cast<int>(r);
-    } else if (row_owner < 0) {
-      if (column < nv) sorted.push_back({2, 0, i});  // multipliers of prescribed bodies act on them alone
-    } else {
-      sorted.push_back({row < nv ? 1 : 0, row_owner, i});
+    if (row < 0 || division.is_block(row, column, nv)) continue;
+    if (!division.is_free(row)) {
+      sorted.push_back({{row < nv ? of_motion : of_rows, division.owner[at(row)]}, i});
+    } else if (!division.is_free(column) && column < nv) {  // multipliers of prescribed bodies act on them alone
+      sorted.push_back({{of_free, 0}, i});
     }
   }
-  std::ranges::stable_sort(sorted, {}, [](const Sorted& s) { return std::pair(s.kind, s.body); });
+  std::ranges::stable_sort(sorted, {}, &Sorted::when);
   first_coupling_ = at(first_block) + at(width * width) * prescribed_.size();
   couplings_.clear();
-  for (const auto& [kind, body, entry] : sorted) {
+  for (const auto& [when, entry] : sorted) {
     slots[entry] = static_cast<int>(first_coupling_ + couplings_.size());
     couplings_.push_back({all[entry].row, all[entry].column});
   }
   const auto first_of = [&](int kind, int body) {
-    return static_cast<std::size_t>(
-        std::ranges::lower_bound(sorted, std::pair(kind, body), {},
-                                 [](const Sorted& s) { return std::pair(s.kind, s.body); }) -
-        sorted.begin());
+    return static_cast<std::size_t>(std::ranges::lower_bound(sorted, std::pair(kind, body), {}, &Sorted::when) -
+                                    sorted.begin());
   };
   for (int p = 0; p < static_cast<int>(prescribed_.size()); ++p) {
     Prescribed& body = prescribed_[at(p)];
-    body.first_row_part = first_of(0, p);
-    body.end_row_part = first_of(0, p + 1);
-    body.first_motion_part = first_of(1, p);
-    body.end_motion_part = first_of(1, p + 1);
+    body.first_row_part = first_of(of_rows, p);
+    body.end_row_part = first_of(of_rows, p + 1);
+    body.first_motion_part = first_of(of_motion, p);
+    body.end_motion_part = first_of(of_motion, p + 1);
   }
-  first_free_part_ = first_of(2, 0);
-  first_alone_ = first_coupling_ + couplings_.size();
-  for (const int i : alone_entry) slots[at(i)] = static_cast<int>(first_alone_) + place[at(all[at(i)].row)];
-  first_rest_ = first_alone_ + alone_.size();
-  const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
-  for (std::size_t i = 0; i < found.size(); ++i)
-    slots[at(factored_entry[i])] = static_cast<int>(first_rest_) + found[i];
-  rest_right_.assign(unknowns_.size(), 0.0);
-  rest_update_.assign(unknowns_.size(), 0.0);
+  first_free_part_ = first_of(of_free, 0);
+}
 
-  const auto first_forces = slots.begin() + size;
+// Entries of unknowns that are alone in their row and column, and of the others, which are factored.
+void StageMatrix::place_free(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots) {
+  first_alone_ = first_coupling_ + couplings_.size();
+  first_rest_ = first_alone_ + alone_.size();
+  std::vector<MatrixEntry> factored;
+  std::vector<std::size_t> factored_entry;
+  factored.reserve(all.size());
+  factored_entry.reserve(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [row, column] = all[i];
+    if (row < 0 || !division.is_free(row) || !division.is_free(column)) continue;
+    if (division.coupled[at(row)]) {
+      factored.push_back({division.place[at(row)], division.place[at(column)]});
+      factored_entry.push_back(i);
+    } else {
+      slots[i] = static_cast<int>(first_alone_) + division.place[at(row)];
+    }
+  }
+  const std::vector<int> found = rest_.set_pattern(static_cast<int>(unknowns_.size()), factored);
+  for (std::size_t i = 0; i < found.size(); ++i) slots[factored_entry[i]] = static_cast<int>(first_rest_) + found[i];
+}
+
+void StageMatrix::share_out(const std::vector<int>& slots) {
+  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  const auto first_forces = slots.begin() + nv + system_.layout().nc();
   const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.force_blocks().size() : 0;
   const auto first_turning = first_forces + static_cast<std::ptrdiff_t>(of_forces);
   const auto first_rows = first_turning + (forces_ && width == 6 ? 9 * (nv / 6) : 0);
@@ -151,7 +183,6 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
             {first_forces, first_turning},
             {first_turning, first_rows},
             {first_rows, slots.end()}};
-  values_.assign(first_rest_ + rest_.values().size(), 0.0);
 }
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
@@ -160,22 +191,7 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
   for (std::size_t i = 0; i < slots_.constant.size(); ++i) {
     values_[at(slots_.constant[i])] += i < mass.size() ? mass[i] : 1.0;
   }
-  if (forces_) {
-    const int* slot = slots_.forces.data();
-    if (!internal_.empty()) {
-      internal_.prepare(e, beta_q, beta_v, beta_z);
-      const std::size_t columns = at(2 * system_.body_velocities());
-      internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
-        values_[at(slot[columns * (columns * block + at(r)) + at(c)])] += value;
-      });
-    }
-    for (std::size_t i = 0; i < e.force_v.size(); ++i) {
-      values_[at(*slot++)] -= beta_v * e.force_v[i] + beta_q * e.force_q[i];
-    }
-    for (std::size_t i = 0; i < slots_.turning.size(); ++i) {
-      values_[at(slots_.turning[i])] -= beta_v * e.gyroscopic_v[i];
-    }
-  }
+  if (forces_) fill_forces(e, beta_q, beta_v, beta_z);
   const int* slot = slots_.rows.data();
   for (const JacobianBlock& block : system_.jacobian_blocks()) {
     const double* entry = &e.jacobian[at(block.offset)];
@@ -191,6 +207,23 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
     if (values_[i] == 0.0 || !std::isfinite(values_[i])) smallest = 0.0;
   }
   return std::min(smallest, system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>());
+}
+
+void StageMatrix::fill_forces(Evaluation& e, double beta_q, double beta_v, double beta_z) {
+  const int* slot = slots_.forces.data();
+  if (!internal_.empty()) {
+    internal_.prepare(e, beta_q, beta_v, beta_z);
+    const std::size_t columns = at(2 * system_.body_velocities());
+    internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
+      values_[at(slot[columns * (columns * block + at(r)) + at(c)])] += value;
+    });
+  }
+  for (std::size_t i = 0; i < e.force_v.size(); ++i) {
+    values_[at(*slot++)] -= beta_v * e.force_v[i] + beta_q * e.force_q[i];
+  }
+  for (std::size_t i = 0; i < slots_.turning.size(); ++i) {
+    values_[at(slots_.turning[i])] -= beta_v * e.gyroscopic_v[i];
+  }
 }
 
 template <int width>

@@ -20,7 +20,7 @@ namespace freeplay {
 
 class StageMatrix {
  public:
-  /// Without `forces` for betas of zero alone: the index-1 matrix.
+  /// Without `forces`, for betas of zero only: the index-1 matrix.
   StageMatrix(const System& system, bool forces) : system_(system), forces_(forces), internal_(system) {}
 
   /// Leaves out the rows that are marked in `dependent`, whose multipliers then stay as they are. Allocates, and
@@ -50,13 +50,36 @@ class StageMatrix {
     std::vector<int> constant;  // masses, and ones of dependent rows
     std::vector<int> forces;    // of each force block, 6 x 6 or 12 x 12
     std::vector<int> turning;   // in space, with forces: 3 x 3 by body
-    std::vector<int> rows;      // Phi_q and, behind each, its transposed
+    std::vector<int> rows;      // Phi_q, each entry followed by that of the transposed
   };
   template <int width>
   double invert_blocks();
   template <int width>
   void substitute(std::span<double> right, std::span<double> update) const;
+  /// Where the unknowns are solved for, by their place in the whole system.
+  struct Division {
+    std::vector<int> owner;     // prescribed body of a coordinate or row; -1: a free one
+    std::vector<int> place;     // of a free one, in alone_ or unknowns_
+    std::vector<char> coupled;  // shares a row or column with another free one
+
+    bool is_free(int i) const { return owner[static_cast<std::size_t>(i)] < 0; }
+    /// Phi_q of a prescribed body's rows in its own columns, or transposed.
+    bool is_block(int row, int column, int nv) const {
+      return row >= 0 && !is_free(row) &&
+             owner[static_cast<std::size_t>(row)] == owner[static_cast<std::size_t>(column)] &&
+             (row < nv) != (column < nv);
+    }
+  };
   std::vector<MatrixEntry> entries(std::span<const char> dependent) const;
+  void add_force_entries(std::vector<MatrixEntry>& all) const;
+  /// Finds prescribed_, alone_ and unknowns_.
+  Division divide(std::span<const MatrixEntry> all, std::span<const char> dependent);
+  /// The slots of entries in values_: of blocks, then of couplings, then of free unknowns.
+  void place_blocks(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots) const;
+  void place_couplings(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots);
+  void place_free(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots);
+  void share_out(const std::vector<int>& slots);
+  void fill_forces(Evaluation& e, double beta_q, double beta_v, double beta_z);
   void subtract(std::size_t first, std::size_t end, std::span<const double> update, std::span<double> right) const;
 
   const System& system_;

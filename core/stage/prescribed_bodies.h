@@ -1,4 +1,4 @@
-// Bodies whose motion rows alone decide: driven cranks, and what is held on them.
+// Bodies whose motion follows from their constraint equations: driven cranks, and what is fixed to them.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct PrescribedBody {
   std::array<int, 6> rows{};
 };
 
-/// Found from the pattern of Phi_q alone, rows marked in `dependent` left out. A body on which more such rows
+/// Found from the pattern of Phi_q, rows marked in `dependent` left out. A body on which more such rows
 /// act is not listed.
 std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent);
 

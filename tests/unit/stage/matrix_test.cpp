@@ -129,7 +129,7 @@ void expect_solution(const std::string& text, double press) {
       1e-10, 1e-5, "with forces");
 }
 
-TEST(StageMatrix, AndThatOfAccelerationsSolveWhatTheirWrittenOutMatricesDo) {
+TEST(StageMatrices, SolveWhatDenseMatricesDo) {
   expect_solution(mechanism("3-rrr"), 2e-4);
   expect_solution(mechanism("slider-crank"), 1e-3);
   expect_solution(mechanism("four-bar"), 1e-3);

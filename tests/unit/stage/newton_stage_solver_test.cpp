@@ -86,7 +86,7 @@ TEST_F(Swinging, WhatAStageLeavesIsWithinTheTolerance) {
     State loose = before, sharp = before;
     ASSERT_TRUE(trapezoid(b, usual, loose).converged) << b;
     ASSERT_TRUE(trapezoid(b, exact, sharp).converged) << b;
-    const double allowed = StageOptions{}.tolerance * system.size();
+    const double allowed = ConvergenceParameters{}.tolerance * system.size();
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_NEAR(sharp.q()[i], loose.q()[i], allowed) << b;
       EXPECT_NEAR(sharp.v()[i], loose.v()[i], allowed * std::max(1.0, 1.0 / (5000.0 * b))) << b;

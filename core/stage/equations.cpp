@@ -1,0 +1,15 @@
+#include "stage/equations.h"
+
+namespace freeplay {
+
+StageEquations::StageEquations(const System& system) : system_(system), e_(system), rows_(system) {
+  for (int i = 0; i < system.layout().nv(); ++i) unit_.push_back(system.is_turn(i) ? 1.0 : system.size());
+  for (const double unit : unit_) per_unit_.push_back(1.0 / unit);
+}
+
+bool StageEquations::note_fault() {
+  trouble_ = e_->fault.kind == Fault::Kind::plugin ? e_->fault.message.text : e_->fault.motion.text;
+  return false;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,59 @@
+// StageEquations: the equations of motion at the points where the solvers of a stage evaluate them, and what both
+// solvers share: units, redundant rows, and why an evaluation failed.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "freeplay/integrator.h"
+#include "freeplay/pairs.h"
+#include "stage/independent_rows.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+class StageEquations {
+ public:
+  explicit StageEquations(const System& system);
+
+  const System& system() const { return system_; }
+  /// h of the states handed in from now on; views must stay valid.
+  void use_history(std::span<const double> h) { h_ = h; }
+  Point point_of(const StateView& s) const { return {*s.t, s.q, s.v, s.z, h_}; }
+  /// Fills these terms at a state; false with fault() and trouble() where an element fails.
+  bool evaluate(const StateView& at, unsigned terms) {
+    return system_.evaluate(point_of(at), terms | only_asked, e_) || note_fault();
+  }
+  /// The equations where they were evaluated last.
+  KeptEvaluation& evaluation() { return e_; }
+  const KeptEvaluation& evaluation() const { return e_; }
+
+  IndependentRows& rows() { return rows_; }
+  const IndependentRows& rows() const { return rows_; }
+  std::span<const char> dependent() const { return rows_.dependent(); }
+
+  /// Of increments and their rates: 1 for angles, else the model's size [m].
+  std::span<const double> units() const { return unit_; }
+  /// Largest part of an increment or of its rates, in units; keeps a NaN.
+  double norm(std::span<const double> increment) const {
+    const std::span<const double> per_unit = per_unit_;
+    return largest_in_pairs(unit_.size(), [&](auto at) { return at(increment) * at(per_unit); });
+  }
+
+  /// Why the last call of a solver failed: an element's fault, or kind none with `trouble()`.
+  const Fault& fault() const { return e_->fault; }
+  const char* trouble() const { return trouble_; }
+  void note_trouble(const char* text) { trouble_ = text; }
+
+ private:
+  [[gnu::cold]] bool note_fault();  // false
+
+  const System& system_;
+  KeptEvaluation e_;
+  IndependentRows rows_;
+  std::span<const double> h_;
+  std::vector<double> unit_, per_unit_;
+  const char* trouble_ = "";
+};
+
+}  // namespace freeplay

@@ -1,0 +1,66 @@
+// IndependentRows: which constraint equations the others determine, and how far those that are left are from depending
+// on each other.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "linear/row_rank.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Redundant equations are left out of the matrices, and checked to hold by themselves. The choice is made at the
+/// first factorization, and again where a pivot vanishes, as the rank may change along the motion.
+class IndependentRows {
+ public:
+  static constexpr double singular_pivot = 1e-13;  ///< smallest pivot over the largest
+
+  explicit IndependentRows(const System& system);
+
+  /// Nonzero for equations that the others determine.
+  std::span<const char> dependent() const { return dependent_; }
+  bool any_dependent() const { return any_dependent_; }
+  /// Grows whenever others than before are left out: factors and patterns made before are of no use then.
+  int choice() const { return choice_; }
+  /// Whether a choice has been made.
+  bool is_known() const { return rank_ >= 0; }
+  void keep_all() { rank_ = system_.layout().nc(); }
+  /// Makes the choice anew from Phi_q of `e`. Returns whether it is another one than before.
+  bool find(const Evaluation& e);
+  /// The same, but only a rank that is larger than before counts. `error`: see RowRank::analyse().
+  void find_more(const Evaluation& e, double error);
+  /// Multipliers of least norm for the same forces on the bodies: efforts of drivers first, then reactions. Phi_q is
+  /// that of the last find_more().
+  void least_norm(std::span<double> lambda) { rank_of_.least_norm(lambda, system_.layout().first_driver_row()); }
+  /// Row that comes closest to depending on the others, or -1. Slow.
+  int weakest(const Evaluation& e);
+
+  void begin_attempt() { regularity_ = 1.0; }
+  /// The smallest pivot of the index-1 matrix at another position.
+  void note_pivot(double pivot) {
+    largest_pivot_ = std::max(largest_pivot_, pivot);
+    last_regularity_ = pivot / largest_pivot_;
+    regularity_ = std::min(regularity_, last_regularity_);
+  }
+  /// Smallest pivot in the present attempt, or in the last that had one, in parts of its largest value in the run. It
+  /// falls with the square of the distance from a singular position of the constraints.
+  double regularity() const { return regularity_ < 1.0 ? regularity_ : last_regularity_; }
+  /// The same in the present attempt alone: 1 where it had no pivot.
+  double attempt_regularity() const { return regularity_; }
+
+ private:
+  bool adopt();
+
+  const System& system_;
+  RowRank rank_of_;
+  std::vector<SparseEntry> entries_;
+  std::vector<char> dependent_;
+  bool any_dependent_ = false;
+  int rank_ = -1;  // of the rows that are kept; -1 before the first choice
+  int choice_ = 0;
+  double largest_pivot_ = 0.0, regularity_ = 1.0, last_regularity_ = 1.0;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,67 @@
+#include "stage/local_error.h"
+
+#include <cmath>
+#include <limits>
+
+namespace freeplay {
+
+LocalError::LocalError(StageEquations& equations, IndexOneSolver& index_one)
+    : equations_(equations), index_one_(index_one) {
+  const Layout& layout = equations.system().layout();
+  const auto numbers = [](int count) { return std::vector<double>(static_cast<std::size_t>(count)); };
+  motion_ = numbers(layout.nv());
+  other_a_ = numbers(layout.nv());
+  other_lambda_ = numbers(layout.nc());
+  other_z_ = other_rate_ = numbers(layout.nz());
+}
+
+double LocalError::norm(std::span<const double> position, std::span<const double> velocity) {
+  if (!(position_ > 0.0)) return 0.0;
+  const double in_velocity = part_of_allowed(velocity, velocity_now_);
+  const int worst_velocity = worst_component_;
+  const double in_position = part_of_allowed(position, position_);
+  if (in_position > in_velocity) return in_position;
+  worst_component_ = worst_velocity;
+  return in_velocity;
+}
+
+double LocalError::part_of_allowed(std::span<const double> error, double allowed) {
+  const double model_size = equations_.system().size();
+  const std::span<const double> unit = equations_.units();
+  const bool split = index_one_.part_along_motion(error, motion_);
+  const double across_allowed = std::sqrt(allowed * model_size);
+  double largest = 0.0;
+  worst_component_ = 0;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    // `allowed` is a length: an angle may err by it over the size of the model.
+    const double scale = model_size / unit[i], along = split ? motion_[i] : error[i];
+    const double part = scale * (std::abs(along) / allowed + std::abs(error[i] - along) / across_allowed);
+    if (!(part <= largest)) largest = part, worst_component_ = static_cast<int>(i);
+  }
+  return largest;
+}
+
+double LocalError::internal_norm(double dt, const StateView& end, std::span<const double> error) {
+  if (!(position_ > 0.0) || other_z_.empty()) return 0.0;
+  // After the variables of the joints come integrals of the energy account, which nothing depends on.
+  for (std::size_t i = 0; i < other_z_.size(); ++i) other_z_[i] = end.z[i] + error[i];
+  std::ranges::copy(end.a, other_a_.begin());
+  std::ranges::copy(end.lambda, other_lambda_.begin());
+  StateView other{end.t,         end.q, end.v, std::span(other_a_), std::span(other_lambda_), std::span(other_z_),
+                  Span<double>{}};
+  const Flows* flows = index_one_.integrate_flows(nullptr);
+  const bool solved = index_one_.accelerate(other, std::span(other_rate_));
+  index_one_.integrate_flows(flows);
+  // No run goes on from a state that a joint refuses.
+  if (!solved) return std::numeric_limits<double>::infinity();
+  const double model_size = equations_.system().size();
+  const std::span<const double> unit = equations_.units();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const double part = model_size / unit[i] * dt * std::abs(other_a_[i] - end.a[i]) / velocity_now_;
+    if (!(part <= largest)) largest = part, worst_component_ = static_cast<int>(i);
+  }
+  return largest;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,53 @@
+// LocalError: errors of one step in parts of what the run allows.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "stage/equations.h"
+#include "stage/index_one_solver.h"
+
+namespace freeplay {
+
+class LocalError {
+ public:
+  LocalError(StageEquations& equations, IndexOneSolver& index_one);
+
+  /// From now on errors are in units of `position` [m], angles by the model's size, and in velocity of `velocity` [m/s]
+  /// plus the part `relative` of the largest velocity. Until then all norms are 0.
+  void allow(double position, double velocity, double relative) {
+    position_ = position, velocity_ = velocity, relative_ = relative;
+  }
+  /// The velocities at the start of the attempt. Their rounding is no error.
+  void begin_attempt(std::span<const double> v) {
+    equations_.rows().begin_attempt();
+    velocity_now_ =
+        velocity_ + std::max(relative_, velocity_rounding) * equations_.system().size() * equations_.norm(v);
+  }
+  /// See StageSolver::error_norm.
+  double norm(std::span<const double> position, std::span<const double> velocity);
+  double velocity_norm(std::span<const double> velocity) { return part_of_allowed(velocity, velocity_now_); }
+  /// See StageSolver::internal_error_norm.
+  double internal_norm(double dt, const StateView& end, std::span<const double> error);
+  /// Index into v of the largest part of the last norm.
+  int worst_component() const { return worst_component_; }
+
+ private:
+  static constexpr double velocity_rounding = 2e-14;  // relative
+
+  /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the
+  /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
+  /// square over the size of the model.
+  double part_of_allowed(std::span<const double> error, double allowed);
+
+  StageEquations& equations_;
+  IndexOneSolver& index_one_;
+  double position_ = 0.0, velocity_ = 0.0, relative_ = 0.0;
+  double velocity_now_ = 0.0;  // allowed in the present attempt
+  int worst_component_ = -1;
+  std::vector<double> motion_;                                         // part of an error along the motion
+  std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // with the internal variables in error
+};
+
+}  // namespace freeplay

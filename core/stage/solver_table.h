@@ -1,0 +1,51 @@
+// stage_solver_table(): the functions of a class in the table that the SDK's StageSolver calls.
+#pragma once
+
+#include "freeplay/integrator.h"
+
+namespace freeplay {
+
+/// `Solver` has the functions of StageSolver under the same names; those that may fail return false, and trouble()
+/// then says why. The table is valid while `solver` stays where it is.
+template <class Solver>
+abi::StageSolverTable stage_solver_table(Solver& solver) {
+  static constexpr auto of = [](void* self) -> Solver& { return *static_cast<Solver*>(self); };
+  static constexpr auto answer = [](bool good, const Solver& from, Message* message) {
+    if (good) return Status::ok;
+    abi::copy_text(message->text, sizeof message->text, from.trouble());
+    return Status::failed;
+  };
+  return {sizeof(abi::StageSolverTable),
+          &solver,
+          [](void* self, const Stage* stage, StateView* out, StageResult* result, Message* m) noexcept {
+            return answer(of(self).solve(*stage, *out, *result), of(self), m);
+          },
+          [](void* self, StateView* state, Message* m) noexcept {
+            return answer(of(self).project_velocity(*state), of(self), m);
+          },
+          [](void* self, StateView* state, Message* m) noexcept {
+            return answer(of(self).project_position(*state), of(self), m);
+          },
+          [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
+            return answer(of(self).accelerate(*state, z_rate), of(self), m);
+          },
+          [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
+            return of(self).error_norm(position, velocity);
+          },
+          [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
+            of(self).system().retract(q_base, increment, q);
+          },
+          0,
+          [](void* self, double dt, const StateView* end, Span<const double> error) noexcept {
+            return of(self).internal_error_norm(dt, *end, error);
+          },
+          [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
+            of(self).system().increment_rate(increment, v, rate);
+          },
+          [](void* self) noexcept { return of(self).guess_error(); },
+          [](void* self, double beta_q, double beta_v, Span<const double> missed) noexcept {
+            return of(self).unsolved_error(beta_q, beta_v, missed);
+          }};
+}
+
+}  // namespace freeplay
