@@ -19,6 +19,8 @@ using Eigen::MatrixXd;
 constexpr double rank_threshold = 1e-9;    // as that of the facts
 constexpr double moves = 1e-6;             // share of a unit vector that counts as motion, or as force
 constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
+constexpr double coarse_accuracy = 0.5;    // by a clearance
+constexpr double deep_start = 1.5;         // eccentricity of a journal, by its clearance
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -60,7 +62,9 @@ class Examination {
     }
     find_loose_ends();
     judge_springs();
+    judge_journals();
     judge_pairs();
+    judge_gears();
     if (closed_.layout().nv() > Structure::most_examined) return std::move(structure_);
     const MatrixXd open = matrix_of(released_, open_);
     judge_plays(open);
@@ -140,6 +144,53 @@ class Examination {
                         "number and its unit",
                         joint.name, free, length),
             joint.name, joint.location);
+    }
+  }
+
+  /// Journals that start in the wall of their bearings, and an accuracy that does not see them move.
+  void judge_journals() {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      const double play = joint.layout.clearance;
+      if (!joint.has_play || !(play > 0.0)) continue;
+      if (model_.settings.accuracy > coarse_accuracy * play) {
+        doubt("doubtful-value",
+              fmt::format("the accuracy of {:.3g} m is coarse against the clearance of joint '{}', {:.3g} m: ask for a "
+                          "tenth of it or less",
+                          model_.settings.accuracy, joint.name, play),
+              joint.name, joint.location);
+      }
+      const MarkerKinematics &a = open_.markers[at(joint.marker_a)], &b = open_.markers[at(joint.marker_b)];
+      double apart[3], along = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) apart[i] = b.position[i] - a.position[i];
+      // Of a pin in space its axis, z of the first marker, does not count.
+      const bool pin = model_.space == Space::spatial && joint.ideal_layout.coordinate == Coordinate::angle;
+      for (std::size_t i = 0; i < 3 && pin; ++i) along += apart[i] * a.rotation[3 * i + 2];
+      for (std::size_t i = 0; i < 3 && pin; ++i) apart[i] -= along * a.rotation[3 * i + 2];
+      const double eccentricity = std::hypot(apart[0], apart[1], apart[2]);
+      if (eccentricity <= deep_start * play) continue;
+      doubt("doubtful-clearance",
+            fmt::format("the journal of joint '{}' starts {:.3g} m from the centre of its bearing, {:.3g} m deep in its "
+                        "wall, as the clearance is {:.3g} m: check 'initial' and the clearance",
+                        joint.name, eccentricity, eccentricity - play, play),
+            joint.name, joint.location);
+    }
+  }
+
+  /// The same two joints geared twice.
+  void judge_gears() {
+    for (std::size_t k = 1; k < model_.gears.size(); ++k) {
+      for (std::size_t i = 0; i < k; ++i) {
+        const Gear &one = model_.gears[i], &other = model_.gears[k];
+        if (std::minmax(one.first, one.second) != std::minmax(other.first, other.second)) continue;
+        const JointElement& joint = model_.joints[at(other.joint)];
+        doubt("duplicate-joint",
+              fmt::format("gear '{}' couples the same two joints as '{}': how they share the torque is arbitrary; delete "
+                          "one of them",
+                          joint.name, model_.joints[at(one.joint)].name),
+              joint.name, joint.location);
+        break;
+      }
     }
   }
 
