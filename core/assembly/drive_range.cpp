@@ -451,10 +451,11 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
 std::string words(const DeadStart& start, const Model& model) {
   const Driver& driver = model.drivers[at(start.driver)];
   const std::string joints = joint_names(start.joints, model);
-  return fmt::format("driver '{}' starts joint '{}' at a dead point{}: nothing says which of two ways the mechanism goes "
-                     "on, or it cannot go as it is driven; start beside it, or drive another joint",
-                     driver.name, model.joints[at(driver.joint)].name,
-                     joints.empty() ? std::string{} : fmt::format(", where {} hold links in line", joints));
+  return fmt::format(
+      "driver '{}' starts joint '{}' at a dead point{}: nothing says which of two ways the mechanism goes "
+      "on, or it cannot go as it is driven; start beside it, or drive another joint",
+      driver.name, model.joints[at(driver.joint)].name,
+      joints.empty() ? std::string{} : fmt::format(", where {} hold links in line", joints));
 }
 
 std::string joint_names(std::span<const int> joints, const Model& model) {

@@ -169,11 +169,12 @@ class Examination {
       for (std::size_t i = 0; i < 3 && pin; ++i) apart[i] -= along * a.rotation[3 * i + 2];
       const double eccentricity = std::hypot(apart[0], apart[1], apart[2]);
       if (eccentricity <= deep_start * play) continue;
-      doubt("doubtful-clearance",
-            fmt::format("the journal of joint '{}' starts {:.3g} m from the centre of its bearing, {:.3g} m deep in its "
-                        "wall, as the clearance is {:.3g} m: check 'initial' and the clearance",
-                        joint.name, eccentricity, eccentricity - play, play),
-            joint.name, joint.location);
+      doubt(
+          "doubtful-clearance",
+          fmt::format("the journal of joint '{}' starts {:.3g} m from the centre of its bearing, {:.3g} m deep in its "
+                      "wall, as the clearance is {:.3g} m: check 'initial' and the clearance",
+                      joint.name, eccentricity, eccentricity - play, play),
+          joint.name, joint.location);
     }
   }
 
@@ -184,11 +185,12 @@ class Examination {
         const Gear &one = model_.gears[i], &other = model_.gears[k];
         if (std::minmax(one.first, one.second) != std::minmax(other.first, other.second)) continue;
         const JointElement& joint = model_.joints[at(other.joint)];
-        doubt("duplicate-joint",
-              fmt::format("gear '{}' couples the same two joints as '{}': how they share the torque is arbitrary; delete "
-                          "one of them",
-                          joint.name, model_.joints[at(one.joint)].name),
-              joint.name, joint.location);
+        doubt(
+            "duplicate-joint",
+            fmt::format("gear '{}' couples the same two joints as '{}': how they share the torque is arbitrary; delete "
+                        "one of them",
+                        joint.name, model_.joints[at(one.joint)].name),
+            joint.name, joint.location);
         break;
       }
     }

@@ -9,7 +9,6 @@ namespace freeplay {
 namespace {
 
 constexpr double depth_by_clearance = 0.1;
-constexpr double least_radius = 10.0, most_radius = 1000.0;  // of a bearing, by its clearance
 
 /// The exponent n of a unit N/m^n, which may be named by another parameter; nothing for other units.
 std::optional<double> exponent_of(std::string_view unit, const ParameterBlock& law) {
@@ -24,7 +23,7 @@ std::optional<double> exponent_of(std::string_view unit, const ParameterBlock& l
 }  // namespace
 
 std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, const JointLayout& layout) {
-  if (!(layout.clearance > 0.0)) return std::nullopt;
+  if (!(layout.clearance > 0.0) || !(layout.smaller_radius > 0.0)) return std::nullopt;
   for (const auto& [key, entry] : block.values) {
     const ParameterBlock* law = entry.law.get();
     if (law == nullptr || law->component->kind != ComponentKind::contact_law) continue;
@@ -36,12 +35,8 @@ std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, con
       const double depth = depth_by_clearance * layout.clearance;
       // K delta^n / (4/3 delta^1.5), and the root of R = R_j^2/c is R_j/sqrt(c).
       const double by_root = 0.75 * value->second.number * std::pow(depth, *exponent - 1.5);
-      const auto modulus = [&](double radius) { return by_root * std::sqrt(layout.clearance) / radius; };
-      const bool known = layout.smaller_radius > 0.0;
-      ContactStiffness out{parameter.name, fmt::format("N/m^{:g}", *exponent), value->second.number};
-      out.least_modulus = modulus(known ? layout.smaller_radius : most_radius * layout.clearance);
-      out.most_modulus = modulus(known ? layout.smaller_radius : least_radius * layout.clearance);
-      return out;
+      const double modulus = by_root * std::sqrt(layout.clearance) / layout.smaller_radius;
+      return ContactStiffness{parameter.name, fmt::format("N/m^{:g}", *exponent), value->second.number, modulus};
     }
   }
   return std::nullopt;

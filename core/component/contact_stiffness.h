@@ -13,12 +13,12 @@ struct ContactStiffness {
   std::string name, unit;  ///< of the parameter, the unit with its exponent: "N/m^1.5"
   double value = 0.0;
   /// Modulus E* [Pa] of the bodies that Hertz gives this force at a tenth of the clearance,
-  /// K delta^n = 4/3 E* sqrt(R) delta^1.5 with R = R_j^2/c. Without radii those of a bearing of 10 and of 1000 clearances.
-  double least_modulus = 0.0, most_modulus = 0.0;
+  /// K delta^n = 4/3 E* sqrt(R) delta^1.5 with R = R_j^2/c.
+  double modulus = 0.0;
 };
 
-/// Of the contact law in `block`, whose joint has the layout; nothing where K follows from the material, or there is no
-/// clearance.
+/// Of the contact law in `block`, whose joint has the layout; nothing where K follows from the material, or no radii
+/// and clearance are known.
 std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, const JointLayout& layout);
 
 }  // namespace freeplay

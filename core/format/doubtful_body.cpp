@@ -167,7 +167,7 @@ class BodyDoubts {
   }
 
   bool judge_large_inertia(std::size_t i) const {
-    const double own_reach = is_length(outlines_[i], gyration_[i]) || scale() == 0.0 ? outlines_[i].reach : 0.0;
+    const double own_reach = is_length(outlines_[i], gyration_[i]) ? outlines_[i].reach : 0.0;
     const double around = std::max(own_reach, scale());
     if (!(around > 0.0) || gyration_[i] <= body_limit::gyration * around) return false;
     const double disc = 2.0 * std::numbers::pi * gyration_[i] * gyration_[i];
@@ -197,13 +197,13 @@ class BodyDoubts {
     const bool foreign = i && is_foreign(*i);
     const double number = i && value->key() == "com" ? distance(body(*i).com, {}) : own;
     if (!doubted_.insert(&value->node()).second) return true;
-    value->warn("doubtful-length",
-                fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
-                            "m: {}",
-                            value->key() == "com" ? body(*i).name + "/com" : outline.farthest, number,
-                            scale_of_others(),
-                            foreign ? "robot files are in metres"
-                                    : fmt::format("write the unit behind the numbers, as in '{:.4g} mm'", number)));
+    value->warn(
+        "doubtful-length",
+        fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
+                    "m: {}",
+                    value->key() == "com" ? body(*i).name + "/com" : outline.farthest, number, scale_of_others(),
+                    foreign ? "robot files are in metres"
+                            : fmt::format("write the unit behind the numbers, as in '{:.4g} mm'", number)));
     return true;
   }
 

@@ -14,8 +14,8 @@ inline constexpr double gyration = 10.0, sheet = 0.5, any_gyration = 300.0;
 /// A body with a single frame is at least as long as its radius of gyration if its centre of mass is as far from that
 /// frame as this part of it: nearer, it is an unbalanced rotor, and the distance no length of the mechanism.
 inline constexpr double arm = 0.3;
-/// Reach of the frames in radii of gyration: of any body (Foucault's pendulum has 1800), and of one whose centre of mass
-/// lies between its frames (a rod has 1.7).
+/// Reach of the frames in radii of gyration: of any body (Foucault's pendulum has 1800), and of one whose centre of
+/// mass lies between its frames (a rod has 1.7).
 inline constexpr double slender = 5000.0, slender_between = 40.0;
 /// Density [kg/m^3] of a body as large as its radius of gyration allows; osmium has 22590, a long roller seems denser.
 inline constexpr double density = 1e6;

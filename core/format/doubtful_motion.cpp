@@ -146,13 +146,14 @@ class MotionDoubts {
     const double scale = draft_.length_scale;
     if (!bare) return;
     if (driver.kind == DriverKind::position && scale > 0.0 && range > bare_limit::length * scale) {
-      written->warn("doubtful-length", fmt::format("'{}' moves by {:.4g} m where the lengths of the mechanism are about "
-                                                   "{:.3g} m: write 'unit: mm' if millimetres are meant, else 'unit: m'",
-                                                   written->path(), range, scale));
+      written->warn("doubtful-length",
+                    fmt::format("'{}' moves by {:.4g} m where the lengths of the mechanism are about "
+                                "{:.3g} m: write 'unit: mm' if millimetres are meant, else 'unit: m'",
+                                written->path(), range, scale));
     } else if (fastest > bare_limit::slide_speed) {
-      written->warn("doubtful-speed", fmt::format("'{}' comes to {:.4g} m/s: write its unit, as in 'unit: {}'",
-                                                  written->path(), fastest,
-                                                  driver.kind == DriverKind::position ? "mm" : "mm/s"));
+      written->warn("doubtful-speed",
+                    fmt::format("'{}' comes to {:.4g} m/s: write its unit, as in 'unit: {}'", written->path(), fastest,
+                                driver.kind == DriverKind::position ? "mm" : "mm/s"));
     }
   }
 

@@ -93,9 +93,10 @@ void doubt_range(const CheckedValue& written, std::string_view unit, double valu
     }
     const bool bare = !names_a_unit(written), plain = unit == "1";
     if (value <= range.most && value >= (bare ? range.least_bare : range.least)) continue;
-    written.warn("doubtful-value", fmt::format("'{}' is {:.4g}{}{}, but {}{}", written.path(), value, plain ? "" : " ",
-                                               plain ? "" : unit, range.words,
-                                               bare && !plain ? ": write the unit behind the number" : ": check the number"));
+    written.warn(
+        "doubtful-value",
+        fmt::format("'{}' is {:.4g}{}{}, but {}{}", written.path(), value, plain ? "" : " ", plain ? "" : unit,
+                    range.words, bare && !plain ? ": write the unit behind the number" : ": check the number"));
   }
 }
 

@@ -245,20 +245,21 @@ class JointEntry {
       const auto place = parameters.places.find(path);
       if (!is_play(path) || !(longest > 0.0) || value <= longest || place == parameters.places.end()) return;
       if (layout.clearance >= value) return;  // told of the radial one
-      place->second.warn("doubtful-clearance",
-                         fmt::format("'{}' is {:.4g} m, more than all radii and lengths of the bearing ({:.4g} m): check "
-                                     "the number and its unit",
-                                     place->second.path(), value, longest));
+      place->second.warn(
+          "doubtful-clearance",
+          fmt::format("'{}' is {:.4g} m, more than all radii and lengths of the bearing ({:.4g} m): check "
+                      "the number and its unit",
+                      place->second.path(), value, longest));
     });
     const auto stiffness = given_stiffness(*parameters.block, layout);
     if (!stiffness) return;
-    const bool soft = stiffness->most_modulus < softest, hard = stiffness->least_modulus > hardest;
+    const bool soft = stiffness->modulus<softest, hard = stiffness->modulus> hardest;
     if (!soft && !hard) return;
-    entry_.warn_at_key("doubtful-value",
-                       fmt::format("{} of joint '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: moduli go "
-                                   "from 1 MPa (rubber) to 1200 GPa (diamond); check the number and its unit",
-                                   stiffness->name, entry_.key(), stiffness->value, stiffness->unit,
-                                   soft ? stiffness->most_modulus : stiffness->least_modulus));
+    entry_.warn_at_key(
+        "doubtful-value",
+        fmt::format("{} of joint '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: moduli go "
+                    "from 1 MPa (rubber) to 1200 GPa (diamond); check the number and its unit",
+                    stiffness->name, entry_.key(), stiffness->value, stiffness->unit, stiffness->modulus));
   }
 
   bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {

@@ -28,8 +28,8 @@ std::unordered_map<BodyId, std::string> shared_holds(const Draft& draft) {
   return shared;
 }
 
-// A planar link all of whose joints are pins at one and the same place, away from its centre of mass: it turns there and
-// moves nothing. What gears or forces take hold of may be meant to.
+// A planar link all of whose joints are pins at one and the same place, away from its centre of mass: it turns there
+// and moves nothing. What gears or forces take hold of may be meant to.
 void warn_of_idle_links(const Draft& draft) {
   const Model& model = draft.model;
   if (model.space != Space::planar) return;
@@ -69,10 +69,10 @@ void warn_of_idle_links(const Draft& draft) {
     if (std::hypot(com[0] - place[0], com[1] - place[1]) < 1e-9) continue;
     const auto entry = entry_of(draft, "joints", link.pins[1]->name);
     if (!entry || entry->key_node()->foreign || !told.insert(&entry->node()).second) continue;
-    entry->warn_at_key("same-frame", fmt::format("joints '{}' and '{}' hold '{}' at one place, '{}', so that its turning "
-                                                 "moves nothing: is one of them meant at another frame",
-                                                 link.pins[0]->name, link.pins[1]->name, model.bodies[b].name,
-                                                 at(link.marker).name));
+    entry->warn_at_key("same-frame",
+                       fmt::format("joints '{}' and '{}' hold '{}' at one place, '{}', so that its turning "
+                                   "moves nothing: is one of them meant at another frame",
+                                   link.pins[0]->name, link.pins[1]->name, model.bodies[b].name, at(link.marker).name));
   }
 }
 

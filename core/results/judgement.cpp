@@ -33,7 +33,8 @@ constexpr double most_play = 0.1;           // clearance by the model's size
 constexpr double fewest_impacts = 10.0;     // in a window of statistics without a period
 constexpr double longest_period = 20.0;     // looked for, by the length of the run
 constexpr double whole_period = 0.99;       // of a window
-constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts
+constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts,
+constexpr double long_enough = 0.1;         // in a window of this part of the run
 
 /// One reason, if `value` passes a limit.
 void judge(double value, const Limits& limits, TrustReason reason, Verdict& verdict) {
@@ -267,7 +268,8 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   // Surfaces that stay in contact have few impacts, and a lasting state all the more.
   for (int j = 0; j < static_cast<int>(record.model.joints.size()); ++j) {
     const bool touches = has_contact_statistics(record.channels.joints[at(j)]);
-    if (touches && record.statistics.joint(j).contact_fraction > lasting) return;
+    const bool rests = touches && record.statistics.joint(j).contact_fraction > lasting;
+    if (rests && window > long_enough * (record.outcome.time - settings.start)) return;
   }
   verdict.add({.id = "statistics-window",
                .level = Trust::doubtful,

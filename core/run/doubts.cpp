@@ -111,10 +111,11 @@ void Simulation::Impl::note_unused_play() {
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     if (outcome.steps == 0 || !watch.never_moved(j) || !in_a_loop(model, j)) continue;
     const std::string joint = fmt::format("joint '{}'", model.joints[at(j)].name);
-    outcome.doubts.push_back({.id = "play-bypassed",
-                              .level = Trust::doubtful,
-                              .message = joint + ": its journal never moved in its bearing: nothing loads it, or other joints hold it",
-                              .element = joint});
+    outcome.doubts.push_back(
+        {.id = "play-bypassed",
+         .level = Trust::doubtful,
+         .message = joint + ": its journal never moved in its bearing: nothing loads it, or other joints hold it",
+         .element = joint});
   }
 }
 

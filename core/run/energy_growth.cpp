@@ -83,7 +83,8 @@ std::string Simulation::Impl::why_beyond_bounds(double t, int joint) const {
   std::string text = fmt::format("t = {:.9g} s: forces and speeds grow beyond all bounds", t);
   const int hardest = joint >= 0 ? joint : hardest_joint(ground);
   if (hardest >= 0) text += fmt::format(", first in joint '{}'", model.joints[static_cast<std::size_t>(hardest)].name);
-  const std::string cause = likely_cause(system, e_accepted, {t, adaptive ? 0.0 : settings.step, hardest, first_forces});
+  const std::string cause =
+      likely_cause(system, e_accepted, {t, adaptive ? 0.0 : settings.step, hardest, first_forces});
   return text + (cause.empty() ? std::string(advice::accuracy) : "; likely cause: " + cause);
 }
 

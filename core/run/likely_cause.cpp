@@ -13,20 +13,20 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // What no machine has.
-constexpr double most_gyration = 3.0;      // radius of gyration, by the size of the body
-constexpr double most_density = 1e5;       // mass by the cube of the model's size [kg/m^3]: four times osmium's
+constexpr double most_gyration = 3.0;       // radius of gyration, by the size of the body
+constexpr double most_density = 1e5;        // mass by the cube of the model's size [kg/m^3]: four times osmium's
 constexpr double most_near_gyration = 1e6;  // mass by the largest body with this radius of gyration [kg/m^3]
 constexpr double softest = 1e6;             // E* [Pa]: of rubber
 constexpr double soft = 3e8;                // E* [Pa]: below plastics
-constexpr double stiffest = 1.5e12;        // E* [Pa]: above diamond's
-constexpr double most_lengths = 100.0;     // size of a body, by the median of all
-constexpr double most_gravity = 1e3;       // [m/s^2]
-constexpr double fastest_turn = 1e5;       // of a driver [rad/s]: a million turns a minute
-constexpr double fastest = 200.0;          // of what a driver moves [m/s]: rims burst at twice as much
-constexpr double suddenly = 10.0;          // speed, by the mean one of the run: a jump
-constexpr double most_acceleration = 3e4;  // of all masses together, by one load [m/s^2]
-constexpr double most_of_element = 3e5;    // the same by a spring or damper, which may follow from what went wrong
-constexpr double most_of_clearance = 0.2;  // way of one surface in another in a step, by the clearance
+constexpr double stiffest = 1.5e12;         // E* [Pa]: above diamond's
+constexpr double most_lengths = 100.0;      // size of a body, by the median of all
+constexpr double most_gravity = 1e3;        // [m/s^2]
+constexpr double fastest_turn = 1e5;        // of a driver [rad/s]: a million turns a minute
+constexpr double fastest = 200.0;           // of what a driver moves [m/s]: rims burst at twice as much
+constexpr double suddenly = 10.0;           // speed, by the mean one of the run: a jump
+constexpr double most_acceleration = 3e4;   // of all masses together, by one load [m/s^2]
+constexpr double most_of_element = 3e5;     // the same by a spring or damper, which may follow from what went wrong
+constexpr double most_of_clearance = 0.2;   // way of one surface in another in a step, by the clearance
 
 /// The candidate that is farthest beyond its limit.
 class Suspects {
@@ -50,14 +50,20 @@ double largest_inertia(const Body& body, Space space) {
   return space == Space::planar ? inertia[8] : std::max({inertia[0], inertia[4], inertia[8]});
 }
 
-void suspect_bodies(const System& system, Suspects& suspects) {
-  const Model& model = system.model();
+/// Of all bodies that have any, sorted.
+std::vector<double> sizes_of(const Model& model) {
   std::vector<double> sizes;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     if (const double size = extent(model, b); size > 0.0) sizes.push_back(size);
   }
+  std::ranges::sort(sizes);
+  return sizes;
+}
+
+void suspect_bodies(const System& system, Suspects& suspects) {
+  const Model& model = system.model();
+  const std::vector<double> sizes = sizes_of(model);
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>((sizes.size() - (sizes.empty() ? 0 : 1)) / 2);
-  if (!sizes.empty()) std::ranges::nth_element(sizes, middle);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[at(b)];
     const double own = extent(model, b), size = own > 0.0 ? own : system.size();
@@ -103,8 +109,8 @@ void suspect_materials(const System& system, Suspects& suspects) {
     const auto words = [&](const char* what) {
       return fmt::format("{} of joint '{}' is {:.3g} {}: {}", given->name, joint.name, given->value, given->unit, what);
     };
-    suspects.add(softest / given->most_modulus, [&] { return words("softer than rubber; is it meant in N/mm^n"); });
-    suspects.add(given->least_modulus / stiffest, [&] { return words("stiffer than diamond; check its unit"); });
+    suspects.add(softest / given->modulus, [&] { return words("softer than rubber; is it meant in N/mm^n"); });
+    suspects.add(given->modulus / stiffest, [&] { return words("stiffer than diamond; check its unit"); });
   }
 }
 
@@ -117,9 +123,7 @@ Pace pace_of(const System& system, std::size_t driver, const Wreck& wreck) {
   const Settings& settings = system.model().settings;
   std::vector<TimeValue> motion(system.model().drivers.size());
   MotionFault fault;
-  const auto look = [&](double t) {
-    return system.motions().evaluate(t, {motion.data(), motion.size()}, fault);
-  };
+  const auto look = [&](double t) { return system.motions().evaluate(t, {motion.data(), motion.size()}, fault); };
   Pace pace;
   const double step = wreck.dt > 0.0 ? wreck.dt : 1e-3 * (settings.end - settings.start);
   const double kink = system.motions().next_kink(wreck.t);
@@ -140,15 +144,18 @@ Pace pace_of(const System& system, std::size_t driver, const Wreck& wreck) {
 
 void suspect_motion(const System& system, const Wreck& wreck, Suspects& suspects) {
   const Model& model = system.model();
+  // Of a link that a driver turns: one that is too long tells nothing of speeds.
+  const std::vector<double> sizes = sizes_of(model);
+  const double arm = sizes.empty() ? system.size() : sizes[(sizes.size() - 1) / 2];
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
     if (!prescribes(driver.kind)) continue;
     const bool turns = system.joint_layout(driver.joint).coordinate == Coordinate::angle;
     const Pace pace = pace_of(system, d, wreck);
-    const double speed = turns ? pace.rate * system.size() : pace.rate;
-    const std::string words =
-        turns ? fmt::format("turns with {:.3g} rad/s, that is {:.2g} turns a minute", pace.rate, pace.rate * 30.0 / M_PI)
-              : fmt::format("moves with {:.3g} m/s", pace.rate);
+    const double speed = turns ? pace.rate * arm : pace.rate;
+    const std::string words = turns ? fmt::format("turns with {:.3g} rad/s, that is {:.2g} turns a minute", pace.rate,
+                                                  pace.rate * 30.0 / M_PI)
+                                    : fmt::format("moves with {:.3g} m/s", pace.rate);
     suspects.add(std::max(speed / fastest, turns ? pace.rate / fastest_turn : 0.0), [&] {
       const bool jumps = pace.rate > suddenly * pace.mean;
       return fmt::format("driver '{}' {}{}", driver.name,

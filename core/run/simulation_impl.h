@@ -184,13 +184,13 @@ struct Simulation::Impl {
   /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
   std::optional<double> torn_from;
   Outcome outcome;
-  Fault plugin_fault;             // of the last attempt
-  int failed_joint = -1;          // whose law the run came to the end of
+  Fault plugin_fault;                // of the last attempt
+  int failed_joint = -1;             // whose law the run came to the end of
   std::vector<double> first_forces;  ///< of springs and the like, by joint [N]
-  double error = 0.0;             // of the last attempt
-  double explained_energy = 0.0;  // the largest that work was found for [J]
-  double gained = 0.0;            // without work, by the step that was looked at last [J]
-  bool left_bounds = false;       // the last attempt ended with numbers that are not finite
+  double error = 0.0;                // of the last attempt
+  double explained_energy = 0.0;     // the largest that work was found for [J]
+  double gained = 0.0;               // without work, by the step that was looked at last [J]
+  bool left_bounds = false;          // the last attempt ended with numbers that are not finite
   bool ended_inside = false;   // the step that is being accepted was cut short: the integrator has no memory of its end
   bool ended_abruptly = true;  // the last step: at an event or a kink, after which values change abruptly
   double allowed = 0.0;        // by which positions may err in one step, with error control [m]

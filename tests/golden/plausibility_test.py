@@ -333,7 +333,7 @@ class Plausibility(ProgramTest):
 
     def test_a_rod_held_twice_at_one_frame_is_told_beside_the_gap(self):
         found = self.messages(text_of(CRANK, "bearing: coupler/tip", "bearing: coupler"), code=3)
-        self.assertEqual(["unused", "assembly-failed"], [m["id"] for m in found])
+        self.assertEqual(["unused", "assembly-failed", "same-frame"], [m["id"] for m in found])
         self.assertIn("'crankpin' and 'wrist' both hold 'coupler/origin'", found[0]["message"])
 
     def test_what_is_meant_is_not_doubted(self):
