@@ -395,9 +395,9 @@ class Examination {
   }
 
   /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
-  /// what springs alone hold, or a spring about an axis. A pose may be a guess for a loop: it does not count where some
-  /// frame that a loop may have closed on is used by nothing, nor for what hangs on the body and may turn about its own
-  /// centre of mass unnoticed, as a slider without its guide does.
+  /// what springs alone hold, on a slide or free, or a spring about an axis. A pose may be a guess for a loop: it does
+  /// not count where some frame that a loop may have closed on is used by nothing, nor for what hangs on the body and
+  /// may turn about its own centre of mass unnoticed, as a slider without its guide does.
   template <class IsMoving>
   std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held, const MatrixXd& spins) const {
     std::vector<char> jointed(model_.bodies.size(), 0);
@@ -410,7 +410,9 @@ class Examination {
       if (on_moving && (spring || joint.start_coordinate || joint.start_speed)) {
         given = stacked(given, coordinate_rate(j));
       }
-      if (closed_.layout().rows(j).size == 0) continue;
+      const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+      const bool driven = std::ranges::count(model_.drivers, j, &Driver::joint) > 0;
+      if (closed_.layout().rows(j).size == 0 || slides || driven) continue;
       for (const int marker : {joint.marker_a, joint.marker_b}) {
         if (body_of(marker) != ground) jointed[at(body_of(marker))] = 1;
       }

@@ -12,7 +12,7 @@ namespace freeplay {
 inline bool is_built_in(const Instances& instances, const Component& component, const ParameterBlock* parameters) {
   for (const RegisteredLibrary& library : instances.libraries()) {
     if (library.path == "built-in") continue;
-    const auto components = library.table->components();
+    const auto& components = library.table->components();
     if (std::ranges::any_of(components, [&](const Component& row) { return &row == &component; })) return false;
   }
   if (parameters == nullptr) return true;

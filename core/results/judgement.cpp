@@ -52,6 +52,15 @@ double mass(const Model& model) {
   for (const Body& body : model.bodies) sum += body.mass;
   return sum;
 }
+/// Radius of gyration [m].
+double largest_gyration(const Model& model) {
+  double largest = 0.0;
+  for (const Body& body : model.bodies) {
+    const double moment = std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
+    if (body.mass > 0.0) largest = std::max(largest, std::sqrt(moment / body.mass));
+  }
+  return largest;
+}
 double weight(const Model& model) {
   double sum = 0.0;
   for (const Body& body : model.bodies)
@@ -127,14 +136,16 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
   const double depth = std::max(std::isfinite(seen.max_penetration) ? seen.max_penetration : 0.0,
                                 at(j) < record.extremes.depth.size() ? record.extremes.depth[at(j)] : 0.0);
   const double radius = layout.smaller_radius;
-  if (radius > 0.0 && layout.clearance > most_play * record.extremes.size) {
+  // Of a rotor that turns about its centre of mass frames say no size.
+  const double size = std::max(record.extremes.size, largest_gyration(record.model));
+  if (radius > 0.0 && layout.clearance > most_play * size) {
     verdict.add({.id = "clearance-size",
                  .level = Trust::doubtful,
                  .message = fmt::format("{}: its clearance of {:.3g} m is no play in a mechanism of {:.2g} m",
-                                        name(joint), layout.clearance, record.extremes.size),
+                                        name(joint), layout.clearance, size),
                  .element = name(joint),
                  .value = layout.clearance,
-                 .limit = most_play * record.extremes.size});
+                 .limit = most_play * size});
   }
   const auto deep = [&](const char* of, double length) {
     return TrustReason{.id = "penetration",

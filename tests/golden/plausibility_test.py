@@ -277,6 +277,7 @@ SOUND = [
     (CART, "", ""),
     (ROD, "", ""),
     *[(model, "", "") for model in (TRAIN, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
+    (SHAKER, "initial: {joints: {guide: 0}}\n", ""),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e8"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 1.4}"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 0.0005\n      initial: {eccentricity: [0.0005, 0]}"),
