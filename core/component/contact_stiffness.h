@@ -12,7 +12,7 @@ namespace freeplay {
 struct ContactStiffness {
   std::string name, unit;  ///< of the parameter, the unit with its exponent: "N/m^1.5"
   double value = 0.0;
-  /// Modulus E* [Pa] of the bodies that Hertz gives this force at a tenth of the clearance,
+  /// Modulus E* [Pa] of the bodies whose elastic contact has this force at a tenth of the clearance,
   /// K delta^n = 4/3 E* sqrt(R) delta^1.5 with R = R_j^2/c.
   double modulus = 0.0;
 };

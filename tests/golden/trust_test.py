@@ -124,13 +124,13 @@ class Trust(ProgramTest):
         self.assert_cause("softer than rubber", changes=(("207 GPa", "207 kPa"), *self.JOHNSON))
 
     def test_a_dead_point_is_found_where_a_law_ends_first(self):
-        text = slider_crank(("tip: [50 mm, 0]", "tip: [400 mm, 0]"), ("speed: 5000 rpm", "speed: 600 rpm"),
+        text = slider_crank(("tip: [50 mm, 0]", "tip: [450 mm, 0]"), ("speed: 5000 rpm, c: 0.5 mm", "speed: 600 rpm, c: 0.1 mm"), ("step: 1 us", "step: 10 us"),
                             *self.JOHNSON)
         _, err = self.run_model(text, code=4)
         self.assertIn("[dead-point]", err)
 
     def test_a_verdict_blames_a_dead_point_and_not_the_step(self):
-        text = slider_crank(("tip: [50 mm, 0]", "tip: [400 mm, 0]"), ("speed: 5000 rpm", "speed: 600 rpm"))
+        text = slider_crank(("tip: [50 mm, 0]", "tip: [450 mm, 0]"), ("speed: 5000 rpm, c: 0.5 mm", "speed: 600 rpm, c: 0.1 mm"), ("step: 1 us", "step: 10 us"))
         out, err = self.run_model(text, code=4)
         self.assertIn("[dead-point]", err)
         self.assertNotIn("the step is too long", out + json.dumps(self.trust))
