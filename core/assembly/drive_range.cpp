@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 
 #include "assembly/loop_gap.h"
@@ -23,6 +24,10 @@ constexpr double close_to_limit = 0.1;  // of a run that ends before it: forces 
 constexpr int instants = 4000;          // of a run that are looked at
 constexpr int most_pieces = 4000;       // of the way of several drivers
 constexpr int most_columns = 200;
+// By singular values of the rows.
+constexpr double full_rank = 1e-6;   // of the largest
+constexpr double lost_rank = 1e-4;   // of what it is beside a dead point
+constexpr double takes_part = 1e-3;  // share of a joint in the stress that its rows add up to
 
 double largest_move(const System& system, std::span<const double> from, std::span<const double> to) {
   std::vector<double> increment(at(system.layout().nv()));
@@ -52,6 +57,35 @@ bool follow(ClosedMechanism& mechanism, Prescribe&& prescribe) {
   return false;
 }
 
+// Newton cannot follow from a singular position, where the mechanism may go on in two ways: it is sought from positions
+// around, whose turns are spread by the golden ratio. False, and all as before, where there is no way on.
+bool leave_dead_point(ClosedMechanism& mechanism, double sign) {
+  ClosedMechanism::Lead& lead = mechanism.leads.back();
+  const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
+  const bool turns = mechanism.system.joint_layout(lead.joint).coordinate == Coordinate::angle;
+  const double start = lead.value, unit = turns ? 1.0 : mechanism.system.size();
+  for (const double part : {1.0, 0.1, 0.01}) {
+    for (const double turn : {0.0, 0.1, -0.1, 0.3, -0.3}) {
+      std::vector<double> increment(at(mechanism.system.layout().nv()), 0.0);
+      for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
+        if (!mechanism.system.is_turn(i)) continue;
+        const double share = static_cast<double>(++turned) * 0.6180339887498949;
+        increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
+      }
+      mechanism.system.retract(q, increment, mechanism.state.q());
+      lead.value = start + sign * part * first_step * unit;
+      if (mechanism.holds(mechanism.converge()) &&
+          largest_move(mechanism.system, q, mechanism.state.q()) <= longest_way) {
+        return true;
+      }
+    }
+  }
+  std::ranges::copy(q, mechanism.state.q().begin());
+  lead.value = start;
+  mechanism.position_rows();
+  return false;
+}
+
 // The last coordinate of the way in one direction, +-infinity where it does not end.
 double limit(ClosedMechanism& mechanism, double sign) {
   ClosedMechanism::Lead& lead = mechanism.leads.back();
@@ -67,10 +101,22 @@ double limit(ClosedMechanism& mechanism, double sign) {
     }
     lead.value = before;
     step *= 0.5;
-    if (step < shortest_step * unit) return before;
+    if (step >= shortest_step * unit) continue;
+    if (before != start || !leave_dead_point(mechanism, sign)) return before;
+    step = first_step * unit;
   }
   return sign * infinite;
 }
+
+// Of the rows that hold and lead.
+struct Ranks {
+  explicit Ranks(const Eigen::MatrixXd& rows) : svd(rows, Eigen::ComputeFullU) {
+    const Eigen::VectorXd& values = svd.singularValues();
+    while (rank < values.size() && values[rank] > full_rank * values[0]) ++rank;
+  }
+  Eigen::BDCSVD<Eigen::MatrixXd> svd;
+  Eigen::Index rank = 0;
+};
 
 class Reach {
  public:
@@ -345,9 +391,90 @@ std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism) {
   return std::nullopt;
 }
 
+std::optional<DeadStart> dead_start(const System& system, const State& start) {
+  ClosedMechanism mechanism(system);
+  const Model& model = mechanism.model();
+  if (mechanism.system.layout().nv() > most_columns) return std::nullopt;
+  mechanism.system.take_start_of(system);
+  std::ranges::copy(start.q(), mechanism.state.q().begin());
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const int turn = mechanism.system.layout().turn(j), own = system.layout().turn(j);
+    if (turn >= 0 && own >= 0) mechanism.state.h()[at(turn)] = start.h()[at(own)];
+  }
+  mechanism.position_rows();
+  std::vector<int> drivers;
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const Driver& driver = model.drivers[at(d)];
+    if (!prescribes(driver.kind) || driver.kinematics >= 0) continue;
+    drivers.push_back(d);
+    mechanism.held_row[at(mechanism.system.layout().driver_row(d))] = 0;
+    mechanism.leads.push_back({driver.joint, mechanism.e.coordinate[at(driver.joint)]});
+  }
+  if (drivers.empty()) return std::nullopt;
+  const ClosedMechanism::Rows rows = mechanism.position_rows();
+  if (!mechanism.holds(rows)) return std::nullopt;
+  const Ranks here{Eigen::MatrixXd(rows.matrix)};
+  const Eigen::VectorXd& values = here.svd.singularValues();
+  if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > lost_rank * values[0]) return std::nullopt;
+  const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
+  const std::vector<ClosedMechanism::Lead> leads = mechanism.leads;
+  for (std::size_t i = 0; i < leads.size(); ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      mechanism.leads = leads;
+      std::swap(mechanism.leads[i], mechanism.leads.back());
+      std::ranges::copy(q, mechanism.state.q().begin());
+      if (!leave_dead_point(mechanism, sign)) continue;
+      std::swap(mechanism.leads[i], mechanism.leads.back());
+      const Ranks there{Eigen::MatrixXd(mechanism.position_rows().matrix)};
+      const Eigen::Index last = there.rank - 1;
+      if (last < 0 || !(values[last] < lost_rank * there.svd.singularValues()[last])) continue;
+      DeadStart found{drivers[i], {}};
+      // The state of stress without load that is there and not beside it.
+      Eigen::VectorXd stress = here.svd.matrixU().col(last);
+      const auto always = there.svd.matrixU().rightCols(there.svd.matrixU().cols() - there.rank);
+      stress -= always * (always.transpose() * stress);
+      for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+        const Slice own = mechanism.system.layout().rows(j);
+        double share = 0.0;
+        for (std::size_t r = 0; r < rows.row.size(); ++r) {
+          if (rows.row[r] < own.offset || rows.row[r] >= own.offset + own.size) continue;
+          share = std::max(share, std::abs(stress[static_cast<Eigen::Index>(r)]));
+        }
+        if (share > takes_part * stress.lpNorm<Eigen::Infinity>()) found.joints.push_back(j);
+      }
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string words(const DeadStart& start, const Model& model) {
+  const Driver& driver = model.drivers[at(start.driver)];
+  const std::string joints = joint_names(start.joints, model);
+  return fmt::format(
+      "driver '{}' starts joint '{}' at a dead point{}: nothing says which of two ways the mechanism goes "
+      "on, or it cannot go as it is driven; start beside it, or drive another joint",
+      driver.name, model.joints[at(driver.joint)].name,
+      joints.empty() ? std::string{} : fmt::format(", where {} hold links in line", joints));
+}
+
+std::string joint_names(std::span<const int> joints, const Model& model) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(joints.size(), most); ++i) {
+    text += fmt::format("{}'{}'", text.empty() ? "" : ", ", model.joints[at(joints[i])].name);
+  }
+  if (joints.size() > most) text += fmt::format(" and {} others", joints.size() - most);
+  if (text.empty()) return text;
+  return (joints.size() == 1 ? "joint " : "joints ") + text;
+}
+
 std::optional<std::string> why_out_of_reach(const System& system, const State& start, double t) {
   try {
-    return Reach(system, start, t).why();
+    if (auto text = Reach(system, start, t).why()) return text;
+    const std::optional<DeadStart> dead = dead_start(system, start);
+    if (!dead) return std::nullopt;
+    return fmt::format("t = {:.9g} s: {} [dead-point]", t, words(*dead, system.model()));
   } catch (const Error&) {
     return std::nullopt;  // a joint or a driver that cannot answer there has told already
   }

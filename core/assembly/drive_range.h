@@ -3,7 +3,9 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "assembly/closed_mechanism.h"
 #include "system/state.h"
@@ -25,6 +27,20 @@ DriveRange drive_range(ClosedMechanism& mechanism);
 std::string words(const DriveRange& range, Coordinate coordinate);
 /// "97.2 deg" or "0.12 m".
 std::string words(double value, Coordinate coordinate);
+
+/// A driver that starts where its joint is at a dead point: with it the rows lose rank there and nowhere around.
+struct DeadStart {
+  int driver = 0;
+  std::vector<int> joints;  ///< whose rows depend on each other there
+};
+
+/// Of the ideal mechanism, in the state in which a run of `system` begins.
+std::optional<DeadStart> dead_start(const System& system, const State& start);
+/// One sentence without full stop.
+std::string words(const DeadStart& start, const Model& model);
+
+/// "joints 'A', 'B'": some of them where there are many.
+std::string joint_names(std::span<const int> joints, const Model& model);
 
 /// Of a mechanism whose rows do not hold: which of its leading or driven joints would have to stand elsewhere, and in
 /// which range, for it to close. The state is lost.

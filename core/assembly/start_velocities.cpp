@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/drive_range.h"
 #include "assembly/placing.h"
 #include "linear/row_solutions.h"
 #include "linear/stacked_rows.h"
@@ -221,24 +222,43 @@ class Velocities {
     int asked = -1;
     std::string words{};
     Location location{};
+    int joint = -1;  ///< of an element that is no driver
   };
 
   // Least squares share a contradiction among all rows that take part; what was asked for is told before joints.
   [[noreturn]] void report_contradiction(const ClosedMechanism::Rows& rows, double tolerance) const {
     Origin worst;
     double gap = 0.0;
+    std::vector<int> joints;  // that take part
+    const double least = std::max(tolerance, 1e-6 * rows.largest());
     for (std::size_t i = 0; i < rows.row.size(); ++i) {
       const double missed = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
-      if (missed <= tolerance) continue;
+      if (missed <= least) continue;
       Origin origin = origin_of(rows.row[i], rows.lead[i]);
+      if (origin.asked == 0 && origin.joint >= 0 && std::ranges::count(joints, origin.joint) == 0) {
+        joints.push_back(origin.joint);
+      }
       if (origin.asked < worst.asked || (origin.asked == worst.asked && missed <= gap)) continue;
       gap = missed;
       worst = std::move(origin);
     }
-    throw Error(
-        Error::Category::input, "assembly-failed",
-        fmt::format("drivers and start speeds contradict each other: {} misses its speed by {:.6g}", worst.words, gap),
-        worst.location);
+    std::string id = "assembly-failed", text;
+    const std::string held = joints.empty() ? "the joints" : joint_names(joints, model_);
+    if (std::ranges::any_of(rows.lead, [](int lead) { return lead >= 0; })) {
+      text = fmt::format("drivers and start speeds contradict each other: {} cannot have its speed here", worst.words);
+      if (!joints.empty()) text += fmt::format("; {} {} not allow it", held, joints.size() == 1 ? "does" : "do");
+    } else if (const auto dead = dead_start(system_, mechanism_.state)) {
+      id = "dead-point";
+      text = words(*dead, model_);
+    } else if (worst.asked == 1) {
+      text = fmt::format(
+          "{} cannot move its joint from here: {} {} it; does each of them hold the bodies that are meant, and do "
+          "lengths and angles let the loop move",
+          worst.words, held, joints.size() == 1 ? "holds" : "hold");
+    } else {
+      text = fmt::format("speeds contradict each other: {} cannot follow", worst.words);
+    }
+    throw Error(Error::Category::input, id, text, worst.location);
   }
 
   Origin origin_of(int row, int lead) const {
@@ -255,7 +275,7 @@ class Velocities {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice slice = system_.layout().rows(j);
       if (row < slice.offset || row >= slice.offset + slice.size) continue;
-      return {0, fmt::format("joint '{}'", model_.joints[at(j)].name), model_.joints[at(j)].location};
+      return {0, fmt::format("joint '{}'", model_.joints[at(j)].name), model_.joints[at(j)].location, j};
     }
     return {0, "a constraint"};
   }

@@ -19,6 +19,8 @@ using Eigen::MatrixXd;
 constexpr double rank_threshold = 1e-9;    // as that of the facts
 constexpr double moves = 1e-6;             // share of a unit vector that counts as motion, or as force
 constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
+constexpr double coarse_accuracy = 0.5;    // by a clearance
+constexpr double deep_start = 1.5;         // eccentricity of a journal, by its clearance
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -53,15 +55,21 @@ class Examination {
     for (const JacobianBlock& block : closed.jacobian_blocks()) blocks_.emplace(block.row, &block);
   }
 
-  Structure run() {
+  Structure run(const std::optional<DeadStart>& dead) {
+    if (dead) {
+      const Driver& driver = model_.drivers[at(dead->driver)];
+      doubt("dead-point", words(*dead, model_), driver.name, driver.location);
+    }
     find_loose_ends();
     judge_springs();
+    judge_journals();
     judge_pairs();
+    judge_gears();
     if (closed_.layout().nv() > Structure::most_examined) return std::move(structure_);
     const MatrixXd open = matrix_of(released_, open_);
     judge_plays(open);
     find_undetermined(open);
-    find_left_free();
+    if (!dead) find_left_free();
     return std::move(structure_);
   }
 
@@ -105,7 +113,8 @@ class Examination {
     for (const AppliedForce& force : model_.forces) acted[at(place(body_of(force.marker)))] = 1;
     int held = 0;
     for (int i = 0; i < bodies; ++i) held += root(i) == root(bodies) ? 1 : 0;
-    if (held == 0) return;  // a model that flies as a whole
+    flies_ = held == 0;
+    if (flies_) return;
     for (int i = 0; i < bodies; ++i) {
       const Body& body = model_.bodies[at(i)];
       if (acted[at(i)] || has_velocity(body)) continue;
@@ -135,6 +144,55 @@ class Examination {
                         "number and its unit",
                         joint.name, free, length),
             joint.name, joint.location);
+    }
+  }
+
+  /// Journals that start in the wall of their bearings, and an accuracy that does not see them move.
+  void judge_journals() {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      const double play = joint.layout.clearance;
+      if (!joint.has_play || !(play > 0.0)) continue;
+      if (model_.settings.accuracy > coarse_accuracy * play) {
+        doubt("doubtful-value",
+              fmt::format("the accuracy of {:.3g} m is coarse against the clearance of joint '{}', {:.3g} m: ask for a "
+                          "tenth of it or less",
+                          model_.settings.accuracy, joint.name, play),
+              joint.name, joint.location);
+      }
+      const MarkerKinematics &a = open_.markers[at(joint.marker_a)], &b = open_.markers[at(joint.marker_b)];
+      double apart[3], along = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) apart[i] = b.position[i] - a.position[i];
+      // Of a pin in space its axis, z of the first marker, does not count.
+      const bool pin = model_.space == Space::spatial && joint.ideal_layout.coordinate == Coordinate::angle;
+      for (std::size_t i = 0; i < 3 && pin; ++i) along += apart[i] * a.rotation[3 * i + 2];
+      for (std::size_t i = 0; i < 3 && pin; ++i) apart[i] -= along * a.rotation[3 * i + 2];
+      const double eccentricity = std::hypot(apart[0], apart[1], apart[2]);
+      if (eccentricity <= deep_start * play) continue;
+      doubt(
+          "doubtful-clearance",
+          fmt::format("the journal of joint '{}' starts {:.3g} m from the centre of its bearing, {:.3g} m deep in its "
+                      "wall, as the clearance is {:.3g} m: check 'initial' and the clearance",
+                      joint.name, eccentricity, eccentricity - play, play),
+          joint.name, joint.location);
+    }
+  }
+
+  /// The same two joints geared twice.
+  void judge_gears() {
+    for (std::size_t k = 1; k < model_.gears.size(); ++k) {
+      for (std::size_t i = 0; i < k; ++i) {
+        const Gear &one = model_.gears[i], &other = model_.gears[k];
+        if (std::minmax(one.first, one.second) != std::minmax(other.first, other.second)) continue;
+        const JointElement& joint = model_.joints[at(other.joint)];
+        doubt(
+            "duplicate-joint",
+            fmt::format("gear '{}' couples the same two joints as '{}': how they share the torque is arbitrary; delete "
+                        "one of them",
+                        joint.name, model_.joints[at(one.joint)].name),
+            joint.name, joint.location);
+        break;
+      }
     }
   }
 
@@ -229,21 +287,32 @@ class Examination {
     }
   }
 
+  /// Rate of a joint's coordinate by all velocities.
+  MatrixXd coordinate_rate(int joint) const {
+    double row[12], bias = 0.0;
+    closed_.coordinate_row(joint, shut_, row, bias);
+    MatrixXd one = MatrixXd::Zero(1, closed_.layout().nv());
+    const int width = closed_.body_velocities();
+    const int bodies[2] = {body_of(model_.joints[at(joint)].marker_a), body_of(model_.joints[at(joint)].marker_b)};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < width && bodies[k] != ground; ++c) one(0, width * bodies[k] + c) += row[width * k + c];
+    }
+    return one;
+  }
+
+  /// All velocities of a body.
+  MatrixXd body_rates(BodyId body) const {
+    const int width = closed_.body_velocities();
+    MatrixXd rows = MatrixXd::Zero(width, closed_.layout().nv());
+    rows.middleCols(width * body, width).setIdentity();
+    return rows;
+  }
+
   /// Rows of the closed mechanism, and coordinates on which efforts act.
   MatrixXd held_by_drivers() const {
     MatrixXd rows = matrix_of(closed_, shut_);
-    const int width = closed_.body_velocities();
     for (const Driver& driver : model_.drivers) {
-      if (prescribes(driver.kind)) continue;
-      double row[12], bias = 0.0;
-      closed_.coordinate_row(driver.joint, shut_, row, bias);
-      MatrixXd one = MatrixXd::Zero(1, rows.cols());
-      const JointElement& joint = model_.joints[at(driver.joint)];
-      const int bodies[2] = {body_of(joint.marker_a), body_of(joint.marker_b)};
-      for (int k = 0; k < 2; ++k) {
-        for (int c = 0; c < width && bodies[k] != ground; ++c) one(0, width * bodies[k] + c) += row[width * k + c];
-      }
-      rows = stacked(rows, one);
+      if (!prescribes(driver.kind)) rows = stacked(rows, coordinate_rate(driver.joint));
     }
     return rows;
   }
@@ -269,56 +338,38 @@ class Examination {
     return spins;
   }
 
-  void find_left_free() {
-    if (model_.drivers.empty()) return;
-    const MatrixXd rows = held_by_drivers();
+  /// Bodies that motions within the kernel of `rows` move; spins that nothing notices do not count.
+  std::vector<int> moving_in(const MatrixXd& rows, const MatrixXd& spins, int* motions = nullptr) const {
     MatrixXd free = kernel(rows);
-    const MatrixXd spins = idle_spins(rows);
     free -= spins * (spins.transpose() * free);
-    structure_.free_motions = static_cast<int>(free.cols() - spins.cols());  // spins are among the free motions
-    if (structure_.free_motions <= 0) return;
+    if (motions != nullptr) *motions = static_cast<int>(free.cols() - spins.cols());  // spins are among the free ones
     const int width = closed_.body_velocities();
     std::vector<int> moving;
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (free.middleRows(width * b, width).norm() > moves) moving.push_back(b);
     }
+    return moving;
+  }
+
+  void find_left_free() {
+    if (model_.drivers.empty()) return;
+    const MatrixXd rows = held_by_drivers(), spins = idle_spins(rows);
+    const std::vector<int> moving = moving_in(rows, spins, &structure_.free_motions);
+    if (structure_.free_motions <= 0) return;
     for (const int b : moving) structure_.left_free.push_back(model_.bodies[at(b)].name);
-    if (!moving.empty()) judge_left_free(moving);
+    if (!moving.empty() && !flies_) judge_left_free(moving, rows, spins);
   }
 
   /// Is it said where the free bodies start, and does anything act on them? Pendulums and loads are given a start.
-  void judge_left_free(const std::vector<int>& moving) {
+  void judge_left_free(const std::vector<int>& moving, const MatrixXd& held, const MatrixXd& spins) {
     const auto is_moving = [&](BodyId body) { return std::ranges::count(moving, body) > 0; };
-    std::vector<char> jointed(model_.bodies.size(), 0);
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      if (model_.joints[at(j)].gear >= 0 || closed_.layout().rows(j).size == 0) continue;
-      for (const int marker : {model_.joints[at(j)].marker_a, model_.joints[at(j)].marker_b}) {
-        if (body_of(marker) != ground) jointed[at(body_of(marker))] = 1;
-      }
-    }
-    // Springs alone hold it, so that its place is not in doubt.
-    const auto hangs = [&](BodyId body) { return is_moving(body) && !jointed[at(body)]; };
-    bool start = false, acts = false;
-    for (const int b : moving) {
-      const Body& body = model_.bodies[at(b)];
-      start = start || body.angle || body.rotation || body.position || has_velocity(body) ||
-              body.location.file != model_.file;  // robots start as their file draws them
-      acts = acts || body.gravity != Vector3{} || has_velocity(body);
-    }
-    for (const JointElement& joint : model_.joints) {
-      const bool on_moving =
-          joint.gear < 0 && (is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b)));
-      start = start || (on_moving && (joint.start_coordinate || joint.start_speed));
-      acts = acts || (on_moving && (joint.is_force || joint.start_speed));
-      start = start || (joint.is_force && (hangs(body_of(joint.marker_a)) || hangs(body_of(joint.marker_b))));
-    }
-    for (const AppliedForce& force : model_.forces) acts = acts || is_moving(body_of(force.marker));
-    if (start && acts) return;
+    const bool acts = acts_on(is_moving);
+    const std::vector<int> told = acts ? without_start(is_moving, held, spins) : moving;
+    if (told.empty()) return;
     std::string names;
-    for (const int b : moving) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", model_.bodies[at(b)].name);
-    if (moving.size() > 5)
-      names = fmt::format("'{}' and {} others", model_.bodies[at(moving[0])].name, moving.size() - 1);
-    const Body& first = model_.bodies[at(moving.front())];
+    for (const int b : told) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", model_.bodies[at(b)].name);
+    if (told.size() > 5) names = fmt::format("'{}' and {} others", model_.bodies[at(told[0])].name, told.size() - 1);
+    const Body& first = model_.bodies[at(told.front())];
     doubt("left-free",
           fmt::format("{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver, or "
                       "say under 'initial' how it starts",
@@ -328,6 +379,82 @@ class Examination {
           first.name, first.location);
   }
 
+  template <class IsMoving>
+  bool acts_on(const IsMoving& is_moving) const {
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const Body& body = model_.bodies[at(b)];
+      if (is_moving(b) && (body.gravity != Vector3{} || has_velocity(body))) return true;
+    }
+    for (const JointElement& joint : model_.joints) {
+      const bool on_moving =
+          joint.gear < 0 && (is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b)));
+      if (on_moving && (joint.is_force || joint.start_speed)) return true;
+    }
+    return std::ranges::any_of(model_.forces,
+                               [&](const AppliedForce& force) { return is_moving(body_of(force.marker)); });
+  }
+
+  /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
+  /// what springs alone hold, on a slide or free, or a spring about an axis. A pose may be a guess for a loop: it does
+  /// not count where some frame that a loop may have closed on is used by nothing, nor for what hangs on the body and
+  /// may turn about its own centre of mass unnoticed, as a slider without its guide does.
+  template <class IsMoving>
+  std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held, const MatrixXd& spins) const {
+    std::vector<char> jointed(model_.bodies.size(), 0);
+    MatrixXd given = held;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (joint.gear >= 0) continue;
+      const bool on_moving = is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b));
+      const bool spring = joint.is_force && joint.ideal_layout.coordinate == Coordinate::angle;
+      if (on_moving && (spring || joint.start_coordinate || joint.start_speed)) {
+        given = stacked(given, coordinate_rate(j));
+      }
+      const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+      const bool driven = std::ranges::count(model_.drivers, j, &Driver::joint) > 0;
+      if (closed_.layout().rows(j).size == 0 || slides || driven) continue;
+      for (const int marker : {joint.marker_a, joint.marker_b}) {
+        if (body_of(marker) != ground) jointed[at(body_of(marker))] = 1;
+      }
+    }
+    for (const JointElement& joint : model_.joints) {
+      if (!joint.is_force) continue;
+      for (const BodyId body : {body_of(joint.marker_a), body_of(joint.marker_b)}) {
+        if (body != ground && is_moving(body) && !jointed[at(body)]) given = stacked(given, body_rates(body));
+      }
+    }
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));
+    }
+    const std::vector<int> candidates = moving_in(given, idle_spins(given));
+    if (has_unused_frame(is_moving)) return candidates;
+    const auto posed = [&](int b) {
+      const Body& body = model_.bodies[at(b)];  // robots start as their file draws them
+      return body.angle || body.rotation || body.position || body.location.file != model_.file;
+    };
+    for (const int b : candidates) {
+      if (posed(b)) given = stacked(given, body_rates(b));
+    }
+    std::vector<int> told = moving_in(given, idle_spins(given));
+    const int width = closed_.body_velocities();
+    for (const int b : candidates) {
+      const bool turns_unnoticed = spins.middleRows(width * b, width).norm() > moves;
+      if (turns_unnoticed && !posed(b) && std::ranges::count(told, b) == 0) told.push_back(b);
+    }
+    std::ranges::sort(told);
+    return told;
+  }
+
+  /// Of a moving body or of ground: declared, and nothing stands on it.
+  template <class IsMoving>
+  bool has_unused_frame(const IsMoving& is_moving) const {
+    return std::ranges::any_of(model_.frames, [&](const Marker& frame) {
+      if (frame.body != ground && !is_moving(frame.body)) return false;
+      if (frame.name.ends_with("/origin") || frame.name.ends_with("/com")) return false;
+      return std::ranges::none_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
+    });
+  }
+
   const Model& model_;
   const System& released_;
   const System& closed_;
@@ -335,14 +462,15 @@ class Examination {
   const Evaluation& shut_;
   std::multimap<int, const JacobianBlock*> blocks_;  // of the closed system, by their first row
   std::vector<int> bypassed_;
+  bool flies_ = false;  // as a whole: nothing ties it to ground
   Structure structure_;
 };
 
 }  // namespace
 
 Structure examine_structure(const System& released, const Evaluation& at_start, const System& closed,
-                            const Evaluation& closed_at_start) {
-  return Examination(released, at_start, closed, closed_at_start).run();
+                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead) {
+  return Examination(released, at_start, closed, closed_at_start).run(dead);
 }
 
 }  // namespace freeplay

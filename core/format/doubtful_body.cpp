@@ -64,18 +64,28 @@ std::vector<Outline> outlines(const Draft& draft, bool all_origins) {
   return out;
 }
 
-std::vector<double> sorted_reaches(const std::vector<Outline>& outlines) {
-  std::vector<double> reaches;
-  for (const Outline& outline : outlines) {
-    if (outline.reach > 1e-12) reaches.push_back(outline.reach);
-  }
-  std::ranges::sort(reaches);
-  return reaches;
-}
-
 /// Largest principal moment [kg m^2].
 double largest_moment(const Body& body, bool in_space) {
   return in_space ? principal_moments(body.inertia)[2] : body.inertia[8];
+}
+
+double gyration_of(const Body& body, bool in_space) { return std::sqrt(largest_moment(body, in_space) / body.mass); }
+
+/// Whether the reach of a body says how long it is: not of a rotor whose centre of mass is a little off its only frame.
+bool is_length(const Outline& outline, double gyration) {
+  return outline.reach > 1e-12 && (outline.places.size() > 1 || outline.reach > body_limit::arm * gyration);
+}
+
+/// Of bodies, then ground's.
+std::vector<double> sorted_reaches(const std::vector<Outline>& outlines, const Draft& draft) {
+  const bool in_space = draft.model.space == Space::spatial;
+  std::vector<double> reaches;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    const double gyration = i < draft.model.bodies.size() ? gyration_of(draft.model.bodies[i], in_space) : 0.0;
+    if (is_length(outlines[i], gyration)) reaches.push_back(outlines[i].reach);
+  }
+  std::ranges::sort(reaches);
+  return reaches;
 }
 
 class BodyDoubts {
@@ -84,11 +94,11 @@ class BodyDoubts {
       : draft_(draft),
         in_space_(draft.model.space == Space::spatial),
         outlines_(outlines(draft, false)),
-        reaches_(sorted_reaches(outlines_)) {
+        reaches_(sorted_reaches(outlines_, draft)) {
     std::vector<double> densities;
     for (std::size_t i = 0; i < draft.model.bodies.size(); ++i) {
       const Body& body = draft.model.bodies[i];
-      gyration_.push_back(std::sqrt(largest_moment(body, in_space_) / body.mass));
+      gyration_.push_back(gyration_of(body, in_space_));
       density_.push_back(density(body.mass, gyration_[i], outlines_[i].reach));
       if (density_[i] > 0.0) densities.push_back(density_[i]);
     }
@@ -157,9 +167,12 @@ class BodyDoubts {
   }
 
   bool judge_large_inertia(std::size_t i) const {
-    const double around = std::max(outlines_[i].reach, scale());
+    const double own_reach = is_length(outlines_[i], gyration_[i]) ? outlines_[i].reach : 0.0;
+    const double around = std::max(own_reach, scale());
     if (!(around > 0.0) || gyration_[i] <= body_limit::gyration * around) return false;
-    const bool own = outlines_[i].reach >= around;
+    const double disc = 2.0 * std::numbers::pi * gyration_[i] * gyration_[i];
+    if (body(i).mass > body_limit::sheet * disc && gyration_[i] <= body_limit::any_gyration * around) return false;
+    const bool own = own_reach >= around;
     warn(i, "inertia", "doubtful-inertia",
          fmt::format("{}, but {} {:.4g} m: check the number{}", moment_words(i),
                      own ? "its frames reach" : "the lengths of the mechanism are about", around,
@@ -181,13 +194,16 @@ class BodyDoubts {
     const double own = distance(outline.farthest_place, {});
     if (i && (!value || distance(body(*i).com, {}) > own)) value = key_of(*i, "com");
     if (!value || says_unit(*value)) return false;
+    const bool foreign = i && is_foreign(*i);
     const double number = i && value->key() == "com" ? distance(body(*i).com, {}) : own;
     if (!doubted_.insert(&value->node()).second) return true;
-    value->warn("doubtful-length",
-                fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
-                            "m: write the unit behind the numbers, as in '{:.4g} mm'",
-                            value->key() == "com" ? body(*i).name + "/com" : outline.farthest, number,
-                            scale_of_others(), number));
+    value->warn(
+        "doubtful-length",
+        fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
+                    "m: {}",
+                    value->key() == "com" ? body(*i).name + "/com" : outline.farthest, number, scale_of_others(),
+                    foreign ? "robot files are in metres"
+                            : fmt::format("write the unit behind the numbers, as in '{:.4g} mm'", number)));
     return true;
   }
 
@@ -220,12 +236,24 @@ class BodyDoubts {
   bool judge_small_mass(std::size_t i) const {
     const double reach = outlines_[i].reach, box = 8.0 * reach * reach * reach;
     if (reach < body_limit::thin_reach || body(i).mass < body_limit::thin_mass) return false;
-    if (body(i).mass > body_limit::thinnest * box) return false;
+    const bool thread = body(i).mass < body_limit::thread * 2.0 * reach;
+    if (!thread && (body(i).mass > body_limit::thinnest * box || says_length_unit(i))) return false;
     warn(i, "mass", "doubtful-mass",
-         fmt::format("the mass of '{}' is {:.4g} kg, but its frames reach {:.4g} m: no body is as thin as that; check "
+         fmt::format("the mass of '{}' is {:.4g} kg, but its frames reach {:.4g} m: it would be as thin as a {}; check "
                      "its mass and its lengths, and write their units",
-                     body(i).name, body(i).mass, reach));
+                     body(i).name, body(i).mass, reach, thread ? "spider's thread" : "rope"));
     return true;
+  }
+
+  /// Is the farthest frame, or the centre of mass, written with a unit?
+  bool says_length_unit(std::size_t i) const {
+    const auto frame = draft_.frames.find(outlines_[i].farthest);
+    if (frame != draft_.frames.end() && frame->second.value != nullptr &&
+        says_unit(CheckedValue(*frame->second.reading, *frame->second.value, frame->second.key, frame->first))) {
+      return true;
+    }
+    const auto com = key_of(i, "com");
+    return com && says_unit(*com);
   }
 
   /// Is it dense against the other bodies, and written without a unit?
@@ -240,6 +268,8 @@ class BodyDoubts {
     const double extent = outline.extent(), outside = outline.outside(body(i).com), k = gyration_[i];
     if (outline.places.size() < 2 || !(extent > 1e-12) || !(k > 0.0)) return false;
     if (outside <= body_limit::com_outside * extent || outside <= body_limit::com_outside_gyration * k) return false;
+    if (k < body_limit::least_of_box * extent || k > body_limit::most_of_box * extent) return false;
+    if (outside > body_limit::lump * k && outside <= body_limit::far * extent) return false;
     const auto value = key_of(i, "com");
     if (!value || is_foreign(i)) return false;  // robots have motors beside their joints
     if (!doubted_.insert(&value->node()).second) return true;
@@ -305,7 +335,7 @@ class BodyDoubts {
 }  // namespace
 
 double length_scale(const Draft& draft) {
-  const std::vector<double> reaches = sorted_reaches(outlines(draft, true));
+  const std::vector<double> reaches = sorted_reaches(outlines(draft, true), draft);
   return reaches.empty() ? 0.0 : reaches[(reaches.size() - 1) / 2];
 }
 

@@ -83,27 +83,40 @@ class MotionDoubts {
     if (!written) return;
     if (coordinate == Coordinate::angle) {
       judge_turns(driver, course, *written);
-    } else if (driver.kind == DriverKind::position) {
-      judge_slide(course, *written);
+    } else {
+      judge_slide(driver, course, *written);
     }
   }
 
   void judge_table(const Driver& driver) const {
     const auto written = key_of(driver, "table");
-    if (!written || says_unit(*written)) return;
+    if (!written) return;
     const TimeTable& table = *driver.table;
     const double last = table.times().back(), span = settings_.end - settings_.start;
-    if (driver.table_source.time_unit.empty() && last - settings_.start > table_beyond * span) {
+    const TableSource& source = driver.table_source;
+    const bool says = says_unit(*written);
+    if (!says && source.time_unit.empty() && last - settings_.start > table_beyond * span) {
       written->warn("doubtful-time", fmt::format("'{}' goes on to {:.4g} s, but the run takes {:.4g} s: write "
                                                  "'time_unit: ms' if milliseconds are meant",
                                                  written->path(), last, span));
     }
-    if (driver.kind == DriverKind::angle && driver.table_source.unit.empty() && looks_like_degrees(table.values())) {
-      const auto [low, high] = std::ranges::minmax(table.values());
+    if (!prescribes(driver.kind)) return;
+    const auto [low, high] = std::ranges::minmax(table.values());
+    const bool speeds = driver.kind == DriverKind::velocity, bare = !says && source.unit.empty();
+    const double fastest = speeds ? std::max(std::abs(low), std::abs(high)) : steepest(table);
+    if (coordinate(driver) != Coordinate::angle) return judge_table_of_slide(driver, high - low, fastest, bare);
+    const bool begins_far = settings_.start == 0.0 && std::abs(table.values()[0]) > bare_limit::angle;
+    if (bare && !speeds && (begins_far || looks_like_degrees(table.values()))) {
       written->warn("doubtful-angle",
-                    fmt::format("'{}' turns to and fro by {:.6g} rad: write 'unit: deg' if degrees are "
-                                "meant, else 'unit: rad'",
-                                written->path(), high - low));
+                    fmt::format("'{}' goes from {:.6g} to {:.6g} rad: write 'unit: deg' if degrees are meant, else "
+                                "'unit: rad'",
+                                written->path(), low, high));
+    } else if (bare && fastest > bare_limit::angular_speed) {
+      written->warn("doubtful-speed",
+                    fmt::format("'{}' comes to {:.6g} rad/s, that is {:.0f} rpm: write 'unit: {}' if that is meant, "
+                                "else 'unit: {}'",
+                                written->path(), fastest, fastest * 30.0 / M_PI, speeds ? "rpm" : "deg",
+                                speeds ? "rad/s" : "rad"));
     }
   }
 
@@ -114,15 +127,45 @@ class MotionDoubts {
     return MapReader(*entry, "driver").find(key);
   }
 
-  /// Whole numbers up to two turns in degrees, to and fro by more than a turn in radians.
+  Coordinate coordinate(const Driver& driver) const {
+    return draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout.coordinate;
+  }
+
+  /// Largest slope between two points.
+  static double steepest(const TimeTable& table) {
+    double most = 0.0;
+    for (std::size_t i = 1; i < table.times().size(); ++i) {
+      const double step = table.times()[i] - table.times()[i - 1];
+      most = std::max(most, std::abs(table.values()[i] - table.values()[i - 1]) / step);
+    }
+    return most;
+  }
+
+  void judge_table_of_slide(const Driver& driver, double range, double fastest, bool bare) const {
+    const auto written = key_of(driver, "table");
+    const double scale = draft_.length_scale;
+    if (!bare) return;
+    if (driver.kind == DriverKind::position && scale > 0.0 && range > bare_limit::length * scale) {
+      written->warn("doubtful-length",
+                    fmt::format("'{}' moves by {:.4g} m where the lengths of the mechanism are about "
+                                "{:.3g} m: write 'unit: mm' if millimetres are meant, else 'unit: m'",
+                                written->path(), range, scale));
+    } else if (fastest > bare_limit::slide_speed) {
+      written->warn("doubtful-speed",
+                    fmt::format("'{}' comes to {:.4g} m/s: write its unit, as in 'unit: {}'", written->path(), fastest,
+                                driver.kind == DriverKind::position ? "mm" : "mm/s"));
+    }
+  }
+
+  /// To and fro by more than a turn in radians, as of formulas; or multiples of 45 beyond it.
   static bool looks_like_degrees(std::span<const double> values) {
-    bool forward = false, back = false;
+    bool forward = false, back = false, eighths = true;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] != std::round(values[i]) || std::abs(values[i]) > 720.0) return false;
+      eighths = eighths && std::abs(std::remainder(values[i], 45.0)) < 1e-9 && std::abs(values[i]) <= 720.0;
       if (i > 0) (values[i] > values[i - 1] ? forward : back) |= values[i] != values[i - 1];
     }
     const auto [low, high] = std::ranges::minmax(values);
-    return forward && back && high - low > bare_limit::angle;
+    return high - low > bare_limit::angle && (eighths || (forward && back));
   }
 
   void judge_turns(const Driver& driver, const Course& course, const CheckedValue& written) const {
@@ -158,9 +201,15 @@ class MotionDoubts {
     return 0.0;
   }
 
-  void judge_slide(const Course& course, const CheckedValue& written) const {
+  void judge_slide(const Driver& driver, const Course& course, const CheckedValue& written) const {
     const double range = course.high - course.low, scale = draft_.length_scale;
-    if (!course.returns || !(scale > 0.0) || range <= bare_limit::length * scale || names_a_unit(written)) return;
+    if (names_a_unit(written)) return;
+    if (driver.kind != DriverKind::position) {
+      return doubt_slide_speed(written, std::max(std::abs(course.low), std::abs(course.high)));
+    }
+    if (!course.returns || !(scale > 0.0) || range <= bare_limit::length * scale) {
+      return doubt_slide_speed(written, course.fastest);
+    }
     written.warn("doubtful-length", fmt::format("'{}' moves by {:.4g} m where the lengths of the mechanism are about "
                                                 "{:.3g} m: write the unit behind the number, as in 'mm'",
                                                 written.path(), range, scale));

@@ -29,8 +29,11 @@ constexpr UsualRange usual_ranges[] = {
     {"Pa", " E modulus youngs_modulus young ", 1e3, 2e12, 1e6, "moduli go from 1 MPa (rubber) to 1200 GPa (diamond)"},
     {"N/m", "", 0.0, 1e12, 0.0, "a steel cube of 1 m has 2e11 N/m"},
     {"N*m/rad", "", 0.0, 1e12, 0.0, "a steel shaft of 1 m has 1e10 N*m/rad"},
+    {"1", " mu mu_s mu_k ", 0.0, 3.0, 0.0, "coefficients of friction go up to about 1.5 (rubber)"},
     {"kg/m^3", "", 1.0, 3e4, 1.0, "densities go from 1 (aerogel) to 22590 kg/m^3 (osmium)"},
 };
+
+constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are simulated
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_word_part(char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)); }
@@ -88,15 +91,17 @@ void doubt_range(const CheckedValue& written, std::string_view unit, double valu
     if (!range.names.empty() && range.names.find(fmt::format(" {} ", last_word(written.path()))) == range.names.npos) {
       continue;
     }
-    const bool bare = !names_a_unit(written);
+    const bool bare = !names_a_unit(written), plain = unit == "1";
     if (value <= range.most && value >= (bare ? range.least_bare : range.least)) continue;
-    written.warn("doubtful-value", fmt::format("'{}' is {:.4g} {}, but {}{}", written.path(), value, unit, range.words,
-                                               bare ? ": write the unit behind the number" : ": check the number"));
+    written.warn(
+        "doubtful-value",
+        fmt::format("'{}' is {:.4g}{}{}, but {}{}", written.path(), value, plain ? "" : " ", plain ? "" : unit,
+                    range.words, bare && !plain ? ": write the unit behind the number" : ": check the number"));
   }
 }
 
-void doubt_length(const CheckedValue& written, double value, double scale) {
-  if (!(scale > 0.0) || std::abs(value) <= bare_limit::length * scale || names_a_unit(written)) return;
+void doubt_length(const CheckedValue& written, double value, double scale, double most) {
+  if (!(scale > 0.0) || std::abs(value) <= most * scale || names_a_unit(written)) return;
   written.warn("doubtful-length",
                fmt::format("'{}' is {:.4g} m where the lengths of the mechanism are about {:.3g} m: write the unit "
                            "behind the number, as in '{:.4g} mm'",
@@ -142,6 +147,13 @@ void doubt_angular_speed(const CheckedValue& written, double speed) {
                                              written.path(), speed, std::abs(speed) * 30.0 / pi));
 }
 
+void doubt_slide_speed(const CheckedValue& written, double speed) {
+  if (std::abs(speed) <= bare_limit::slide_speed || names_a_unit(written)) return;
+  written.warn("doubtful-speed", fmt::format("'{0}' is {1:.6g} m/s, that is {2:.0f} km/h: write '{1:.6g} mm/s' if "
+                                             "millimetres per second are meant, else '{1:.6g} m/s'",
+                                             written.path(), speed, std::abs(speed) * 3.6));
+}
+
 void doubt_gravity(const CheckedValue& written, const Vector3& gravity) {
   const double size = std::hypot(gravity[0], gravity[1], gravity[2]);
   if (size <= bare_limit::gravity || !written.node().is_list()) return;
@@ -155,13 +167,28 @@ void doubt_gravity(const CheckedValue& written, const Vector3& gravity) {
 
 void doubt_step(const CheckedValue& written, double step, double span) {
   const bool coarse = step >= bare_limit::step && step >= 0.02 * span;
-  if ((!coarse && step < bare_limit::long_step) || names_a_unit(written)) return;
+  const bool long_one = step >= bare_limit::long_step && step >= shortest_long_step * span;
+  if ((!coarse && !long_one) || names_a_unit(written)) return;
   written.warn("doubtful-time", fmt::format("'{0}' is {1:.4g} s in a run of {2:.4g} s: write '{1:.4g} ms' if "
                                             "milliseconds are meant, else '{1:.4g} s'",
                                             written.path(), step, span));
 }
 
-void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale) {
+void doubt_interval(const CheckedValue& written, double interval, double span) {
+  if (interval > span) {
+    written.warn("doubtful-time", fmt::format("'{}' is {:.4g} s in a run of {:.4g} s: rows show its start and its end "
+                                              "alone",
+                                              written.path(), interval, span));
+  } else if (span / interval > bare_limit::rows) {
+    written.warn("doubtful-time", fmt::format("'{}' is {:.4g} s in a run of {:.4g} s: {:.2g} rows would be written",
+                                              written.path(), interval, span, span / interval));
+  } else if (interval > 0.5 * span) {
+    doubt_step(written, interval, span);
+  }
+}
+
+void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale,
+                      double most_lengths) {
   for (const auto& [path, written] : places) {
     // A law's own parameters stand behind the path of the law.
     const ParameterBlock* owner = &block;
@@ -185,7 +212,7 @@ void doubt_parameters(const ParameterBlock& block, const std::map<std::string, C
     } else if (unit == "rad/s") {
       doubt_angular_speed(written, number);
     } else if (unit == "m") {
-      doubt_length(written, number, scale);
+      doubt_length(written, number, scale, most_lengths);
     } else {
       doubt_range(written, unit, number);
     }

@@ -16,6 +16,9 @@ inline constexpr double gravity = 50.0;                 ///< [m/s^2]
 inline constexpr double step = 5e-3;                    ///< and a fiftieth of the run [s]
 inline constexpr double long_step = 0.1;                ///< in whatever run [s]
 inline constexpr double length = 100.0;                 ///< in terms of the lengths around it
+inline constexpr double bearing = 20.0;                 ///< likewise: radii, lengths and plays of bearings
+inline constexpr double slide_speed = 50.0;             ///< [m/s]
+inline constexpr double rows = 1e7;                     ///< of a result
 }  // namespace bare_limit
 
 /// True if a unit stands in the text of the value or in that of a parameter that it refers to. Such a value is never
@@ -28,14 +31,19 @@ bool says_unit(const CheckedValue& value);
 void doubt_angle(const CheckedValue& written, double radians);
 /// `doubtful-speed`.
 void doubt_angular_speed(const CheckedValue& written, double speed);
+/// The same of a speed along a slide.
+void doubt_slide_speed(const CheckedValue& written, double speed);
 /// `doubtful-value`.
 void doubt_gravity(const CheckedValue& written, const Vector3& gravity);
 /// `doubtful-time`: of fixed steps, or the first one, in a run of length `span` [s].
 void doubt_step(const CheckedValue& written, double step, double span);
+/// `doubtful-time`: of rows that are farther apart than half the run, or so close that they fill a disk.
+void doubt_interval(const CheckedValue& written, double interval, double span);
 
 /// Doubts the numbers of one component by the units of its table: angles and speeds as above, `doubtful-value` for
-/// moduli and stiffnesses that no material and no spring has. `scale` [m]: of the mechanism's lengths, 0 when
-/// unknown; a length without a unit that is beyond bare_limit::length of it is `doubtful-length`.
-void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale);
+/// moduli, stiffnesses and coefficients of friction that no material and no spring has. `scale` [m]: of the mechanism's
+/// lengths, 0 when unknown; a length without a unit that is `most_lengths` times as long is `doubtful-length`.
+void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale,
+                      double most_lengths = bare_limit::length);
 
 }  // namespace freeplay

@@ -47,6 +47,8 @@ void read_start_value(Draft& draft, const CheckedValue& value, StartKind what) {
   if (!number) return;
   if (coordinate == Coordinate::angle) {
     what == StartKind::coordinate ? doubt_angle(value, *number) : doubt_angular_speed(value, *number);
+  } else if (what == StartKind::speed) {
+    doubt_slide_speed(value, *number);
   }
   (what == StartKind::coordinate ? element.start_coordinate : element.start_speed) =
       StartValue{*number, value.key_location()};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/name_pattern.h"
+#include "component/contact_stiffness.h"
 #include "component/declared.h"
 #include "format/doubtful_number.h"
 #include "format/gear.h"
@@ -16,6 +17,8 @@ namespace {
 // Of bearings: clearances are 0.1 to 1 % of the radius, worn ones 5 %; polished surfaces are rough by 10 nm.
 constexpr double widest_play = 0.5;      // in smaller radii
 constexpr double narrowest_play = 1e-8;  // [m]
+// Moduli of the bodies that a contact is as stiff as: a tenth of soft rubber's, ten times diamond's.
+constexpr double softest = 1e5, hardest = 1.2e13;  // [Pa]
 
 bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
 
@@ -188,7 +191,10 @@ class JointEntry {
     const CheckedParameters parameters =
         twins ? check_parameters(*component_, map_, draft_.registry) : ideal_parameters;
     if (twins) make(parameters, joint, layout);
-    if (parameters.block) doubt_parameters(*parameters.block, parameters.places, draft_.length_scale);
+    if (parameters.block) {
+      doubt_parameters(*parameters.block, parameters.places, draft_.length_scale,
+                       twins ? bare_limit::bearing : bare_limit::length);
+    }
     if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
     const bool play = twins && !is_made_ideal();
     if (twins && !play) draft_.model.ideal.push_back(element().name);
@@ -199,6 +205,7 @@ class JointEntry {
     element().layout = play ? layout : element().ideal_layout;
     element().has_play = play;
     if (twins) doubt_play(layout);
+    if (twins && parameters.block) doubt_inside(parameters, layout);
     draft_.joint_usable[index_] = usable && known_;
   }
 
@@ -216,6 +223,43 @@ class JointEntry {
     entry_.warn_at_key("doubtful-clearance", fmt::format("the clearance of joint '{}' is {:.4g} m, {}: check it, the "
                                                          "radii and their units",
                                                          entry_.key(), layout.clearance, against));
+  }
+
+  /// Plays of a bearing that are longer than everything else of it, and stiffnesses of no material.
+  void doubt_inside(const CheckedParameters& parameters, const JointLayout& layout) {
+    double longest = 0.0;
+    const auto is_play = [](const std::string& path) { return path.ends_with("clearance"); };
+    const auto each_length = [&](auto&& use) {
+      for (const Parameter& parameter : parameters.block->component->description.parameters) {
+        const auto value = parameters.block->values.find(parameter.name);
+        const bool length = std::string_view(parameter.unit) == "m" && parameter.kind == ParameterKind::number;
+        if (length && value != parameters.block->values.end() && value->second.number > 0.0) {
+          use(value->first, value->second.number);
+        }
+      }
+    };
+    each_length([&](const std::string& path, double value) {
+      if (!is_play(path)) longest = std::max(longest, value);
+    });
+    each_length([&](const std::string& path, double value) {
+      const auto place = parameters.places.find(path);
+      if (!is_play(path) || !(longest > 0.0) || value <= longest || place == parameters.places.end()) return;
+      if (layout.clearance >= value) return;  // told of the radial one
+      place->second.warn(
+          "doubtful-clearance",
+          fmt::format("'{}' is {:.4g} m, more than all radii and lengths of the bearing ({:.4g} m): check "
+                      "the number and its unit",
+                      place->second.path(), value, longest));
+    });
+    const auto stiffness = given_stiffness(*parameters.block, layout);
+    if (!stiffness) return;
+    const bool soft = stiffness->modulus<softest, hard = stiffness->modulus> hardest;
+    if (!soft && !hard) return;
+    entry_.warn_at_key(
+        "doubtful-value",
+        fmt::format("{} of joint '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: moduli go "
+                    "from 1 MPa (rubber) to 1200 GPa (diamond); check the number and its unit",
+                    stiffness->name, entry_.key(), stiffness->value, stiffness->unit, stiffness->modulus));
   }
 
   bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {

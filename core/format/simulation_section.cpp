@@ -175,7 +175,7 @@ class SimulationSection {
     discard_ = map.find("discard");
     if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
     const double span = settings_.end - settings_.start;
-    if (interval && settings_.interval > 0.5 * span) doubt_step(*interval, settings_.interval, span);
+    if (interval) doubt_interval(*interval, settings_.interval, span);
     if (channels) read_channels(*channels);
     if (frames) read_frames(*frames);
     if (format) read_format(*format);

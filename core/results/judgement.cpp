@@ -32,6 +32,9 @@ constexpr double singular = 1e-8;           // regularity: 1e-4 of the way to a 
 constexpr double most_play = 0.1;           // clearance by the model's size
 constexpr double fewest_impacts = 10.0;     // in a window of statistics without a period
 constexpr double longest_period = 20.0;     // looked for, by the length of the run
+constexpr double whole_period = 0.99;       // of a window
+constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts,
+constexpr double long_enough = 0.1;         // in a window of this part of the run
 
 /// One reason, if `value` passes a limit.
 void judge(double value, const Limits& limits, TrustReason reason, Verdict& verdict) {
@@ -48,6 +51,15 @@ double mass(const Model& model) {
   double sum = 0.0;
   for (const Body& body : model.bodies) sum += body.mass;
   return sum;
+}
+/// Radius of gyration [m].
+double largest_gyration(const Model& model) {
+  double largest = 0.0;
+  for (const Body& body : model.bodies) {
+    const double moment = std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
+    if (body.mass > 0.0) largest = std::max(largest, std::sqrt(moment / body.mass));
+  }
+  return largest;
 }
 double weight(const Model& model) {
   double sum = 0.0;
@@ -120,15 +132,20 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
   const JointElement& joint = record.model.joints[at(j)];
   const JointLayout& layout = joint.layout;
   const JointStatistics seen = record.statistics.joint(j);
-  const double depth = seen.max_penetration, radius = layout.smaller_radius;
-  if (radius > 0.0 && layout.clearance > most_play * record.extremes.size) {
+  // From the start on, whatever `discard` says.
+  const double depth = std::max(std::isfinite(seen.max_penetration) ? seen.max_penetration : 0.0,
+                                at(j) < record.extremes.depth.size() ? record.extremes.depth[at(j)] : 0.0);
+  const double radius = layout.smaller_radius;
+  // Of a rotor that turns about its centre of mass frames say no size.
+  const double size = std::max(record.extremes.size, largest_gyration(record.model));
+  if (radius > 0.0 && layout.clearance > most_play * size) {
     verdict.add({.id = "clearance-size",
                  .level = Trust::doubtful,
                  .message = fmt::format("{}: its clearance of {:.3g} m is no play in a mechanism of {:.2g} m",
-                                        name(joint), layout.clearance, record.extremes.size),
+                                        name(joint), layout.clearance, size),
                  .element = name(joint),
                  .value = layout.clearance,
-                 .limit = most_play * record.extremes.size});
+                 .limit = most_play * size});
   }
   const auto deep = [&](const char* of, double length) {
     return TrustReason{.id = "penetration",
@@ -207,6 +224,24 @@ void judge_largest_force(const RunRecord& record, Verdict& verdict) {
         verdict);
 }
 
+/// A steady turn of less than one revolution in the whole run, as of a crane that slews: nothing of it comes again.
+bool turns_in_part(const Model& model, const Driver& driver, double period) {
+  if (driver.kinematics >= 0 || driver.table || period <= model.settings.end - model.settings.start) return false;
+  if (!prescribes(driver.kind) || model.joints[at(driver.joint)].layout.coordinate != Coordinate::angle) return false;
+  const bool angle = driver.kind == DriverKind::angle;
+  double first = 0.0;
+  for (int i = 0; i <= 64; ++i) {
+    Jet jet;
+    EvaluationFailure failure;
+    const double t = model.settings.start + (model.settings.end - model.settings.start) * i / 64.0;
+    if (!driver.value.evaluate(t, jet, failure)) return false;
+    const double rate = angle ? jet.rate : jet.value;
+    if (i == 0) first = rate;
+    if (std::abs(rate - first) > 1e-6 * std::abs(first)) return false;
+  }
+  return true;
+}
+
 void judge_window(const RunRecord& record, Verdict& verdict) {
   const Settings& settings = record.model.settings;
   const double from = settings.start + settings.discard, window = record.outcome.time - from;
@@ -223,10 +258,12 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   const Driver* slowest = nullptr;
   for (const Driver& driver : record.model.drivers) {
     const auto period = motion_period(record.model, driver, from, longest_period * (settings.end - settings.start));
-    if (period && *period > longest) longest = *period, slowest = &driver;
+    if (period && *period > longest && !turns_in_part(record.model, driver, *period)) {
+      longest = *period, slowest = &driver;
+    }
   }
   if (slowest != nullptr) {
-    if (window >= longest * (1.0 - 1e-6)) return;
+    if (window >= longest * whole_period) return;
     verdict.add({.id = "statistics-window",
                  .level = Trust::doubtful,
                  .message = fmt::format("statistics cover {:.3g} s, less than the period of {:.3g} s of driver '{}'",
@@ -239,6 +276,12 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   // Without a period what was left out at the start says that a lasting state is looked for.
   const auto impacts = static_cast<double>(record.statistics.contacts());
   if (settings.discard == 0.0 || record.statistics.contacts_total() == 0 || impacts >= fewest_impacts) return;
+  // Surfaces that stay in contact have few impacts, and a lasting state all the more.
+  for (int j = 0; j < static_cast<int>(record.model.joints.size()); ++j) {
+    const bool touches = has_contact_statistics(record.channels.joints[at(j)]);
+    const bool rests = touches && record.statistics.joint(j).contact_fraction > lasting;
+    if (rests && window > long_enough * (record.outcome.time - settings.start)) return;
+  }
   verdict.add({.id = "statistics-window",
                .level = Trust::doubtful,
                .message = fmt::format("statistics from {:.3g} s on hold {:g} impacts, fewer than {:g}", from, impacts,

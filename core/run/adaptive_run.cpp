@@ -308,7 +308,7 @@ std::string Simulation::Impl::why_singular() {
   if (const std::string worst = row_name(solver.weakest_row()); !worst.empty()) {
     text += "; first to depend on the other constraints is " + worst;
   }
-  return text + "; ask for less accuracy, or for steps of one size";
+  return text + std::string(advice::other_steps);
 }
 
 std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const {
@@ -326,7 +326,7 @@ std::string Simulation::Impl::why_so_small(double dt, int limiting_joint) const 
   if (const int joint = hardest_joint(body); joint >= 0) {
     text += fmt::format(", on which joint '{}' pulls hardest", model.joints[at(joint)].name);
   }
-  return text + "; allow smaller steps or a larger error";
+  return text + std::string(advice::error);
 }
 
 }  // namespace freeplay

@@ -1,6 +1,9 @@
 // Simulation: what a run holds against its own numbers while it goes on.
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,6 +14,25 @@
 namespace freeplay {
 namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+// Whether the bodies of a joint hang together without it, so that others may hold what it should.
+bool in_a_loop(const Model& model, int without) {
+  const std::size_t bodies = model.bodies.size();  // the last place is ground's
+  std::vector<std::size_t> group(bodies + 1);
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  const auto root = [&](int marker) {
+    const BodyId body = model.markers[at(marker)].body;
+    std::size_t i = body == ground ? bodies : at(body);
+    while (group[i] != i) i = group[i];
+    return i;
+  };
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    if (j != without && joint.gear < 0) group[root(joint.marker_a)] = root(joint.marker_b);
+  }
+  return root(model.joints[at(without)].marker_a) == root(model.joints[at(without)].marker_b);
+}
+
+constexpr std::string_view cause_words = "; likely cause: ";
 }  // namespace
 
 // False where the row shows that going on makes no sense.
@@ -24,8 +46,8 @@ bool Simulation::Impl::watch_row(double dt) {
   if (!torn_from && watch.deeper_than_play()) torn_from = out_of_reach_from(all_bodies, first_start.state);
   if (joint < 0) return true;
   TrustReason reason = watch.why(joint, row);
-  const std::string cause = likely_cause(system, e_accepted, dt, joint);
-  if (!cause.empty()) reason.message += "; likely cause: " + cause;
+  const std::string cause = likely_cause(system, e_accepted, {accepted.t(), adaptive ? 0.0 : dt, joint, first_forces});
+  if (!cause.empty()) reason.message += std::string(cause_words) + cause;
   fail(4, reason.message);
   outcome.doubts.push_back(std::move(reason));
   return false;
@@ -52,21 +74,48 @@ bool Simulation::Impl::note_warnings() {
   return true;
 }
 
+void Simulation::Impl::note_first_forces() {
+  first_forces.assign(model.joints.size(), 0.0);
+  for (const ForceBlock& block : system.force_blocks()) {
+    const double* force = &e_accepted->wrench[12 * at(block.joint) + 6];
+    first_forces[at(block.joint)] = std::hypot(force[0], force[1], force[2]);
+  }
+}
+
+// Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.
+void Simulation::Impl::explain_dead_point() {
+  if (outcome.status != RunStatus::failed || outcome.exit_code != 4) return;
+  auto why = why_out_of_reach(all_bodies, first_start.state, outcome.time);
+  if (!why) return;
+  outcome.reason = std::move(*why);
+  for (TrustReason& reason : outcome.doubts) {
+    reason.message = reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
+                     "the mechanism comes to a dead point";
+  }
+}
+
 // A number of the model that no machine has is worth more than any advice about steps.
 void Simulation::Impl::explain_failure() {
-  if (outcome.exit_code != 4 || outcome.reason.find("likely cause") != std::string::npos) return;
-  const std::string cause = likely_cause(system, e_accepted, 0.0, -1);
-  if (!cause.empty()) outcome.reason += "; likely cause: " + cause;
+  if (outcome.exit_code != 4 || outcome.reason.find(cause_words) != std::string::npos) return;
+  if (outcome.reason.ends_with("[dead-point]")) return;
+  const Wreck wreck{accepted.t(), adaptive ? 0.0 : settings.step, failed_joint, first_forces};
+  const std::string cause = likely_cause(system, e_accepted, wreck);
+  if (cause.empty()) return;
+  for (const std::string_view advice : {advice::smaller_step, advice::accuracy, advice::other_steps, advice::error}) {
+    if (outcome.reason.ends_with(advice)) outcome.reason.resize(outcome.reason.size() - advice.size());
+  }
+  outcome.reason += std::string(cause_words) + cause;
 }
 
 void Simulation::Impl::note_unused_play() {
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    if (outcome.steps == 0 || !watch.never_moved(j)) continue;
+    if (outcome.steps == 0 || !watch.never_moved(j) || !in_a_loop(model, j)) continue;
     const std::string joint = fmt::format("joint '{}'", model.joints[at(j)].name);
-    outcome.doubts.push_back({.id = "play-bypassed",
-                              .level = Trust::doubtful,
-                              .message = joint + ": its journal never moved in its bearing; do other joints hold it",
-                              .element = joint});
+    outcome.doubts.push_back(
+        {.id = "play-bypassed",
+         .level = Trust::doubtful,
+         .message = joint + ": its journal never moved in its bearing: nothing loads it, or other joints hold it",
+         .element = joint});
   }
 }
 

@@ -74,8 +74,8 @@ std::string Simulation::Impl::why_energy_grows(double dt) {
       accepted.t(), gained, dt);
   const int joint = hardest_joint(ground);
   if (joint >= 0) text += fmt::format("; joint '{}' pulls hardest", model.joints[static_cast<std::size_t>(joint)].name);
-  const std::string cause = likely_cause(system, e_accepted, dt, joint);
-  return text + (cause.empty() ? "; ask for an accuracy in place of a step" : "; likely cause: " + cause);
+  const std::string cause = likely_cause(system, e_accepted, {accepted.t(), adaptive ? 0.0 : dt, joint, first_forces});
+  return text + (cause.empty() ? std::string(advice::accuracy) : "; likely cause: " + cause);
 }
 
 /// Numbers of the program's own types that are not finite any more come of the model or of the step.
@@ -83,8 +83,9 @@ std::string Simulation::Impl::why_beyond_bounds(double t, int joint) const {
   std::string text = fmt::format("t = {:.9g} s: forces and speeds grow beyond all bounds", t);
   const int hardest = joint >= 0 ? joint : hardest_joint(ground);
   if (hardest >= 0) text += fmt::format(", first in joint '{}'", model.joints[static_cast<std::size_t>(hardest)].name);
-  const std::string cause = likely_cause(system, e_accepted, settings.step, hardest);
-  return text + (cause.empty() ? "; ask for an accuracy in place of a step" : "; likely cause: " + cause);
+  const std::string cause =
+      likely_cause(system, e_accepted, {t, adaptive ? 0.0 : settings.step, hardest, first_forces});
+  return text + (cause.empty() ? std::string(advice::accuracy) : "; likely cause: " + cause);
 }
 
 bool Simulation::Impl::all_built_in() const {

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "assembly/drive_range.h"
 #include "component/declared.h"
 #include "component/joint_answer.h"
+#include "component/own_types.h"
 #include "run/simulation_impl.h"
 #include "system/finite.h"
 
@@ -185,6 +185,11 @@ bool Simulation::Impl::fail_with(const Fault& fault, double t) {
   if (std::string_view(fault.message.text).ends_with("not a finite number") && all_built_in()) {
     return fail(4, why_beyond_bounds(t, fault.joint));
   }
+  // A law of the program has an end: numbers of the model have led there, and no plugin is at fault.
+  if (is_built_in(model.instances, *joint.component, joint.parameters.get())) {
+    failed_joint = fault.joint;
+    return fail(4, fmt::format("t = {:.9g} s: joint '{}': {} [law-range]", t, joint.name, fault.message.text));
+  }
   return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
                              model.instances.words_of(*joint.component), fault.message.text));
 }
@@ -246,7 +251,7 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
   if (suspect >= 0) {
     text += fmt::format("; the largest force is {:.4g} N in joint '{}'", largest, model.joints[at(suspect)].name);
   }
-  return text + "; try a smaller step";
+  return text + std::string(advice::smaller_step);
 }
 
 bool Simulation::Impl::begin() {
@@ -270,6 +275,7 @@ bool Simulation::Impl::begin() {
   }
   energy.start(e_accepted, accepted.lambda(), channels, row);
   explained_energy = energy_of(e_accepted);
+  note_first_forces();
   row_is_known = true;
   return record_step() && watch_row(0.0) && tell_sinks();
 }
@@ -519,10 +525,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.time = accepted.t();
   if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
-  // What failed there says little where a driver asks for what the mechanism cannot do.
-  if (outcome.status == RunStatus::failed && outcome.exit_code == 4) {
-    if (auto why = why_out_of_reach(all_bodies, first_start.state, outcome.time)) outcome.reason = std::move(*why);
-  }
+  explain_dead_point();
   if (hooks.profile != nullptr) hooks.profile->stop();
   system.set_profile(nullptr);
   outcome.iterations = solver.iterations();

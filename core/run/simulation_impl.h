@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string_view>
 
 #include "run/energy_account.h"
 #include "run/event_storm.h"
@@ -17,6 +18,14 @@
 #include "stage/newton_stage_solver.h"
 
 namespace freeplay {
+
+/// Ends of messages, which a likely cause takes the place of.
+namespace advice {
+inline constexpr std::string_view smaller_step = "; try a smaller step";
+inline constexpr std::string_view accuracy = "; ask for an accuracy in place of a step";
+inline constexpr std::string_view other_steps = "; ask for less accuracy, or for steps of one size";
+inline constexpr std::string_view error = "; allow smaller steps or a larger error";
+}  // namespace advice
 
 struct Simulation::Impl {
   Impl(const System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);
@@ -117,6 +126,8 @@ struct Simulation::Impl {
   int hardest_joint(BodyId body) const;
   void format_warnings();
   void note_unused_play();
+  void note_first_forces();
+  void explain_dead_point();
   void explain_failure();
 
   const System& all_bodies;  ///< of the whole model
@@ -173,11 +184,13 @@ struct Simulation::Impl {
   /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
   std::optional<double> torn_from;
   Outcome outcome;
-  Fault plugin_fault;             // of the last attempt
-  double error = 0.0;             // of the last attempt
-  double explained_energy = 0.0;  // the largest that work was found for [J]
-  double gained = 0.0;            // without work, by the step that was looked at last [J]
-  bool left_bounds = false;       // the last attempt ended with numbers that are not finite
+  Fault plugin_fault;                // of the last attempt
+  int failed_joint = -1;             // whose law the run came to the end of
+  std::vector<double> first_forces;  ///< of springs and the like, by joint [N]
+  double error = 0.0;                // of the last attempt
+  double explained_energy = 0.0;     // the largest that work was found for [J]
+  double gained = 0.0;               // without work, by the step that was looked at last [J]
+  bool left_bounds = false;          // the last attempt ended with numbers that are not finite
   bool ended_inside = false;   // the step that is being accepted was cut short: the integrator has no memory of its end
   bool ended_abruptly = true;  // the last step: at an event or a kink, after which values change abruptly
   double allowed = 0.0;        // by which positions may err in one step, with error control [m]

@@ -40,6 +40,7 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
       reaches_.push_back({b, channels.bodies[at(b)], 1.0 / (far * far)});
   }
   seen_.size = system.size();
+  seen_.depth.assign(model.joints.size(), 0.0);
 }
 
 int RunWatch::add(std::span<const double> row, const Evaluation& e) {
@@ -55,6 +56,7 @@ int RunWatch::add(std::span<const double> row, const Evaluation& e) {
   for (Contact& contact : contacts_) {
     const double squared = force_squared(e, contact.joint);
     contact.depth.add(row[at(contact.penetration)]);
+    seen_.depth[at(contact.joint)] = std::max(seen_.depth[at(contact.joint)], row[at(contact.penetration)]);
     contact.due = std::max(contact.due, look_again * squared);
     const bool senseless =
         row[at(contact.penetration)] > contact.deepest || squared > contact.strongest * contact.strongest;

@@ -46,6 +46,7 @@ struct RunExtremes {
   int farthest_body = -1;
   double size = 0.0;                                   ///< L: of the model [m]
   double least_regularity = 1.0, singular_time = 0.0;  ///< nearest to a singular position, and when [s]
+  std::vector<double> depth;                           ///< by joint, largest penetration [m]; 0 without play
 };
 
 class RunWatch {

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -328,11 +329,23 @@ Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy) {
   return r;
 }
 
+void Element::doubt_turns(const Eigen::Vector3d& rpy) {
+  constexpr double pi = std::numbers::pi;
+  for (const double angle : rpy) {
+    if (std::abs(angle) <= 2.0 * pi + 1e-3 || std::abs(std::remainder(angle, pi / 2.0)) < 1e-3) continue;
+    messages_.warning(name_spot(), "doubtful-angle",
+                      fmt::format("'rpy' of {} is {:.6g} rad, {:.3g} turns: robot files are in radians, not in degrees",
+                                  owner_, angle, std::abs(angle) / (2.0 * pi)));
+    return;
+  }
+}
+
 Eigen::Isometry3d read_pose(Element& element) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = element.vector("xyz").value_or(Eigen::Vector3d::Zero());
   const auto rpy = element.vector("rpy");
   if (rpy && !rpy->isZero(0.0)) pose.linear() = rotation(*rpy);
+  if (rpy) element.doubt_turns(*rpy);
   return pose;
 }
 

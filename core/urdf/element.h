@@ -80,6 +80,9 @@ class Element {
   /// `count` (3 or 4) numbers; empty when they are not there or, after a message, when they are not that.
   std::vector<double> numbers(const std::string& name, std::size_t count, const char* guess = "");
 
+  /// Warns `doubtful-angle` of one beyond a turn that is no multiple of pi.
+  void doubt_turns(const Eigen::Vector3d& rpy);
+
   /// The child of that name. A second one is reported, and so is an absent one at the '<' of this element.
   XmlElement* child(const std::string& name);
   XmlElement* required_child(const std::string& name);

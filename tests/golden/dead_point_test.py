@@ -89,6 +89,26 @@ class DeadPoint(ProgramTest):
         self.assertIn("at -1.3 m", line)
         self.assertIn("would stay open by 0.8 m", line)
 
+    def test_a_start_at_a_dead_point_is_named(self):
+        # The follower is driven up from where the rod lies flat.
+        flat = SLIDE.replace("pose: {angle: 60 deg}", "pose: {angle: 0}").replace("joint: guide, kind: position, value: \"-0.3 m - 1 m/s*t\"", "joint: guide, kind: %s")
+        flat = flat.replace("simulation:", "initial: {joints: {rail: 0}}\nsimulation:")
+        text = flat % "position, value: \"-0.5 m + 0.2 m*smooth(t, 0, 1)\""
+        out, _ = self.freeplay("validate", self.write("m.yaml", text.replace("initial: {joints: {rail: 0}}\n", "")))
+        self.assertNotIn("left over", out)
+        line = self.reason(text.replace("initial: {joints: {rail: 0}}\n", ""))
+        self.assertIn("driver 'push' starts joint 'guide' at a dead point", line)
+        self.assertIn("'head'", line)
+        _, err = self.freeplay("validate", self.write("m.yaml", flat.replace("initial: {joints: {rail: 0}}", "initial: {joints: {guide: -0.5}}") % "velocity, value: 0.1"), code=3)
+        self.assertRegex(err, r"error: driver 'push' starts joint 'guide' at a dead point, where joints .*\[dead-point\]")
+
+    def test_what_holds_a_driven_joint_is_named(self):
+        text = FOUR_BAR % (0.1, "", SPEED, "A: 60 deg", "step: 1 ms")
+        text = text.replace("drivers:", "drivers:").replace("between: [ground/D, rocker]}", "between: [ground/D, rocker]}\n  stay: {type: gear, of: [A, D], ratio: 3}")
+        _, err = self.freeplay("validate", self.write("m.yaml", text), code=3)
+        self.assertRegex(err, "driver 'motor' cannot move its joint from here: joints .*'stay' hold it")
+        self.assertNotIn("start speeds", err)
+
     def test_two_drivers(self):
         text = FOUR_BAR % (0.2, "", SPEED, "A: 40 deg", "step: 1 ms")
         text = text.replace("  D: {type: revolute, between: [ground/D, rocker]}",

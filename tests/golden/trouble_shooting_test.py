@@ -55,12 +55,13 @@ forces: {hold: {type: spring-damper, between: [ground, m], kind: linear, stiffne
 initial: {joints: {slide: 1.1 m}}
 simulation: {end: 2 s, integrator: bathe, accuracy: 1 um}
 """
-NO_STEP = PENDULUM.replace("initial:", "forces: {kick: {type: torque, on: rod, value: 1e15}}\ninitial:")
+NO_STEP = PENDULUM.replace("{pivot: 0 deg}", "{pivot: 0 deg}, speeds: {pivot: 1e7 rad/s}")
 IN_LINE = SHORT_ROD.replace("drivers: {motor: {joint: pivot, kind: angle, value: 10*t}}", "initial: {joints: {guide: 1.2 m}}").replace(
     "frames: {tip: [1 m, 0]}", "frames: {tip: [1 m, 0]}, pose: {angle: 0}")
 with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
     PARALLELOGRAMS = chain.read()
 LIBRARIES = {"TEMPLATE": os.path.join(BUILD, "plugins", "template", "template_integrator.so"),
+             "PROBE": os.path.join(BUILD, "plugins", "probes", "probe_throws_in_apply.so"),
              "ENDLESS": os.path.join(BUILD, "plugins", "tests", "endless_events.so")}
 RUN = ["run", "model.yaml", "--force"]
 
@@ -115,6 +116,10 @@ CASES = {
     "drivers and start speeds contradict each other: ... [assembly-failed]":
         (3, pendulum("{pivot: 0 deg}}", "{pivot: 0 deg}, speeds: {pivot: 1 rad/s, twin: 2 rad/s}}").replace(
             "initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
+    "driver '...' cannot move its joint from here: ... it; ... [assembly-failed]":
+        (3, driven("drivers:", "  again: {type: revolute, between: [ground/far, rod/tip]}\nframes: {ground/far: [1 m, 0]}\ndrivers:"), RUN),
+    "driver '...' starts joint '...' at a dead point...: ... [dead-point]":
+        (0, SHORT_ROD.replace("value: 10*t", "value: 0").replace("joint: pivot, kind: angle, value: 0", "joint: guide, kind: position, value: 1.5 m"), ["validate", "model.yaml"]),
     "a step may err by ... m, but positions of a model of ... m are rounded to ... m [out-of-range]":
         (3, PENDULUM, RUN + ["--accuracy", "1e-17 m"]),
     "integrator '...' gives no error estimate: it takes fixed steps only":
@@ -141,9 +146,11 @@ CASES = {
     "the mass of '...' is ... kg at a radius of gyration of ... m: its density would be ... kg/m^3, ... [doubtful-mass]":
         (0, pendulum("mass: 1 kg, inertia: 1 kg*m^2 / 12", "mass: 1e6, inertia: 1"), RUN),
     "the centre of mass of '...' is ... m away from its frames, which extend over ... m, ... [doubtful-com]":
-        (0, pendulum("com: [0.5 m, 0]", "com: [3 m, 0]"), RUN),
+        (0, pendulum("com: [0.5 m, 0]", "com: [1.8 m, 0]"), RUN),
     "the clearance of joint '...' is ... m, ... [doubtful-clearance]": (0, journal("0.1 mm", "0.1 nm"), RUN),
     "frame '...' is not used": (0, PENDULUM, RUN),
+    "joints '...' and '...' hold '...' at one place, '...', so that its turning moves nothing: ... [same-frame]":
+        (0, pendulum("initial:", "  arm: {type: revolute, between: [rod, arm]}\ninitial:").replace("bodies:", "bodies:\n  arm: {mass: 1 kg, inertia: 0.1}"), RUN),
     "no joint or force holds body '...', which ...: connect it, or delete it [not-connected]":
         (0, pendulum("joints:\n", "  spare: {mass: 1 kg, inertia: 0.1}\njoints:\n"), RUN),
     "joint '...' holds nothing that '...' does not hold between the same two bodies: ... [duplicate-joint]":
@@ -177,8 +184,10 @@ CASES = {
     "driver '...' at t = ...: the speed that it prescribes jumps from ... to ...: ...":
         (0, driven("value: t", "value: abs(t - 0.05)"), RUN),
     "driver '...': a negative number to a power that is not an integer [bad-expression]": (4, driven("value: t", "value: (0.0501 - t)^2.5"), RUN),
+    "joint '...': contact law of type '...': ... [law-range]":
+        (4, journal("lankarani-nikravesh, restitution: 0.9", "johnson").replace("ball: {mass: 1 kg", "ball: {mass: 1e6 kg"), RUN),
     "joint '...' of ... failed: ... [plugin-failed]":
-        (5, journal("lankarani-nikravesh, restitution: 0.9", "johnson").replace("ball: {mass: 1 kg", "ball: {mass: 1e6 kg"), RUN),
+        (5, pendulum("initial: {joints: {pivot: 0 deg}}", "").replace("type: revolute", "type: probe"), RUN + ["--plugin", "PROBE"]),
     "The penetration passes a tenth of the radial clearance: ...":
         (0, journal("mass: 1 kg", "mass: 100 kg"), RUN),
     "The law of ... rebounds faster than asked for a restitution below ...":

@@ -104,6 +104,88 @@ class Trust(ProgramTest):
         _, err = self.freeplay("run", "model.yaml", code=4)
         self.assertIn("likely cause: driver 'motor' turns with 5.24e+05 rad/s", err)
 
+    def assert_cause(self, *parts, changes=(), words=()):
+        """The run ends with exit code 4, and a cause with these parts, in the message and in the verdict."""
+        _, err = self.run_model(slider_crank(*changes), *words, code=4)
+        cause = re.search("; likely cause: (.*)", err)
+        self.assertIsNotNone(cause, err)
+        for part in parts:
+            self.assertIn(part, cause[1])
+        for advice in ("step is too long", "smaller", "accuracy"):
+            self.assertNotIn(advice, cause[1])
+
+    JOHNSON = ("law: lankarani-nikravesh", "law: johnson, damping: flores"), ("      material:", "      length: 12 mm\n      material:")
+
+    def test_the_end_of_a_law_of_the_program_is_told_with_its_cause(self):
+        for steps in ((), ("--accuracy", "1um")):
+            self.assert_cause("inertia of 'coupler' is 90 kg m^2", words=steps,
+                              changes=(("inertia: 2.5e-4", "inertia: 90"), *self.JOHNSON))
+            self.assertNotIn("plugin", self.trust["reasons"][0]["message"])
+        self.assert_cause("softer than rubber", changes=(("207 GPa", "207 kPa"), *self.JOHNSON))
+
+    def test_a_dead_point_is_found_where_a_law_ends_first(self):
+        text = slider_crank(("tip: [50 mm, 0]", "tip: [450 mm, 0]"), ("speed: 5000 rpm, c: 0.5 mm", "speed: 600 rpm, c: 0.1 mm"), ("step: 1 us", "step: 10 us"),
+                            *self.JOHNSON)
+        _, err = self.run_model(text, code=4)
+        self.assertIn("[dead-point]", err)
+
+    def test_a_verdict_blames_a_dead_point_and_not_the_step(self):
+        text = slider_crank(("tip: [50 mm, 0]", "tip: [450 mm, 0]"), ("speed: 5000 rpm, c: 0.5 mm", "speed: 600 rpm, c: 0.1 mm"), ("step: 1 us", "step: 10 us"))
+        out, err = self.run_model(text, code=4)
+        self.assertIn("[dead-point]", err)
+        self.assertNotIn("the step is too long", out + json.dumps(self.trust))
+
+    def test_loads_springs_and_stiffnesses_of_another_unit_are_causes(self):
+        motor = "kind: velocity, value: $speed"
+        spring = "drivers:", "forces: {s: {type: spring-damper, between: [ground/w, slider], %s, free_length: 0.13}}\nframes: {ground/w: [0.3, 0]}\ndrivers:"
+        for wrong, part in [((motor, "kind: torque, value: 8000"), "driver 'motor' gives 8e+03 N m"),
+                            ((spring[0], spring[1] % "stiffness: 5e8"), "'s' acts with"),
+                            ((spring[0], spring[1] % "stiffness: 10, damping: 1e9"), "'s' acts with"),
+                            (("drivers:", "forces: {p: {type: force, at: slider, value: [3e6, 0]}}\ndrivers:"), "force 'p' is 3e+06 N"),
+                            (("restitution: 0.9", "restitution: 0.9, K: 5e3"), "K of joint 'wrist' is 5e+03 N/m^1.5: softer than rubber")]:
+            with self.subTest(part):
+                self.assert_cause(part, changes=(wrong,))
+
+    def test_a_jump_of_a_motion_is_a_cause(self):
+        table = "kind: angle, table: {points: [[0, 0], [10 ms, 0], [10.05 ms, 5], [20 ms, 5]], interpolation: linear}"
+        for steps in ((), ("--accuracy", "1um")):
+            self.assert_cause("driver 'motor' jumps at t = 0.010", words=steps,
+                              changes=(("kind: velocity, value: $speed", table), ("initial: {joints: {main: 0 deg}}", "")))
+
+    def test_a_journal_that_starts_in_the_wall_is_told_behind_a_discard(self):
+        text = slider_crank(("radial_clearance: $c", "radial_clearance: $c\n      initial: {eccentricity: [1.2 mm, 0]}"),
+                            ("speed: 5000 rpm", "speed: 10 rpm"))
+        self.run_model(text)
+        self.assertIn("penetration", self.ids())
+
+    def test_lasting_contact_needs_no_impacts(self):
+        text = (BALL % ", discard: 90 ms").replace("restitution: 0.9", "restitution: 0.05, exponent: 1.5").replace("end: 0.1 s", "end: 0.2 s").replace("discard: 90 ms", "discard: 150 ms")
+        text = text.replace("lankarani-nikravesh", "flores")
+        self.run_model(text)
+        summary = json.loads(self.read("r", "summary.json"))
+        self.assertGreater(summary["joints"]["B"]["contact_fraction"], 0.9)
+        self.assertNotIn("statistics-window", self.ids())
+
+    def test_a_turn_of_some_degrees_has_no_period(self):
+        self.run_model("""freeplay: 1
+bodies: {jib: {mass: 500 kg, inertia: 2000, com: [4 m, 0], frames: {tip: [12 m, 0]}}}
+joints: {slew: {type: revolute, between: [ground, jib]}}
+drivers: {motor: {joint: slew, kind: velocity, value: 3 deg/s}}
+initial: {joints: {slew: 0}}
+simulation: {end: 10, accuracy: 1 mm, output: {frames: [jib/tip]}}
+""")
+        self.assertEqual("good", self.trust["verdict"])
+
+    def test_a_balanced_rotor_without_load_is_not_bypassed(self):
+        self.run_model("""freeplay: 1
+bodies: {rotor: {mass: 2, inertia: 3e-3}}
+joints: {seat: {type: revolute, bearing: ground, journal: rotor, clearance: {bearing_radius: 12 mm,
+         radial_clearance: 0.1 mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: flores, restitution: 0.6}}}}
+forces: {push: {type: torque, on: rotor, value: 0.1}}
+simulation: {end: 0.1, accuracy: 1 um}
+""")
+        self.assertEqual("good", self.trust["verdict"])
+
     def test_a_clearance_as_large_as_the_mechanism_is_doubtful(self):
         self.run_model(slider_crank(("c: 0.5 mm", "c: 0.5 m"), ("bearing_radius: 10 mm", "bearing_radius: 10 m")))
         self.assertEqual("doubtful", self.trust["verdict"])
