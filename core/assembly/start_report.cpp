@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double noticed = 1e-4;  // of the size, of a radian, of a velocity
+constexpr double noticed_of_play = 1e-3;
 constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
 
 double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
@@ -64,6 +65,19 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
   return out;
 }
 
+void add_moved_journal(const JointElement& joint, bool gives_velocity, const InitialOffset& wanted, double apart,
+                       double rate, std::vector<MovedStart>& moved) {
+  const auto length = [](const double* v) { return std::hypot(v[0], v[1], v[2]); };
+  const double play = joint.layout.clearance > 0.0 ? joint.layout.clearance : length(wanted.position);
+  if (length(wanted.position) > 0.0 && apart > noticed_of_play * play) {
+    moved.push_back({{}, "eccentricity", "m", apart, apart > far_part * play, joint.location, joint.name});
+  }
+  const double speed = std::max(length(wanted.velocity), 1e-3 * play);
+  if (gives_velocity && rate > noticed * speed) {
+    moved.push_back({{}, "velocity", "m/s", rate, rate > far_part * speed, joint.location, joint.name});
+  }
+}
+
 TwinStart twin_start(const System& closed, std::span<const double> taken, std::span<const double> other) {
   const Model& model = closed.model();
   std::vector<double> difference(at(closed.layout().nv()));
@@ -95,8 +109,13 @@ std::string sentence(const MovedStart& moved) {
   const bool turns = moved.unit == "rad", speed = moved.unit.ends_with("/s");
   const std::string by =
       turns ? fmt::format("{:.3g} deg", degrees(moved.by)) : fmt::format("{:.3g} {}", moved.by, moved.unit);
+  const char* const far = moved.far ? ": that is far, correct it or leave it out" : "";
+  if (!moved.joint.empty()) {
+    return fmt::format("the journal of joint '{}' starts {} from the {} that `clearance.initial` gives{}", moved.joint,
+                       by, moved.quantity, far);
+  }
   return fmt::format("body '{}' starts {} from the {} that its `{}` gives{}", moved.body, by, moved.quantity,
-                     speed ? "velocity" : "pose", moved.far ? ": that is far, correct it or leave it out" : "");
+                     speed ? "velocity" : "pose", far);
 }
 
 std::string sentence(const TwinStart& twin) {

@@ -133,6 +133,10 @@ class Repeat(ProgramTest):
         out, _ = self.freeplay("run", "m.yaml")
         self.assertRegex(out, r"pin +\d+\.\d\d N ")
 
+    def test_redundant_constraints_leave_the_play_to_move_in(self):
+        repeat = self.run_json(mechanism("4-rrr"), "--repeat", "3", "--end", "2 ms")["repeat"]
+        self.assertEqual((3, []), (repeat["completed"], repeat["failed"]))
+
     def test_what_cannot_be_repeated(self):
         for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint of this model has play"),
                                 ((mechanism("slider-crank"), "--ideal", "all", "--repeat", "4"), "has play"),

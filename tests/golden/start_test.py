@@ -46,6 +46,30 @@ joints:
 initial: {joints: {guide: "0.6*cos(15 deg)"}}
 """ + RUN
 
+# A bar on three parallel links of one length, the third with a loose pin: closed it has one constraint too many.
+TABLE = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {two: [0.3, 0], three: [0.5, 0]}}
+  foot1: {mass: 1, inertia: 0.01, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+  foot2: {mass: 1, inertia: 0.01, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+  foot3: {mass: 1, inertia: 0.01, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+  top: {mass: 1, inertia: 0.01, com: [0.2, 0], frames: {two: [0.3, 0], three: [0.5, 0]}}
+joints:
+  foot1_pin: {type: revolute, between: [ground, foot1]}
+  foot2_pin: {type: revolute, between: [ground/two, foot2]}
+  foot3_pin: {type: revolute, between: [ground/three, foot3]}
+  head1: {type: revolute, between: [foot1/tip, top]}
+  head2: {type: revolute, between: [foot2/tip, top/two]}
+  head3:
+    type: revolute
+    between: [foot3/tip, top/three]
+    clearance: {bearing_radius: 10 mm, radial_clearance: 0.1 mm, contact: {law: hertz, K: 1e9}%s}
+drivers: {motor: {joint: foot1_pin, kind: velocity, value: 5}}
+initial: {joints: {foot1_pin: 40 deg}}
+simulation: {end: 1 ms, step: 10 us}
+"""
+
 CARDAN = """freeplay: 1
 space: spatial
 bodies:
@@ -108,6 +132,33 @@ class Start(ProgramTest):
         row, out, _ = self.first_row(BALL % ", initial: {velocity: [0.2, 0]}")
         self.assertAlmostEqual(0.2, row["body.ball.vx"], places=12)
         self.assertIn("body 'ball' starts 0.141 m/s from the velocity that its `velocity` gives", out)
+
+    def test_a_block_that_gives_zero_gives_a_velocity(self):
+        row, out, _ = self.first_row(BALL % ", initial: {velocity: [0, 0]}")
+        self.assertEqual((0, 0), (row["body.ball.vx"], row["body.ball.vy"]))
+        self.assertIn("body 'ball' starts 0.316 m/s from the velocity that its `velocity` gives", out)
+
+    # --- redundant constraints ---------------------------------------------------------------------------------------
+
+    def test_a_start_in_play_that_redundant_constraints_forbid_is_as_near_as_can_be(self):
+        # The third link turns about its foot: its journal moves across it, and not along it.
+        across, along = math.cos(math.radians(40)), math.sin(math.radians(40))
+        self.start(TABLE % ", initial: {eccentricity: [0, 0.06 mm]}")
+        moved, = self.changes["moved"]
+        self.assertEqual(("head3", "eccentricity", True), (moved["joint"], moved["quantity"], moved["far"]))
+        self.assertAlmostEqual(0.06e-3 * along, moved["by"], delta=1e-7)
+        self.start(TABLE % ", initial: {velocity: [0, 0.2]}")
+        moved, = self.changes["moved"]
+        self.assertEqual(("head3", "velocity"), (moved["joint"], moved["quantity"]))
+        self.assertAlmostEqual(0.2 * along, moved["by"], places=9)
+        row, out, _ = self.first_row(TABLE % ", initial: {eccentricity: [%r mm, %r mm]}" % (-0.06 * along, 0.06 * across))
+        self.assertNotIn("moved", out)
+        self.assertAlmostEqual(-0.04e-3, row["joint.head3.delta"], delta=1e-7)
+
+    def test_a_journal_of_redundant_constraints_can_be_loaded(self):
+        row, out, _ = self.first_row(TABLE % ", initial: loaded")
+        self.assertIn("the journal of joint 'head3' starts", out)
+        self.assertLess(row["joint.head3.delta"], 1e-5)
 
     # --- positions ---------------------------------------------------------------------------------------------------
 
