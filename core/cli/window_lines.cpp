@@ -23,7 +23,8 @@ void add_peak(const std::string& name, const char* unit, double before, double w
   peaks.push_back({name, fmt::format("{:.4g} {}", before, unit), within > 0.0 ? before / within : HUGE_VAL});
 }
 
-/// Peaks of the rows of the excluded part that the window does not reach, the most striking first.
+/// Peaks of the excluded part, of its rows and where contacts press hardest, that the window does not reach, the most
+/// striking first.
 std::vector<Peak> larger_before(const RunRecord& record) {
   const Statistics& statistics = record.statistics;
   const auto before = statistics.largest_before(), within = statistics.largest();
@@ -48,7 +49,7 @@ std::string before_window(const RunRecord& record) {
   const std::vector<Peak> peaks = larger_before(record);
   std::string text;
   for (std::size_t i = 0; i < std::min(peaks.size(), most_names); ++i) {
-    text += fmt::format("{}{} {}{}", i == 0 ? "; in rows before that " : ", ", peaks[i].name, i == 0 ? "reached " : "",
+    text += fmt::format("{}{} {}{}", i == 0 ? "; before that " : ", ", peaks[i].name, i == 0 ? "reached " : "",
                         peaks[i].value);
   }
   if (peaks.size() > most_names) text += fmt::format(" and {} more", peaks.size() - most_names);
