@@ -184,6 +184,63 @@ class Assembler {
     return false;
   }
 
+  // Gears with offsets of their own hold with whole turns: those that given poses have, or that given slides ask for,
+  // may keep more of what is given.
+  bool converge_from_other_turns(const std::vector<double>& guess, bool found) {
+    const auto fixed = [](const Gear& gear) { return gear.offset.has_value(); };
+    const GivenPoses given(closed_);
+    if (std::ranges::none_of(model_.gears, fixed) || !given.any()) return false;
+    if (found && StartBranches::keeps(given, state_.q())) return false;
+    std::vector<double> best(state_.q().begin(), state_.q().end());
+    const std::vector<double> turns(state_.h().begin(), state_.h().end());
+    std::vector<double> best_turns = turns;
+    double least = found ? given.misses(best).norm() : std::numeric_limits<double>::infinity();
+    int kind = 0;
+    for (const int other : {1, 2}) {
+      std::ranges::copy(turns, state_.h().begin());
+      count_turns(other);
+      std::ranges::copy(guess, state_.q().begin());
+      if (!mechanism_.holds(mechanism_.converge())) continue;
+      const double misses = given.misses(state_.q()).norm();
+      if (!(misses < (1.0 - 1e-6) * least)) continue;
+      least = misses, kind = other;
+      best.assign(state_.q().begin(), state_.q().end());
+      best_turns.assign(state_.h().begin(), state_.h().end());
+    }
+    std::ranges::copy(turns, state_.h().begin());
+    count_turns(kind);
+    if (kind != 0) std::ranges::copy(best_turns, state_.h().begin());
+    std::ranges::copy(best, state_.q().begin());
+    evaluate(term_position | term_velocity);
+    return kind != 0;
+  }
+
+  // Angles of gears are counted from (-pi, pi] (0), from given poses (1) or from slides (2).
+  void count_turns(int kind) {
+    if (kind != 1) return count_gears(kind == 2);
+    std::vector<bool> counted;
+    for (const double held : held_) counted.push_back(!std::isnan(held));
+    for (const Gear& gear : model_.gears) {
+      for (const int j : {gear.first, gear.second}) {
+        const JointElement& joint = model_.joints[at(j)];
+        const int turn = closed_.layout().turn(j);
+        if (turn < 0 || counted[at(j)] || model_.space != Space::planar) continue;
+        const auto a = given_angle(joint.marker_a), b = given_angle(joint.marker_b);
+        if (!a || !b) continue;
+        state_.h()[at(turn)] = *b - *a;
+        counted[at(j)] = true;
+      }
+    }
+    mechanism_.count_gears(std::move(counted), false);
+  }
+
+  std::optional<double> given_angle(int marker) const {
+    const Marker& m = model_.markers[at(marker)];
+    if (m.body == ground) return m.angle;
+    const auto& own = model_.bodies[at(m.body)].angle;
+    return own ? std::optional<double>(*own + m.angle) : std::nullopt;
+  }
+
   // Newton cannot leave a guess with all links in one line, where no small turn changes the gap at first order: files
   // that give no pose begin so. Then the bodies are turned a little, each by another fixed angle.
   bool converge_from_turned(const std::vector<double>& guess) {
@@ -208,6 +265,7 @@ class Assembler {
     bool found = mechanism_.holds(mechanism_.converge()), chosen_by_turn = false;
     const std::vector<double> nearest(state_.q().begin(), state_.q().end());
     if (!found) found = converge_from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
+    if (first && converge_from_other_turns(guess, found)) found = true, chosen_by_turn = false;
     if (!std::exchange(nearest_is_known_, true)) found = take_nearest(guess, found, chosen_by_turn);
     if (!found) found = yield(guess, first);
     if (!found) {

@@ -13,8 +13,9 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double noticed = 1e-4;  // of the size, of a radian, of a velocity
-constexpr double noticed_of_play = 1e-3;
+constexpr double noticed = 1e-4;               // of the size, of a radian, of a velocity
+constexpr double noticed_of_play = 1e-3;       // of the clearance: of what its block gives
+constexpr double noticed_pose_in_play = 0.05;  // of the clearance: of a pose
 constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
 
 double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
@@ -27,16 +28,27 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
   std::vector<double> given(v.size());
   start_velocities(closed, q, given);
   std::vector<MovedStart> out;
-  const auto add = [&](const Body& body, const char* quantity, const char* unit, double by, double unit_size,
-                       double far, const Location& location) {
-    if (by > noticed * unit_size) out.push_back({body.name, quantity, unit, by, by > far, location});
+  const auto add = [&](const Body& body, const char* quantity, const char* unit, double by, double least, double far,
+                       const Location& location) {
+    if (by > least) out.push_back({body.name, quantity, unit, by, by > far, location});
+  };
+  // In play a pose counts to parts of it.
+  const auto least_shift = [&](BodyId id) {
+    double least = noticed * closed.size();
+    for (const JointElement& joint : model.joints) {
+      if (!joint.has_play || !(joint.layout.clearance > 0.0)) continue;
+      const bool holds = model.markers[at(joint.marker_a)].body == id || model.markers[at(joint.marker_b)].body == id;
+      if (holds) least = std::min(least, noticed_pose_in_play * joint.layout.clearance);
+    }
+    return least;
   };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[at(b)];
     const double size = closed.size();
-    if (body.position) add(body, "position", "m", poses.shift(b, q), size, far_part * size, body.pose_location);
-    if (body.angle) add(body, "angle", "rad", poses.turn(b, q), 1.0, far_turn, body.pose_location);
-    if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), 1.0, far_turn, body.pose_location);
+    if (body.position)
+      add(body, "position", "m", poses.shift(b, q), least_shift(b), far_part * size, body.pose_location);
+    if (body.angle) add(body, "angle", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
+    if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (!body.velocity_given && !body.angular_velocity_given) continue;
     double wanted[6], is[6];
     closed.body_twist(b, q, given, wanted);
@@ -46,7 +58,7 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
     const double asked = length(wanted[3], wanted[4], wanted[5]);
     if (body.angular_velocity_given) {
       const double unit = std::max(asked, 1e-3);
-      add(body, "angular velocity", "rad/s", turn, unit, far_part * unit, body.velocity_location);
+      add(body, "angular velocity", "rad/s", turn, noticed * unit, far_part * unit, body.velocity_location);
     }
     if (!body.velocity_given) continue;
     // Of the origin of the body's frame.
@@ -60,7 +72,8 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
     miss[1] = is[1] + w[2] * arm[0] - w[0] * arm[2] - body.velocity[1];
     miss[2] = is[2] + w[0] * arm[1] - w[1] * arm[0] - body.velocity[2];
     const double unit = std::max(length(body.velocity[0], body.velocity[1], body.velocity[2]), 1e-3 * size);
-    add(body, "velocity", "m/s", length(miss[0], miss[1], miss[2]), unit, far_part * unit, body.velocity_location);
+    add(body, "velocity", "m/s", length(miss[0], miss[1], miss[2]), noticed * unit, far_part * unit,
+        body.velocity_location);
   }
   return out;
 }

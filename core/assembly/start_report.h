@@ -40,7 +40,7 @@ void add_moved_journal(const JointElement& joint, bool gives_velocity, const Ini
                        double rate, std::vector<MovedStart>& moved);
 
 /// What of the poses and velocities of bodies a start at `q` and `v` of the closed mechanism has not kept: more than
-/// 1e-4 of the size of the model, of a radian or of the velocity.
+/// 1e-4 of the size of the model, of a radian or of the velocity, or of a body with play 1/20 of that.
 std::vector<MovedStart> moved_starts(const System& closed, std::span<const double> q, std::span<const double> v);
 
 /// The body in which two positions differ most.

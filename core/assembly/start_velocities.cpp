@@ -38,8 +38,8 @@ class Velocities {
     start_velocities(system_, mechanism_.state.q(), mechanism_.state.v());
     const VectorXd given = velocities();
     solve_least_change(given);
-    if (!gives_any() || system_.layout().nv() > most_dense_columns) return {};
-    if (!keeps(given)) keep_what_can_be_kept(given);
+    if (system_.layout().nv() > most_dense_columns) return {};
+    if (gives_any() && !keeps(given)) keep_what_can_be_kept(given);
     return system_.layout().nv() <= most_told_columns ? chosen() : std::vector<ChosenSpeed>{};
   }
 
