@@ -20,12 +20,18 @@ struct Peak {
   double ratio;  ///< to that of the window
 };
 
+/// Two digits where chance takes part, else four.
+std::string digits(double value, double noise) {
+  if (!(noise > 0.0) || !(value > 0.0)) return fmt::format("{:.4g}", value);
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return fmt::format("{:.6g}", std::round(value / unit) * unit);
+}
+
 /// Of a peak that is noisy within the window no more digits are known before it.
 void add_peak(const std::string& name, const char* unit, double before, double within, double noise,
               std::vector<Peak>& peaks) {
   if (!(before > 0.0) || (within > 0.0 && !(before > clearly * within))) return;
-  const std::string value =
-      noise > 0.0 ? fmt::format("{:.2g} {}", before, unit) : fmt::format("{:.4g} {}", before, unit);
+  const std::string value = fmt::format("{} {}", digits(before, noise), unit);
   peaks.push_back({name, value, within > 0.0 ? before / within : HUGE_VAL});
 }
 
@@ -79,8 +85,7 @@ std::string missed_by_rows(const RunRecord& record) {
   }
   if (worst == joints.size() || !(written[force(worst)] >= 0.0)) return {};
   const double noise = statistics.noise().of(force(worst));
-  const std::string seen =
-      noise > 0.0 ? fmt::format("{:.2g}", written[force(worst)]) : fmt::format("{:.4g}", written[force(worst)]);
+  const std::string seen = digits(written[force(worst)], noise);
   return fmt::format("  rows {:g} s apart miss peaks between them: they show {} N of the {} in {}\n",
                      record.model.settings.interval, seen, figure_text(all[force(worst)], "N", noise),
                      joints[worst].name);

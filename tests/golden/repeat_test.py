@@ -148,6 +148,19 @@ class Repeat(ProgramTest):
             self.assertIn(word, err)
         self.assertFalse(os.path.exists(self.path("results")))
 
+    def test_a_first_run_that_fails_keeps_its_figures(self):
+        self.write("m.yaml", HANGING.replace("end: 2 s", "end: 0.5 s").replace("discard: 0.2 s", "discard: 0 s").replace(
+            "simulation:", "forces: {push: {type: force, at: rod, value: ['sqrt(0.3 - t)', 0]}}\nsimulation:"))
+        out, _ = self.freeplay("run", "m.yaml", "--repeat", "3", code=4)
+        self.assertRegex(out, r"pin +\d\S* ", out)
+        self.assertIn("figures are those of the first run", out)
+
+    def test_a_run_that_verify_contradicts_is_completed(self):
+        self.write("m.yaml", HANGING.replace("accuracy: 1 um", "step: 0.4 ms").replace("end: 2 s", "end: 0.3 s").replace(
+            "initial: loaded", "").replace("discard: 0.2 s", "discard: 0 s"))
+        repeat = self.run_json("m.yaml", "--repeat", "3", "--verify", code=7)["repeat"]
+        self.assertEqual((3, []), (repeat["completed"], repeat["failed"]))
+
     def start(self, *arguments):
         return subprocess.Popen([PROGRAM, "run", *arguments], cwd=self.folder, text=True, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, env={**os.environ, "FREEPLAY_THREADS": "3"})

@@ -46,6 +46,40 @@ joints:
 initial: {joints: {guide: "0.6*cos(15 deg)"}}
 """ + RUN
 
+CRANK = """freeplay: 1
+bodies:
+  crank: {mass: 1, inertia: 0.01, frames: {tip: [0.09, 0]}}
+  rod: {mass: 1, inertia: 0.01, frames: {tip: [0.27, 0]}, pose: {angle: %s}}
+  slider: {mass: 1, inertia: 0.01}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, rod]}
+  C: {type: revolute, between: [rod/tip, slider]}
+  G: {type: prismatic, between: [ground, slider]}
+""" + RUN
+
+RACK = """freeplay: 1
+bodies:
+  pinion: {mass: 1, inertia: 0.01, pose: {angle: %r rad}}
+  rack: {mass: 1, inertia: 0.01, pose: {position: [%r m, -0.03 m]}}
+frames: {ground/guide: [0, -0.03]}
+joints:
+  axle: {type: revolute, between: [ground, pinion]}
+  guide: {type: prismatic, between: [ground/guide, rack]}
+  teeth: {type: gear, of: [axle, guide], ratio: 30 mm, offset: 0}
+""" + RUN
+
+WHEELS = """freeplay: 1
+bodies:
+  small: {mass: 1, inertia: 0.01, pose: {position: [0, 0], angle: %r rad}}
+  large: {mass: 1, inertia: 0.01, pose: {position: [0.14, 0], angle: %r rad}}
+frames: {ground/large: [0.14, 0]}
+joints:
+  first: {type: revolute, between: [ground, small]}
+  second: {type: revolute, between: [ground/large, large]}
+  teeth: {type: gear, of: [first, second], ratio: -0.4, offset: 0}
+""" + RUN
+
 # A bar on three parallel links of one length, the third with a loose pin: closed it has one constraint too many.
 TABLE = """freeplay: 1
 gravity: [0, -9.81]
@@ -109,6 +143,12 @@ class Start(ProgramTest):
         self.assertAlmostEqual(10, row["joint.spin.speed"], places=12)
         self.assertAlmostEqual(0, row["joint.pivot.speed"], places=12)
         self.assertNotIn("starts", out)
+
+    def test_a_speed_that_a_driver_leaves_open_is_said(self):
+        row, out, _ = self.first_row(ARM % ("", "", "drivers: {motor: {joint: spin, kind: velocity, value: 10}}\n"))
+        arm = -0.1 * 10 / (1 / 3 + 1 + 0.1)
+        self.assertAlmostEqual(arm, row["joint.pivot.speed"], places=12)
+        self.assertIn("joint 'pivot' starts at %.4g rad/s by least kinetic energy" % arm, out)
 
     def test_a_velocity_that_is_given_is_kept_and_another_body_follows(self):
         row, out, _ = self.first_row(ARM % (", velocity: {angular: 2}", "", ""))
@@ -188,6 +228,36 @@ class Start(ProgramTest):
         # -90 + a and -90 - a are nearest to -60 and -100 with a = (30 + 10) / 2.
         self.assertAlmostEqual(-70, math.degrees(start["upper"]["angle"]), places=6)
         self.assertAlmostEqual(-110, math.degrees(start["lower"]["angle"]), places=6)
+
+    def test_a_pose_beyond_its_reach_has_one_nearest_position(self):
+        start, messages = self.start(CRANK % "-23 deg")
+        self.assertEqual([], messages)
+        self.assertAlmostEqual(math.asin(0.09 / 0.27), -start["rod"]["angle"], places=9)
+        self.assertAlmostEqual(90, math.degrees(start["crank"]["angle"]), places=4)
+
+    def test_angles_start_at_the_turn_of_their_poses(self):
+        for pose in (-95, 95, 265):
+            start, _ = self.start(CRANK % ("%d deg" % pose) + "initial: {joints: {A: 88 deg}}\n")
+            self.assertLess(abs(math.degrees(start["rod"]["angle"]) - pose), 180.0001)
+
+    def test_gears_keep_the_whole_turns_of_given_poses(self):
+        for turned in (3.5, 6.2, 9, 40, -14):
+            start, _ = self.start(RACK % (turned, 0.03 * turned))
+            self.assertEqual([], self.changes["moved"], turned)
+            self.assertAlmostEqual(turned, start["pinion"]["angle"], places=9)
+            start, _ = self.start(WHEELS % (turned, -0.4 * turned))
+            self.assertEqual([], self.changes["moved"], turned)
+
+    def test_a_rack_takes_the_turn_that_is_nearest_to_what_is_given(self):
+        # 0.5 rad on are 15 mm, and 188 mm more with each turn.
+        start, _ = self.start(RACK % (0.5, 0.39))
+        self.assertLess(abs(start["rack"]["x"] - 0.39), 0.01)
+
+    def test_a_pose_inside_the_play_is_not_moved_in_silence(self):
+        self.start(BALL.replace("velocity: {linear: [0.3, -0.1]}", "frames: {far: [30, 0]}, pose: {position: [0.4 mm, 0]}") % "")
+        moved, = self.changes["moved"]
+        self.assertEqual(("ball", "position"), (moved["body"], moved["quantity"]))
+        self.assertAlmostEqual(0.4e-3, moved["by"], places=12)
 
     def test_a_cardan_joint_says_how_far_it_turned_its_body(self):
         _, out, _ = self.first_row(CARDAN % "20 deg, 20 deg, 40 deg")
