@@ -320,12 +320,10 @@ simulation: {end: 10 ms, step: 1 ms}
             self.assertTrue(self.read(number.name, "results.csv").endswith("\n"))
 
     def test_an_interrupt_of_the_second_run_is_one(self):
-        process = subprocess.Popen([PROGRAM, "run", mechanism("slider-crank"), "--end", "20 ms", "--accuracy", "1e-12",
+        process = subprocess.Popen([PROGRAM, "run", mechanism("slider-crank"), "--end", "24 ms", "--accuracy", "1e-9",
                                     "--verify", "--out", "v"], cwd=self.folder, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 60
-        while not (self.grown("v", "run.log") and "completed" in self.read("v", "run.log")) and time.monotonic() < deadline:
-            time.sleep(0.02)
+        time.sleep(2.0)  # the first run takes a fifth of a second, the second half a minute
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, out + err)

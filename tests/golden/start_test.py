@@ -236,8 +236,8 @@ class Start(ProgramTest):
         self.assertAlmostEqual(90, math.degrees(start["crank"]["angle"]), places=4)
 
     def test_angles_start_at_the_turn_of_their_poses(self):
-        for pose in (-95, 95, 265):
-            start, _ = self.start(CRANK % ("%d deg" % pose) + "initial: {joints: {A: 88 deg}}\n")
+        for crank, pose in ((60, 100), (120, 100), (88, 265)):
+            start, _ = self.start(CRANK % ("%d deg" % pose) + "initial: {joints: {A: %d deg}}\n" % crank)
             self.assertLess(abs(math.degrees(start["rod"]["angle"]) - pose), 180.0001)
 
     def test_gears_keep_the_whole_turns_of_given_poses(self):
@@ -254,7 +254,8 @@ class Start(ProgramTest):
         self.assertLess(abs(start["rack"]["x"] - 0.39), 0.01)
 
     def test_a_pose_inside_the_play_is_not_moved_in_silence(self):
-        self.start(BALL.replace("velocity: {linear: [0.3, -0.1]}", "frames: {far: [30, 0]}, pose: {position: [0.4 mm, 0]}") % "")
+        self.start(BALL.replace("velocity: {linear: [0.3, -0.1]}", "frames: {far: [30, 0]}, pose: {position: [0.4 mm, 0]}").replace(
+            "step: 10 us", "step: 10 us, output: {frames: [ball/far]}") % "")
         moved, = self.changes["moved"]
         self.assertEqual(("ball", "position"), (moved["body"], moved["quantity"]))
         self.assertAlmostEqual(0.4e-3, moved["by"], places=12)
