@@ -15,6 +15,7 @@
 #include "assembly/leg_modes.h"
 #include "assembly/loop_gap.h"
 #include "assembly/placing.h"
+#include "assembly/play_rows.h"
 #include "assembly/start_branches.h"
 #include "assembly/start_rows.h"
 #include "assembly/start_velocities.h"
@@ -56,6 +57,7 @@ class Assembler {
       report_.chosen = solve_velocities(mechanism_, system_.mass());
     }
     report_.moved = moved_starts(closed_, state_.q(), state_.v());
+    report_moved_journals();
     return release();
   }
 
@@ -165,6 +167,7 @@ class Assembler {
       offset.rotation = nullptr;
       if (change_) change_(j, offset);
       moved = moved || !reactions.empty();
+      offsets_[at(j)] = offset;
       closed_.set_offset(j, offset);
     }
     return moved;
@@ -179,6 +182,63 @@ class Assembler {
     if (mechanism_.holds(mechanism_.converge())) return true;
     count_gears(false);
     return false;
+  }
+
+  // Gears with offsets of their own hold with whole turns: those that given poses have, or that given slides ask for,
+  // may keep more of what is given.
+  bool converge_from_other_turns(const std::vector<double>& guess, bool found) {
+    const auto fixed = [](const Gear& gear) { return gear.offset.has_value(); };
+    const GivenPoses given(closed_);
+    if (std::ranges::none_of(model_.gears, fixed) || !given.any()) return false;
+    if (found && StartBranches::keeps(given, state_.q())) return false;
+    std::vector<double> best(state_.q().begin(), state_.q().end());
+    const std::vector<double> turns(state_.h().begin(), state_.h().end());
+    std::vector<double> best_turns = turns;
+    double least = found ? given.misses(best).norm() : std::numeric_limits<double>::infinity();
+    int kind = 0;
+    for (const int other : {1, 2}) {
+      std::ranges::copy(turns, state_.h().begin());
+      count_turns(other);
+      std::ranges::copy(guess, state_.q().begin());
+      if (!mechanism_.holds(mechanism_.converge())) continue;
+      const double misses = given.misses(state_.q()).norm();
+      if (!(misses < (1.0 - 1e-6) * least)) continue;
+      least = misses, kind = other;
+      best.assign(state_.q().begin(), state_.q().end());
+      best_turns.assign(state_.h().begin(), state_.h().end());
+    }
+    std::ranges::copy(turns, state_.h().begin());
+    count_turns(kind);
+    if (kind != 0) std::ranges::copy(best_turns, state_.h().begin());
+    std::ranges::copy(best, state_.q().begin());
+    evaluate(term_position | term_velocity);
+    return kind != 0;
+  }
+
+  // Angles of gears are counted from (-pi, pi] (0), from given poses (1) or from slides (2).
+  void count_turns(int kind) {
+    if (kind != 1) return count_gears(kind == 2);
+    std::vector<bool> counted;
+    for (const double held : held_) counted.push_back(!std::isnan(held));
+    for (const Gear& gear : model_.gears) {
+      for (const int j : {gear.first, gear.second}) {
+        const JointElement& joint = model_.joints[at(j)];
+        const int turn = closed_.layout().turn(j);
+        if (turn < 0 || counted[at(j)] || model_.space != Space::planar) continue;
+        const auto a = given_angle(joint.marker_a), b = given_angle(joint.marker_b);
+        if (!a || !b) continue;
+        state_.h()[at(turn)] = *b - *a;
+        counted[at(j)] = true;
+      }
+    }
+    mechanism_.count_gears(std::move(counted), false);
+  }
+
+  std::optional<double> given_angle(int marker) const {
+    const Marker& m = model_.markers[at(marker)];
+    if (m.body == ground) return m.angle;
+    const auto& own = model_.bodies[at(m.body)].angle;
+    return own ? std::optional<double>(*own + m.angle) : std::nullopt;
   }
 
   // Newton cannot leave a guess with all links in one line, where no small turn changes the gap at first order: files
@@ -201,10 +261,13 @@ class Assembler {
   // The first time the nearest position is looked for; later ones stay close to it.
   void solve_positions() {
     const std::vector<double> guess(state_.q().begin(), state_.q().end());
+    const bool first = !nearest_is_known_;
     bool found = mechanism_.holds(mechanism_.converge()), chosen_by_turn = false;
     const std::vector<double> nearest(state_.q().begin(), state_.q().end());
     if (!found) found = converge_from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
+    if (first && converge_from_other_turns(guess, found)) found = true, chosen_by_turn = false;
     if (!std::exchange(nearest_is_known_, true)) found = take_nearest(guess, found, chosen_by_turn);
+    if (!found) found = yield(guess, first);
     if (!found) {
       std::ranges::copy(nearest, state_.q().begin());
       if (!mechanism_.paths.empty()) check_paths();
@@ -217,6 +280,47 @@ class Assembler {
         system_.motions().set_start(d, e_.coordinate[at(driver.joint)]);
         e_.forget_motions();
       }
+    }
+  }
+
+  // Redundant constraints that close with all journals centred leave these fewer places than they have directions.
+  bool yield(const std::vector<double>& guess, bool first) {
+    const auto moves = [](const InitialOffset& one) {
+      return std::hypot(one.position[0], one.position[1], one.position[2]) > 0.0;
+    };
+    if (std::ranges::none_of(offsets_, moves)) return false;
+    for (int j = 0; j < static_cast<int>(offsets_.size()); ++j) {
+      if (model_.joints[at(j)].has_play) closed_.set_offset(j, {});
+    }
+    std::ranges::copy(guess, state_.q().begin());
+    bool centred = mechanism_.holds(mechanism_.converge());
+    if (first) {
+      bool chosen_by_turn = false;
+      if (!centred) centred = converge_from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
+      centred = take_nearest(guess, centred, chosen_by_turn);
+    }
+    const auto given = [&](const JointElement& joint) { return !change_ && gives_eccentricity(joint); };
+    const bool found = centred && yield_in_play(mechanism_, offsets_, play_ranks(closed_, given));
+    for (int j = 0; j < static_cast<int>(offsets_.size()); ++j) {
+      if (model_.joints[at(j)].has_play) closed_.set_offset(j, offsets_[at(j)]);
+    }
+    evaluate(term_position | term_velocity);
+    return found;
+  }
+
+  // Of journals whose block says where or how fast they start.
+  void report_moved_journals() {
+    const ClosedMechanism::Rows speeds = mechanism_.speed_rows({});
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (!joint.has_play) continue;
+      const Slice slice = closed_.layout().rows(j);
+      double apart = 0.0, rate = 0.0;
+      for (int r = slice.offset; r < slice.offset + slice.size; ++r) {
+        apart = std::hypot(apart, e_.phi[at(r)]);
+        rate = std::hypot(rate, speeds.residual[r]);
+      }
+      add_moved_journal(joint, gives_velocity(joint), offsets_[at(j)], apart, rate, report_.moved);
     }
   }
 
@@ -383,7 +487,8 @@ class Assembler {
   System& closed_;
   State& state_;
   Evaluation& e_;
-  std::vector<double> held_;    // by joint
+  std::vector<double> held_;  // by joint
+  std::vector<InitialOffset> offsets_ = std::vector<InitialOffset>(model_.joints.size(), InitialOffset{});
   std::vector<char> followed_;  // inverse-kinematics entries with drivers without a closed form
   StartReport report_;
   bool nearest_is_known_ = false;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 namespace freeplay {
@@ -23,6 +24,8 @@ constexpr double equally_near = 0.01;  // of the distance
 constexpr double longest_turn = 0.5;   // in one step towards the rows
 constexpr double weight_of_guess = 1e-2;
 constexpr int steps_by_weight = 6;
+constexpr double curvature_step = 1e-5;    // m or rad
+constexpr Eigen::Index most_refined = 12;  // motions that are left free
 constexpr Eigen::Index most_columns = 180, columns_for_many = 45, columns_for_some = 90;
 
 VectorXd scaled(const System& system, VectorXd increment) {
@@ -71,6 +74,7 @@ void StartBranches::add(std::vector<double> q) {
 
 void StartBranches::add_found() {
   come_nearer();
+  refine();
   add({mechanism_.state.q().begin(), mechanism_.state.q().end()});
 }
 
@@ -104,6 +108,66 @@ void StartBranches::come_nearer() {
     }
     if (better) continue;
     std::ranges::copy(before, q.begin());
+    return;
+  }
+}
+
+// Half the derivative of the squared distance from the given poses along the motions `ways`.
+VectorXd StartBranches::slope(const MatrixXd& ways) const {
+  const std::span<const double> q = mechanism_.state.q();
+  return (given_.derivative(q) * ways).transpose() * given_.misses(q);
+}
+
+// Newton with the curvature of the motions: poses that are out of reach are missed least where no motion brings a body
+// nearer at first order, and Gauss and Newton loses its way there.
+void StartBranches::refine() {
+  if (system_.layout().nv() > columns_for_some || !given_.any()) return;
+  const std::span<double> q = mechanism_.state.q();
+  const auto motions = [&] {
+    const MatrixXd rows = mechanism_.position_rows().matrix;
+    const Eigen::Index columns = system_.layout().nv();
+    if (rows.rows() == 0) return MatrixXd(MatrixXd::Identity(columns, columns));
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
+    held.setThreshold(1e-9);
+    held.compute(rows.transpose());
+    const MatrixXd all = held.householderQ() * MatrixXd::Identity(columns, columns);
+    return MatrixXd(all.rightCols(columns - held.rank()));
+  };
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    const VectorXd misses = given_.misses(q);
+    if (misses.lpNorm<Eigen::Infinity>() <= same_place) return;
+    const MatrixXd ways = motions();
+    if (ways.cols() == 0 || ways.cols() > most_refined) return;
+    const VectorXd down = slope(ways);
+    if (down.lpNorm<Eigen::Infinity>() <= 1e-9 * misses.norm()) return;
+    const std::vector<double> here(q.begin(), q.end());
+    const auto go = [&](const VectorXd& increment) {
+      system_.retract(here, {increment.data(), at(static_cast<int>(increment.size()))}, q);
+      return mechanism_.holds(mechanism_.converge());
+    };
+    MatrixXd curvature(ways.cols(), ways.cols());
+    bool known = true;
+    for (Eigen::Index k = 0; k < ways.cols() && known; ++k) {
+      known = go(curvature_step * ways.col(k));
+      const MatrixXd there = motions();
+      known = known && there.cols() == ways.cols();
+      if (known) curvature.col(k) = (slope(there * (there.transpose() * ways)) - down) / curvature_step;
+    }
+    std::ranges::copy(here, q.begin());
+    if (!known) return;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(0.5 * (curvature + curvature.transpose()));
+    const VectorXd bends = modes.eigenvalues().cwiseAbs().cwiseMax(1e-9 * modes.eigenvalues().cwiseAbs().maxCoeff());
+    const VectorXd along = modes.eigenvectors().transpose() * down;
+    VectorXd step = -(ways * (modes.eigenvectors() * along.cwiseQuotient(bends)));
+    const double longest = scaled(system_, step).lpNorm<Eigen::Infinity>();
+    if (!(longest > 1e-12)) return;
+    step *= std::min(1.0, longest_turn / longest);
+    bool better = false;
+    for (int halving = 0; halving < 12 && !better; ++halving, step *= 0.5) {
+      better = go(step) && given_.misses(q).norm() < misses.norm();
+    }
+    if (better) continue;
+    std::ranges::copy(here, q.begin());
     return;
   }
 }
@@ -211,8 +275,21 @@ const StartBranches::Position& StartBranches::nearest() const {
   return *best;
 }
 
+// On the way to a position bodies may have turned round and round.
+void StartBranches::count_turns_as_guessed() {
+  if (mechanism_.model().space != Space::planar) return;
+  const std::span<double> q = mechanism_.state.q();
+  const std::vector<double> before(q.begin(), q.end());
+  for (std::size_t i = 2; i < q.size(); i += 3) {
+    const double turn = 2.0 * std::numbers::pi, near = mechanism_.model().bodies[i / 3].angle.value_or(guess_[i]);
+    q[i] -= turn * std::round((q[i] - near) / turn);
+  }
+  if (!mechanism_.holds(mechanism_.position_rows())) std::ranges::copy(before, q.begin());
+}
+
 void StartBranches::take_nearest() {
   std::ranges::copy(nearest().q, mechanism_.state.q().begin());
+  count_turns_as_guessed();
   mechanism_.evaluate(term_position | term_velocity);
 }
 

@@ -40,6 +40,9 @@ class StartBranches {
 
   void add(std::vector<double> q);
   void come_nearer();
+  void refine();
+  Eigen::VectorXd slope(const Eigen::MatrixXd& ways) const;
+  void count_turns_as_guessed();
   void approach(std::span<const double> start);
   void add_approached(std::span<const double> start);
   std::vector<double> turned(int seed) const;

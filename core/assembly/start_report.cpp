@@ -13,7 +13,9 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double noticed = 1e-4;  // of the size, of a radian, of a velocity
+constexpr double noticed = 1e-4;               // of the size, of a radian, of a velocity
+constexpr double noticed_of_play = 1e-3;       // of the clearance: of what its block gives
+constexpr double noticed_pose_in_play = 0.05;  // of the clearance: of a pose
 constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
 
 double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
@@ -26,16 +28,27 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
   std::vector<double> given(v.size());
   start_velocities(closed, q, given);
   std::vector<MovedStart> out;
-  const auto add = [&](const Body& body, const char* quantity, const char* unit, double by, double unit_size,
-                       double far, const Location& location) {
-    if (by > noticed * unit_size) out.push_back({body.name, quantity, unit, by, by > far, location});
+  const auto add = [&](const Body& body, const char* quantity, const char* unit, double by, double least, double far,
+                       const Location& location) {
+    if (by > least) out.push_back({body.name, quantity, unit, by, by > far, location});
+  };
+  // In play a pose counts to parts of it.
+  const auto least_shift = [&](BodyId id) {
+    double least = noticed * closed.size();
+    for (const JointElement& joint : model.joints) {
+      if (!joint.has_play || !(joint.layout.clearance > 0.0)) continue;
+      const bool holds = model.markers[at(joint.marker_a)].body == id || model.markers[at(joint.marker_b)].body == id;
+      if (holds) least = std::min(least, noticed_pose_in_play * joint.layout.clearance);
+    }
+    return least;
   };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[at(b)];
     const double size = closed.size();
-    if (body.position) add(body, "position", "m", poses.shift(b, q), size, far_part * size, body.pose_location);
-    if (body.angle) add(body, "angle", "rad", poses.turn(b, q), 1.0, far_turn, body.pose_location);
-    if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), 1.0, far_turn, body.pose_location);
+    if (body.position)
+      add(body, "position", "m", poses.shift(b, q), least_shift(b), far_part * size, body.pose_location);
+    if (body.angle) add(body, "angle", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
+    if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (!body.velocity_given && !body.angular_velocity_given) continue;
     double wanted[6], is[6];
     closed.body_twist(b, q, given, wanted);
@@ -45,7 +58,7 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
     const double asked = length(wanted[3], wanted[4], wanted[5]);
     if (body.angular_velocity_given) {
       const double unit = std::max(asked, 1e-3);
-      add(body, "angular velocity", "rad/s", turn, unit, far_part * unit, body.velocity_location);
+      add(body, "angular velocity", "rad/s", turn, noticed * unit, far_part * unit, body.velocity_location);
     }
     if (!body.velocity_given) continue;
     // Of the origin of the body's frame.
@@ -59,9 +72,23 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
     miss[1] = is[1] + w[2] * arm[0] - w[0] * arm[2] - body.velocity[1];
     miss[2] = is[2] + w[0] * arm[1] - w[1] * arm[0] - body.velocity[2];
     const double unit = std::max(length(body.velocity[0], body.velocity[1], body.velocity[2]), 1e-3 * size);
-    add(body, "velocity", "m/s", length(miss[0], miss[1], miss[2]), unit, far_part * unit, body.velocity_location);
+    add(body, "velocity", "m/s", length(miss[0], miss[1], miss[2]), noticed * unit, far_part * unit,
+        body.velocity_location);
   }
   return out;
+}
+
+void add_moved_journal(const JointElement& joint, bool gives_velocity, const InitialOffset& wanted, double apart,
+                       double rate, std::vector<MovedStart>& moved) {
+  const auto length = [](const double* v) { return std::hypot(v[0], v[1], v[2]); };
+  const double play = joint.layout.clearance > 0.0 ? joint.layout.clearance : length(wanted.position);
+  if (length(wanted.position) > 0.0 && apart > noticed_of_play * play) {
+    moved.push_back({{}, "eccentricity", "m", apart, apart > far_part * play, joint.location, joint.name});
+  }
+  const double speed = std::max(length(wanted.velocity), 1e-3 * play);
+  if (gives_velocity && rate > noticed * speed) {
+    moved.push_back({{}, "velocity", "m/s", rate, rate > far_part * speed, joint.location, joint.name});
+  }
 }
 
 TwinStart twin_start(const System& closed, std::span<const double> taken, std::span<const double> other) {
@@ -95,8 +122,13 @@ std::string sentence(const MovedStart& moved) {
   const bool turns = moved.unit == "rad", speed = moved.unit.ends_with("/s");
   const std::string by =
       turns ? fmt::format("{:.3g} deg", degrees(moved.by)) : fmt::format("{:.3g} {}", moved.by, moved.unit);
+  const char* const far = moved.far ? ": that is far, correct it or leave it out" : "";
+  if (!moved.joint.empty()) {
+    return fmt::format("the journal of joint '{}' starts {} from the {} that `clearance.initial` gives{}", moved.joint,
+                       by, moved.quantity, far);
+  }
   return fmt::format("body '{}' starts {} from the {} that its `{}` gives{}", moved.body, by, moved.quantity,
-                     speed ? "velocity" : "pose", moved.far ? ": that is far, correct it or leave it out" : "");
+                     speed ? "velocity" : "pose", far);
 }
 
 std::string sentence(const TwinStart& twin) {

@@ -13,12 +13,13 @@ namespace freeplay {
 
 /// A start value of the file that the start does not have.
 struct MovedStart {
-  std::string body;
-  std::string quantity;  ///< "position", "angle", "orientation", "velocity" or "angular velocity"
+  std::string body;      ///< empty for the journal of a joint
+  std::string quantity;  ///< "position", "angle", "orientation", "velocity", "angular velocity" or "eccentricity"
   std::string unit;      ///< m, rad, m/s or rad/s
   double by = 0.0;       ///< how far it was moved
   bool far = false;      ///< by more than 10 degrees, or 10 % of the size of the model or of the given velocity
-  Location location;     ///< of the key that gives it
+  Location location;     ///< of the key that gives it, or of the joint
+  std::string joint{};   ///< with play, whose block gives it
 };
 
 /// A position that is as near to what the file gives as the one that was taken.
@@ -34,8 +35,12 @@ struct StartReport {
   std::vector<TwinStart> twins;
 };
 
+/// Adds what of its block's start the journal of `joint` with play has not kept, for gaps `apart` [m] and `rate` [m/s].
+void add_moved_journal(const JointElement& joint, bool gives_velocity, const InitialOffset& wanted, double apart,
+                       double rate, std::vector<MovedStart>& moved);
+
 /// What of the poses and velocities of bodies a start at `q` and `v` of the closed mechanism has not kept: more than
-/// 1e-4 of the size of the model, of a radian or of the velocity.
+/// 1e-4 of the size of the model, of a radian or of the velocity, or of a body with play 1/20 of that.
 std::vector<MovedStart> moved_starts(const System& closed, std::span<const double> q, std::span<const double> v);
 
 /// The body in which two positions differ most.

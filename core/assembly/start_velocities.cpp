@@ -9,6 +9,7 @@
 
 #include "assembly/drive_range.h"
 #include "assembly/placing.h"
+#include "assembly/play_rows.h"
 #include "linear/row_solutions.h"
 #include "linear/stacked_rows.h"
 
@@ -37,9 +38,9 @@ class Velocities {
   std::vector<ChosenSpeed> solve() {
     start_velocities(system_, mechanism_.state.q(), mechanism_.state.v());
     const VectorXd given = velocities();
-    solve_least_change();
-    if (!gives_any() || system_.layout().nv() > most_dense_columns) return {};
-    if (!keeps(given)) keep_what_can_be_kept(given);
+    solve_least_change(given);
+    if (system_.layout().nv() > most_dense_columns) return {};
+    if (gives_any() && !keeps(given)) keep_what_can_be_kept(given);
     return system_.layout().nv() <= most_told_columns ? chosen() : std::vector<ChosenSpeed>{};
   }
 
@@ -52,7 +53,7 @@ class Velocities {
   double allowed() const { return 1e-8 * std::max(1.0, velocities().norm()); }
 
   // All given velocities, and rest for the others, changed least in kinetic energy.
-  void solve_least_change() {
+  void solve_least_change(const VectorXd& given) {
     // Repeated because the rate of a coordinate is linear in v only to rounding.
     for (int pass = 0; pass < 3; ++pass) {
       const ClosedMechanism::Rows now = mechanism_.speed_rows(leading_);
@@ -61,7 +62,18 @@ class Velocities {
                     : least_norm_solution(now.matrix, -now.residual));
     }
     const ClosedMechanism::Rows last = mechanism_.speed_rows(leading_);
-    if (last.largest() > allowed()) report_contradiction(last, allowed());
+    if (last.largest() > allowed() && !yield_in_play(given)) report_contradiction(last, allowed());
+  }
+
+  // Redundant constraints that hold without the rows of joints with play leave their journals fewer velocities.
+  bool yield_in_play(const VectorXd& given) {
+    if (model_.clearance_joints() == 0 || system_.layout().nv() > most_dense_columns) return false;
+    play_yields_ = true;
+    const VectorXd least = velocities();
+    keep_what_can_be_kept(given);
+    if (exact_residual(mechanism_.speed_rows(leading_)).norm() <= allowed()) return true;
+    set(least);
+    return play_yields_ = false;
   }
 
   void polish() {
@@ -95,34 +107,22 @@ class Velocities {
 
   // --- rows of each rank -------------------------------------------------------------------------------------------
 
-  // Of the rows of a joint with play whose block gives no velocity.
-  bool is_implied(int row) const {
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      if (!model_.joints[at(j)].has_play || gives_velocity(j)) continue;
-      const Slice slice = system_.layout().rows(j);
-      if (row >= slice.offset && row < slice.offset + slice.size) return true;
-    }
-    return false;
-  }
-  bool gives_velocity(int joint) const {
-    InitialOffset offset{};
-    Message message;
-    std::array<double, 3> none{};
-    if (!model_.joints[at(joint)].joint.initial_offset({none.data(), none.size()}, offset, message)) return false;
-    return std::ranges::any_of(offset.velocity, [](double v) { return v != 0.0; });
-  }
-
-  std::vector<Eigen::Index> rows_of(const ClosedMechanism::Rows& rows, bool implied) const {
+  // Velocities that blocks give hold as constraints do, unless redundant ones leave no room for them.
+  std::vector<Eigen::Index> rows_of(const ClosedMechanism::Rows& rows, PlayRank wanted) const {
     std::vector<Eigen::Index> chosen;
     for (std::size_t i = 0; i < rows.row.size(); ++i) {
-      if ((rows.row[i] >= 0 && is_implied(rows.row[i])) == implied) chosen.push_back(static_cast<Eigen::Index>(i));
+      PlayRank rank = rows.row[i] < 0 ? PlayRank::constraint : ranks_[at(rows.row[i])];
+      if (rank == PlayRank::given && !play_yields_) rank = PlayRank::constraint;
+      if (rank == wanted) chosen.push_back(static_cast<Eigen::Index>(i));
     }
     return chosen;
   }
   SparseMatrix exact(const ClosedMechanism::Rows& rows) const {
-    return MatrixXd(MatrixXd(rows.matrix)(rows_of(rows, false), Eigen::all)).sparseView();
+    return MatrixXd(MatrixXd(rows.matrix)(rows_of(rows, PlayRank::constraint), Eigen::all)).sparseView();
   }
-  VectorXd exact_residual(const ClosedMechanism::Rows& rows) const { return rows.residual(rows_of(rows, false)); }
+  VectorXd exact_residual(const ClosedMechanism::Rows& rows) const {
+    return rows.residual(rows_of(rows, PlayRank::constraint));
+  }
 
   // Rates of what the file gives bodies: of the frame's origin where it gives `linear` alone, of the centre of mass
   // where it gives both, which says the same.
@@ -172,9 +172,10 @@ class Velocities {
   StackedRows ranked(const VectorXd& given) {
     const ClosedMechanism::Rows rows = mechanism_.speed_rows(leading_);
     const MatrixXd all = rows.matrix, own = given_rows();
-    const auto implied = rows_of(rows, true);
+    const auto in_blocks = rows_of(rows, PlayRank::given), implied = rows_of(rows, PlayRank::implied);
     StackedRows stack(given.size());
-    stack.add(all(rows_of(rows, false), Eigen::all), -exact_residual(rows));
+    stack.add(all(rows_of(rows, PlayRank::constraint), Eigen::all), -exact_residual(rows));
+    stack.add(all(in_blocks, Eigen::all), -rows.residual(in_blocks));
     stack.add(own, VectorXd::Zero(own.rows()));
     stack.add(all(implied, Eigen::all), -rows.residual(implied));
     return stack;
@@ -284,6 +285,8 @@ class Velocities {
   const System& system_;
   const Model& model_;
   const VectorXd mass_;
+  const std::vector<PlayRank> ranks_ = play_ranks(system_, gives_velocity);
+  bool play_yields_ = false;                    // velocities that blocks give cannot hold as constraints do
   std::vector<ClosedMechanism::Lead> leading_;  // joints with a start speed
 };
 

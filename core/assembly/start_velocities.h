@@ -20,9 +20,9 @@ struct ChosenSpeed {
 ///      the mass says nothing): not at all where 1 allows it;
 ///   3. journals rest in bearings whose block gives no velocity;
 ///   4. bodies move with as little kinetic energy as possible.
-/// `mass` is the diagonal of M. Returns the joints whose speed 4 decides, unless it is zero, where the file gives any
-/// velocity and the model has no more than 200 velocities. Throws Error{input} "assembly-failed" when 1 contradicts
-/// itself. Large models (most_dense_columns) take 1 and 3 as one, and change all velocities least.
+/// `mass` is the diagonal of M. Returns the joints whose speed 4 decides, unless it is zero, where the model has no
+/// more than 200 velocities. Throws Error{input} "assembly-failed" when 1 contradicts itself. Large models
+/// (most_dense_columns) take 1 and 3 as one, and change all velocities least.
 std::vector<ChosenSpeed> solve_velocities(ClosedMechanism& mechanism, std::span<const double> mass);
 
 }  // namespace freeplay

@@ -121,8 +121,12 @@ Json start_json(const Model& model, const Start& start) {
 Json start_changes_json(const Model& model, const StartReport& report) {
   Json moved = Json::array(), chosen = Json::array();
   for (const MovedStart& one : report.moved) {
-    moved.push_back(
-        {{"body", one.body}, {"quantity", one.quantity}, {"by", one.by}, {"unit", one.unit}, {"far", one.far}});
+    const bool of_joint = !one.joint.empty();
+    moved.push_back({{of_joint ? "joint" : "body", of_joint ? one.joint : one.body},
+                     {"quantity", one.quantity},
+                     {"by", one.by},
+                     {"unit", one.unit},
+                     {"far", one.far}});
   }
   for (const ChosenSpeed& one : report.chosen) {
     chosen.push_back({{"joint", model.joints[static_cast<std::size_t>(one.joint)].name}, {"speed", one.speed}});

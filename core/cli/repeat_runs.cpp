@@ -197,7 +197,8 @@ Json RepeatRuns::finish(const Json& first, const Outcome& outcome, const std::fu
   }
   kill_all();
   for (const auto& worker : workers_) take_report(*worker);
-  if (outcome.exit_code == 0) summary_.add(0, RepeatSummary::figures_of(first));
+  if (outcome.status == RunStatus::completed || outcome.status == RunStatus::stopped)
+    summary_.add(0, RepeatSummary::figures_of(first));
   if (outcome.status == RunStatus::failed) summary_.fail(0, outcome.exit_code, outcome.reason);
   return summary_.json();
 }

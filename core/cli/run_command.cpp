@@ -174,6 +174,12 @@ class RunJob {
     std::optional<Verification> verification;
     if (options_.verify && outcome.exit_code == 0) verification = verify(outcome, ended);
     if (verification && verification->agreement == Agreement::disagree) outcome.exit_code = runs_disagree;
+    if (options_.verify && outcome.exit_code == 0 && watch_interrupts() != 0) {
+      outcome.exit_code = 130;
+      outcome.status = RunStatus::interrupted;
+      outcome.reason = "interrupted during the second run of --verify: this one had come to its end";
+      recording_.log().write("note", outcome.reason);
+    }
     recording_.close();
     return finish(outcome, ended, verification);
   }
@@ -251,6 +257,12 @@ class RunJob {
         record.verify.emplace_back(channel.name, channel.error);
       record.agree_until = verification->agree_until;
       record.verification = verification_json(*verification);
+      const bool peaks_differ = std::ranges::any_of(verification->peaks, &PeakPair::differs);
+      if (verification->agreement == Agreement::err && peaks_differ) {
+        record.trust.add({.id = "verify",
+                          .level = Trust::doubtful,
+                          .message = fmt::format("a second run, by {}, has other peaks", verification->method)});
+      }
       if (verification->agreement == Agreement::disagree) {
         record.trust.add({.id = "verify",
                           .level = Trust::bad,

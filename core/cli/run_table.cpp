@@ -29,10 +29,13 @@ struct Figures {
   /// `peak`: of PeakValues, where the figure is one.
   std::string operator()(const char* part, const std::string& name, const char* quantity, double value,
                          const char* unit, std::optional<std::size_t> peak = {}, FigureStyle style = {}) const {
-    if (record.repeat.is_null())
-      return figure_text(value, unit, peak ? record.statistics.noise().of(*peak) : 0.0, style);
+    if (const Json* const spread = spread_of(part, name, quantity)) return range_text(*spread, unit);
+    return figure_text(value, unit, peak ? record.statistics.noise().of(*peak) : 0.0, style);
+  }
+  /// A number of events.
+  std::string count(const char* part, const std::string& name, const char* quantity, long value) const {
     const Json* const spread = spread_of(part, name, quantity);
-    return spread ? range_text(*spread, unit) : "-";
+    return spread ? range_text(*spread, "") : std::to_string(value);
   }
   /// A part of the whole, in per cent.
   std::string share(const char* part, const std::string& name, const char* quantity, double value) const {
@@ -44,7 +47,7 @@ struct Figures {
 
  private:
   const Json* spread_of(const char* part, const std::string& name, const char* quantity) const {
-    if (record.repeat.is_null()) return nullptr;
+    if (record.repeat.is_null() || record.repeat["completed"] == 0) return nullptr;
     const auto element = record.repeat[part].find(name);
     return element == record.repeat[part].end() || !element->contains(quantity) ? nullptr : &(*element)[quantity];
   }
@@ -107,7 +110,7 @@ void add_joints(const RunRecord& record, TextTable& table) {
   std::vector<std::string> head{heading(record, "joint"), "max |F|", "contacts", "in contact", "max delta"};
   if (moments) head.emplace_back("max |torque|");
   table.add_row(std::move(head));
-  const bool any = record.statistics.any(), once = record.repeat.is_null();
+  const bool any = record.statistics.any();
   const Figures figure{record};
   const PeakValues& peaks = record.statistics.peak_values();
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -117,7 +120,7 @@ void add_joints(const RunRecord& record, TextTable& table) {
     const std::string& name = joints[i].name;
     std::vector<std::string> row{
         name, figure("joints", name, "max_force", seen.max_force, "N", peaks.force(static_cast<int>(i)))};
-    row.push_back(!touches ? "-" : once ? std::to_string(seen.contacts) : figure("joints", name, "contacts", 0.0, ""));
+    row.push_back(touches ? figure.count("joints", name, "contacts", seen.contacts) : "-");
     row.push_back(touches ? figure.share("joints", name, "contact_fraction", seen.contact_fraction) : "-");
     row.push_back(touches ? figure("joints", name, "max_delta", seen.max_penetration, "m",
                                    peaks.penetration(static_cast<int>(i)), short_figure)
@@ -227,10 +230,13 @@ std::string noise_line(const std::string& tables) {
 std::string repeat_lines(const Json& repeat) {
   if (repeat.is_null()) return {};
   const auto runs = repeat["runs"].get<std::size_t>(), completed = repeat["completed"].get<std::size_t>();
-  std::string text = fmt::format(
-      "  median (range) of {} runs: the model's own start, the others moved in their play by up to {:g} % of it "
-      "(seed {})\n",
-      completed, 100.0 * repeat["moved"].get<double>(), repeat["seed"].get<std::uint64_t>());
+  std::string text = completed == 0
+                         ? "  figures are those of the first run: none was completed\n"
+                         : fmt::format(
+                               "  median (range) of {} runs: the model's own start, the others moved in their play by "
+                               "up to {:g} % of it "
+                               "(seed {})\n",
+                               completed, 100.0 * repeat["moved"].get<double>(), repeat["seed"].get<std::uint64_t>());
   for (const Json& failed : repeat["failed"]) {
     text += fmt::format("  run {} of {} failed: {}\n", failed["run"].get<std::size_t>(), runs,
                         failed["reason"].get<std::string>());

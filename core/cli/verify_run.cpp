@@ -149,7 +149,9 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   const long most_steps = std::max(steps_at_least, steps_for_each * run.outcome.steps);
   run_to_end(second, most_steps);
   if (!second.assembled || second.outcome.rows < 2) {
-    trouble = fmt::format("the second run, by {}, came to nothing: {}", *build.integrator, second.outcome.reason);
+    trouble = watch_interrupts() != 0
+                  ? "the second run was interrupted"
+                  : fmt::format("the second run, by {}, came to nothing: {}", *build.integrator, second.outcome.reason);
     return std::nullopt;
   }
   VerificationRules rules;
@@ -167,11 +169,12 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   result.steps = second.outcome.steps;
   if (second.outcome.exit_code != 0) {
     trouble = second.outcome.status == RunStatus::interrupted
-                  ? fmt::format("the second run was given up at {:.6g} s after {} steps", second.outcome.time,
+                  ? fmt::format("the second run was {} at {:.6g} s after {} steps",
+                                watch_interrupts() != 0 ? "interrupted" : "given up", second.outcome.time,
                                 second.outcome.steps)
                   : fmt::format("the second run ended early: {}", second.outcome.reason);
   }
-  if (result.agreement == Agreement::agree) return result;
+  if (result.agreement == Agreement::agree || watch_interrupts() != 0) return result;
   OtherRun third;
   build.accuracy = third_accuracy * *build.accuracy;
   third.loaded = load_model(run.file, build, loading(run.common));

@@ -1,5 +1,6 @@
 #include "cli/verify_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -66,12 +67,14 @@ Json verification_json(const Verification& v) {
 
 std::string verify_table(const Verification& v) {
   std::string text = fmt::format("  verified by {}, {} steps: {}\n", v.method, v.steps, agreement_text(v));
+  const bool any = std::ranges::any_of(v.peaks, [](const PeakPair& peak) { return !std::isnan(peak.run); });
+  if (!v.peaks.empty() && !any) text += "  no peaks to compare: the run ended before its statistics began\n";
   TextTable peaks({Align::left, Align::right, Align::right, Align::left});
   peaks.add_row({"peak", "this run", "second run", ""});
   for (const PeakPair& peak : v.peaks) {
     peaks.add_row({peak.name, number(peak.run), number(peak.second), peak.differs ? "differs" : ""});
   }
-  if (!v.peaks.empty()) text += peaks.text("  ");
+  if (any) text += peaks.text("  ");
   const bool throughout = v.throughout();
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
   if (throughout) {

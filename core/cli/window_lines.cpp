@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "results/figure_text.h"
+
 namespace freeplay {
 namespace {
 
@@ -18,12 +20,23 @@ struct Peak {
   double ratio;  ///< to that of the window
 };
 
-void add_peak(const std::string& name, const char* unit, double before, double within, std::vector<Peak>& peaks) {
-  if (!(before > 0.0) || (within > 0.0 && !(before > clearly * within))) return;
-  peaks.push_back({name, fmt::format("{:.4g} {}", before, unit), within > 0.0 ? before / within : HUGE_VAL});
+/// Two digits where chance takes part, else four.
+std::string digits(double value, double noise) {
+  if (!(noise > 0.0) || !(value > 0.0)) return fmt::format("{:.4g}", value);
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return fmt::format("{:.6g}", std::round(value / unit) * unit);
 }
 
-/// Peaks of the rows of the excluded part that the window does not reach, the most striking first.
+/// Of a peak that is noisy within the window no more digits are known before it.
+void add_peak(const std::string& name, const char* unit, double before, double within, double noise,
+              std::vector<Peak>& peaks) {
+  if (!(before > 0.0) || (within > 0.0 && !(before > clearly * within))) return;
+  const std::string value = fmt::format("{} {}", digits(before, noise), unit);
+  peaks.push_back({name, value, within > 0.0 ? before / within : HUGE_VAL});
+}
+
+/// Peaks of the excluded part, of its rows and where contacts press hardest, that the window does not reach, the most
+/// striking first.
 std::vector<Peak> larger_before(const RunRecord& record) {
   const Statistics& statistics = record.statistics;
   const auto before = statistics.largest_before(), within = statistics.largest();
@@ -32,13 +45,14 @@ std::vector<Peak> larger_before(const RunRecord& record) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const std::size_t i = statistics.peak_values().force(static_cast<int>(j));
     if (!model.joints[j].is_force && model.joints[j].gear < 0)
-      add_peak(model.joints[j].name, "N", before[i], within[i], peaks);
+      add_peak(model.joints[j].name, "N", before[i], within[i], statistics.noise().of(i), peaks);
   }
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const std::size_t i = statistics.peak_values().effort(static_cast<int>(d));
     const JointElement& joint = model.joints[static_cast<std::size_t>(model.drivers[d].joint)];
     const bool angle = joint.layout.coordinate == Coordinate::angle;
-    add_peak("driver " + model.drivers[d].name, angle ? "N*m" : "N", before[i], within[i], peaks);
+    add_peak("driver " + model.drivers[d].name, angle ? "N*m" : "N", before[i], within[i], statistics.noise().of(i),
+             peaks);
   }
   std::ranges::stable_sort(peaks, std::ranges::greater{}, &Peak::ratio);
   return peaks;
@@ -48,7 +62,7 @@ std::string before_window(const RunRecord& record) {
   const std::vector<Peak> peaks = larger_before(record);
   std::string text;
   for (std::size_t i = 0; i < std::min(peaks.size(), most_names); ++i) {
-    text += fmt::format("{}{} {}{}", i == 0 ? "; in rows before that " : ", ", peaks[i].name, i == 0 ? "reached " : "",
+    text += fmt::format("{}{} {}{}", i == 0 ? "; before that " : ", ", peaks[i].name, i == 0 ? "reached " : "",
                         peaks[i].value);
   }
   if (peaks.size() > most_names) text += fmt::format(" and {} more", peaks.size() - most_names);
@@ -70,8 +84,11 @@ std::string missed_by_rows(const RunRecord& record) {
     if (!joints[j].is_force && peak > of_interest * largest && share < least) worst = j, least = share;
   }
   if (worst == joints.size() || !(written[force(worst)] >= 0.0)) return {};
-  return fmt::format("  rows {:g} s apart miss peaks between them: they show {:.4g} N of the {:.4g} N in {}\n",
-                     record.model.settings.interval, written[force(worst)], all[force(worst)], joints[worst].name);
+  const double noise = statistics.noise().of(force(worst));
+  const std::string seen = digits(written[force(worst)], noise);
+  return fmt::format("  rows {:g} s apart miss peaks between them: they show {} N of the {} in {}\n",
+                     record.model.settings.interval, seen, figure_text(all[force(worst)], "N", noise),
+                     joints[worst].name);
 }
 
 }  // namespace

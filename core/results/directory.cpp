@@ -98,9 +98,11 @@ void ResultDirectory::write(std::string_view name, std::string_view text) const 
 
 std::vector<std::string> ResultDirectory::files() const {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) {
-    names.push_back(entry.path().filename().string());
+  std::error_code error;  // it may have been removed in the meantime
+  for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
   }
+  require(error, "read", path_);
   std::ranges::sort(names);
   return names;
 }

@@ -28,10 +28,11 @@ constexpr double typical_density = 7800.0;  // steel [kg/m^3]
 constexpr Limits of_sound{2e-3, 1e-1};      // approach speed by that of sound
 constexpr double of_reach = 1.1;            // distance by what the lengths allow
 constexpr Limits of_drives{1e3, 1e6};       // force of a joint by those that drive and move the mechanism
-constexpr double singular = 1e-8;           // regularity: 1e-4 of the way to a singular position
+constexpr double of_beside = 1.5;           // force close to a singular position by that not quite so close
 constexpr double most_play = 0.1;           // clearance by the model's size
 constexpr double fewest_impacts = 10.0;     // in a window of statistics without a period
-constexpr double longest_period = 20.0;     // looked for, by the length of the run
+constexpr double fewest_instants = 10.0, fewest_instants_of_accuracy = 2.0;  // that statistics are of
+constexpr double longest_period = 20.0;                                      // looked for, by the length of the run
 constexpr double whole_period = 0.99;       // of a window
 constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts,
 constexpr double long_enough = 0.1;         // in a window of this part of the run
@@ -89,8 +90,8 @@ void judge_energy(const RunRecord& record, Verdict& verdict) {
   const double part = seen.residual / std::max(moved, least);
   std::string text = fmt::format("the energy residual of {:.2g} J is {:.3g} % of the {:.3g} J that were moved",
                                  seen.residual, 100.0 * part, std::max(moved, least));
-  if (seen.least_regularity < singular) {
-    text += fmt::format("; a singular position was passed at t = {:.6g} s", seen.singular_time);
+  if (seen.passed_at < unbounded) {
+    text += fmt::format("; a singular position was passed at t = {:.6g} s", seen.passed_at);
   } else {
     text += fmt::format("; most of it came from t = {:.4g} s on", seen.residual_time);
   }
@@ -98,12 +99,31 @@ void judge_energy(const RunRecord& record, Verdict& verdict) {
 }
 
 void judge_constraints(const RunRecord& record, Verdict& verdict) {
-  const double residual = record.statistics.position_residual(), part = residual / record.extremes.size;
+  const double residual = std::max(record.statistics.position_residual(), record.extremes.open);
+  const double part = residual / record.extremes.size;
   judge(part, of_position,
         {.id = "constraint-residual",
          .level = {},
          .message = fmt::format("joints are up to {:.2g} m apart where they should hold", residual)},
         verdict);
+}
+
+/// Multipliers are quotients of two vanishing numbers there. Where the position is one of the chosen rows alone, as of
+/// redundant constraints, forces pass it smoothly.
+void judge_singular(const RunRecord& record, Verdict& verdict) {
+  const RunExtremes& seen = record.extremes;
+  if (!(seen.passed_at < unbounded) || seen.force_near_joint < 0) return;
+  const double usual = seen.force_beside > 0.0 ? seen.force_beside : seen.row_force / of_beside;
+  if (!(seen.force_near > of_beside * usual)) return;
+  const std::string joint = name(record.model.joints[at(seen.force_near_joint)]);
+  verdict.add({.id = "singular-position",
+               .level = Trust::doubtful,
+               .message = fmt::format("the mechanism went through a singular position of its constraints at t = {:.6g} "
+                                      "s, where forces are not determined; beside it {} has {:.3g} N at t = {:.6g} s",
+                                      seen.passed_at, joint, seen.force_near, seen.force_near_time),
+               .element = joint,
+               .value = seen.force_near,
+               .limit = of_beside * usual});
 }
 
 void judge_steps_per_impact(const RunRecord& record, Verdict& verdict) {
@@ -132,9 +152,10 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
   const JointElement& joint = record.model.joints[at(j)];
   const JointLayout& layout = joint.layout;
   const JointStatistics seen = record.statistics.joint(j);
-  // From the start on, whatever `discard` says.
-  const double depth = std::max(std::isfinite(seen.max_penetration) ? seen.max_penetration : 0.0,
-                                at(j) < record.extremes.depth.size() ? record.extremes.depth[at(j)] : 0.0);
+  const std::span<const double> discarded = record.statistics.largest_before();
+  const PeakValues& values = record.statistics.peak_values();
+  const double depth = std::fmax(seen.max_penetration, discarded[values.penetration(j)]);
+  const double force = std::fmax(seen.max_normal_force, discarded[values.normal_force(j)]);
   const double radius = layout.smaller_radius;
   // Of a rotor that turns about its centre of mass frames say no size.
   const double size = std::max(record.extremes.size, largest_gyration(record.model));
@@ -160,12 +181,12 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
     judge(depth / layout.clearance, {of_clearance, unbounded}, deep("the clearance", layout.clearance), verdict);
   }
   const double length = layout.contact_length > 0.0 ? layout.contact_length : 2.0 * radius;
-  const double pressure = seen.max_normal_force / (2.0 * radius * length);
+  const double pressure = force / (2.0 * radius * length);
   judge(pressure / (trust::ideal_strength * layout.contact_modulus), {of_strength, 1.0},
         {.id = "material-strength",
          .level = {},
          .message = fmt::format("{}: {:.3g} N press with {:.2g} Pa on average, more than a hundredth of E*",
-                                name(joint), seen.max_normal_force, pressure),
+                                name(joint), force, pressure),
          .element = name(joint)},
         verdict);
   const double sound = std::sqrt(layout.contact_modulus / typical_density), speed = record.advice.approach_speed(j);
@@ -254,6 +275,18 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
                  .limit = 0.0});
     return;
   }
+  const auto instants = static_cast<double>(record.statistics.instants());
+  const double fewest = settings.adaptive ? fewest_instants_of_accuracy : fewest_instants;
+  if (settings.discard > 0.0 && instants < fewest) {
+    verdict.add({.id = "statistics-window",
+                 .level = Trust::doubtful,
+                 .message = fmt::format("statistics from {:.6g} s on are of {:g} instant{}: an earlier 'discard' or a "
+                                        "later end would do",
+                                        from, instants, instants == 1.0 ? "" : "s"),
+                 .value = instants,
+                 .limit = fewest});
+    return;
+  }
   double longest = 0.0;
   const Driver* slowest = nullptr;
   for (const Driver& driver : record.model.drivers) {
@@ -300,6 +333,7 @@ void judge(const RunRecord& record, Verdict& verdict) {
   judge_contacts(record, verdict);
   judge_steps_per_impact(record, verdict);
   judge_reach(record, verdict);
+  judge_singular(record, verdict);
   judge_largest_force(record, verdict);
   judge_window(record, verdict);
 }

@@ -10,6 +10,7 @@ namespace {
 constexpr double first_difference = 0.01;  // of the play
 constexpr double growth = 2.0;             // of differences in an impact
 constexpr double same_peak = 0.01;         // of the value
+constexpr std::size_t agreeing = 5;        // peaks that are the same: three are by chance in every twentieth run
 constexpr double margin = 1.5;             // of the scale of the tail
 constexpr double unknown = 0.3;            // of the value, where too little was seen
 constexpr double same_speed = 1.05;        // an approach this much faster than the separation before is driven
@@ -86,7 +87,7 @@ double PeakNoise::of(std::size_t value) const {
   std::ranges::copy(peak.largest, x.begin());
   x.back() = peak.present;
   std::ranges::sort(x, std::greater<>());
-  if (x[0] - x[2] <= same_peak * x[0]) return grown * (x[0] - x[2]);
+  if (x[0] - x[agreeing - 1] <= same_peak * x[0]) return grown * (x[0] - x[agreeing - 1]);
   const std::size_t gaps = std::min(kept - 1, parts_over_);
   double scale = 0.0;
   for (std::size_t i = 1; i <= gaps; ++i) scale += static_cast<double>(i) * (x[i - 1] - x[i]);

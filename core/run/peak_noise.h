@@ -20,8 +20,8 @@ namespace freeplay {
 /// 2. What chance can do. The time of the statistics is cut into 32 parts. Their largest values, in falling order
 ///    X1 > X2 > ..., are taken as draws from a distribution with an exponential tail, whose scale is the mean of
 ///    i (X_i - X_i+1) over the first eight (Weissman 1978, J Am Stat Assoc 73); the largest of many such draws varies
-///    by about as much. 1.5 times that, at least X1 - X2, is the noise. Where X1, X2 and X3 agree to a hundredth the
-///    same peak comes again and again, and X1 - X3 is.
+///    by about as much. 1.5 times that, at least X1 - X2, is the noise. Where X1 to X5 agree to a hundredth the
+///    same peak comes again and again, and X1 - X5 is.
 ///
 /// Without impacts the noise is zero. The cost is a comparison for each value and step.
 class PeakNoise {

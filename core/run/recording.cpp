@@ -30,15 +30,24 @@ bool Simulation::Impl::know_row() {
 
 bool Simulation::Impl::record_step() {
   const Profile::Timer timer(system.profile(), Phase::statistics);
-  if (!statistics.counts(accepted.t())) return true;
-  if (!know_row()) return false;
   double position = 0.0, velocity = 0.0;
+  for (std::size_t r = 0; r < residual.size(); ++r) position = std::max(position, std::abs(e_accepted->phi[r]));
+  watch.add_open(position);
+  if (!(position <= open_rows * system.size())) return fail(4, why_open(position));
+  const bool counts = statistics.counts(accepted.t());
+  if (!counts && !statistics.noise().active()) return true;
+  if (!know_row()) return false;
+  if (!counts) {
+    statistics.note(row);
+    if (adaptive)
+      ended_abruptly ? peaks.restart(accepted.t(), statistics.values())
+                     : seek_peaks({trial, e_trial, accepted, e_accepted});
+    return true;
+  }
   system.multiply(e_accepted, accepted.v(), residual);
   for (std::size_t r = 0; r < residual.size(); ++r) {
-    position = std::max(position, std::abs(e_accepted->phi[r]));
     velocity = std::max(velocity, std::abs(residual[r] - e_accepted->nu[r]));
   }
-  if (!(position <= open_rows * system.size())) return fail(4, why_open(position));
   statistics.add(row, energy.driver_work(), energy.joint_loss(), energy.force_work(), position, velocity);
   if (adaptive && ended_abruptly) peaks.restart(accepted.t(), statistics.values());
   if (adaptive && !ended_abruptly) seek_peaks({trial, e_trial, accepted, e_accepted});
@@ -108,10 +117,12 @@ bool Simulation::Impl::observe_inside(double t, const Leg& leg) {
 
 // The step along `leg` ends with the values that statistics saw last.
 void Simulation::Impl::seek_peaks(const Leg& leg) {
-  if (!statistics.counts(leg.start.t())) return peaks.restart(leg.end.t(), statistics.values());
+  const bool counts = statistics.counts(leg.end.t());
+  if (statistics.counts(leg.start.t()) != counts) return peaks.restart(leg.end.t(), statistics.values());
   peaks.end_step(leg.end.t(), statistics.values());
   const double dt = leg.end.t() - leg.start.t();
-  for (double s = peaks.next(statistics.largest()); s > 0.0; s = peaks.next(statistics.largest())) {
+  const auto largest = counts ? statistics.largest() : statistics.largest_before();
+  for (double s = peaks.next(largest); s > 0.0; s = peaks.next(largest)) {
     if (!observe_inside(leg.start.t() + s * dt, leg)) return;
     statistics.note(row_between);
     peaks.seen(s, statistics.values());
@@ -120,7 +131,7 @@ void Simulation::Impl::seek_peaks(const Leg& leg) {
 
 // An event or a kink changes what acts at the end of the step that was just made: until there it goes on smoothly.
 bool Simulation::Impl::note_abrupt_end() {
-  if (!statistics.counts(trial.t())) return true;
+  if (!statistics.counts(trial.t()) && !statistics.noise().active()) return true;
   const Profile::Timer timer(system.profile(), Phase::statistics);
   Fault fault;
   if (!observer.observe(point(trial), e_trial, trial.lambda(), row_between, fault)) return fail_with(fault, trial.t());

@@ -70,6 +70,7 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
   const double dt = first ? 0.0 : t - last_time_;
   const auto value = [&](int column) { return row[at(column)]; };
   seen_ = true;
+  ++instants_;
   last_time_ = t;
   duration_ += dt;
   position_ = std::max(position_, position);

@@ -62,11 +62,14 @@ class Statistics {
   double body_max_speed(int index) const;
   StatisticsWindow window() const { return {discard_until_, any() ? last_time_ : discard_until_}; }
   bool any() const { return duration_ > 0.0; }
+  long instants() const { return instants_; }  ///< that statistics are of
   const PeakValues& peak_values() const { return peaks_; }
-  const PeakNoise& noise() const { return noise_; }                     ///< of the largest values, by PeakValues
-  std::span<const double> values() const { return values_; }            ///< of the last row
-  std::span<const double> largest() const { return largest_; }          ///< by PeakValues, in the window
-  std::span<const double> largest_before() const { return before_; }    ///< of rows before it; negative: there was none
+  const PeakNoise& noise() const { return noise_; }             ///< of the largest values, by PeakValues
+  std::span<const double> values() const { return values_; }    ///< of the last row
+  std::span<const double> largest() const { return largest_; }  ///< by PeakValues, in the window
+  std::span<const double> largest_before() const {
+    return before_;
+  }  ///< before it; negative: there was none. Of written rows alone where nothing can touch
   std::span<const double> largest_written() const { return written_; }  ///< of rows in the window
   long contacts() const { return contacts_; }
   long contacts_total() const { return contacts_total_; }
@@ -105,6 +108,7 @@ class Statistics {
   double discard_until_;
   double last_time_ = 0.0, duration_ = 0.0;
   bool seen_ = false;
+  long instants_ = 0;
   std::vector<JointSums> joints_;
   std::vector<ForceSums> forces_;
   std::vector<DriverSums> drivers_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,20 @@ constexpr double look_again = 1.21;  // where the square of a force has grown so
 constexpr double unmoved = 1e-6;     // of the clearance
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
+
+void SingularPassage::add(double regularity, double t, RunExtremes& seen) {
+  if (regularity < seen.least_regularity) seen.least_regularity = regularity, seen.singular_time = t;
+  const double root = std::sqrt(std::max(regularity, 0.0));
+  if (!(t > last_t_)) {
+    last_ = std::min(last_, root);
+    return;
+  }
+  const double slope = (last_ - second_last_) / (last_t_ - second_last_t_);
+  const bool through = slope < 0.0 && last_ + slope * (t - last_t_) <= 0.0 && std::min(last_, root) < near;
+  if (through || regularity < there) seen.passed_at = std::min(seen.passed_at, root < last_ ? t : last_t_);
+  second_last_ = std::exchange(last_, root);
+  second_last_t_ = std::exchange(last_t_, t);
+}
 
 RunWatch::RunWatch(const System& system, const Channels& channels)
     : system_(system), channels_(channels), planar_(system.model().space == Space::planar) {
@@ -40,7 +55,6 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
       reaches_.push_back({b, channels.bodies[at(b)], 1.0 / (far * far)});
   }
   seen_.size = system.size();
-  seen_.depth.assign(model.joints.size(), 0.0);
 }
 
 int RunWatch::add(std::span<const double> row, const Evaluation& e) {
@@ -56,7 +70,6 @@ int RunWatch::add(std::span<const double> row, const Evaluation& e) {
   for (Contact& contact : contacts_) {
     const double squared = force_squared(e, contact.joint);
     contact.depth.add(row[at(contact.penetration)]);
-    seen_.depth[at(contact.joint)] = std::max(seen_.depth[at(contact.joint)], row[at(contact.penetration)]);
     contact.due = std::max(contact.due, look_again * squared);
     const bool senseless =
         row[at(contact.penetration)] > contact.deepest || squared > contact.strongest * contact.strongest;
@@ -109,6 +122,13 @@ void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
   of_rows = std::sqrt(of_rows);
   seen_.applied_force = std::max(seen_.applied_force, std::sqrt(others));
   seen_.part_force[part] = std::max(seen_.part_force[part], of_rows);
+  if (passage_.is_near() && of_rows > seen_.force_near) {
+    seen_.force_near = of_rows;
+    seen_.force_near_joint = joint;
+    seen_.force_near_time = row[at(channels_.time)];
+  } else if (passage_.is_beside()) {
+    seen_.force_beside = std::max(seen_.force_beside, of_rows);
+  }
   if (of_rows > seen_.row_force) {
     seen_.row_force = of_rows;
     seen_.row_force_joint = joint;

@@ -1,6 +1,7 @@
 // RunWatch: what a run must remember of itself to be judged, and what ends it because going on makes no sense.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -39,6 +40,9 @@ struct RunExtremes {
   std::array<double, parts> part_kinetic{}, part_force{};
   double row_force = 0.0, row_force_time = 0.0;  ///< largest force of rows [N] and when [s]
   int row_force_joint = -1;
+  double force_near = 0.0, force_near_time = 0.0;  ///< the same where the motion is close to a singular position
+  int force_near_joint = -1;
+  double force_beside = 0.0;   ///< the same not quite so close [N]
   double applied_force = 0.0;  ///< largest force of contacts, springs and applied forces [N]
   double drive_motion = 0.0;   ///< largest of |alpha| L + omega^2 L, or |a| + v^2/L, of a prescribing driver [m/s^2]
   double drive_effort = 0.0;   ///< largest force, or torque by L, of a driver that applies one [N]
@@ -46,7 +50,27 @@ struct RunExtremes {
   int farthest_body = -1;
   double size = 0.0;                                   ///< L: of the model [m]
   double least_regularity = 1.0, singular_time = 0.0;  ///< nearest to a singular position, and when [s]
-  std::vector<double> depth;                           ///< by joint, largest penetration [m]; 0 without play
+  double passed_at = unbounded;                        ///< the first singular position that was passed, if any [s]
+  double open = 0.0;                                   ///< largest residual of a constraint's position [m or rad]
+};
+
+/// Finds out whether a motion went through a singular position. The root of the regularity is as the distance from it:
+/// it falls to zero on a straight line and rises again. Where what two steps say of the next is below zero, no step has
+/// seen how near the motion came.
+class SingularPassage {
+ public:
+  /// After a step that ends at t [s].
+  void add(double regularity, double t, RunExtremes& seen);
+  /// Where the step that was added last ended.
+  bool is_near() const { return last_ < near; }
+  bool is_beside() const { return last_ >= near && last_ < beside; }
+
+ private:
+  static constexpr double near = 0.03;       // the root, where its course counts
+  static constexpr double beside = 0.1;      // where forces that are determined are much the same
+  static constexpr double there = 1e-8;      // regularity of a step that met the position
+  double last_ = 1.0, last_t_ = -unbounded;  // the root
+  double second_last_ = 1.0, second_last_t_ = -unbounded;
 };
 
 class RunWatch {
@@ -65,9 +89,9 @@ class RunWatch {
   /// can be, or carries what no material does; else -1.
   int add(std::span<const double> row, const Evaluation& e);
   /// How near to a singular position the last step came (NewtonStageSolver::regularity).
-  void add_regularity(double regularity, double t) {
-    if (regularity < seen_.least_regularity) seen_.least_regularity = regularity, seen_.singular_time = t;
-  }
+  void add_regularity(double regularity, double t) { passage_.add(regularity, t, seen_); }
+  /// Largest residual of positions after a step [m or rad].
+  void add_open(double residual) { seen_.open = std::max(seen_.open, residual); }
   /// Why add() returned this joint: the row is the same. Allocates.
   TrustReason why(int joint, std::span<const double> row) const;
 
@@ -83,6 +107,7 @@ class RunWatch {
   const RunExtremes& seen() const { return seen_; }
 
  private:
+  SingularPassage passage_;
   struct Contact {
     int joint = 0, penetration = -1;
     double play = 0.0;       // clearance [m]

@@ -110,7 +110,7 @@ class PeaksTest(ProgramTest):
             rows, summary, out, err = self.run_model("m.yaml", "--end", "0.8 s", *options)
             self.assertEqual("", err)
             reached = max(length(row, "joint.pivot.f", "xy") for row in rows if float(row["time"]) < 0.6)
-            self.assertRegex(out, r"\n  statistics from 0\.6 s to 0\.8 s; in rows before that pivot reached 24\.\d+ N\n")
+            self.assertRegex(out, r"\n  statistics from 0\.6 s to 0\.8 s; before that pivot reached 24\.\d+ N\n")
             before = summary["statistics"]["before"]["joints"]["pivot"]["max_force"]
             self.assertLessEqual(reached, before)
             self.assertLess(summary["joints"]["pivot"]["max_force"], before)
@@ -121,14 +121,14 @@ class PeaksTest(ProgramTest):
             self.write("m.yaml", PENDULUM.replace("interval: 2 s", "interval: 10 ms, discard: " + discard))
             _, summary, out, err = self.run_model("m.yaml", "--step", "1 ms")
             self.assertRegex(err, r"statistics begin at %s, but the run ends at 2 s.*\[no-statistics\]" % discard)
-            self.assertIn("no statistics: they begin at %s, and the run ended at 2 s; in rows before that pivot reached" % discard, out)
+            self.assertIn("no statistics: they begin at %s, and the run ended at 2 s; before that pivot reached" % discard, out)
             self.assertRegex(out, r"pivot +-  ")
             self.assertIsNone(summary["joints"]["pivot"]["max_force"])
             self.assertIsNone(summary["statistics"]["to"])
 
     def test_rows_that_miss_a_peak_are_told(self):
         _, _, out, _ = self.run_model(mechanism("slider-crank"), "--end", "16 ms", "--accuracy", "1um")
-        self.assertRegex(out, r"rows 2e-05 s apart miss peaks between them: they show \S+ N of the \S+ N in wrist\n")
+        self.assertRegex(out, r"rows 2e-05 s apart miss peaks between them: they show \S+ N of the .* in wrist\n")
 
 
 if __name__ == "__main__":

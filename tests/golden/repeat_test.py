@@ -133,6 +133,10 @@ class Repeat(ProgramTest):
         out, _ = self.freeplay("run", "m.yaml")
         self.assertRegex(out, r"pin +\d+\.\d\d N ")
 
+    def test_redundant_constraints_leave_the_play_to_move_in(self):
+        repeat = self.run_json(mechanism("4-rrr"), "--repeat", "3", "--end", "2 ms")["repeat"]
+        self.assertEqual((3, []), (repeat["completed"], repeat["failed"]))
+
     def test_what_cannot_be_repeated(self):
         for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint of this model has play"),
                                 ((mechanism("slider-crank"), "--ideal", "all", "--repeat", "4"), "has play"),
@@ -143,6 +147,19 @@ class Repeat(ProgramTest):
             _, err = self.freeplay("run", *arguments, code=2)
             self.assertIn(word, err)
         self.assertFalse(os.path.exists(self.path("results")))
+
+    def test_a_first_run_that_fails_keeps_its_figures(self):
+        self.write("m.yaml", HANGING.replace("end: 2 s", "end: 0.5 s").replace("discard: 0.2 s", "discard: 0 s").replace(
+            "simulation:", "forces: {push: {type: force, at: rod, value: ['sqrt(0.3 - t)', 0]}}\nsimulation:"))
+        out, _ = self.freeplay("run", "m.yaml", "--repeat", "3", code=4)
+        self.assertRegex(out, r"pin +\d\S* ", out)
+        self.assertIn("figures are those of the first run", out)
+
+    def test_a_run_that_verify_contradicts_is_completed(self):
+        self.write("m.yaml", HANGING.replace("accuracy: 1 um", "step: 0.4 ms").replace("end: 2 s", "end: 0.3 s").replace(
+            "initial: loaded", "").replace("discard: 0.2 s", "discard: 0 s"))
+        repeat = self.run_json("m.yaml", "--repeat", "3", "--verify", code=7)["repeat"]
+        self.assertEqual((3, []), (repeat["completed"], repeat["failed"]))
 
     def start(self, *arguments):
         return subprocess.Popen([PROGRAM, "run", *arguments], cwd=self.folder, text=True, stdout=subprocess.PIPE,

@@ -6,6 +6,7 @@ import math
 import os
 import pty
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -317,6 +318,29 @@ simulation: {end: 10 ms, step: 1 ms}
             self.assertEqual({len(rows[0])}, {len(row) for row in rows})
             self.assertEqual(summary["counts"]["rows"], len(rows) - 1)
             self.assertTrue(self.read(number.name, "results.csv").endswith("\n"))
+
+    def test_an_interrupt_of_the_second_run_is_one(self):
+        process = subprocess.Popen([PROGRAM, "run", mechanism("slider-crank"), "--end", "24 ms", "--accuracy", "1e-9",
+                                    "--verify", "--out", "v"], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        time.sleep(2.0)  # the first run takes a fifth of a second, the second half a minute
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(130, process.returncode, out + err)
+        self.assertIn("interrupted", out)
+        self.assertEqual("interrupted", self.summary("v")["status"])
+
+    def test_a_directory_that_is_removed_is_a_failure_of_files(self):
+        process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "1000 s", "--out", "gone"],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not self.grown("gone", "results.csv") and time.monotonic() < deadline:
+            time.sleep(0.05)
+        shutil.rmtree(os.path.join(self.folder, "gone"))
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(6, process.returncode, err)
+        self.assertNotIn("internal", err)
 
     def test_progress_is_shown_on_a_terminal_only(self):
         main, terminal = pty.openpty()

@@ -46,6 +46,64 @@ joints:
 initial: {joints: {guide: "0.6*cos(15 deg)"}}
 """ + RUN
 
+CRANK = """freeplay: 1
+bodies:
+  crank: {mass: 1, inertia: 0.01, frames: {tip: [0.09, 0]}}
+  rod: {mass: 1, inertia: 0.01, frames: {tip: [0.27, 0]}, pose: {angle: %s}}
+  slider: {mass: 1, inertia: 0.01}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, rod]}
+  C: {type: revolute, between: [rod/tip, slider]}
+  G: {type: prismatic, between: [ground, slider]}
+""" + RUN
+
+RACK = """freeplay: 1
+bodies:
+  pinion: {mass: 1, inertia: 0.01, pose: {angle: %r rad}}
+  rack: {mass: 1, inertia: 0.01, pose: {position: [%r m, -0.03 m]}}
+frames: {ground/guide: [0, -0.03]}
+joints:
+  axle: {type: revolute, between: [ground, pinion]}
+  guide: {type: prismatic, between: [ground/guide, rack]}
+  teeth: {type: gear, of: [axle, guide], ratio: 30 mm, offset: 0}
+""" + RUN
+
+WHEELS = """freeplay: 1
+bodies:
+  small: {mass: 1, inertia: 0.01, pose: {position: [0, 0], angle: %r rad}}
+  large: {mass: 1, inertia: 0.01, pose: {position: [0.14, 0], angle: %r rad}}
+frames: {ground/large: [0.14, 0]}
+joints:
+  first: {type: revolute, between: [ground, small]}
+  second: {type: revolute, between: [ground/large, large]}
+  teeth: {type: gear, of: [first, second], ratio: -0.4, offset: 0}
+""" + RUN
+
+# A bar on three parallel links of one length, the third with a loose pin: closed it has one constraint too many.
+TABLE = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {two: [0.3, 0], three: [0.5, 0]}}
+  foot1: {mass: 1, inertia: 0.01, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+  foot2: {mass: 1, inertia: 0.01, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+  foot3: {mass: 1, inertia: 0.01, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+  top: {mass: 1, inertia: 0.01, com: [0.2, 0], frames: {two: [0.3, 0], three: [0.5, 0]}}
+joints:
+  foot1_pin: {type: revolute, between: [ground, foot1]}
+  foot2_pin: {type: revolute, between: [ground/two, foot2]}
+  foot3_pin: {type: revolute, between: [ground/three, foot3]}
+  head1: {type: revolute, between: [foot1/tip, top]}
+  head2: {type: revolute, between: [foot2/tip, top/two]}
+  head3:
+    type: revolute
+    between: [foot3/tip, top/three]
+    clearance: {bearing_radius: 10 mm, radial_clearance: 0.1 mm, contact: {law: hertz, K: 1e9}%s}
+drivers: {motor: {joint: foot1_pin, kind: velocity, value: 5}}
+initial: {joints: {foot1_pin: 40 deg}}
+simulation: {end: 1 ms, step: 10 us}
+"""
+
 CARDAN = """freeplay: 1
 space: spatial
 bodies:
@@ -86,6 +144,12 @@ class Start(ProgramTest):
         self.assertAlmostEqual(0, row["joint.pivot.speed"], places=12)
         self.assertNotIn("starts", out)
 
+    def test_a_speed_that_a_driver_leaves_open_is_said(self):
+        row, out, _ = self.first_row(ARM % ("", "", "drivers: {motor: {joint: spin, kind: velocity, value: 10}}\n"))
+        arm = -0.1 * 10 / (1 / 3 + 1 + 0.1)
+        self.assertAlmostEqual(arm, row["joint.pivot.speed"], places=12)
+        self.assertIn("joint 'pivot' starts at %.4g rad/s by least kinetic energy" % arm, out)
+
     def test_a_velocity_that_is_given_is_kept_and_another_body_follows(self):
         row, out, _ = self.first_row(ARM % (", velocity: {angular: 2}", "", ""))
         self.assertAlmostEqual(2, row["body.arm.omega"], places=12)
@@ -108,6 +172,33 @@ class Start(ProgramTest):
         row, out, _ = self.first_row(BALL % ", initial: {velocity: [0.2, 0]}")
         self.assertAlmostEqual(0.2, row["body.ball.vx"], places=12)
         self.assertIn("body 'ball' starts 0.141 m/s from the velocity that its `velocity` gives", out)
+
+    def test_a_block_that_gives_zero_gives_a_velocity(self):
+        row, out, _ = self.first_row(BALL % ", initial: {velocity: [0, 0]}")
+        self.assertEqual((0, 0), (row["body.ball.vx"], row["body.ball.vy"]))
+        self.assertIn("body 'ball' starts 0.316 m/s from the velocity that its `velocity` gives", out)
+
+    # --- redundant constraints ---------------------------------------------------------------------------------------
+
+    def test_a_start_in_play_that_redundant_constraints_forbid_is_as_near_as_can_be(self):
+        # The third link turns about its foot: its journal moves across it, and not along it.
+        across, along = math.cos(math.radians(40)), math.sin(math.radians(40))
+        self.start(TABLE % ", initial: {eccentricity: [0, 0.06 mm]}")
+        moved, = self.changes["moved"]
+        self.assertEqual(("head3", "eccentricity", True), (moved["joint"], moved["quantity"], moved["far"]))
+        self.assertAlmostEqual(0.06e-3 * along, moved["by"], delta=1e-7)
+        self.start(TABLE % ", initial: {velocity: [0, 0.2]}")
+        moved, = self.changes["moved"]
+        self.assertEqual(("head3", "velocity"), (moved["joint"], moved["quantity"]))
+        self.assertAlmostEqual(0.2 * along, moved["by"], places=9)
+        row, out, _ = self.first_row(TABLE % ", initial: {eccentricity: [%r mm, %r mm]}" % (-0.06 * along, 0.06 * across))
+        self.assertNotIn("moved", out)
+        self.assertAlmostEqual(-0.04e-3, row["joint.head3.delta"], delta=1e-7)
+
+    def test_a_journal_of_redundant_constraints_can_be_loaded(self):
+        row, out, _ = self.first_row(TABLE % ", initial: loaded")
+        self.assertIn("the journal of joint 'head3' starts", out)
+        self.assertLess(row["joint.head3.delta"], 1e-5)
 
     # --- positions ---------------------------------------------------------------------------------------------------
 
@@ -137,6 +228,37 @@ class Start(ProgramTest):
         # -90 + a and -90 - a are nearest to -60 and -100 with a = (30 + 10) / 2.
         self.assertAlmostEqual(-70, math.degrees(start["upper"]["angle"]), places=6)
         self.assertAlmostEqual(-110, math.degrees(start["lower"]["angle"]), places=6)
+
+    def test_a_pose_beyond_its_reach_has_one_nearest_position(self):
+        start, messages = self.start(CRANK % "-23 deg")
+        self.assertEqual([], messages)
+        self.assertAlmostEqual(math.asin(0.09 / 0.27), -start["rod"]["angle"], places=9)
+        self.assertAlmostEqual(90, math.degrees(start["crank"]["angle"]), places=4)
+
+    def test_angles_start_at_the_turn_of_their_poses(self):
+        for crank, pose in ((60, 100), (120, 100), (88, 265)):
+            start, _ = self.start(CRANK % ("%d deg" % pose) + "initial: {joints: {A: %d deg}}\n" % crank)
+            self.assertLess(abs(math.degrees(start["rod"]["angle"]) - pose), 180.0001)
+
+    def test_gears_keep_the_whole_turns_of_given_poses(self):
+        for turned in (3.5, 6.2, 9, 40, -14):
+            start, _ = self.start(RACK % (turned, 0.03 * turned))
+            self.assertEqual([], self.changes["moved"], turned)
+            self.assertAlmostEqual(turned, start["pinion"]["angle"], places=9)
+            start, _ = self.start(WHEELS % (turned, -0.4 * turned))
+            self.assertEqual([], self.changes["moved"], turned)
+
+    def test_a_rack_takes_the_turn_that_is_nearest_to_what_is_given(self):
+        # 0.5 rad on are 15 mm, and 188 mm more with each turn.
+        start, _ = self.start(RACK % (0.5, 0.39))
+        self.assertLess(abs(start["rack"]["x"] - 0.39), 0.01)
+
+    def test_a_pose_inside_the_play_is_not_moved_in_silence(self):
+        self.start(BALL.replace("velocity: {linear: [0.3, -0.1]}", "frames: {far: [30, 0]}, pose: {position: [0.4 mm, 0]}").replace(
+            "step: 10 us", "step: 10 us, output: {frames: [ball/far]}") % "")
+        moved, = self.changes["moved"]
+        self.assertEqual(("ball", "position"), (moved["body"], moved["quantity"]))
+        self.assertAlmostEqual(0.4e-3, moved["by"], places=12)
 
     def test_a_cardan_joint_says_how_far_it_turned_its_body(self):
         _, out, _ = self.first_row(CARDAN % "20 deg, 20 deg, 40 deg")

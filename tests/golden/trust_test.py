@@ -55,7 +55,7 @@ class Trust(ProgramTest):
         self.write("model.yaml", text)
         out, err = self.freeplay("run", "model.yaml", "--force", "--out", "r", *words, code=code)
         summary = json.loads(self.read("r", "summary.json"))
-        self.trust = summary["trust"]
+        self.summary, self.trust = summary, summary["trust"]
         line = re.search(r"^  trust: (\w+)", out, re.M)
         self.assertEqual(self.trust["verdict"], line[1])
         return out, err
@@ -218,6 +218,67 @@ simulation: {end: 0.1, accuracy: 1 um}
             text = file.read().replace("kind: velocity, value: $speed", "kind: angle, value: '60 deg + smooth(t, 0, 1)'").replace("initial: {joints: {A: 60 deg}}\n", "")
         self.run_model(text)
         self.assertEqual("good", self.trust["verdict"])
+
+    def test_what_discard_leaves_out_is_judged_too(self):
+        drop = """freeplay: 1
+name: drop
+gravity: [0, -9.81]
+bodies: {rod: {mass: 2 kg, inertia: 0.02, com: [0.1, 0], velocity: {linear: [0, -5]}}}
+joints:
+  pin:
+    type: revolute
+    bearing: ground
+    journal: rod
+    clearance: {bearing_radius: 2 mm, radial_clearance: 0.4 mm, length: 5 mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: flores, restitution: 0.2}}
+simulation: {end: 0.4 s, accuracy: 1 um, output: {interval: 1 ms, discard: %s}}
+"""
+        self.run_model(drop % "0 s")
+        whole = self.trust
+        peak = self.summary["joints"]["pin"]["max_force"]
+        out, _ = self.run_model(drop % "0.1 s")
+        self.assertEqual("bad", whole["verdict"])
+        self.assertEqual("bad", self.trust["verdict"])
+        self.assertLess(self.summary["joints"]["pin"]["max_force"], 0.1 * peak)
+        reached = float(re.search(r"before that pin reached (\S+) N", out)[1])
+        self.assertAlmostEqual(1.0, reached / peak, delta=0.03)
+
+    def test_statistics_of_an_instant_are_doubtful(self):
+        swing = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1 kg, inertia: 1/12, com: [0.5, 0]}}
+joints: {pivot: {type: revolute, between: [ground, rod]}}
+simulation: {end: 1 s, step: 1 ms, output: {interval: 10 ms, discard: %s}}
+"""
+        self.run_model(swing % "0.9995 s")
+        self.assertEqual(["statistics-window"], self.ids())
+        self.run_model(swing % "0.5 s")
+        self.assertEqual([], self.ids())
+
+    def test_forces_at_a_singular_position_are_doubtful(self):
+        # A driven parallelogram lies flat twice in each turn, where nothing decides which way the other crank goes on.
+        flat = """freeplay: 1
+name: flat
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {D: [0.4, 0]}}
+  crank: {mass: 1, inertia: 2e-3, com: [0.06, 0], frames: {tip: [0.12, 0]}, pose: {angle: 50 deg}}
+  coupler: {mass: 2, inertia: 0.02, com: [0.2, 0], frames: {tip: [0.4, 0]}, pose: {angle: 0}}
+  rocker: {mass: 1, inertia: 2e-3, com: [0.06, 0], frames: {tip: [0.12, 0]}, pose: {angle: 50 deg}}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+drivers: {m: {joint: A, kind: velocity, value: 8}}
+initial: {joints: {A: 50 deg}}
+simulation: {end: 2 s, step: 1 ms}
+"""
+        for words in (("--step", "0.7 ms"), ("--step", "2 ms"), ("--accuracy", "1um")):
+            self.run_model(flat, *words)
+            self.assertIn("singular-position", self.ids(), words)
+        # One that never lies flat is regular, though its cranks are nearly as long.
+        self.run_model(flat.replace("tip: [0.12, 0]}, pose: {angle: 50 deg}}\njoints", "tip: [0.2, 0]}, pose: {angle: 50 deg}}\njoints"))
+        self.assertNotIn("singular-position", self.ids())
 
     def test_few_impacts_behind_a_discard_are_doubtful(self):
         self.run_model(BALL % "")

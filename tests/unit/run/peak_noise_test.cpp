@@ -129,9 +129,18 @@ TEST(PeakNoise, IsSmallWhereTheSamePeakComesAgainAndAgain) {
   const auto model = ring();
   PeakNoise noise = after_impacts(*model, 20);
   std::vector<double> parts(32, 3.0);
-  parts[3] = 50.0, parts[13] = 50.001, parts[23] = 49.999;
+  parts[3] = 50.0, parts[9] = 50.0005, parts[15] = 50.001, parts[21] = 49.9995, parts[27] = 49.999;
   see(noise, parts);
   EXPECT_NEAR(noise.of(0), 0.002, 1e-9);
+}
+
+TEST(PeakNoise, IsNoSmallerWhereThreePeaksAreTheSameByChance) {
+  const auto model = ring();
+  PeakNoise noise = after_impacts(*model, 20);
+  std::vector<double> parts(32, 3.0);
+  parts[3] = 50.0, parts[13] = 50.001, parts[23] = 49.999, parts[27] = 31.0;
+  see(noise, parts);
+  EXPECT_GT(noise.of(0), 5.0);
 }
 
 }  // namespace

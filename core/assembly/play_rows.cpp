@@ -1,0 +1,124 @@
+#include "assembly/play_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "component/parameter_block.h"
+#include "linear/stacked_rows.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr int most_steps = 30, most_shortenings = 6;
+constexpr double same_place = 1e-13;       // of the model's size and of a radian
+constexpr double inside = 0.99;            // of the farthest place, after offsets were shortened
+constexpr double rounding = 1.0 + 1e-9;    // of a distance
+constexpr double without_clearance = 1.0;  // weight of rows of a joint that tells none
+
+bool gives(const JointElement& joint, std::string_view last_word) {
+  if (!joint.parameters) return false;
+  return std::ranges::any_of(joint.parameters->values,
+                             [&](const auto& entry) { return entry.second.given && entry.first.ends_with(last_word); });
+}
+
+// Gauss and Newton on all ranks, each in what those before leave free.
+bool converge(ClosedMechanism& mechanism, const std::vector<PlayRank>& ranks, const VectorXd& weights) {
+  const System& system = mechanism.system;
+  for (int step = 0; step < most_steps; ++step) {
+    const ClosedMechanism::Rows rows = mechanism.position_rows();
+    std::array<std::vector<Eigen::Index>, 3> chosen;
+    VectorXd weight = VectorXd::Ones(rows.residual.size());
+    double open = 0.0;
+    for (std::size_t i = 0; i < rows.row.size(); ++i) {
+      const PlayRank rank = rows.row[i] < 0 ? PlayRank::constraint : ranks[at(rows.row[i])];
+      const auto index = static_cast<Eigen::Index>(i);
+      chosen[static_cast<std::size_t>(rank)].push_back(index);
+      if (rank == PlayRank::constraint) open = std::max(open, std::abs(rows.residual[index]));
+      if (rank != PlayRank::constraint) weight[index] = weights[rows.row[i]];
+    }
+    const MatrixXd all = weight.asDiagonal() * MatrixXd(rows.matrix);
+    const VectorXd wanted = -weight.cwiseProduct(rows.residual);
+    StackedRows stack(all.cols());
+    for (const auto& rank : chosen) stack.add(all(rank, Eigen::all), wanted(rank));
+    VectorXd change = stack.solution();
+    if (!change.allFinite()) return false;
+    double largest = 0.0;
+    for (int i = 0; i < static_cast<int>(change.size()); ++i) {
+      largest = std::max(largest, std::abs(change[i]) / (system.is_turn(i) ? 1.0 : system.size()));
+    }
+    if (largest <= same_place || step + 1 == most_steps) return open <= mechanism.model().settings.assembly_tolerance;
+    const std::vector<double> before(mechanism.state.q().begin(), mechanism.state.q().end());
+    system.retract(before, {change.data(), at(static_cast<int>(change.size()))}, mechanism.state.q());
+  }
+  return false;
+}
+
+double length(const double* v) { return std::hypot(v[0], v[1], v[2]); }
+
+// By how much offsets must be shortened for every journal to stay in its play, or as near to it as it was wanted.
+double share_inside(ClosedMechanism& mechanism, const std::vector<InitialOffset>& offsets) {
+  const Model& model = mechanism.model();
+  double share = 1.0;
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointElement& joint = model.joints[j];
+    if (!joint.has_play || joint.ideal_layout.coordinate == Coordinate::position) continue;
+    const MarkerKinematics &a = mechanism.e.markers[at(joint.marker_a)], &b = mechanism.e.markers[at(joint.marker_b)];
+    const double apart[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
+                             b.position[2] - a.position[2]};
+    const double farthest = std::max(joint.layout.clearance, length(offsets[j].position));
+    if (const double away = length(apart); away > rounding * farthest) share = std::min(share, farthest / away);
+  }
+  return share;
+}
+
+}  // namespace
+
+bool gives_eccentricity(const JointElement& joint) { return gives(joint, "initial.eccentricity"); }
+bool gives_velocity(const JointElement& joint) { return gives(joint, "initial.velocity"); }
+
+std::vector<PlayRank> play_ranks(const System& closed, const std::function<bool(const JointElement&)>& gives_start) {
+  const Model& model = closed.model();
+  std::vector<PlayRank> ranks(at(closed.layout().nc()), PlayRank::constraint);
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    if (!joint.has_play) continue;
+    const Slice slice = closed.layout().rows(j);
+    std::fill_n(ranks.begin() + slice.offset, slice.size, gives_start(joint) ? PlayRank::given : PlayRank::implied);
+  }
+  return ranks;
+}
+
+bool yield_in_play(ClosedMechanism& mechanism, std::vector<InitialOffset> offsets, const std::vector<PlayRank>& ranks) {
+  const System& system = mechanism.system;
+  if (system.layout().nv() > most_dense_columns) return false;
+  const Model& model = mechanism.model();
+  VectorXd weights = VectorXd::Ones(system.layout().nc());
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const double clearance = model.joints[at(j)].layout.clearance;
+    const Slice slice = system.layout().rows(j);
+    weights.segment(slice.offset, slice.size).setConstant(clearance > 0.0 ? 1.0 / clearance : without_clearance);
+  }
+  const std::vector<double> centred(mechanism.state.q().begin(), mechanism.state.q().end());
+  for (int attempt = 0; attempt < most_shortenings; ++attempt) {
+    for (std::size_t j = 0; j < offsets.size(); ++j) {
+      if (model.joints[j].has_play) mechanism.system.set_offset(static_cast<int>(j), offsets[j]);
+    }
+    std::ranges::copy(centred, mechanism.state.q().begin());
+    if (!converge(mechanism, ranks, weights)) break;
+    const double share = share_inside(mechanism, offsets);
+    if (share >= 1.0) return true;
+    for (InitialOffset& offset : offsets) {
+      for (double& e : offset.position) e *= inside * share;
+    }
+  }
+  std::ranges::copy(centred, mechanism.state.q().begin());
+  return false;
+}
+
+}  // namespace freeplay
