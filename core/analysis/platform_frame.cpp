@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "base/index.h"
 #include "model/rotation.h"
 
 namespace freeplay {
@@ -14,7 +15,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double one_axis = 1e-9;  // cosine of the pitch below which roll and yaw turn about one axis
 
 double nearest_turn(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }

@@ -9,11 +9,10 @@
 
 #include "assembly/leg_modes.h"
 #include "base/error.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Lengths relative to the size of the model, angles in rad.
 constexpr double last_correction = 1e-9;  // what is left is its square

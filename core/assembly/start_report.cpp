@@ -8,11 +8,11 @@
 
 #include "assembly/given_poses.h"
 #include "assembly/placing.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double noticed = 1e-4;  // of the size, of a radian, of a velocity
 constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "assembly/placing.h"
+#include "base/index.h"
 #include "linear/row_solutions.h"
 #include "linear/stacked_rows.h"
 
@@ -17,7 +18,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to tell than to find
 constexpr double kept = 1e-9;                    // of the largest velocity: a given one that differs by less is kept
 

@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "base/text.h"
 
 namespace freeplay {
@@ -20,7 +21,6 @@ constexpr double rank_threshold = 1e-9;    // as that of the facts
 constexpr double moves = 1e-6;             // share of a unit vector that counts as motion, or as force
 constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Eigen::ColPivHouseholderQR<MatrixXd> decompose(const MatrixXd& matrix) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr(matrix);

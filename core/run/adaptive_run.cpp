@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr int order_by_ends = 5;           // of a method whose steps are known as well inside by their ends
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change

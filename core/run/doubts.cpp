@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include "assembly/drive_range.h"
+#include "base/index.h"
 #include "run/likely_cause.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 // False where the row shows that going on makes no sense.

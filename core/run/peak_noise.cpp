@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
@@ -13,7 +15,6 @@ constexpr double same_peak = 0.01;         // of the value
 constexpr double margin = 1.5;             // of the scale of the tail
 constexpr double unknown = 0.3;            // of the value, where too little was seen
 constexpr double same_speed = 1.05;        // an approach this much faster than the separation before is driven
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

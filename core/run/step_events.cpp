@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/index.h"
 #include "component/joint_answer.h"
 #include "run/event_finder.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rounding = 1e-15;      // of a located event function, in its unit
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
