@@ -11,7 +11,6 @@
 
 namespace freeplay {
 namespace {
-constexpr double near_singular = 1e-2;  // regularity below which no motion is interpolated
 constexpr double open_rows = 1e-3;      // of the size of the model: constraints that are off by more do not hold
 }  // namespace
 

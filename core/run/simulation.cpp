@@ -18,7 +18,6 @@ namespace freeplay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double shortest_part = 1e-6;      // of the run, see shortest_change()

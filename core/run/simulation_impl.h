@@ -1,6 +1,7 @@
 // The parts of a run. Private to simulation.cpp and the files named below.
 #pragma once
 
+#include <limits>
 #include <chrono>
 #include <optional>
 
@@ -17,6 +18,10 @@
 #include "stage/newton_stage_solver.h"
 
 namespace freeplay {
+
+inline constexpr double rounding = std::numeric_limits<double>::epsilon();
+/// Regularity below which no motion is interpolated and steps that fail are tried in other lengths.
+inline constexpr double near_singular = 1e-2;
 
 struct Simulation::Impl {
   Impl(const System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);
