@@ -1,6 +1,7 @@
 #include "urdf/document.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include "urdf/inertia.h"
 #include "urdf/names.h"
 #include "urdf/reader.h"
-#include "urdf/referee.h"
 #include "urdf/sections.h"
 #include "urdf/tree.h"
 
@@ -80,16 +80,19 @@ std::optional<Sections> write_spatial(Robot& robot, Names& names, const Options&
   return sections;
 }
 
-std::optional<Sections> read_sections(const XmlElement& root, const Options& options, Nodes& nodes,
-                                      Messages& messages) {
-  Robot robot = read_robot(root, messages);
-  if (root.name != "robot") return std::nullopt;
+std::optional<Sections> read_sections(XmlElement& root, const Options& options, Nodes& nodes, Messages& messages) {
+  if (std::string_view(root.Name()) != "robot") {
+    messages.error(name_spot(root), "bad-urdf", fmt::format("the root element must be 'robot', not '{}'", root.Name()));
+    return std::nullopt;
+  }
+  UrdfdomModel model(root);
+  Robot robot = read_robot(root, model, messages);
   build_tree(robot, options, messages);
   for (const Joint& joint : robot.joints) {
     if (joint.limits && !options.stops) messages.ignore("limits of joint", joint.name);
   }
   Names names(robot, messages);
-  if (!messages.failed()) ask_referee(root, messages);
+  if (!messages.failed()) model.report_refusal(messages);
   if (robot.mounts.empty()) return std::nullopt;
   if (options.space == Options::Space::spatial) return write_spatial(robot, names, options, nodes, messages);
   // What could not be read has been replaced by a guess, which says nothing about the plane.
@@ -117,12 +120,12 @@ std::optional<Sections> read_sections(const XmlElement& root, const Options& opt
 
 std::optional<Sections> add_sections(const std::string& text, const std::string* file_name, const Options& options,
                                      Document& document, Diagnostics& diagnostics) {
-  const std::optional<XmlElement> root = parse_xml(text, *file_name, "bad-urdf", diagnostics);
-  if (!root) return std::nullopt;
+  const auto xml = parse_xml(text, *file_name, "bad-urdf", diagnostics);
+  if (!xml) return std::nullopt;
   Messages messages(*file_name, diagnostics);
   Nodes nodes(document, file_name);
-  std::optional<Sections> sections = read_sections(*root, options, nodes, messages);
-  messages.report_ignored(name_spot(*root));
+  std::optional<Sections> sections = read_sections(xml->root(), options, nodes, messages);
+  messages.report_ignored(name_spot(xml->root()));
   return sections;
 }
 

@@ -9,11 +9,10 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "urdf/blanks.h"
 
 namespace freeplay::urdf {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n";
 
 bool holds(const std::vector<std::string>& words, const std::string& word) {
   return std::ranges::find(words, word) != words.end();
@@ -76,16 +75,29 @@ std::string misspelt(const std::string& word, const std::vector<std::string>& wo
   return {};
 }
 
-Spot spot_of(const XmlAttribute& attribute) {
-  return {attribute.place.line, attribute.place.column, character_count(attribute.name)};
+Spot spot_of(const XmlElement& element, const XmlAttribute& attribute) {
+  const TextPlace* place = place_of(element, attribute);
+  return place == nullptr ? name_spot(element) : Spot{place->line, place->column, character_count(attribute.Name())};
+}
+
+Spot spot_of(const XmlElement& element, const char* attribute) {
+  const XmlAttribute* found = element.FindAttribute(attribute);
+  return found == nullptr ? name_spot(element) : spot_of(element, *found);
+}
+
+Spot text_spot(const XmlElement& element) {
+  const TextPlace place = places_of(element).text;
+  return {place.line, place.column, 1};
 }
 
 Spot name_spot(const XmlElement& element) {
-  return {element.name_place.line, element.name_place.column, character_count(element.name)};
+  const TextPlace place = places_of(element).name;
+  return {place.line, place.column, character_count(element.Name())};
 }
 
 Spot begin_spot(const XmlElement& element) {
-  return {element.place.line, element.place.column, character_count(element.name) + 1};
+  const TextPlace place = places_of(element).begin;
+  return {place.line, place.column, character_count(element.Name()) + 1};
 }
 
 void Messages::error(const Spot& spot, const char* id, std::string message, std::string suggestion, std::string hint) {
@@ -149,12 +161,12 @@ std::optional<double> read_number(std::string_view text, std::string& why, std::
   return std::nullopt;
 }
 
-Element::Element(const XmlElement& xml, std::string owner, Messages& messages, bool exact)
+Element::Element(XmlElement& xml, std::string owner, Messages& messages, bool exact)
     : xml_(xml), owner_(std::move(owner)), messages_(messages), exact_(exact) {}
 
 const XmlAttribute* Element::find(const std::string& name) {
   if (!holds(attributes_, name)) attributes_.push_back(name);
-  return xml_.attribute(name);
+  return xml_.FindAttribute(name.c_str());
 }
 
 const XmlAttribute* Element::require(const std::string& name) {
@@ -166,65 +178,74 @@ const XmlAttribute* Element::require(const std::string& name) {
 }
 
 std::optional<double> Element::parse(const XmlAttribute& attribute) {
-  const std::vector<std::string_view> words = split(attribute.value);
-  std::string why = fmt::format("'{}' is not a number", printable(attribute.value)), hint;
+  const std::vector<std::string_view> words = split(attribute.Value());
+  std::string why = fmt::format("'{}' is not a number", printable(attribute.Value())), hint;
   const auto value = words.size() == 1 ? read_number(words[0], why, hint) : std::nullopt;
   if (!value) {
-    messages_.error(spot_of(attribute), "bad-urdf", fmt::format("'{}' of {}: {}", attribute.name, owner_, why), {},
-                    hint);
+    messages_.error(spot_of(xml_, attribute), "bad-urdf", fmt::format("'{}' of {}: {}", attribute.Name(), owner_, why),
+                    {}, hint);
   }
   return value;
 }
 
 double Element::number(const std::string& name, double standard) {
   const XmlAttribute* attribute = find(name);
-  return attribute == nullptr ? standard : parse(*attribute).value_or(standard);
+  if (attribute == nullptr) return standard;
+  const auto value = parse(*attribute);
+  if (!value) guesses_.emplace_back(name, fmt::format("{}", standard));
+  return value.value_or(standard);
 }
 
-std::optional<double> Element::required_number(const std::string& name) {
+std::optional<double> Element::required_number(const std::string& name, const char* guess) {
   const XmlAttribute* attribute = require(name);
-  return attribute == nullptr ? std::nullopt : parse(*attribute);
+  const auto value = attribute == nullptr ? std::nullopt : parse(*attribute);
+  if (!value) guesses_.emplace_back(name, guess);
+  return value;
 }
 
-std::optional<Eigen::Vector3d> Element::vector(const std::string& name) {
-  const std::vector<double> read = numbers(name, 3);
+std::optional<Eigen::Vector3d> Element::vector(const std::string& name, const char* guess) {
+  const std::vector<double> read = numbers(name, 3, guess);
   return read.empty() ? std::nullopt : std::optional(Eigen::Vector3d(read[0], read[1], read[2]));
 }
 
-std::vector<double> Element::numbers(const std::string& name, std::size_t count) {
+std::vector<double> Element::numbers(const std::string& name, std::size_t count, const char* guess) {
   const XmlAttribute* attribute = find(name);
   if (attribute == nullptr) return {};
-  const std::vector<std::string_view> words = split(attribute->value);
+  const std::string_view value = attribute->Value();
+  const std::vector<std::string_view> words = split(value);
   if (words.size() != count) {
-    const bool comma = attribute->value.find(',') != std::string::npos;
+    const bool comma = value.find(',') != std::string_view::npos;
     messages_.error(
-        spot_of(*attribute), "bad-urdf",
+        spot_of(xml_, *attribute), "bad-urdf",
         fmt::format("'{}' of {} must be {} numbers, not {}", name, owner_, count == 3 ? "three" : "four", words.size()),
         {}, comma ? "numbers are separated by blanks, not by commas" : "");
+    guesses_.emplace_back(name, guess);
     return {};
   }
   std::vector<double> read;
   for (const std::string_view word : words) {
     std::string why, hint;
-    const auto value = read_number(word, why, hint);
-    if (!value) {
-      messages_.error(spot_of(*attribute), "bad-urdf", fmt::format("'{}' of {}: {}", name, owner_, why), {}, hint);
+    const auto number = read_number(word, why, hint);
+    if (!number) {
+      messages_.error(spot_of(xml_, *attribute), "bad-urdf", fmt::format("'{}' of {}: {}", name, owner_, why), {},
+                      hint);
+      guesses_.emplace_back(name, guess);
       return {};
     }
-    read.push_back(*value);
+    read.push_back(*number);
   }
   return read;
 }
 
-const XmlElement* Element::child(const std::string& name) {
+XmlElement* Element::child(const std::string& name) {
   if (!holds(children_, name)) children_.push_back(name);
-  const XmlElement* first = nullptr;
-  for (const XmlElement& child : xml_.children) {
-    if (child.name != name) continue;
+  XmlElement* first = nullptr;
+  for (XmlElement& child : XmlChildren(xml_)) {
+    if (child.Name() != name) continue;
     if (first != nullptr) {
-      messages_.error(
-          urdf::name_spot(child), "bad-urdf",
-          fmt::format("the element '{}' is given twice in {}; first on line {}", name, owner_, first->place.line));
+      messages_.error(urdf::name_spot(child), "bad-urdf",
+                      fmt::format("the element '{}' is given twice in {}; first on line {}", name, owner_,
+                                  places_of(*first).begin.line));
       break;
     }
     first = &child;
@@ -232,8 +253,8 @@ const XmlElement* Element::child(const std::string& name) {
   return first;
 }
 
-const XmlElement* Element::required_child(const std::string& name) {
-  const XmlElement* found = child(name);
+XmlElement* Element::required_child(const std::string& name) {
+  XmlElement* found = child(name);
   if (found == nullptr) {
     messages_.error(begin_spot(), "bad-urdf", fmt::format("the element '{}' of {} is missing", name, owner_));
   }
@@ -245,25 +266,26 @@ void Element::pass_over(const std::string& name) { passed_.push_back(name); }
 void Element::finish(bool text_allowed) {
   finish_attributes();
   finish_children();
-  if (!xml_.text.empty() && !text_allowed) {
-    messages_.error({xml_.text_place.line, xml_.text_place.column, 1}, "bad-urdf",
-                    fmt::format("unexpected text in {}", owner_));
+  if (!text_allowed && !text_of(xml_).empty()) {
+    messages_.error(text_spot(xml_), "bad-urdf", fmt::format("unexpected text in {}", owner_));
   }
+  for (const auto& [name, value] : guesses_) xml_.SetAttribute(name.c_str(), value.c_str());
 }
 
 void Element::finish_attributes() {
   std::vector<std::string> unwritten;
   for (const std::string& name : attributes_) {
-    if (xml_.attribute(name) == nullptr) unwritten.push_back(name);
+    if (xml_.FindAttribute(name.c_str()) == nullptr) unwritten.push_back(name);
   }
-  for (const XmlAttribute& attribute : xml_.attributes) {
-    if (holds(attributes_, attribute.name) || attribute.name.starts_with("xmlns")) continue;
-    const std::string meant = messages_.suggest(attribute.name, unwritten);
+  for (const XmlAttribute* attribute = xml_.FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
+    const std::string name = attribute->Name();
+    if (holds(attributes_, name) || name.starts_with("xmlns")) continue;
+    const std::string meant = messages_.suggest(name, unwritten);
     if (!exact_ && meant.empty()) {
-      messages_.ignore(fmt::format("attribute '{}' of '{}'", attribute.name, xml_.name));
+      messages_.ignore(fmt::format("attribute '{}' of '{}'", name, xml_.Name()));
       continue;
     }
-    messages_.error(spot_of(attribute), "bad-urdf", fmt::format("unknown attribute '{}' of {}", attribute.name, owner_),
+    messages_.error(spot_of(xml_, *attribute), "bad-urdf", fmt::format("unknown attribute '{}' of {}", name, owner_),
                     meant);
   }
 }
@@ -271,26 +293,26 @@ void Element::finish_attributes() {
 void Element::finish_children() {
   std::vector<std::string> unwritten;
   for (const std::string& name : children_) {
-    if (xml_.child(name) == nullptr) unwritten.push_back(name);
+    if (xml_.FirstChildElement(name.c_str()) == nullptr) unwritten.push_back(name);
   }
-  for (const XmlElement& child : xml_.children) {
-    if (holds(children_, child.name)) continue;
-    if (holds(passed_, child.name)) {
-      messages_.ignore(child.name);
+  for (const XmlElement& child : XmlChildren(xml_)) {
+    const std::string name = child.Name();
+    if (holds(children_, name)) continue;
+    if (holds(passed_, name)) {
+      messages_.ignore(name);
       continue;
     }
-    if (child.name.starts_with("xacro:")) {
-      messages_.error(urdf::name_spot(child), "bad-urdf", fmt::format("'{}' is not expanded", child.name), {},
+    if (name.starts_with("xacro:")) {
+      messages_.error(urdf::name_spot(child), "bad-urdf", fmt::format("'{}' is not expanded", name), {},
                       "this is a xacro file; expand it first");
       continue;
     }
-    const std::string meant = exact_ ? messages_.suggest(child.name, unwritten) : misspelt(child.name, unwritten);
+    const std::string meant = exact_ ? messages_.suggest(name, unwritten) : misspelt(name, unwritten);
     if (!exact_ && meant.empty()) {
-      messages_.ignore(fmt::format("element '{}'", child.name));
+      messages_.ignore(fmt::format("element '{}'", name));
       continue;
     }
-    messages_.error(urdf::name_spot(child), "bad-urdf", fmt::format("unknown element '{}' in {}", child.name, owner_),
-                    meant);
+    messages_.error(urdf::name_spot(child), "bad-urdf", fmt::format("unknown element '{}' in {}", name, owner_), meant);
   }
 }
 
@@ -314,7 +336,7 @@ Eigen::Isometry3d read_pose(Element& element) {
 }
 
 Eigen::Isometry3d read_origin(Element& element, Messages& messages, Spot* spot) {
-  const XmlElement* xml = element.child("origin");
+  XmlElement* xml = element.child("origin");
   if (xml == nullptr) return Eigen::Isometry3d::Identity();
   Element origin(*xml, "the origin of " + element.owner(), messages, true);
   const Eigen::Isometry3d pose = read_pose(origin);

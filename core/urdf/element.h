@@ -15,7 +15,11 @@
 
 namespace freeplay::urdf {
 
-Spot spot_of(const XmlAttribute& attribute);
+Spot spot_of(const XmlElement& element, const XmlAttribute& attribute);
+/// Of the attribute of that name, or of the element's name where there is none.
+Spot spot_of(const XmlElement& element, const char* attribute);
+/// Of the first of the element's own characters that is no blank.
+Spot text_spot(const XmlElement& element);
 /// Of the name of an element, and of its '<'.
 Spot name_spot(const XmlElement& element);
 Spot begin_spot(const XmlElement& element);
@@ -58,9 +62,9 @@ class Element {
  public:
   /// With `exact`, an attribute that nobody asked for is an error; without, one that looks like a misspelt one is.
   /// `owner` names it in messages: "link 'arm'".
-  Element(const XmlElement& xml, std::string owner, Messages& messages, bool exact);
+  Element(XmlElement& xml, std::string owner, Messages& messages, bool exact);
 
-  const XmlElement& xml() const { return xml_; }
+  XmlElement& xml() const { return xml_; }
   const std::string& owner() const { return owner_; }
   Spot name_spot() const { return urdf::name_spot(xml_); }
   Spot begin_spot() const { return urdf::begin_spot(xml_); }
@@ -71,18 +75,19 @@ class Element {
   const XmlAttribute* require(const std::string& name);
   /// A number; `standard` when it is not there or, after a message, when it is none.
   double number(const std::string& name, double standard);
-  std::optional<double> required_number(const std::string& name);
-  std::optional<Eigen::Vector3d> vector(const std::string& name);
+  std::optional<double> required_number(const std::string& name, const char* guess = "0");
+  std::optional<Eigen::Vector3d> vector(const std::string& name, const char* guess = "0 0 0");
   /// `count` (3 or 4) numbers; empty when they are not there or, after a message, when they are not that.
-  std::vector<double> numbers(const std::string& name, std::size_t count);
+  std::vector<double> numbers(const std::string& name, std::size_t count, const char* guess = "");
 
   /// The child of that name. A second one is reported, and so is an absent one at the '<' of this element.
-  const XmlElement* child(const std::string& name);
-  const XmlElement* required_child(const std::string& name);
+  XmlElement* child(const std::string& name);
+  XmlElement* required_child(const std::string& name);
   /// Children that are known and not used: counted.
   void pass_over(const std::string& name);
 
-  /// Reports unknown attributes, children and text. Unknown children of an `exact` element are errors, too.
+  /// Reports unknown attributes, children and text. Unknown children of an `exact` element are errors, too. Then writes
+  /// guesses in place of numbers that are missing or none, so that urdfdom takes the rest.
   void finish(bool text_allowed = false);
 
  private:
@@ -90,11 +95,12 @@ class Element {
   void finish_children();
   std::optional<double> parse(const XmlAttribute& attribute);
 
-  const XmlElement& xml_;
+  XmlElement& xml_;
   std::string owner_;
   Messages& messages_;
   bool exact_;
   std::vector<std::string> attributes_, children_, passed_;
+  std::vector<std::pair<std::string, std::string>> guesses_;  ///< attributes and their values
 };
 
 /// The `origin` child of an element as a frame; identity when there is none.

@@ -5,12 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "urdf/blanks.h"
 #include "urdf/reference.h"
 
 namespace freeplay::urdf {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n";
 
 std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(blanks);
@@ -18,9 +17,12 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-Spot text_spot(const XmlElement& xml) {
-  if (xml.text.empty()) return name_spot(xml);
-  return {xml.text_place.line, xml.text_place.column, static_cast<int>(trimmed(xml.text).size())};
+Spot whole_text_spot(const XmlElement& xml) {
+  const std::string text = trimmed(text_of(xml));
+  if (text.empty()) return name_spot(xml);
+  Spot spot = text_spot(xml);
+  spot.length = static_cast<int>(text.size());
+  return spot;
 }
 
 class LoopReader {
@@ -30,7 +32,7 @@ class LoopReader {
   }
 
   /// <constraint>, <loop>, <loop_joint>.
-  void read_element(const XmlElement& xml) {
+  void read_element(XmlElement& xml) {
     Joint joint;
     Element element(xml, owner_of(xml), messages_, false);
     read_head(element, joint);
@@ -44,15 +46,15 @@ class LoopReader {
   }
 
   /// A joint of SDF inside of <gazebo>.
-  void read_sdf(const XmlElement& xml) {
+  void read_sdf(XmlElement& xml) {
     Joint joint;
     Element element(xml, owner_of(xml), messages_, false);
     read_head(element, joint);
     joint.closed_at_zero = true;
     joint.parent = read_sdf_end(element, "parent");
     joint.child = read_sdf_end(element, "child");
-    if (const XmlElement* pose = element.child("pose")) read_sdf_pose(*pose, joint.child);
-    if (const XmlElement* axis = element.child("axis")) read_sdf_axis(*axis, joint);
+    if (XmlElement* pose = element.child("pose")) read_sdf_pose(*pose, joint.child);
+    if (XmlElement* axis = element.child("axis")) read_sdf_axis(*axis, joint);
     for (const char* known : {"physics", "sensor"}) element.pass_over(known);
     element.finish();
     add(std::move(joint));
@@ -60,8 +62,8 @@ class LoopReader {
 
  private:
   static std::string owner_of(const XmlElement& xml) {
-    const XmlAttribute* name = xml.attribute("name");
-    return name == nullptr ? fmt::format("a {}", xml.name) : fmt::format("{} '{}'", xml.name, name->value);
+    const XmlAttribute* name = xml.FindAttribute("name");
+    return name == nullptr ? fmt::format("a {}", xml.Name()) : fmt::format("{} '{}'", xml.Name(), name->Value());
   }
 
   void add(Joint joint) {
@@ -81,30 +83,29 @@ class LoopReader {
     joint.element = element.begin_spot();
     joint.spot = joint.axis_spot = element.name_spot();
     if (const XmlAttribute* name = element.require("name")) {
-      joint.name = name->value;
-      joint.spot = spot_of(*name);
+      joint.name = name->Value();
+      joint.spot = spot_of(element.xml(), "name");
     }
     const XmlAttribute* type = element.require("type");
-    joint.type_spot = type == nullptr ? joint.spot : spot_of(*type);
-    if (type != nullptr) joint.type = read_type(*type, element.owner());
+    joint.type_spot = type == nullptr ? joint.spot : spot_of(element.xml(), *type);
+    if (type != nullptr) joint.type = read_type(type->Value(), joint.type_spot, element.owner());
   }
 
-  JointType read_type(const XmlAttribute& type, const std::string& owner) {
+  JointType read_type(const std::string& type, const Spot& spot, const std::string& owner) {
     static const std::vector<std::string> words = {"revolute", "continuous", "prismatic", "fixed"};
     constexpr JointType types[] = {JointType::revolute, JointType::revolute, JointType::prismatic, JointType::fixed};
     for (std::size_t i = 0; i < words.size(); ++i) {
-      if (type.value == words[i]) return types[i];
+      if (type == words[i]) return types[i];
     }
-    messages_.error(spot_of(type), "bad-urdf",
-                    fmt::format("the type '{}' of {} has no counterpart here", type.value, owner),
-                    messages_.suggest(type.value, words), "types: revolute, continuous, prismatic, fixed");
+    messages_.error(spot, "bad-urdf", fmt::format("the type '{}' of {} has no counterpart here", type, owner),
+                    messages_.suggest(type, words), "types: revolute, continuous, prismatic, fixed");
     return JointType::fixed;
   }
 
-  static const XmlElement* first_child(Element& element, const std::vector<std::string>& names) {
-    const XmlElement* found = nullptr;
+  static XmlElement* first_child(Element& element, const std::vector<std::string>& names) {
+    XmlElement* found = nullptr;
     for (const std::string& name : names) {
-      const XmlElement* child = element.xml().child(name);
+      XmlElement* child = element.xml().FirstChildElement(name.c_str());
       // A dialect's own words stay unknown to the others, so that a misspelt one is seen.
       if (child == nullptr) continue;
       element.child(name);
@@ -115,24 +116,24 @@ class LoopReader {
 
   void read_end(Element& element, const std::vector<std::string>& names, const std::vector<std::string>& origins,
                 End& end) {
-    const XmlElement* xml = first_child(element, names);
+    XmlElement* xml = first_child(element, names);
     end.spot = end.frame_spot = element.name_spot();
     if (xml == nullptr) {
       messages_.error(
           end.spot, "bad-urdf",
-          fmt::format("the element '{}' of {} is missing", words_for(element.xml().name, names), element.owner()));
+          fmt::format("the element '{}' of {} is missing", words_for(element.xml().Name(), names), element.owner()));
       return;
     }
-    Element side(*xml, fmt::format("the {} of {}", xml->name, element.owner()), messages_, true);
+    Element side(*xml, fmt::format("the {} of {}", xml->Name(), element.owner()), messages_, true);
     if (const XmlAttribute* link = side.require("link")) {
-      end.spot = spot_of(*link);
-      end.link = links_.find(link->value, end.spot, messages_);
+      end.spot = spot_of(*xml, *link);
+      end.link = links_.find(link->Value(), end.spot, messages_);
     }
     const Eigen::Isometry3d own = read_pose(side);
     end.frame = own * read_origin(side, messages_, &end.frame_spot);
     side.finish();
-    if (const XmlElement* origin = first_child(element, origins)) {
-      Element frame(*origin, fmt::format("the {} of {}", origin->name, element.owner()), messages_, true);
+    if (XmlElement* origin = first_child(element, origins)) {
+      Element frame(*origin, fmt::format("the {} of {}", origin->Name(), element.owner()), messages_, true);
       end.frame = end.frame * read_pose(frame);
       end.frame_spot = frame.name_spot();
       frame.finish();
@@ -144,19 +145,19 @@ class LoopReader {
   }
 
   void read_axes(Element& element, Joint& joint) {
-    const XmlElement* axis = first_child(element, {"axis", "parent_axis"});
-    const XmlElement* other = first_child(element, {"child_axis"});
+    XmlElement* axis = first_child(element, {"axis", "parent_axis"});
+    XmlElement* other = first_child(element, {"child_axis"});
     if (joint.type == JointType::fixed) return;
     if (axis != nullptr) {
       joint.axis_given = true;
       joint.axis =
-          read_axis(*axis, fmt::format("the {} of {}", axis->name, element.owner()), messages_, joint.axis_spot);
+          read_axis(*axis, fmt::format("the {} of {}", axis->Name(), element.owner()), messages_, joint.axis_spot);
     }
     if (other == nullptr) return;
     // The frames of both ends are to share the axis; one that does not makes the joint another one.
     Spot spot;
     const Eigen::Vector3d second =
-        read_axis(*other, fmt::format("the {} of {}", other->name, element.owner()), messages_, spot);
+        read_axis(*other, fmt::format("the {} of {}", other->Name(), element.owner()), messages_, spot);
     if (second.cross(joint.axis).norm() > 1e-5 || second.dot(joint.axis) < 0.0) {
       messages_.error(spot, "bad-urdf", fmt::format("both axes of {} must have the same numbers", element.owner()), {},
                       "turn the origin of the child instead");
@@ -168,52 +169,50 @@ class LoopReader {
   End read_sdf_end(Element& element, const char* side) {
     End end;
     end.spot = end.frame_spot = element.name_spot();
-    const XmlElement* xml = element.child(side);
+    XmlElement* xml = element.child(side);
     if (xml == nullptr) {
       messages_.error(end.spot, "bad-urdf", fmt::format("the element '{}' of {} is missing", side, element.owner()));
       return end;
     }
-    end.spot = end.frame_spot = text_spot(*xml);
-    const std::string name = trimmed(xml->text);
+    end.spot = end.frame_spot = whole_text_spot(*xml);
+    const std::string name = trimmed(text_of(*xml));
     // In SDF `world` is there without being declared.
     end.link = name == "world" && !links_.knows(name) ? world_link : links_.find(name, end.spot, messages_);
     return end;
   }
 
   void read_sdf_pose(const XmlElement& xml, End& child) {
-    for (const XmlAttribute& attribute : xml.attributes) {
-      const bool plain =
-          attribute.value.empty() || (attribute.name == "rotation_format" && attribute.value == "euler_rpy");
-      if (plain || attribute.name == "degrees") continue;
-      messages_.error(
-          spot_of(attribute), "bad-urdf",
-          fmt::format("the attribute '{}' of a pose is not read: a pose is relative to the child", attribute.name));
+    for (const XmlAttribute* attribute = xml.FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
+      const std::string_view name = attribute->Name(), value = attribute->Value();
+      if (value.empty() || name == "degrees" || (name == "rotation_format" && value == "euler_rpy")) continue;
+      messages_.error(spot_of(xml, *attribute), "bad-urdf",
+                      fmt::format("the attribute '{}' of a pose is not read: a pose is relative to the child", name));
     }
     const auto numbers = read_numbers(xml, 6);
     if (!numbers) return;
-    const XmlAttribute* degrees = xml.attribute("degrees");
-    const bool in_degrees = degrees != nullptr && (degrees->value == "true" || degrees->value == "1");
+    const bool in_degrees = xml.Attribute("degrees", "true") != nullptr || xml.Attribute("degrees", "1") != nullptr;
     const double unit = in_degrees ? std::numbers::pi / 180.0 : 1.0;
     child.frame.translation() << (*numbers)[0], (*numbers)[1], (*numbers)[2];
     child.frame.linear() = rotation(unit * Eigen::Vector3d((*numbers)[3], (*numbers)[4], (*numbers)[5]));
   }
 
-  void read_sdf_axis(const XmlElement& xml, Joint& joint) {
+  void read_sdf_axis(XmlElement& xml, Joint& joint) {
     Element axis(xml, fmt::format("the axis of '{}'", joint.name), messages_, false);
-    const XmlElement* xyz = axis.child("xyz");
-    const XmlElement* frame = axis.child("use_parent_model_frame");
+    XmlElement* xyz = axis.child("xyz");
+    XmlElement* frame = axis.child("use_parent_model_frame");
     for (const char* known : {"limit", "dynamics", "initial_position"}) axis.pass_over(known);
     axis.finish();
     if (xyz == nullptr || joint.type == JointType::fixed) return;
     joint.axis_given = true;
-    joint.axis_spot = text_spot(*xyz);
-    const XmlAttribute* expressed = xyz->attribute("expressed_in");
-    if (expressed != nullptr && !expressed->value.empty() && expressed->value != "__model__") {
-      messages_.error(spot_of(*expressed), "bad-urdf",
+    joint.axis_spot = whole_text_spot(*xyz);
+    const XmlAttribute* expressed = xyz->FindAttribute("expressed_in");
+    const std::string_view axes = expressed == nullptr ? "" : expressed->Value();
+    if (!axes.empty() && axes != "__model__") {
+      messages_.error(spot_of(*xyz, *expressed), "bad-urdf",
                       fmt::format("the axis of '{}' may be expressed in __model__ only", joint.name));
     }
-    const std::string word = frame == nullptr ? std::string() : trimmed(frame->text);
-    joint.axis_in_world = word == "1" || word == "true" || (expressed != nullptr && expressed->value == "__model__");
+    const std::string word = frame == nullptr ? std::string() : trimmed(text_of(*frame));
+    joint.axis_in_world = word == "1" || word == "true" || axes == "__model__";
     const auto numbers = read_numbers(*xyz, 3);
     if (!numbers) return;
     joint.axis = unit_axis({(*numbers)[0], (*numbers)[1], (*numbers)[2]}, joint.axis_spot,
@@ -222,21 +221,21 @@ class LoopReader {
 
   std::optional<std::vector<double>> read_numbers(const XmlElement& xml, std::size_t count) {
     std::vector<double> numbers;
-    const std::string& text = xml.text;
+    const std::string text = text_of(xml);
     for (std::size_t begin = text.find_first_not_of(blanks); begin != std::string::npos;) {
       const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
       std::string why, hint;
       const auto number = read_number(std::string_view(text).substr(begin, end - begin), why, hint);
       if (!number) {
-        messages_.error(text_spot(xml), "bad-urdf", fmt::format("'{}': {}", xml.name, why), {}, hint);
+        messages_.error(whole_text_spot(xml), "bad-urdf", fmt::format("'{}': {}", xml.Name(), why), {}, hint);
         return std::nullopt;
       }
       numbers.push_back(*number);
       begin = text.find_first_not_of(blanks, end);
     }
     if (numbers.size() == count) return numbers;
-    messages_.error(text_spot(xml), "bad-urdf",
-                    fmt::format("'{}' must be {} numbers, not {}", xml.name, count, numbers.size()));
+    messages_.error(whole_text_spot(xml), "bad-urdf",
+                    fmt::format("'{}' must be {} numbers, not {}", xml.Name(), count, numbers.size()));
     return std::nullopt;
   }
 
@@ -249,19 +248,20 @@ class LoopReader {
 }  // namespace
 
 bool is_loop_carrier(const XmlElement& element) {
-  return element.name == "gazebo" && element.child("joint") != nullptr;
+  return std::string_view(element.Name()) == "gazebo" && element.FirstChildElement("joint") != nullptr;
 }
 
-void read_loops(const XmlElement& root, Robot& robot, Messages& messages) {
+void read_loops(XmlElement& root, Robot& robot, Messages& messages) {
   LoopReader reader(robot, messages);
-  for (const XmlElement& child : root.children) {
-    if (child.name == "constraint" || child.name == "loop" || child.name == "loop_joint") reader.read_element(child);
+  for (XmlElement& child : XmlChildren(root)) {
+    const std::string_view name = child.Name();
+    if (name == "constraint" || name == "loop" || name == "loop_joint") reader.read_element(child);
     if (!is_loop_carrier(child)) continue;
-    for (const XmlElement& part : child.children) {
-      if (part.name == "joint") {
+    for (XmlElement& part : XmlChildren(child)) {
+      if (std::string_view(part.Name()) == "joint") {
         reader.read_sdf(part);
       } else {
-        messages.ignore(fmt::format("element '{}' of 'gazebo'", part.name));
+        messages.ignore(fmt::format("element '{}' of 'gazebo'", part.Name()));
       }
     }
   }

@@ -15,7 +15,7 @@
 namespace freeplay::urdf {
 
 /// Appends the loop joints of the file to `robot.joints`.
-void read_loops(const XmlElement& root, Robot& robot, Messages& messages);
+void read_loops(XmlElement& root, Robot& robot, Messages& messages);
 
 /// Is it a <gazebo> element with joints, which read_loops() reads?
 bool is_loop_carrier(const XmlElement& element);

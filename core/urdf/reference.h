@@ -53,10 +53,9 @@ inline Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const Spot& spot, 
 }
 
 /// The `xyz` of an axis element; x where it says none. `spot` becomes its place.
-inline Eigen::Vector3d read_axis(const XmlElement& xml, const std::string& owner, Messages& messages, Spot& spot) {
+inline Eigen::Vector3d read_axis(XmlElement& xml, const std::string& owner, Messages& messages, Spot& spot) {
   Element element(xml, owner, messages, false);
-  const XmlAttribute* xyz = xml.attribute("xyz");
-  spot = xyz == nullptr ? name_spot(xml) : spot_of(*xyz);
+  spot = spot_of(xml, "xyz");
   const Eigen::Vector3d axis = element.vector("xyz").value_or(Eigen::Vector3d::UnitX());
   element.finish();
   return unit_axis(axis, spot, owner, messages);

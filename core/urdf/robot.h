@@ -102,7 +102,6 @@ struct Mount {
 };
 
 struct Robot {
-  std::string name;
   Spot spot;
   std::vector<Link> links;
   std::vector<Joint> joints;  ///< in file order, those of the tree first

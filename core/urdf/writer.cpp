@@ -9,10 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "base/expression.h"
 #include "base/index.h"
 #include "base/number_text.h"
 #include "format/name_rule.h"
+#include "urdf/kept_sections.h"
+#include "urdf/xml_printer.h"
 
 namespace freeplay {
 namespace {
@@ -164,12 +165,20 @@ class UrdfWriter {
   static std::string n(double value) { return number_text(value + 0.0); }
 
   std::string robot_text() {
-    std::string out = "<?xml version=\"1.0\"?>\n<robot name=\"" + robot_name() + "\">\n  <link name=\"ground\"/>\n";
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b) out += link_text(static_cast<BodyId>(b));
+    XmlPrinter xml;
+    xml.PushDeclaration("xml version=\"1.0\"");
+    xml.open("robot", {{"name", robot_name()}});
+    xml.element("link", {{"name", "ground"}});
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) print_link(xml, static_cast<BodyId>(b));
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      out += tree_joint_[b] < 0 ? floating_text(static_cast<BodyId>(b)) : joint_text(static_cast<BodyId>(b));
+      if (tree_joint_[b] < 0) {
+        print_floating(xml, static_cast<BodyId>(b));
+      } else {
+        print_tree_joint(xml, static_cast<BodyId>(b));
+      }
     }
-    return out + "</robot>\n";
+    xml.CloseElement();
+    return xml.CStr();
   }
 
   std::string robot_name() const {
@@ -178,51 +187,51 @@ class UrdfWriter {
     return name.empty() ? "robot" : name;
   }
 
+  static std::string point_text(double x, double y) { return fmt::format("{} {} 0", n(x), n(y)); }
+
   /// Only the moment about the normal is known; as of a flat body, the others are half of it.
-  std::string link_text(BodyId id) const {
+  void print_link(XmlPrinter& xml, BodyId id) const {
     const Body& body = model_.bodies[at(id)];
     const Place moved = shift(id);
-    const double moment = body.inertia[8];
-    return fmt::format(
-        "  <link name=\"{}\">\n    <inertial>\n      <origin xyz=\"{} {} 0\" rpy=\"0 0 0\"/>\n      <mass "
-        "value=\"{}\"/>\n"
-        "      <inertia ixx=\"{}\" ixy=\"0\" ixz=\"0\" iyy=\"{}\" iyz=\"0\" izz=\"{}\"/>\n    </inertial>\n  </link>\n",
-        body.name, n(body.com[0] - moved.x), n(body.com[1] - moved.y), n(body.mass), n(moment / 2), n(moment / 2),
-        n(moment));
+    const std::string moment = n(body.inertia[8]), half = n(body.inertia[8] / 2);
+    xml.open("link", {{"name", body.name}});
+    xml.open("inertial", {});
+    xml.element("origin", {{"xyz", point_text(body.com[0] - moved.x, body.com[1] - moved.y)}, {"rpy", "0 0 0"}});
+    xml.element("mass", {{"value", n(body.mass)}});
+    xml.element("inertia", {{"ixx", half}, {"ixy", "0"}, {"ixz", "0"}, {"iyy", half}, {"iyz", "0"}, {"izz", moment}});
+    xml.CloseElement();
+    xml.CloseElement();
   }
 
-  std::string joint_text(BodyId child) const {
+  void print_tree_joint(XmlPrinter& xml, BodyId child) const {
     const JointElement& joint = model_.joints[at(tree_joint_[at(child)])];
     const BodyId parent = first(joint).body;
-    const Place place = origin(joint);
     const double along = second(joint).angle;
     const std::string_view type = joint.ideal_component->description.name;
-    std::string own;
-    if (type == "revolute") own = "    <axis xyz=\"0 0 1\"/>\n";
+    open_joint(xml, joint.name, type == "revolute" ? "continuous" : std::string(type),
+               parent == ground ? "ground" : model_.bodies[at(parent)].name, child, origin(joint));
+    if (type == "revolute") xml.element("axis", {{"xyz", "0 0 1"}});
     if (type == "prismatic") {
-      own = fmt::format(
-          "    <axis xyz=\"{} {} 0\"/>\n    <limit lower=\"-1000\" upper=\"1000\" effort=\"1000\" "
-          "velocity=\"1000\"/>\n",
-          n(along == 0.0 ? 1.0 : std::cos(along)), n(std::sin(along)));
+      xml.element("axis", {{"xyz", point_text(along == 0.0 ? 1.0 : std::cos(along), std::sin(along))}});
+      xml.element("limit", {{"lower", "-1000"}, {"upper", "1000"}, {"effort", "1000"}, {"velocity", "1000"}});
     }
-    return joint_element(joint.name, type == "revolute" ? "continuous" : type,
-                         parent == ground ? "ground" : model_.bodies[at(parent)].name, model_.bodies[at(child)].name,
-                         place, own);
+    xml.CloseElement();
   }
 
-  std::string floating_text(BodyId child) const {
+  void print_floating(XmlPrinter& xml, BodyId child) const {
     std::string name = model_.bodies[at(child)].name.substr(0, 50) + "-floating";
     const auto taken = [&](const JointElement& joint) { return joint.name == name; };
     while (std::ranges::any_of(model_.joints, taken)) name += "_";
-    return joint_element(name, "floating", "ground", model_.bodies[at(child)].name, start(child), "");
+    open_joint(xml, name, "floating", "ground", child, start(child));
+    xml.CloseElement();
   }
 
-  static std::string joint_element(const std::string& name, std::string_view type, const std::string& parent,
-                                   const std::string& child, const Place& place, const std::string& own) {
-    return fmt::format(
-        "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n"
-        "    <origin xyz=\"{} {} 0\" rpy=\"0 0 {}\"/>\n{}  </joint>\n",
-        name, type, parent, child, n(place.x), n(place.y), n(place.angle), own);
+  void open_joint(XmlPrinter& xml, const std::string& name, const std::string& type, const std::string& parent,
+                  BodyId child, const Place& place) const {
+    xml.open("joint", {{"name", name}, {"type", type}});
+    xml.element("parent", {{"link", parent}});
+    xml.element("child", {{"link", model_.bodies[at(child)].name}});
+    xml.element("origin", {{"xyz", point_text(place.x, place.y)}, {"rpy", "0 0 " + n(place.angle)}});
   }
 
   // --- side-car --------------------------------------------------------------------------------------------------
@@ -257,8 +266,11 @@ class UrdfWriter {
     Node& content = map();
     content.entries = rest;
     if (!joints.entries.empty()) put(content, "joints", joints);
-    keep_presets(root, content);
-    keep_parameters(root, content);
+    KeptSections kept(*source_, target_);
+    kept.add_presets(root, content);
+    if (kept.add_parameters(root, content)) {
+      notes_.push_back("bodies and frames are written as numbers: parameters no longer change them");
+    }
     // A URDF with a joint of the type floating is read in space where nobody says otherwise.
     const bool floats = std::ranges::any_of(tree_joint_, [](int joint) { return joint < 0; });
     if (floats && source_->find("space") == nullptr) put(root, "space", scalar("planar"));
@@ -395,70 +407,6 @@ class UrdfWriter {
       if (found != nullptr) return found;
     }
     return nullptr;
-  }
-
-  // --- what the rest refers to -----------------------------------------------------------------------------------
-
-  static void collect_uses(const Node& node, std::set<std::string>& names) {
-    for (const Node* item : node.items) collect_uses(*item, names);
-    for (const Node::Entry& entry : node.entries) {
-      if (entry.key->text == "use") {
-        if (entry.value->is_scalar()) names.insert(entry.value->text);
-        for (const Node* item : entry.value->items) names.insert(item->text);
-      }
-      collect_uses(*entry.value, names);
-    }
-  }
-
-  static void collect_parameters(const Node& node, std::set<std::string>& names) {
-    if (node.is_scalar()) {
-      for (const std::string& name : referenced_parameters(node.text)) names.insert(name);
-    }
-    for (const Node* item : node.items) collect_parameters(*item, names);
-    for (const Node::Entry& entry : node.entries) collect_parameters(*entry.value, names);
-  }
-
-  /// Keeps the entries of a section of the source that `wanted` names, and what these name in turn.
-  template <class Collect>
-  void keep(Node& root, Node& content, const char* section, std::set<std::string> wanted, Collect collect) {
-    const Node* all = source_->find(section);
-    if (all == nullptr || !all->is_map()) return;
-    for (std::size_t before = 0; before != wanted.size();) {
-      before = wanted.size();
-      for (const Node::Entry& entry : all->entries) {
-        if (wanted.contains(entry.key->text)) collect(*entry.value, wanted);
-      }
-    }
-    Node& kept = map();
-    for (const Node::Entry& entry : all->entries) {
-      if (wanted.contains(entry.key->text)) kept.entries.push_back(entry);
-    }
-    if (kept.entries.empty()) return;
-    put(root, section, kept);
-    content.entries.push_back({&scalar(section), &kept});
-  }
-
-  void keep_presets(Node& root, Node& content) {
-    std::set<std::string> wanted;
-    collect_uses(content, wanted);
-    keep(root, content, "presets", wanted,
-         [](const Node& node, std::set<std::string>& names) { collect_uses(node, names); });
-  }
-
-  void keep_parameters(Node& root, Node& content) {
-    const Node* all = source_->find("parameters");
-    if (all == nullptr || !all->is_map() || all->entries.empty()) return;
-    std::set<std::string> wanted;
-    collect_parameters(content, wanted);
-    if (const Node* sweep = source_->find("sweep"); sweep != nullptr && sweep->is_map()) {
-      const Node* swept = sweep->find("parameters");
-      for (const Node::Entry& entry : swept == nullptr ? std::vector<Node::Entry>{} : swept->entries) {
-        wanted.insert(entry.key->text);
-      }
-    }
-    keep(root, content, "parameters", wanted,
-         [](const Node& node, std::set<std::string>& names) { collect_parameters(node, names); });
-    notes_.push_back("bodies and frames are written as numbers: parameters no longer change them");
   }
 
   const Document& document_;

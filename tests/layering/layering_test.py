@@ -47,7 +47,10 @@ ROOMS = rooms_below()
 EVERY_ROOM = set(ROOMS)
 LIBRARIES = {
     "yaml-cpp": {"yaml"},
+    "tinyxml2.h": {"urdf"},
+    "expat.h": {"urdf"},
     "urdf_parser": {"urdf"},
+    "urdf_model": {"urdf"},
     "console_bridge": {"urdf"},
     "klu.h": {"linear"},
     "SuiteSparseQR.hpp": {"linear"},
