@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr int part_starts = 60, whole_starts = 400;
 constexpr std::size_t most_postures = 4096;
 constexpr double same = 1e-6;  // of positions relative to the model's size, of angles [rad]

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 constexpr double rim_step = 0.6;  // standard deviation of a step on rims [rad]
 constexpr int rim_steps = 3;      // from one sample to the next
 constexpr double closed = 1e-13;  // gap that counts as none; plays have size 1
-constexpr double same = 1e-8;     // distance of places that are one
+constexpr double same_place = 1e-8;     // distance of places that are one
 constexpr int most_corrections = 30, most_starts = 1000;
 
 }  // namespace
@@ -146,7 +146,7 @@ void ClosedPlay::walk_on_rims() {
       rim_.volume / there.volume * std::exp(0.5 * (step.squaredNorm() - back.squaredNorm()) / (rim_step * rim_step));
   if (threshold >= ratio) return;
   VectorXd returned = there.place + back;
-  if (!put_back(&there.normal, returned) || (returned - rim_.place).norm() > same) return;
+  if (!put_back(&there.normal, returned) || (returned - rim_.place).norm() > same_place) return;
   rim_ = std::move(there);
 }
 

@@ -11,11 +11,10 @@
 #include "analysis/posture.h"
 #include "assembly/assembly.h"
 #include "base/error.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool is_input(const Platform& platform, int joint) {
   return std::ranges::find(platform.inputs, joint) != platform.inputs.end();

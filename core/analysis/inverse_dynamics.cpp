@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "linear/singular_values.h"
 
 namespace freeplay {
@@ -14,7 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rank_limit = 1e-10;  // of pivots, and of parts of the null space
 
 /// Rows of the system, then of the inputs.

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/index.h"
 #include "linear/row_solutions.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<SparseEntry> input_entries(PostureSolver& solver, const Evaluation& e, int first_row) {
   const Model& model = solver.mechanism().model();

@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "base/suggestion.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Location file_of(const Model& model) { return {model.file, 0, 0}; }
 

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "base/angle.h"
+#include "base/index.h"
 #include "model/rotation.h"
 
 namespace freeplay {
@@ -14,10 +16,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double one_axis = 1e-9;  // cosine of the pitch below which roll and yaw turn about one axis
-
-double nearest_turn(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
 Matrix3d rotation_of(const double* roll_pitch_yaw) {
   const Rotation r = from_roll_pitch_yaw(roll_pitch_yaw[0], roll_pitch_yaw[1], roll_pitch_yaw[2]);
@@ -118,7 +117,7 @@ void PlatformFrame::turn_rows(const Components& given, const std::array<Jet, mos
     if (!given[first]) return;
     PoseRow& row = out.emplace_back();
     row.g[form_.twist[first]] = 1.0;
-    row.gap = nearest_turn(pose[first].value - std::atan2(rotation(1, 0), rotation(0, 0)));
+    row.gap = without_turns(pose[first].value - std::atan2(rotation(1, 0), rotation(0, 0)));
     row.rate = pose[first].rate;
     row.acceleration = pose[first].acceleration;
     return;
@@ -132,7 +131,7 @@ void PlatformFrame::turn_rows(const Components& given, const std::array<Jet, mos
   if (all) {
     turn_axes(wanted, rates, e, e_rate);
     const Eigen::AngleAxisd gap(rotation_of(wanted.data()) * rotation.transpose());
-    const Vector3d turn = nearest_turn(gap.angle()) * gap.axis();
+    const Vector3d turn = without_turns(gap.angle()) * gap.axis();
     const Vector3d w = e * rates, alpha = e * accelerations + e_rate * rates;
     for (int i = 0; i < 3; ++i) {
       PoseRow& row = out.emplace_back();
@@ -153,7 +152,7 @@ void PlatformFrame::turn_rows(const Components& given, const std::array<Jet, mos
     if (!given[at(3 + i)]) continue;
     PoseRow& row = out.emplace_back();
     for (int c = 0; c < 3; ++c) row.g[3 + c] = inverse(i, c);
-    row.gap = nearest_turn(wanted[i] - angles[i]);
+    row.gap = without_turns(wanted[i] - angles[i]);
     row.rate = rates[i];
     row.acceleration = accelerations[i] + bias[i];
   }

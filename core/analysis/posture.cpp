@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "assembly/leg_modes.h"
+#include "base/angle.h"
 #include "base/error.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Lengths relative to the size of the model, angles in rad.
 constexpr double last_correction = 1e-9;  // what is left is its square
@@ -25,8 +25,6 @@ constexpr int most_pieces = 2000;
 constexpr double near_the_end = 1e-3;  // share of a way within which its end may be a fold
 constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
 constexpr int most_halvings = 60;  // of the distance to a fold
-
-double nearest_turn(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
 /// Centre of mass of a body whose point `pin` (body frame) is at (x, y).
 void put(const Body& body, double px, double py, double x, double y, double angle, double* q) {
@@ -187,7 +185,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand) {
       }
     }
     const double gap = demand.inputs[i].value - e_.coordinate[at(j)];
-    right_[row++] = mechanism_.is_angle(static_cast<int>(i)) ? nearest_turn(gap) : gap;
+    right_[row++] = mechanism_.is_angle(static_cast<int>(i)) ? without_turns(gap) : gap;
   }
 }
 
@@ -320,7 +318,7 @@ bool PostureSolver::reach(const Demand& demand, const Posture& from, Posture& po
   const auto between = [](const Jet& end, double start, bool turns, double s) {
     const double gap = end.value - start;
     Jet out = end;
-    if (s < 1.0) out.value = start + s * (turns ? nearest_turn(gap) : gap);
+    if (s < 1.0) out.value = start + s * (turns ? without_turns(gap) : gap);
     return out;
   };
   return reach(
@@ -378,7 +376,7 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
             Demand share = demand;
             for (std::size_t i = 0; i < form().size(); ++i) {
               const double gap = demand.pose[i].value - here[i];
-              share.pose[i].value = here[i] + s * (form().is_turn(i) ? nearest_turn(gap) : gap);
+              share.pose[i].value = here[i] + s * (form().is_turn(i) ? without_turns(gap) : gap);
             }
             return share;
           },

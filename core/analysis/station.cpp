@@ -9,11 +9,10 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Demand path_demand(IdealMechanism& mechanism, double t) {
   const Platform& platform = mechanism.platform();

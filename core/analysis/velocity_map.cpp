@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
 #include "linear/singular_values.h"
 
 namespace freeplay {
@@ -11,7 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double rank_limit = 1e-10;     // of pivots, relative to the largest
 constexpr double folded_limit = 1e-7;    // of both at a fold, which is known to the root of the rounding
 constexpr double nothing = 1e-9;         // of rows, relative to null vectors of length 1

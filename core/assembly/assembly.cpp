@@ -19,6 +19,7 @@
 #include "assembly/start_branches.h"
 #include "assembly/start_rows.h"
 #include "assembly/start_velocities.h"
+#include "base/index.h"
 #include "component/joint_answer.h"
 #include "stage/newton_stage_solver.h"
 #include "system/path_follower.h"
@@ -29,7 +30,6 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // The closed mechanism at the start time and the rows that hold it there.
 class Assembler {

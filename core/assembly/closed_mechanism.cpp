@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "assembly/placing.h"
+#include "base/index.h"
 #include "linear/row_solutions.h"
 
 namespace freeplay {
@@ -13,7 +14,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -10,11 +10,11 @@
 
 #include "assembly/loop_gap.h"
 #include "assembly/start_branches.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // In rad, and over the size of the model.

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 double start_angle(const Model& model, std::span<const double> coordinate, int element) {

@@ -6,10 +6,11 @@
 
 #include <Eigen/Geometry>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
 #include "linear/stacked_rows.h"
 
 namespace freeplay {
@@ -11,7 +12,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr int most_steps = 200;
 constexpr double longest = 0.3;         // step: over the size of the model, and in rad
 constexpr double last = 1e-9;           // step, likewise

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Where a frame stands: in the plane with the angle counted over turns, in space with a rotation.
 struct PlanarPose {

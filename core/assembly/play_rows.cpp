@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/index.h"
 #include "component/parameter_block.h"
 #include "linear/stacked_rows.h"
 
@@ -14,7 +15,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr int most_steps = 30, most_shortenings = 6;
 constexpr double same_place = 1e-13;       // of the model's size and of a radian
 constexpr double inside = 0.99;            // of the farthest place, after offsets were shortened

@@ -8,13 +8,14 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Shifts over the size of the model, turns in rad.
 constexpr double same_place = 1e-6;    // of two positions

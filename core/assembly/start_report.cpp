@@ -8,11 +8,11 @@
 
 #include "assembly/given_poses.h"
 #include "assembly/placing.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double noticed = 1e-4;               // of the size, of a radian, of a velocity
 constexpr double noticed_of_play = 1e-3;       // of the clearance: of what its block gives
 constexpr double noticed_pose_in_play = 0.05;  // of the clearance: of a pose

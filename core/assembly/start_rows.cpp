@@ -6,12 +6,12 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "linear/row_solutions.h"
 #include "system/path_row.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 ConstraintFacts constraint_facts(const System& system, const Evaluation& e) {

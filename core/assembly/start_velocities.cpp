@@ -10,6 +10,7 @@
 #include "assembly/drive_range.h"
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
+#include "base/index.h"
 #include "linear/row_solutions.h"
 #include "linear/stacked_rows.h"
 
@@ -19,9 +20,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to tell than to find
-constexpr double kept = 1e-9;                    // of the largest velocity: a given one that differs by less is kept
+constexpr double kept_part = 1e-9;                    // of the largest velocity: a given one that differs by less is kept
 
 class Velocities {
  public:
@@ -102,7 +102,7 @@ class Velocities {
   bool keeps(const VectorXd& given) {
     const MatrixXd rows = given_rows();
     return rows.rows() == 0 || (rows * (velocities() - given)).lpNorm<Eigen::Infinity>() <=
-                                   kept * std::max(1.0, given.lpNorm<Eigen::Infinity>());
+                                   kept_part * std::max(1.0, given.lpNorm<Eigen::Infinity>());
   }
 
   // --- rows of each rank -------------------------------------------------------------------------------------------
@@ -209,8 +209,8 @@ class Velocities {
     std::vector<ChosenSpeed> out;
     for (std::size_t i = 0; i < rows.lead.size(); ++i) {
       const auto index = static_cast<Eigen::Index>(i);
-      if (rows.lead[i] < 0 || (all.row(index) * free).norm() <= kept * all.row(index).norm()) continue;
-      if (std::abs(rows.residual[index]) <= kept * velocities().lpNorm<Eigen::Infinity>()) continue;
+      if (rows.lead[i] < 0 || (all.row(index) * free).norm() <= kept_part * all.row(index).norm()) continue;
+      if (std::abs(rows.residual[index]) <= kept_part * velocities().lpNorm<Eigen::Infinity>()) continue;
       out.push_back({rows.lead[i], rows.residual[index]});
     }
     return out;

@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "base/text.h"
 
 namespace freeplay {
@@ -22,7 +23,6 @@ constexpr double odd_free_length = 100.0;  // between the free length of a sprin
 constexpr double coarse_accuracy = 0.5;    // by a clearance
 constexpr double deep_start = 1.5;         // eccentricity of a journal, by its clearance
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Eigen::ColPivHouseholderQR<MatrixXd> decompose(const MatrixXd& matrix) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr(matrix);

@@ -12,11 +12,11 @@
 #include "analysis/play_samples.h"
 #include "analysis/singularity.h"
 #include "base/error.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const std::string& input_name(const IdealMechanism& mechanism, int input) {

@@ -22,7 +22,7 @@ struct ValidateOptions {
 };
 
 /// What is known of one file.
-struct Verdict {
+struct Validation {
   std::string file;
   LoadedModel loaded;
   std::optional<ModelFacts> facts;
@@ -34,8 +34,8 @@ struct Verdict {
   bool ok() const { return loaded.exit_code == 0; }
 };
 
-Verdict judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
-  Verdict verdict{file, load_model(file, build_options(options.model), loading(common)), {}, {}, {}, {}, {}};
+Validation judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
+  Validation verdict{file, load_model(file, build_options(options.model), loading(common)), {}, {}, {}, {}, {}};
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);
@@ -49,7 +49,7 @@ Verdict judge(const std::string& file, const ValidateOptions& options, const Com
   return verdict;
 }
 
-Json verdict_json(const Verdict& verdict, int max_errors) {
+Json verdict_json(const Validation& verdict, int max_errors) {
   return {
       {"file", verdict.file},
       {"ok", verdict.ok()},
@@ -59,7 +59,7 @@ Json verdict_json(const Verdict& verdict, int max_errors) {
       {"messages", messages_json(verdict.loaded.diagnostics, max_errors)}};
 }
 
-void print_verdict(const Verdict& verdict, const CommonOptions& common) {
+void print_verdict(const Validation& verdict, const CommonOptions& common) {
   if (!common.quiet && !common.json) {
     print(printable(verdict.file) + (verdict.ok() ? ": ok\n" : ": not ok\n"));
     if (verdict.ok()) {
@@ -74,7 +74,7 @@ int validate(const ValidateOptions& options, const CommonOptions& common) {
   Json list = Json::array();
   int exit_code = 0;
   for (const std::string& file : options.models) {
-    const Verdict verdict = judge(file, options, common);
+    const Validation verdict = judge(file, options, common);
     print_verdict(verdict, common);
     list.push_back(verdict_json(verdict, common.max_errors));
     exit_code = std::max(exit_code, verdict.loaded.exit_code);

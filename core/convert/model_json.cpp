@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "base/number_text.h"
 #include "base/token.h"
 #include "base/unit.h"
@@ -18,8 +19,6 @@
 
 namespace freeplay {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// The unit of a parameter for these values: "kind: N/m | N*m/rad" chosen, "N/m^exponent" with its number.
 std::string unit_text(const Parameter& parameter, const ParameterBlock& block) {

@@ -55,7 +55,7 @@ constexpr FormatKey body[] = {
     {"frames", "entries of frame value", "", "", "Points with axes that joints hold.", "{tip: [0.24, 0]}"},
     use};
 
-constexpr FormatKey ground[] = {
+constexpr FormatKey ground_keys[] = {
     {"frames", "entries of frame value", "", "", "Points with axes that joints hold.", "{anchor: [0.5, 0]}"}};
 
 constexpr FormatKey pose[] = {{"position", "vector", "m", "follows from the joints", "Of the body frame.", "[0, 0.1]"},
@@ -247,7 +247,7 @@ constexpr FormatMap maps[] = {
     {"model", "", "The whole file.", model},
     {"urdf", "urdf", "How a URDF file is read.", urdf},
     {"body", "bodies.NAME", "A rigid body. Positions are in its body frame.", body},
-    {"ground", "bodies.ground", "What does not move.", ground},
+    {"ground", "bodies.ground", "What does not move.", ground_keys},
     {"pose", "bodies.NAME.pose", "Guess of a body's start.", pose},
     {"velocity", "bodies.NAME.velocity", "Guess of a body's start.", velocity},
     {"frame", "bodies.NAME.frames.NAME", "A point with axes on a body. A vector alone is its position.", frame},

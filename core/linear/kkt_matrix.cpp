@@ -8,11 +8,12 @@
 #include <Eigen/Core>
 #include <klu.h>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
 constexpr double smallest_growth = 1e-6;  // of pivots that are used again: digits that may be lost
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Loops of our own: with a dozen unknowns, Eigen spends most of its time on choosing its way through larger matrices.
 

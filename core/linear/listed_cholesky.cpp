@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 bool ListedCholesky::set_pattern(int size, std::vector<std::pair<int, int>> entries, std::size_t most) {

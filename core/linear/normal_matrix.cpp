@@ -8,10 +8,11 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr std::size_t densest = 24;        // products for each number of G, beyond which S is too dense
 constexpr std::size_t most_filled = 1000;  // operations for each number of G, beyond which its factors are
 

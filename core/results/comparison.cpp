@@ -41,7 +41,7 @@ std::optional<Place> place(const std::vector<double>& time, double t, double sam
   return Place{row - 1, (t - time[row - 1]) / (*after - time[row - 1])};
 }
 
-double at(const std::vector<double>& values, const Place& p) {
+double value_at(const std::vector<double>& values, const Place& p) {
   return p.fraction == 0.0 ? values[p.row] : values[p.row] + p.fraction * (values[p.row + 1] - values[p.row]);
 }
 
@@ -120,7 +120,7 @@ class Comparer {
     ChannelDifference d{.name = name};
     double size = 0.0, squares = 0.0;
     for (const auto& [row, p] : rows_) {
-      const double x = a[row], y = at(b, p);
+      const double x = a[row], y = value_at(b, p);
       if (std::isnan(x) && std::isnan(y)) continue;
       size = std::fmax(size, std::abs(x));
       const double off = x == y ? 0.0 : std::abs(x - y);

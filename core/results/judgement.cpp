@@ -5,12 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/motion_period.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Limits of a number from which on a run is doubtful and bad. docs/trust.md says where they come from.
 struct Limits {

@@ -7,13 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr int order_by_ends = 5;           // of a method whose steps are known as well inside by their ends
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
 constexpr double astray_inside = 1.0;      // and by which its ends may mislead: no more than a step may err by
@@ -25,7 +24,6 @@ constexpr double barely = 1.0 - 1e-6;  // of a step: what is shorter by the roun
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
 // too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth
 // there, so that a step of another length, which looks elsewhere, goes over it. By regularity():
-constexpr double near_singular = 1e-2;  // a step that failed is tried in other lengths
 constexpr double at_singular = 1e-8;    // a step that passed, too
 constexpr double stuck_there = 1e-4;    // steps that fall for ever have come to it
 constexpr double hopeless = 1e-12;      // the way that the mechanism takes on would be one of rounding

@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "assembly/drive_range.h"
+#include "base/index.h"
 #include "run/likely_cause.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 // Whether the bodies of a joint hang together without it, so that others may hold what it should.
 bool in_a_loop(const Model& model, int without) {
   const std::size_t bodies = model.bodies.size();  // the last place is ground's

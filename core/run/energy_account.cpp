@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 constexpr double same_length = 1e-6;      // of steps, relative
 constexpr double bends_little = 1e-6;     // third differences of powers, relative: the cubic errs by a fortieth of that
 constexpr double nearly_straight = 3e-3;  // what is left of a smooth power is then a small part of that
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 double power(const double* wrench, const MarkerKinematics& k) {

@@ -11,7 +11,7 @@ namespace freeplay {
 namespace {
 constexpr double suspicious =
     2.0;  // energy of motion and of joints, by the largest before: work is looked at from there
-constexpr double near_singular = 1e-4;  // regularity
+constexpr double singular = 1e-4;  // regularity
 constexpr double digits = 1e-9;         // of potential energies that their differences keep, at least
 constexpr double transmission = 10.0;   // speed of bodies, by that of drivers: a mechanism may come to it in a step
 constexpr double unexplained = 2.0;     // growth of energy, by all work that powers at both ends could have done
@@ -67,7 +67,7 @@ bool Simulation::Impl::gains_energy() {
 // Contacts are overshot by steps; constraints alone come to this where the mechanism cannot go on.
 std::string Simulation::Impl::why_energy_grows(double dt) {
   if (model.clearance_joints() == 0) {
-    return adaptive && solver.regularity() < near_singular ? why_singular() : why_not_converged(dt);
+    return adaptive && solver.regularity() < singular ? why_singular() : why_not_converged(dt);
   }
   std::string text = fmt::format(
       "t = {:.9g} s: energy would grow by {:.3g} J in a step of {:.3g} s, more than everything that acts could put in",

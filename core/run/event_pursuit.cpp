@@ -5,15 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/dense_step.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double rounding = std::numeric_limits<double>::epsilon();
-constexpr double near_singular = 1e-2;    // regularity below which no motion is interpolated
 constexpr double event_time = 1e-11;      // a located event is as sharp as this [s], or as its function can be
 constexpr double event_rounding = 1e-15;  // [unit of the function]
 constexpr double event_share = 1e-5;      // or as this part of what a position may err by in a step

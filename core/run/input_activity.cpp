@@ -5,13 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "base/index.h"
 #include "model/time_function.h"
 #include "system/guard_marks.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double samples_per_change = 3.0;  // in the duration of the shortest change
 constexpr double fewest_samples = 8.0;      // in a step, besides its ends, its middle and its quarters
 constexpr double little = 0.01;             // of what positions may err by in a step

@@ -6,11 +6,10 @@
 #include <fmt/format.h>
 
 #include "component/contact_stiffness.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // What no machine has.
 constexpr double most_gyration = 3.0;       // radius of gyration, by the size of the body

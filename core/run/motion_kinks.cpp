@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double smallest_jump = 1e-9;  // of a speed, in parts of the larger one
 
 // Around a kink at t the side is one of rounding.

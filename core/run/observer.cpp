@@ -6,13 +6,13 @@
 
 #include <Eigen/Geometry>
 
+#include "base/index.h"
 #include "component/joint_answer.h"
 #include "run/energy_account.h"
 #include "system/path_row.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 bool Observer::observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,

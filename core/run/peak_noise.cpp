@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
@@ -11,10 +13,9 @@ constexpr double first_difference = 0.01;  // of the play
 constexpr double growth = 2.0;             // of differences in an impact
 constexpr double same_peak = 0.01;         // of the value
 constexpr std::size_t agreeing = 5;        // peaks that are the same: three are by chance in every twentieth run
-constexpr double margin = 1.5;             // of the scale of the tail
+constexpr double widening = 1.5;             // of the scale of the tail
 constexpr double unknown = 0.3;            // of the value, where too little was seen
 constexpr double same_speed = 1.05;        // an approach this much faster than the separation before is driven
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
@@ -92,7 +93,7 @@ double PeakNoise::of(std::size_t value) const {
   double scale = 0.0;
   for (std::size_t i = 1; i <= gaps; ++i) scale += static_cast<double>(i) * (x[i - 1] - x[i]);
   if (gaps > 0) scale /= static_cast<double>(gaps);
-  return grown * std::max(margin * scale, x[0] - x[1]);
+  return grown * std::max(widening * scale, x[0] - x[1]);
 }
 
 }  // namespace freeplay

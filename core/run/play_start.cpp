@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "base/philox.h"
 #include "run/observer.h"
 
@@ -13,7 +14,6 @@ namespace {
 
 constexpr std::uint64_t stream = 0x706c6179;  // "play": draws of other kinds have other keys
 constexpr int most_attempts = 12;
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Evenly distributed in the unit disc or ball.
 Vector3 unit_ball(const RandomWords& words, Space space) {

@@ -5,13 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/dense_step.h"
 #include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double near_singular = 1e-2;  // regularity below which no motion is interpolated
 constexpr double open_rows = 1e-3;      // of the size of the model: constraints that are off by more do not hold
 }  // namespace
 

@@ -2,13 +2,14 @@
 
 #include <cmath>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
 constexpr double rounding_off = 1e-9;  // of the promised distance
 // Cubics that begin and end with so many steps to go, at the speeds there, stay within the distance between.
 constexpr double steps_left = 2.0, steps_to_begin = 4.0;
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "component/declared.h"
 #include "component/joint_answer.h"
 #include "component/own_types.h"
@@ -17,8 +18,6 @@ namespace freeplay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double rounding = std::numeric_limits<double>::epsilon();
 constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double shortest_part = 1e-6;      // of the run, see shortest_change()

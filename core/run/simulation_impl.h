@@ -1,6 +1,7 @@
 // The parts of a run. Private to simulation.cpp and the files named below.
 #pragma once
 
+#include <limits>
 #include <chrono>
 #include <optional>
 #include <string_view>
@@ -26,6 +27,9 @@ inline constexpr std::string_view accuracy = "; ask for an accuracy in place of 
 inline constexpr std::string_view other_steps = "; ask for less accuracy, or for steps of one size";
 inline constexpr std::string_view error = "; allow smaller steps or a larger error";
 }  // namespace advice
+inline constexpr double rounding = std::numeric_limits<double>::epsilon();
+/// Regularity below which no motion is interpolated and steps that fail are tried in other lengths.
+inline constexpr double near_singular = 1e-2;
 
 struct Simulation::Impl {
   Impl(const System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);

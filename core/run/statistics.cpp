@@ -4,11 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double nothing = -std::numeric_limits<double>::infinity();
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void raise(std::span<const double> values, std::vector<double>& largest) {
   for (std::size_t i = 0; i < values.size(); ++i) largest[i] = std::max(largest[i], values[i]);

@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/index.h"
 #include "component/joint_answer.h"
 #include "run/event_finder.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double rounding = 1e-15;      // of a located event function, in its unit
+constexpr double event_rounding = 1e-15;      // of a located event function, in its unit
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
 constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little
@@ -256,7 +256,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       const Hermite second{first.value1, first.slope1, sign * end_[event], sign * end_rate_[event] * half};
       double at = 2.0;
       // A function that rests at its zero crosses it by rounding all the time.
-      if (std::max(first.value1, second.value1) <= rounding) continue;
+      if (std::max(first.value1, second.value1) <= event_rounding) continue;
       if (const auto s = first_rise(first, 0.0)) {
         at = 0.5 * *s;
       } else if (const auto later = first_rise(second, 0.0)) {

@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "run/reach.h"
 
 namespace freeplay {
 namespace {
 constexpr double look_again = 1.21;  // where the square of a force has grown so much since the last look
 constexpr double unmoved = 1e-6;     // of the clearance
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 void SingularPassage::add(double regularity, double t, RunExtremes& seen) {

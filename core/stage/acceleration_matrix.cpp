@@ -6,12 +6,12 @@
 
 #include <Eigen/LU>
 
+#include "base/index.h"
 #include "stage/block_inverse.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double measurable = 1e-10;     // pivot of the normal matrix that is not one of rounding
 constexpr double regular_enough = 1e-7;  // pivot of the normal matrix below which the whole one is factored
 

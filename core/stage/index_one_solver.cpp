@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/index.h"
 #include "freeplay/pairs.h"
 
 namespace freeplay {
@@ -23,7 +24,6 @@ constexpr double near_position = 1e-12;    // ... and where it does not halve an
 constexpr int quick_passes = 3;            // of a projection of velocities
 constexpr double small_change = 1e-5;      // of velocities, relative, that these may make
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double largest(std::span<const double> numbers) {
   double size = 0.0;

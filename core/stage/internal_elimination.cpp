@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 
 constexpr double vanishing_part = 1e-4;  // of the largest variable of a joint
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Gauss-Jordan with partial pivoting, in place on a small row-major matrix and its right sides.
 void solve_small(double* matrix, int size, double* right, int columns) {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.h"
 #include "freeplay/pairs.h"
 #include "stage/solver_table.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters)

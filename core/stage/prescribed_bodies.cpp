@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent) {

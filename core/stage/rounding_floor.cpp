@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 RoundingFloor::RoundingFloor(StageEquations& equations, const ConvergenceParameters& parameters)

@@ -4,13 +4,13 @@
 
 #include <Eigen/Geometry>
 
+#include "base/index.h"
 #include "freeplay/pairs.h"
 #include "system/system.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 std::array<double, 4> quaternion_of(const spatial::Matrix& rotation) {

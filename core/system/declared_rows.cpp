@@ -2,12 +2,12 @@
 
 #include <cmath>
 
+#include "base/index.h"
 #include "system/system.h"
 
 namespace freeplay::planar {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double whole_turn = 2.0 * M_PI;
 
 }  // namespace

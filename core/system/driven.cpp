@@ -4,11 +4,11 @@
 
 #include <Eigen/LU>
 
+#include "base/index.h"
 #include "system/system.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double whole_turn = 2.0 * M_PI;
 constexpr int width = planar::velocities;
 }  // namespace

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/index.h"
+
 namespace freeplay::planar {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Rows of one joint, gear or driver, and the bodies in them.
 struct Rows {

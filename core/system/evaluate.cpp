@@ -4,14 +4,13 @@
 #include <cstring>
 #include <limits>
 
+#include "base/index.h"
 #include "freeplay/pairs.h"
 #include "system/finite.h"
 #include "system/system.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double rate_of(const double* row, const MarkerKinematics& a, const MarkerKinematics& b) {
   double rate = 0.0;

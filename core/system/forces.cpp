@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.h"
 #include "system/finite.h"
 #include "system/joint_derivatives.h"
 #include "system/system.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // System has a member of the name that the kinematics give it.
 template <class Arm>

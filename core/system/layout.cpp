@@ -1,11 +1,11 @@
 #include "system/layout.h"
 
+#include "base/index.h"
 #include "system/planar_kinematics.h"
 #include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 Layout::Layout(const Model& model, Variant variant, std::span<const planar::DrivenBody> driven) {

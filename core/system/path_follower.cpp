@@ -7,11 +7,10 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/index.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // All lengths are relative to the size of the model, angles in rad.
 constexpr int most_iterations = 12;

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 void PathRow::entries(const Evaluation& e, double* row) const {

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
 #include "system/finite.h"
 #include "system/system.h"
 
 namespace freeplay {
 namespace {
 constexpr std::size_t widest_joint = 6;  // rows of a joint that leaves no freedom
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 template <class Bodies>

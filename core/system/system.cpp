@@ -8,12 +8,11 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/index.h"
 #include "system/joint_derivatives.h"
 
 namespace freeplay {
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double length(const Vector3& v) { return std::hypot(std::hypot(v[0], v[1]), v[2]); }
 

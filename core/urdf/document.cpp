@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "urdf/element.h"
 #include "urdf/inertia.h"
 #include "urdf/names.h"
@@ -15,8 +16,6 @@
 
 namespace freeplay::urdf {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// The plane that was asked for, or the first in which the robot is planar, or the one that comes nearest.
 PlanarRobot choose_plane(const Robot& robot, const Options& options) {

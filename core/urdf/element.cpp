@@ -10,11 +10,10 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "urdf/blanks.h"
 
 namespace freeplay::urdf {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n";
 
 bool holds(const std::vector<std::string>& words, const std::string& word) {
   return std::ranges::find(words, word) != words.end();

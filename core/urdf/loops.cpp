@@ -5,12 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "urdf/blanks.h"
 #include "urdf/reference.h"
 
 namespace freeplay::urdf {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n";
 
 std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(blanks);

@@ -1,12 +1,8 @@
 #include "urdf/mass.h"
 
+#include "base/index.h"
+
 namespace freeplay::urdf {
-namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-}  // namespace
-
 std::vector<MassProperties> body_masses(const Robot& robot, const std::vector<Mount>& mounts) {
   std::vector<std::vector<MassProperties>> parts(robot.links.size());
   for (std::size_t i = 0; i < robot.links.size(); ++i) {

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
 #include "urdf/mass.h"
 #include "urdf/view.h"
 
 namespace freeplay::urdf {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 class PlanarView final : public View {
  public:

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
+
 namespace freeplay::urdf {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// Writes a robot as nodes of a document.
 class Writer {

@@ -1,10 +1,9 @@
 #include "urdf/mass.h"
+#include "base/index.h"
 #include "urdf/view.h"
 
 namespace freeplay::urdf {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// The least rotation that takes the unit vector `from` to `to`.
 Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

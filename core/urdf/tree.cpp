@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
+
 namespace freeplay::urdf {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 class TreeBuilder {
  public:

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "base/number_text.h"
 #include "format/name_rule.h"
 #include "urdf/kept_sections.h"
@@ -16,8 +17,6 @@
 
 namespace freeplay {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 struct Place {
   double x = 0.0, y = 0.0, angle = 0.0;

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "urdf/blanks.h"
 
 namespace freeplay {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
 constexpr std::size_t none = std::string_view::npos;
 
 bool is_name_character(char c) {

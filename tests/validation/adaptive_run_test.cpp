@@ -126,25 +126,6 @@ TEST(LocatedEvent, MethodsOfOrderTwoHaveOneMoreThroughAnImpact) {
   }
 }
 
-// Radius at which an angle counts as a length: 0.05 m, as in the tests of fixed steps.
-double largest_distance(const ModelRun& run, const Table& table) {
-  double worst = 0.0;
-  std::size_t row = 0;
-  for (const std::vector<double>& numbers : table.rows) {
-    while (row < run.rows() && run.at(row, "time") < numbers[0] - 1e-9) ++row;
-    if (row >= run.rows() || std::abs(run.at(row, "time") - numbers[0]) > 1e-9) {
-      ADD_FAILURE() << "no row at " << numbers[0];
-      return std::numeric_limits<double>::infinity();
-    }
-    for (std::size_t i = 1; i < numbers.size(); ++i) {
-      double off = run.at(row, table.names[i]) - numbers[i];
-      if (table.names[i].ends_with(".angle")) off = std::remainder(off, 2.0 * M_PI) * 0.05;
-      if (!(std::abs(off) <= worst)) worst = std::abs(off);
-    }
-  }
-  return worst;
-}
-
 // Quadruple precision, every contact located.
 TEST(Accuracy, ThreeRrrAtOneNanometreFollowsTheReferenceForTwentyMilliseconds) {
   const std::string text = replaced(mechanism("3-rrr"), "{interval: 0.1 ms, discard: $T/5}", "{interval: 1 ms}");

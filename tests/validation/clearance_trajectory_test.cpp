@@ -5,28 +5,6 @@
 namespace freeplay::test {
 namespace {
 
-/// Radius at which an angle counts as a length [m].
-constexpr double radius = 0.05;
-
-/// Largest distance of a run from the numbers of a table at its instants, which must all have a row.
-double largest_distance(const ModelRun& run, const Table& table) {
-  double worst = 0.0;
-  std::size_t row = 0;
-  for (const std::vector<double>& numbers : table.rows) {
-    while (row < run.rows() && run.at(row, "time") < numbers[0] - 1e-9) ++row;
-    if (row >= run.rows() || std::abs(run.at(row, "time") - numbers[0]) > 1e-9) {
-      ADD_FAILURE() << "no row at " << numbers[0];
-      return std::numeric_limits<double>::infinity();
-    }
-    for (std::size_t i = 1; i < numbers.size(); ++i) {
-      double off = run.at(row, table.names[i]) - numbers[i];
-      if (table.names[i].ends_with(".angle")) off = std::remainder(off, 2.0 * M_PI) * radius;
-      if (!(std::abs(off) <= worst)) worst = std::abs(off);
-    }
-  }
-  return worst;
-}
-
 std::map<std::string, Event> first_contacts(const ModelRun& run) {
   std::map<std::string, Event> first;
   for (const Event& event : run.events()) {

@@ -22,7 +22,7 @@ std::string cart(const std::string& motion) {
          "simulation: {end: 1, accuracy: 1e-9, output: {interval: 0.1}}\n";
 }
 
-BuildOptions with(const char* integrator) {
+BuildOptions by(const char* integrator) {
   BuildOptions options;
   options.integrator = integrator;
   return options;
@@ -32,7 +32,7 @@ TEST(MotionKink, AJumpOfTheSpeedIsAnImpulse) {
   for (const char* motion : {"value: 'max(0, t - 0.3)'", "value: '(abs(t - 0.3) + t - 0.3)/2'",
                              "table: {points: [[0, 0], [0.3, 0], [1.3, 1]], interpolation: linear}"}) {
     for (const char* integrator : {"dopri5", "bathe", "newmark", "hht", "generalized-alpha"}) {
-      const ModelRun run(cart(motion), with(integrator));
+      const ModelRun run(cart(motion), by(integrator));
       ASSERT_EQ(run.outcome().status, RunStatus::completed) << integrator << ": " << run.outcome().reason;
       // The impulse is exact; behind it the methods of order 2 err by their own measure.
       const double error = std::string(integrator) == "dopri5" ? 1e-9 : 5e-7;
@@ -57,7 +57,7 @@ TEST(MotionKink, ARowThereIsThatBehindIt) {
 
 TEST(MotionKink, AJumpOfTheAccelerationCostsNoRejectedSteps) {
   for (const char* integrator : {"dopri5", "bathe", "generalized-alpha"}) {
-    const ModelRun run(cart("value: 'max(0, t - 0.3)^2'"), with(integrator));
+    const ModelRun run(cart("value: 'max(0, t - 0.3)^2'"), by(integrator));
     ASSERT_EQ(run.outcome().status, RunStatus::completed) << integrator << ": " << run.outcome().reason;
     EXPECT_LE(run.outcome().rejected, 1) << integrator;  // of the start
     EXPECT_NEAR(run.last("body.cart.vx"), 1.4, 1e-9) << integrator;

@@ -186,6 +186,26 @@ inline Table read_table(const std::string& name) {
   return table;
 }
 
+/// Largest distance [m] of a run from the numbers of a table at its instants, which must all have a row; an angle counts
+/// as a length at the radius 0.05 m.
+inline double largest_distance(const ModelRun& run, const Table& table) {
+  double worst = 0.0;
+  std::size_t row = 0;
+  for (const std::vector<double>& numbers : table.rows) {
+    while (row < run.rows() && run.at(row, "time") < numbers[0] - 1e-9) ++row;
+    if (row >= run.rows() || std::abs(run.at(row, "time") - numbers[0]) > 1e-9) {
+      ADD_FAILURE() << "no row at " << numbers[0];
+      return std::numeric_limits<double>::infinity();
+    }
+    for (std::size_t i = 1; i < numbers.size(); ++i) {
+      double off = run.at(row, table.names[i]) - numbers[i];
+      if (table.names[i].ends_with(".angle")) off = std::remainder(off, 2.0 * M_PI) * 0.05;
+      if (!(std::abs(off) <= worst)) worst = std::abs(off);
+    }
+  }
+  return worst;
+}
+
 /// Observed order between two errors of steps that differ by a factor of two.
 inline double order(double coarse, double fine) { return std::log2(coarse / fine); }
 

@@ -267,7 +267,7 @@ TEST(Yaml, RefusesFloodsOfBracketsBeforeTheyAreParsed) {
 }
 
 /// The first message and its hint.
-std::string message(const std::string& text) {
+std::string yaml_message(const std::string& text) {
   Diagnostics diagnostics;
   parse_yaml(text, "m.yaml", diagnostics);
   const std::vector<Diagnostic> all = diagnostics.sorted();
@@ -302,32 +302,32 @@ TEST(ReadYaml, RefusesWhatIsNoCharacter) {
 TEST(ReadYaml, PointsAtAnEscapeThatIsNotComplete) {
   EXPECT_EQ(errors("a: 1\nb: \"a\\u12\"\nc: 2\n"), "2:6 yaml-syntax");
   EXPECT_EQ(errors("b: \"\\x4\"\n"), "1:5 yaml-syntax");
-  EXPECT_NE(message("b: \"\\U12\"\n").find("8"), std::string::npos);
+  EXPECT_NE(yaml_message("b: \"\\U12\"\n").find("8"), std::string::npos);
 }
 
 TEST(ReadYaml, SaysThatAValueHasEndedWhereMoreFollowsOnItsLine) {
   EXPECT_EQ(errors("a: 'b' c\n"), "1:8 yaml-syntax");
-  EXPECT_EQ(message("a: 'b' c\n"), "the value before this has ended already | quote the value as a whole");
-  EXPECT_EQ(message("a: &x 1\nb: &y *x\n"), "an alias cannot stand behind something else | it is a whole value");
-  EXPECT_EQ(message("a:\n    b: 1\n  c: 1\n").substr(0, 21), "this line is indented");
+  EXPECT_EQ(yaml_message("a: 'b' c\n"), "the value before this has ended already | quote the value as a whole");
+  EXPECT_EQ(yaml_message("a: &x 1\nb: &y *x\n"), "an alias cannot stand behind something else | it is a whole value");
+  EXPECT_EQ(yaml_message("a:\n    b: 1\n  c: 1\n").substr(0, 21), "this line is indented");
 }
 
 TEST(ReadYaml, PointsAtAnEscapeThatNobodyKnows) {
   EXPECT_EQ(errors("a: 1\nb: \"x\\q\"\n"), "2:6 yaml-syntax");
   EXPECT_EQ(errors("b: \"\\uD800\"\n"), "1:5 yaml-syntax");
-  EXPECT_EQ(message("b: \"\\uD800\"\n").substr(0, 30), "this escape names no character");
+  EXPECT_EQ(yaml_message("b: \"\\uD800\"\n").substr(0, 30), "this escape names no character");
 }
 
 TEST(ReadYaml, SaysOfAWordWhyItIsNotRead) {
   EXPECT_EQ(errors("a: {e: 1, b c\n  d: 1}\n"), "1:11 yaml-syntax");
-  EXPECT_EQ(message("a: {b c\n  d: 1}\n"),
+  EXPECT_EQ(yaml_message("a: {b c\n  d: 1}\n"),
             "a key between brackets goes over more than one line here | write it on one line");
-  EXPECT_EQ(message("a: [b c\n  d: 1]\n").substr(0, 22), "a key between brackets");
-  EXPECT_EQ(message("a: {?b: 1}\n"), "a word that begins with '?' is not read between brackets | quote it");
-  EXPECT_EQ(message("a: ,b\n"), "a value cannot begin with this character | quote the value");
-  EXPECT_EQ(message("a: 1\n" + std::string(1100, 'k') + ": 1\n").substr(0, 31), "a key has at most 1024 characte");
-  EXPECT_EQ(message("a: [1, 2\nb: 1\n").substr(0, 27), "this '[' is not closed befo");
-  EXPECT_EQ(message("a: {b: 1\nc: 1\n").substr(0, 27), "this '{' is not closed befo");
+  EXPECT_EQ(yaml_message("a: [b c\n  d: 1]\n").substr(0, 22), "a key between brackets");
+  EXPECT_EQ(yaml_message("a: {?b: 1}\n"), "a word that begins with '?' is not read between brackets | quote it");
+  EXPECT_EQ(yaml_message("a: ,b\n"), "a value cannot begin with this character | quote the value");
+  EXPECT_EQ(yaml_message("a: 1\n" + std::string(1100, 'k') + ": 1\n").substr(0, 31), "a key has at most 1024 characte");
+  EXPECT_EQ(yaml_message("a: [1, 2\nb: 1\n").substr(0, 27), "this '[' is not closed befo");
+  EXPECT_EQ(yaml_message("a: {b: 1\nc: 1\n").substr(0, 27), "this '{' is not closed befo");
 }
 
 }  // namespace
