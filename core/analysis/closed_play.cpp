@@ -12,10 +12,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rim_step = 0.6;  // standard deviation of a step on rims [rad]
-constexpr int rim_steps = 3;      // from one sample to the next
-constexpr double closed = 1e-13;  // gap that counts as none; plays have size 1
-constexpr double same_place = 1e-8;     // distance of places that are one
+constexpr double rim_step = 0.6;     // standard deviation of a step on rims [rad]
+constexpr int rim_steps = 3;         // from one sample to the next
+constexpr double closed = 1e-13;     // gap that counts as none; plays have size 1
+constexpr double same_place = 1e-8;  // distance of places that are one
 constexpr int most_corrections = 30, most_starts = 1000;
 
 }  // namespace

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rank_limit = 1e-10;  // of pivots, and of parts of the null space
+constexpr double pivot_limit = 1e-10;  // of pivots, and of parts of the null space
 
 /// Rows of the system, then of the inputs.
 MatrixXd all_rows(const IdealMechanism& mechanism, const Evaluation& e) {
@@ -48,7 +48,7 @@ MatrixXd shift(VectorXd& lambda, const MatrixXd& null, Index first, Index count)
   const SingularValues svd =
       singular_values(null.middleRows(first, count), SingularVectors::full, SingularVectors::full);
   Index rank = 0;
-  while (rank < svd.sigma.size() && svd.sigma[rank] > rank_limit) ++rank;
+  while (rank < svd.sigma.size() && svd.sigma[rank] > pivot_limit) ++rank;
   const VectorXd wanted = -(svd.u.leftCols(rank).transpose() * lambda.segment(first, count));
   lambda += null * (svd.v.leftCols(rank) * wanted.cwiseQuotient(svd.sigma.head(rank)));
   return null * svd.v.rightCols(null.cols() - rank);
@@ -69,7 +69,7 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
 
   // rows P = Q R, so rows^T lambda = load becomes R^T (Q^T lambda) = P^T load.
   Eigen::ColPivHouseholderQR<MatrixXd> qr;
-  qr.setThreshold(rank_limit);
+  qr.setThreshold(pivot_limit);
   qr.compute(rows);
   const Index rank = qr.rank();
   if (rank < nv) return Found::unbalanced;

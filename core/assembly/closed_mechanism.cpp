@@ -14,7 +14,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-
 }  // namespace
 
 void throw_fault(const Model& model, const Fault& fault) {

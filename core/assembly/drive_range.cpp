@@ -23,7 +23,7 @@ constexpr double longest_way = 0.4;     // of a body in one step: beyond, it has
 constexpr double close_to_limit = 0.1;  // of a run that ends before it: forces grow without bound there
 constexpr int instants = 4000;          // of a run that are looked at
 constexpr int most_pieces = 4000;       // of the way of several drivers
-constexpr int most_columns = 200;
+constexpr int most_unknowns = 200;
 // By singular values of the rows.
 constexpr double full_rank = 1e-6;   // of the largest
 constexpr double lost_rank = 1e-4;   // of what it is beside a dead point
@@ -135,7 +135,7 @@ class Reach {
   }
 
   std::optional<std::string> why() {
-    if (drivers_.empty() || mechanism_.system.layout().nv() > most_columns) return std::nullopt;
+    if (drivers_.empty() || mechanism_.system.layout().nv() > most_unknowns) return std::nullopt;
     if (!mechanism_.holds(mechanism_.converge())) return std::nullopt;
     if (drivers_.size() > 1 && !go_to_end_of_way()) return std::nullopt;
     for (const int driver : drivers_) {
@@ -146,7 +146,7 @@ class Reach {
 
   // The time from which even play does not bridge the gap.
   double torn_from() {
-    if (drivers_.size() != 1 || mechanism_.system.layout().nv() > most_columns) return infinite;
+    if (drivers_.size() != 1 || mechanism_.system.layout().nv() > most_unknowns) return infinite;
     if (!mechanism_.holds(mechanism_.converge())) return infinite;
     const int driver = drivers_.front();
     double torn = infinite;
@@ -354,7 +354,7 @@ std::string words(const DriveRange& range, Coordinate coordinate) {
 
 std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism) {
   const Model& model = mechanism.model();
-  if (mechanism.system.layout().nv() > most_columns) return std::nullopt;
+  if (mechanism.system.layout().nv() > most_unknowns) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   // With the joint leading in place of what held it, at whatever makes the mechanism close.
   const auto try_joint = [&](int joint) -> std::optional<std::string> {
@@ -394,7 +394,7 @@ std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism) {
 std::optional<DeadStart> dead_start(const System& system, const State& start) {
   ClosedMechanism mechanism(system);
   const Model& model = mechanism.model();
-  if (mechanism.system.layout().nv() > most_columns) return std::nullopt;
+  if (mechanism.system.layout().nv() > most_unknowns) return std::nullopt;
   mechanism.system.take_start_of(system);
   std::ranges::copy(start.q(), mechanism.state.q().begin());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {

@@ -15,8 +15,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_steps = 30, most_shortenings = 6;
-constexpr double same_place = 1e-13;       // of the model's size and of a radian
+constexpr int most_corrections = 30, most_shortenings = 6;
+constexpr double same_offset = 1e-13;       // of the model's size and of a radian
 constexpr double inside = 0.99;            // of the farthest place, after offsets were shortened
 constexpr double rounding = 1.0 + 1e-9;    // of a distance
 constexpr double without_clearance = 1.0;  // weight of rows of a joint that tells none
@@ -30,7 +30,7 @@ bool gives(const JointElement& joint, std::string_view last_word) {
 // Gauss and Newton on all ranks, each in what those before leave free.
 bool converge(ClosedMechanism& mechanism, const std::vector<PlayRank>& ranks, const VectorXd& weights) {
   const System& system = mechanism.system;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < most_corrections; ++step) {
     const ClosedMechanism::Rows rows = mechanism.position_rows();
     std::array<std::vector<Eigen::Index>, 3> chosen;
     VectorXd weight = VectorXd::Ones(rows.residual.size());
@@ -52,7 +52,7 @@ bool converge(ClosedMechanism& mechanism, const std::vector<PlayRank>& ranks, co
     for (int i = 0; i < static_cast<int>(change.size()); ++i) {
       largest = std::max(largest, std::abs(change[i]) / (system.is_turn(i) ? 1.0 : system.size()));
     }
-    if (largest <= same_place || step + 1 == most_steps) return open <= mechanism.model().settings.assembly_tolerance;
+    if (largest <= same_offset || step + 1 == most_corrections) return open <= mechanism.model().settings.assembly_tolerance;
     const std::vector<double> before(mechanism.state.q().begin(), mechanism.state.q().end());
     system.retract(before, {change.data(), at(static_cast<int>(change.size()))}, mechanism.state.q());
   }

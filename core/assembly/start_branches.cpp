@@ -16,7 +16,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-
 // Shifts over the size of the model, turns in rad.
 constexpr double same_place = 1e-6;    // of two positions
 constexpr double other_place = 1e-3;   // positions that differ by less are one, reached on two ways

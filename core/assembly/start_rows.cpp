@@ -11,8 +11,7 @@
 #include "system/path_row.h"
 
 namespace freeplay {
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 ConstraintFacts constraint_facts(const System& system, const Evaluation& e) {
   const int nc = system.layout().nc(), nv = system.layout().nv(), joints = system.layout().first_driver_row();

@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to tell than to find
-constexpr double kept_part = 1e-9;                    // of the largest velocity: a given one that differs by less is kept
+constexpr double kept_part = 1e-9;               // of the largest velocity: a given one that differs by less is kept
 
 class Velocities {
  public:

@@ -23,7 +23,6 @@ constexpr double odd_free_length = 100.0;  // between the free length of a sprin
 constexpr double coarse_accuracy = 0.5;    // by a clearance
 constexpr double deep_start = 1.5;         // eccentricity of a journal, by its clearance
 
-
 Eigen::ColPivHouseholderQR<MatrixXd> decompose(const MatrixXd& matrix) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr(matrix);
   qr.setThreshold(rank_threshold);

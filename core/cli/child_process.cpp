@@ -21,6 +21,7 @@
 #include "base/error.h"
 #include "cli/address_sanitizer.h"
 #include "cli/interrupt.h"
+#include "cli/whole_text.h"
 
 namespace freeplay {
 namespace {
@@ -64,26 +65,6 @@ void set_limits() {
 void set_signals() {
   for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP}) {
     std::signal(number, SIG_DFL);
-  }
-}
-
-void write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(file, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-std::string read_all(int file) {
-  std::string text;
-  char part[65536];
-  for (;;) {
-    const ssize_t count = ::pread(file, part, sizeof part, static_cast<off_t>(text.size()));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(part, static_cast<std::size_t>(count));
   }
 }
 

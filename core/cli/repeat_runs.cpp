@@ -23,6 +23,7 @@
 #include "base/error.h"
 #include "cli/analyze_options.h"
 #include "cli/interrupt.h"
+#include "cli/whole_text.h"
 #include "results/summary.h"
 #include "run/play_start.h"
 #include "run/simulation.h"
@@ -34,26 +35,6 @@ constexpr std::size_t most_workers = 256, most_runs = 10'000;
 
 [[noreturn]] void no_process(const char* what) {
   throw Error(Error::Category::internal, "internal", fmt::format("{}: {}", what, std::strerror(errno)));
-}
-
-void write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(file, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) _exit(1);
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-std::string read_all(int file) {
-  std::string text;
-  char part[65536];
-  for (;;) {
-    const ssize_t count = ::pread(file, part, sizeof part, static_cast<off_t>(text.size()));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(part, static_cast<std::size_t>(count));
-  }
 }
 
 Json failure(std::size_t run, int exit_code, const std::string& reason) {
@@ -159,8 +140,9 @@ void RepeatRuns::work(Worker& worker, int parent) {
   for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, file);
   for (std::size_t run = shared_->next++; run < plan_.runs; run = shared_->next++) {
     worker.current = run;
-    write_all(worker.report,
-              record_of(model_, plan_.seed, run).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (!write_all(worker.report,
+                   record_of(model_, plan_.seed, run).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"))
+      _exit(1);
     ++shared_->ended;
     worker.current = 0;
   }

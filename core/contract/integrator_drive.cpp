@@ -11,7 +11,7 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
+constexpr std::size_t size_of(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
 
 IntegratorLayout declare(const IntegratorRef& integrator, const Layout& sizes, const Conditions& conditions,
                          Findings& findings) {
@@ -34,12 +34,12 @@ void copy(const std::vector<double>& from, Span<double> to) { std::copy(from.beg
 
 GuardedState::GuardedState(const Layout& layout, int memory_size)
     : t(1),
-      q(at(layout.nq())),
-      v(at(layout.nv())),
-      a(at(layout.nv())),
-      lambda(at(layout.nc())),
-      z(at(layout.nz())),
-      memory(at(memory_size)) {}
+      q(size_of(layout.nq())),
+      v(size_of(layout.nv())),
+      a(size_of(layout.nv())),
+      lambda(size_of(layout.nc())),
+      z(size_of(layout.nz())),
+      memory(size_of(memory_size)) {}
 
 bool GuardedState::intact() const {
   return t.intact() && q.intact() && v.intact() && a.intact() && lambda.intact() && z.intact() && memory.intact();
@@ -80,7 +80,7 @@ IntegratorDrive::IntegratorDrive(const IntegratorRef& integrator, const Referenc
       solver_(std::make_unique<NewtonStageSolver>(reference.system(), parameters_)),
       accepted_(reference.system().layout(), layout_.memory),
       trial_(reference.system().layout(), layout_.memory),
-      scratch_(at(layout_.scratch)),
+      scratch_(size_of(layout_.scratch)),
       evaluation_(reference.system()) {}
 
 bool IntegratorDrive::start() {
@@ -146,7 +146,7 @@ bool IntegratorDrive::step(double dt) {
 std::vector<double> IntegratorDrive::attempt(double dt, double scratch, int good_stages, bool& converged, int& stages) {
   FailingStageSolver solver(reference_.system(), parameters_, good_stages);
   GuardedState to = accepted_;
-  GuardedNumbers work(at(layout_.scratch), scratch);
+  GuardedNumbers work(size_of(layout_.scratch), scratch);
   Attempt attempt{};
   converged = false;
   const bool good = call_attempt(dt, to, work, solver.table(), false, attempt);
@@ -163,7 +163,7 @@ double IntegratorDrive::estimate(double dt, double tolerance, double& truth, con
   GuardedState to = accepted_;
   solver.local_error().begin_attempt(to.v.span());
   Attempt attempt{};
-  GuardedNumbers scratch(at(layout_.scratch), 0.0);
+  GuardedNumbers scratch(size_of(layout_.scratch), 0.0);
   if (!call_attempt(dt, to, scratch, solver.table(), false, attempt) || attempt.converged == 0) return 0.0;
   std::vector<double> position = to.q.values(), velocity = to.v.values();
   const std::vector<double> q = accepted_.q.values(), v = accepted_.v.values();

@@ -32,9 +32,9 @@ constexpr double most_play = 0.1;           // clearance by the model's size
 constexpr double fewest_impacts = 10.0;     // in a window of statistics without a period
 constexpr double fewest_instants = 10.0, fewest_instants_of_accuracy = 2.0;  // that statistics are of
 constexpr double longest_period = 20.0;                                      // looked for, by the length of the run
-constexpr double whole_period = 0.99;       // of a window
-constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts,
-constexpr double long_enough = 0.1;         // in a window of this part of the run
+constexpr double whole_period = 0.99;                                        // of a window
+constexpr double lasting = 0.5;      // part of the time in contact that is no series of impacts,
+constexpr double long_enough = 0.1;  // in a window of this part of the run
 
 /// One reason, if `value` passes a limit.
 void judge(double value, const Limits& limits, TrustReason reason, Verdict& verdict) {

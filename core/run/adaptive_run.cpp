@@ -24,9 +24,9 @@ constexpr double barely = 1.0 - 1e-6;  // of a step: what is shorter by the roun
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
 // too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth
 // there, so that a step of another length, which looks elsewhere, goes over it. By regularity():
-constexpr double at_singular = 1e-8;    // a step that passed, too
-constexpr double stuck_there = 1e-4;    // steps that fall for ever have come to it
-constexpr double hopeless = 1e-12;      // the way that the mechanism takes on would be one of rounding
+constexpr double at_singular = 1e-8;  // a step that passed, too
+constexpr double stuck_there = 1e-4;  // steps that fall for ever have come to it
+constexpr double hopeless = 1e-12;    // the way that the mechanism takes on would be one of rounding
 constexpr double detour_lengths[] = {0.9, 1.1, 0.8, 1.2, 0.7, 1.4, 0.6, 1.7, 0.5, 2.0, 3.0};
 
 }  // namespace

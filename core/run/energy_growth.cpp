@@ -11,10 +11,10 @@ namespace freeplay {
 namespace {
 constexpr double suspicious =
     2.0;  // energy of motion and of joints, by the largest before: work is looked at from there
-constexpr double singular = 1e-4;  // regularity
-constexpr double digits = 1e-9;         // of potential energies that their differences keep, at least
-constexpr double transmission = 10.0;   // speed of bodies, by that of drivers: a mechanism may come to it in a step
-constexpr double unexplained = 2.0;     // growth of energy, by all work that powers at both ends could have done
+constexpr double singular = 1e-4;      // regularity
+constexpr double digits = 1e-9;        // of potential energies that their differences keep, at least
+constexpr double transmission = 10.0;  // speed of bodies, by that of drivers: a mechanism may come to it in a step
+constexpr double unexplained = 2.0;    // growth of energy, by all work that powers at both ends could have done
 }  // namespace
 
 // Of motion and of what joints store: without gravity's, which has no zero.

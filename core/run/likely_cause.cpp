@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "component/contact_stiffness.h"
 #include "base/index.h"
+#include "component/contact_stiffness.h"
 
 namespace freeplay {
 namespace {

@@ -12,8 +12,7 @@
 #include "system/path_row.h"
 
 namespace freeplay {
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 bool Observer::observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
                        Fault& fault) const {

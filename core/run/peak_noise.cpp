@@ -13,7 +13,7 @@ constexpr double first_difference = 0.01;  // of the play
 constexpr double growth = 2.0;             // of differences in an impact
 constexpr double same_peak = 0.01;         // of the value
 constexpr std::size_t agreeing = 5;        // peaks that are the same: three are by chance in every twentieth run
-constexpr double widening = 1.5;             // of the scale of the tail
+constexpr double widening = 1.5;           // of the scale of the tail
 constexpr double unknown = 0.3;            // of the value, where too little was seen
 constexpr double same_speed = 1.05;        // an approach this much faster than the separation before is driven
 

@@ -11,7 +11,7 @@
 
 namespace freeplay {
 namespace {
-constexpr double open_rows = 1e-3;      // of the size of the model: constraints that are off by more do not hold
+constexpr double open_rows = 1e-3;  // of the size of the model: constraints that are off by more do not hold
 }  // namespace
 
 // The channels of the accepted state: asked for by rows, statistics, stop conditions and warnings, and seldom by all

@@ -1,8 +1,8 @@
 // The parts of a run. Private to simulation.cpp and the files named below.
 #pragma once
 
-#include <limits>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <string_view>
 

@@ -11,7 +11,6 @@
 
 namespace freeplay {
 namespace {
-constexpr double event_rounding = 1e-15;      // of a located event function, in its unit
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
 constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little

@@ -9,6 +9,9 @@
 
 namespace freeplay {
 
+/// Rounding of a located event function, in its unit.
+inline constexpr double event_rounding = 1e-15;
+
 /// Fixed-step runs shorten nothing for events: after a step is accepted every crossing is found on the cubic of
 /// (g, g') and the joint's on_event() is called with the state interpolated there (cubic in q, cubic in v).
 /// Runs that locate events ask first_crossing() and end their step there; tell_at_end() then tells with exact states.

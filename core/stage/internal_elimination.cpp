@@ -10,7 +10,6 @@ namespace {
 
 constexpr double vanishing_part = 1e-4;  // of the largest variable of a joint
 
-
 // Gauss-Jordan with partial pivoting, in place on a small row-major matrix and its right sides.
 void solve_small(double* matrix, int size, double* right, int columns) {
   for (int pivot = 0; pivot < size; ++pivot) {

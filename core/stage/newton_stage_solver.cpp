@@ -9,8 +9,7 @@
 #include "stage/solver_table.h"
 
 namespace freeplay {
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters)
     : system_(system),

@@ -5,8 +5,7 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent) {
   const std::size_t bodies = system.model().bodies.size();

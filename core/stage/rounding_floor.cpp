@@ -6,8 +6,7 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 RoundingFloor::RoundingFloor(StageEquations& equations, const ConvergenceParameters& parameters)
     : equations_(equations), system_(equations.system()), parameters_(parameters) {

@@ -2,15 +2,12 @@
 
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/index.h"
 #include "system/system.h"
 
 namespace freeplay::planar {
-namespace {
-
-constexpr double whole_turn = 2.0 * M_PI;
-
-}  // namespace
+namespace {}  // namespace
 
 /// The line of a slide: h the x axis of marker a, n = h turned by +90 degrees, d = P_b - P_a, and their rates.
 ///

@@ -4,12 +4,12 @@
 
 #include <Eigen/LU>
 
+#include "base/angle.h"
 #include "base/index.h"
 #include "system/system.h"
 
 namespace freeplay {
 namespace {
-constexpr double whole_turn = 2.0 * M_PI;
 constexpr int width = planar::velocities;
 }  // namespace
 

@@ -5,8 +5,7 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {
-}  // namespace
+namespace {}  // namespace
 
 void PathRow::entries(const Evaluation& e, double* row) const {
   double g[6] = {};

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-namespace freeplay::urdf {
+namespace freeplay {
 
 inline constexpr std::string_view blanks = " \t\r\n";
 
-}  // namespace freeplay::urdf
+}  // namespace freeplay

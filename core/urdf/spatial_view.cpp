@@ -1,5 +1,5 @@
-#include "urdf/mass.h"
 #include "base/index.h"
+#include "urdf/mass.h"
 #include "urdf/view.h"
 
 namespace freeplay::urdf {

@@ -7,13 +7,14 @@
 #include <expat.h>
 #include <fmt/format.h>
 
+#include "urdf/blanks.h"
 #include "urdf/xml_fault.h"
 
 namespace freeplay {
 namespace {
 
 constexpr std::size_t deepest_level = 64, most_parts = 1'000'000;
-constexpr std::string_view blanks = " \t\r\n", byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 /// Has Expat read a text: keeps the places of its elements, or reports why it is no document that is taken here.
 class StrictReader {

@@ -186,8 +186,8 @@ inline Table read_table(const std::string& name) {
   return table;
 }
 
-/// Largest distance [m] of a run from the numbers of a table at its instants, which must all have a row; an angle counts
-/// as a length at the radius 0.05 m.
+/// Largest distance [m] of a run from the numbers of a table at its instants, which must all have a row; an angle
+/// counts as a length at the radius 0.05 m.
 inline double largest_distance(const ModelRun& run, const Table& table) {
   double worst = 0.0;
   std::size_t row = 0;
