@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/options.h"
 #include "load/load.h"
 #include "results/verification.h"
 #include "run/simulation.h"
