@@ -42,7 +42,8 @@ FormulaCourse::FormulaCourse(const Expression& expression, double from, double t
   stack_.reserve(depth), middle_.reserve(depth), ranges_.reserve(depth), hangs_.reserve(depth), forms_.reserve(depth);
   if (expression.depends_on_time() && from < to) list_sides();
   if (sides_.empty()) {
-    pieces_.push_back({from, to, expression.depends_on_time() ? rate_between(from, to) : 0.0});
+    const Form form = expression.depends_on_time() ? form_between(from, to) : Form{};
+    pieces_.push_back({from, to, form.rate, form.degree});
     known_to_ = to;
     return;
   }
@@ -100,7 +101,9 @@ double FormulaCourse::next_corner(double t, double until) {
 
 void FormulaCourse::forget_before(double t) {
   const double early = t - 8.0 * rounding_;
-  std::erase_if(corners_, [&](const Corner& corner) { return corner.time < early; });
+  // The one at which the present form began is kept.
+  const auto recent = std::ranges::lower_bound(corners_, early, {}, &Corner::time);
+  if (recent != corners_.begin()) corners_.erase(corners_.begin(), std::prev(recent));
   std::erase_if(pieces_, [&](const Piece& piece) { return piece.to < early; });
 }
 
@@ -123,6 +126,18 @@ double FormulaCourse::rate_within(double from, double to) const {
   return rate;
 }
 
+double FormulaCourse::length_of_form(double t, int degree) const {
+  const auto after = std::ranges::upper_bound(corners_, t, {}, &Corner::time);
+  if (after == corners_.begin() || after == corners_.end()) return unknown;
+  double length = unknown;
+  for (const Piece& piece : pieces_) {
+    const bool there = piece.from <= t && t < piece.to;
+    const bool bends = std::isfinite(piece.rate) && (piece.rate > 0.0 || piece.degree > degree);
+    if (there && bends) length = after->time - std::prev(after)->time;
+  }
+  return length;
+}
+
 // One window more. Where the work does not suffice for it the window ends early, or what is left of it stays unknown.
 void FormulaCourse::look_further(double until) {
   const double low = known_to_, high = std::min(to_, std::max(low + (to_ - from_) / windows, until));
@@ -138,7 +153,7 @@ void FormulaCourse::look_further(double until) {
   if (complete) return;
   const bool worth_it = corners_.size() >= first_corner + many_corners || known_to_ - low >= good_part * (high - low);
   if (worth_it && known_to_ > low) return;
-  pieces_.push_back({known_to_, high, unknown});
+  pieces_.push_back({known_to_, high, unknown, 0});
   known_to_ = high;
 }
 
@@ -462,23 +477,23 @@ void FormulaCourse::note_pieces(double from, double to, std::size_t first_corner
   for (std::size_t c = first_corner; c <= corners_.size(); ++c) {
     const double high = c < corners_.size() ? corners_[c].time : to;
     if (!(low < high)) continue;
-    const double rate = rate_between(low, high);
-    const bool goes_on = c == first_corner && !pieces_.empty() && pieces_.back().rate == rate &&
+    const Form form = form_between(low, high);
+    const bool goes_on = c == first_corner && !pieces_.empty() && pieces_.back().rate == form.rate &&
                          (corners_.empty() || first_corner == 0 || corners_[first_corner - 1].time < pieces_.back().to);
     if (goes_on && pieces_.back().to == low) {
       pieces_.back().to = high;
     } else {
-      pieces_.push_back({low, high, rate});
+      pieces_.push_back({low, high, form.rate, form.degree});
     }
     low = high;
   }
 }
 
 // Of a span without corners, as an instant inside shows it; another one where the formula has no value at the first.
-double FormulaCourse::rate_between(double low, double high) {
+FormulaCourse::Form FormulaCourse::form_between(double low, double high) {
   Form form;
-  if (look(0.5 * (low + high), form) || look(low + 0.381966 * (high - low), form)) return form.rate;
-  return unknown;
+  if (look(0.5 * (low + high), form) || look(low + 0.381966 * (high - low), form)) return form;
+  return no_form;
 }
 
 bool FormulaCourse::look(double t, Form& form) {

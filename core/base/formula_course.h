@@ -25,7 +25,7 @@ class FormulaCourse {
   FormulaCourse(const Expression& expression, double from, double to);
 
   /// The first corner after t that is `until` or earlier, or a later one that is known already; infinite: none. What is
-  /// before t is forgotten, but for corners a few roundings away.
+  /// before t is forgotten, but for corners a few roundings away and the last one.
   double next_corner(double t, double until);
   /// Whether a corner in [from, to], close to what next_corner() told last, is sharp, or there is one at all.
   struct Near {
@@ -35,6 +35,9 @@ class FormulaCourse {
   /// How fast it may change anywhere in [from, to] [1/s]: see Outline::rates. Infinite where it is unknown, or was not
   /// asked for.
   double rate_within(double from, double to) const;
+  /// The time from the corner before t to that after it, where the formula is no polynomial of `degree` there; infinite
+  /// where it is one, where one of both corners is not known, or the rate is not.
+  double length_of_form(double t, int degree) const;
   /// Whether it can have corners at all.
   bool has_sides() const { return !sides_.empty(); }
   /// Instructions that were executed so far.
@@ -44,6 +47,7 @@ class FormulaCourse {
   struct Piece {
     double from, to;
     double rate;  ///< [1/s]
+    int degree;   ///< of a polynomial in it
   };
   /// Of the windows that are known.
   const std::vector<Corner>& corners() const { return corners_; }
@@ -103,7 +107,7 @@ class FormulaCourse {
   void note_corner(const Root& root);
   void note_pieces(double from, double to, std::size_t first_corner);
   bool look(double t, Form& form);
-  double rate_between(double low, double high);
+  Form form_between(double low, double high);
   Form note(const Expression::Instruction& instruction, const Jet* x, const Form* form, std::size_t count) const;
 
   const Expression& expression_;

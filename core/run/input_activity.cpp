@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double samples_per_change = 3.0;  // in the duration of the shortest change
 constexpr double fewest_samples = 8.0;      // in a step, besides its ends, its middle and its quarters
+constexpr double part_of_form = 0.25;       // as long as a step may be where such a motion has one form for a while
 constexpr double little = 0.01;             // of what positions may err by in a step
 constexpr double slow = 2.0;                // rate times step that every integrator sees
 constexpr double slow_bend = 0.4;           // of a motion whose powers are integrated and whose forces have their peaks
@@ -253,12 +254,16 @@ double InputActivity::resolved(double t, double dt) {
 // A motion is looked at for its acceleration as well where no integrator sees that.
 double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
   const double rate = formula.course.rate_within(t, t + dt);
-  if (std::isfinite(rate) && formula.bends > 0 && rate * dt > slow_bend) dt = slow_bend / rate;
-  if (rate * dt <= slow || dt <= unwatched(shortest_, formula.most)) return dt;
+  if (formula.bends > 0) {
+    if (std::isfinite(rate)) dt = std::min(dt, slow_bend / rate);
+    dt = std::min(dt, part_of_form * formula.course.length_of_form(t, formula.bends));
+  }
+  if (rate * dt <= slow) return dt;
+  if (dt <= (formula.bends > 0 ? finest * shortest_ : unwatched(shortest_, formula.most))) return dt;
   const double wanted = std::min(dt, formula.most), least = finest * shortest_;
-  const double length =
-      resolution_.resolved(t, wanted, least, 0.0, signals(formula.bends), look_at(*formula.expression, formula.bends),
-                           even(shortest_), light(formula.unit, formula.bends));
+  const double length = resolution_.resolved(t, wanted, least, formula.bends > 0 ? unbounded : 0.0,
+                                             signals(formula.bends), look_at(*formula.expression, formula.bends),
+                                             even(shortest_), light(formula.unit, formula.bends));
   formula.most = length < dt ? longer * length : unbounded;
   return length;
 }
