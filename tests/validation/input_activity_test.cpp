@@ -372,7 +372,7 @@ TEST(InputActivity, FixedStepsThatGoOverAPulseAreDoubted) {
     return std::ranges::count(run.outcome().doubts, "unresolved-input", &TrustReason::id);
   };
   EXPECT_EQ(doubts("1 ms"), 1);
-  EXPECT_EQ(doubts("0.05 ms"), 0);
+  EXPECT_EQ(doubts("0.09 ms"), 0);
 }
 
 }  // namespace

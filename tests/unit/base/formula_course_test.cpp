@@ -126,7 +126,8 @@ TEST(FormulaCourse, AJumpOfAnAngleIsACorner) {
   EXPECT_EQ(switched.corners[0], 0.4);
   const Walk turning = walk("atan2(sin(9*t), cos(9*t))", 0.0, 2.0, 0.3);
   ASSERT_EQ(turning.corners.size(), 3u);
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(turning.corners[k], (2.0 * static_cast<double>(k) + 1.0) * pi / 9.0, 1e-15);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(turning.corners[k], (2.0 * static_cast<double>(k) + 1.0) * pi / 9.0, 1e-15);
 }
 
 // What nothing can decide costs bounded work, and is said to be unknown.
@@ -141,6 +142,20 @@ TEST(FormulaCourse, WhatCannotBeDecidedIsUnknownAndCostsLittle) {
   }
   EXPECT_GT(unknown, 40.0);
   EXPECT_LT(course.work(), 100'000'000);
+}
+
+// Where spans are halved, and where windows end, rounding decides on which side of it a corner is.
+TEST(FormulaCourse, NoCornerIsLostWhereSpansMeet) {
+  for (const int frequency : {5, 16, 32, 50, 64, 96}) {
+    for (const double end : {1.0, 2.0, 3.0}) {
+      EXPECT_EQ(walk(fmt::format("abs(sin(2*pi*{}*t))", frequency), 0.0, end, 0.07).corners.size(),
+                static_cast<std::size_t>(2 * frequency * end) - 1)
+          << frequency << " over " << end;
+      EXPECT_EQ(walk(fmt::format("max(0, cos(2*pi*{}*t))", frequency), 0.0, end, 0.11).corners.size(),
+                static_cast<std::size_t>(2 * frequency * end))
+          << frequency << " over " << end;
+    }
+  }
 }
 
 // Windows do not show in what is found.
