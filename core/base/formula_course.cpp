@@ -75,10 +75,11 @@ void FormulaCourse::list_sides() {
         sides_.push_back({i, first, 1, true});
         break;
       case Operation::arctangent2: {
-        // On the half line to the left the angle jumps. Where y is zero throughout, it does with the sign of x.
+        // On the half line to the left the angle jumps; where y is zero for a while, it does with the sign of x.
         const auto& y = program[static_cast<std::size_t>(begins[first_operand + 1] - 1)];
         const bool constant = begins[first_operand + 1] - 1 == first && y.operation == Operation::push_constant;
-        if (!constant || y.constant == 0.0) sides_.push_back({i, first, constant ? 1 : 0, false});
+        if (!constant) sides_.push_back({i, first, 0, false});
+        if (!constant || y.constant == 0.0) sides_.push_back({i, first, 1, false});
         break;
       }
       default:
@@ -272,20 +273,24 @@ IntervalJet FormulaCourse::bound_operation(int i, const IntervalJet* x, const Je
       decide(side + 1, x[0] - x[2], middle[0] - middle[2], hangs, span, depth);
       return smooth(x[0], x[1], x[2]);
     case Operation::arctangent2: {
-      if (side >= sides_.size() || sides_[side].instruction != i) return atan2(x[0], x[1]);
-      const bool by_x = sides_[side].which == 1;
-      // To the right of the origin nothing jumps.
-      if (!by_x && x[1].value.low > 0.0) {
-        decisions_[side] = {Where::above, depth};
-        return atan2(x[0], x[1]);
-      }
-      const Where where = decide(side, x[by_x ? 1 : 0], middle[by_x ? 1 : 0], hangs, span, depth);
       IntervalJet y = x[0], along = x[1];
-      Interval& decided = by_x ? along.value : y.value;
-      if (where == Where::above) decided.low = std::max(decided.low, 0.0);
-      if (where == Where::below) decided.high = std::min(decided.high, -0.0);
-      if (where != Where::open) return atan2(y, along);
-      return {{-3.2, 3.2}, Interval::whole(), Interval::whole()};
+      bool open = false;
+      for (std::size_t s = side; s < sides_.size() && sides_[s].instruction == i; ++s) {
+        const bool by_x = sides_[s].which == 1;
+        // To the right of the origin nothing jumps; nor does the sign of x matter where y is not zero.
+        const bool matters = by_x ? y.value.contains(0.0) : along.value.low <= 0.0;
+        if (!matters && !(decisions_[s].where != Where::open && decisions_[s].depth < depth)) {
+          decisions_[s] = {Where::above, depth};
+        }
+        if (!matters) continue;
+        const bool passing = by_x && !y.value.is(0.0);
+        const Where where = decide(s, x[by_x ? 1 : 0], middle[by_x ? 1 : 0], hangs || passing, span, depth);
+        open = open || where == Where::open;
+        Interval& decided = by_x ? along.value : y.value;
+        if (where == Where::above) decided.low = std::max(decided.low, 0.0);
+        if (where == Where::below) decided.high = std::min(decided.high, -0.0);
+      }
+      return open ? IntervalJet{{-3.2, 3.2}, Interval::whole(), Interval::whole()} : atan2(y, along);
     }
     case Operation::negate:
       return -x[0];

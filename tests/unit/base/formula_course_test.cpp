@@ -124,6 +124,10 @@ TEST(FormulaCourse, AJumpOfAnAngleIsACorner) {
   const Walk switched = walk("atan2(0, t - 0.4)", 0.0, 1.0, 0.3);
   ASSERT_EQ(switched.corners.size(), 1u);
   EXPECT_EQ(switched.corners[0], 0.4);
+  // As long as the ramp has not begun the point is on the axis of x.
+  const Walk resting = walk("atan2(smooth(t, 0.6, 0.8), 0.25 - t)", 0.0, 1.0, 0.3);
+  ASSERT_EQ(resting.corners.size(), 3u);
+  EXPECT_NEAR(resting.corners[0], 0.25, 1e-15);
   const Walk turning = walk("atan2(sin(9*t), cos(9*t))", 0.0, 2.0, 0.3);
   ASSERT_EQ(turning.corners.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k)
