@@ -79,9 +79,8 @@ class Expression {
   /// How many derivatives are used: 0, 1 or, from the start, 2. The others may not exist.
   void need(int derivatives) { derivatives_ = derivatives; }
 
-  /// What the formula alone shows of (from, to] [s], without a run. Corners of any duration are found where what
-  /// decides between two forms is a straight line of t; else it is looked at 4096 times and more, with its rate. Very
-  /// long formulas with many corners are not looked at to their end: then rates are infinite. Allocates.
+  /// What the formula alone shows of (from, to] [s], without a run: see FormulaCourse. Of more than 262144 corners the
+  /// rest is unknown: then the last rate is infinite. Allocates.
   Outline outline(double from, double to) const;
 
   bool depends_on_time() const { return depends_on_time_; }
@@ -96,7 +95,7 @@ class Expression {
 
  private:
   friend class ExpressionCompiler;
-  friend class ExpressionOutline;
+  friend class FormulaCourse;
 
   enum class Operation {
     push_constant,

@@ -149,8 +149,13 @@ double TimeTable::next_place(double t, bool inner) const noexcept {
   // The time may be at the end of the period before, or rounded to it.
   for (const double periods : {std::max(passed - 1.0, 0.0), passed, passed + 1.0}) {
     const double shift = periods * period, end = periods == 0.0 ? behind_last : last + shift;
-    const auto point = std::upper_bound(times_.begin(), times_.end() - 1, t - shift);
-    if (inner && point != times_.end() - 1 && *point + shift > t) return *point + shift;
+    if (inner) {
+      // What t - shift is rounded to may be one point off on either side. The first is the end of the period before.
+      auto point = std::upper_bound(times_.begin() + 1, times_.end() - 1, t - shift);
+      if (point != times_.begin() + 1) --point;
+      while (point != times_.end() - 1 && !(*point + shift > t)) ++point;
+      if (point != times_.end() - 1) return *point + shift;
+    }
     if (end > t) return end;
   }
   return none;

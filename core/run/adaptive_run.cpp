@@ -76,7 +76,7 @@ bool Simulation::Impl::adaptive_step() {
     return fail(4, solver.regularity() < stuck_there ? why_singular() : why_so_small(dt, limiting));
   }
   double kink = 0.0;
-  if (!next_corner(kink)) return false;
+  if (!next_corner(dt, kink)) return false;
   const bool to_kink = kink <= settings.end;
   const double goal = to_kink ? before(kink) : settings.end;
   double reach = std::min(dt, goal - accepted.t());

@@ -50,7 +50,7 @@ bool Simulation::Impl::gains_energy() {
   const double after = energy_of(e_trial);
   if (after <= suspicious * explained_energy) return false;
   const double dt = trial.t() - accepted.t();
-  if (system.motions().next_kink(accepted.t()) <= trial.t()) return false;
+  if (kinks.next(accepted.t(), trial.t()) <= trial.t()) return false;
   const double before = energy_of(e_accepted), high = system.gravity_potential(e_accepted->q);
   const double fallen = high - system.gravity_potential(e_trial->q), drives = energy_of_drives();
   const double work =

@@ -45,8 +45,7 @@ bool Simulation::Impl::advance_to(double target, const RunHooks& hooks) {
         if (dt < smallest) return fail(4, why_energy_grows(dt));
         continue;
       }
-      for (double kink = system.motions().next_kink(accepted.t()); kink <= trial.t();
-           kink = system.motions().next_kink(kink)) {
+      for (double kink = kinks.next(accepted.t(), trial.t()); kink <= trial.t(); kink = kinks.next(kink, trial.t())) {
         if (note_jumps(kink)) book_jump(kink);
       }
       if (!accept({}) || !check_stop() || !check_interrupt(hooks)) return false;

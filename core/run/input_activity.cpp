@@ -14,10 +14,13 @@ namespace {
 
 constexpr double samples_per_change = 3.0;  // in the duration of the shortest change
 constexpr double fewest_samples = 8.0;      // in a step, besides its ends, its middle and its quarters
+constexpr double part_of_form = 0.25;       // as long as a step may be where such a motion has one form for a while
 constexpr double little = 0.01;             // of what positions may err by in a step
 constexpr double slow = 2.0;                // rate times step that every integrator sees
+constexpr double slow_bend = 0.4;           // of a motion whose powers are integrated and whose forces have their peaks
 constexpr double coarsest = 0.5;            // of the shortest change: no step up to there goes over one
 constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
+constexpr long enough_work = 20'000'000;    // instructions, to see whether steps of one size go over a change
 constexpr double longer = 4.0;              // the next step to look at, of one that had to be shortened
 
 /// Steps up to there need not be looked at; behind one that had to be shortened a change goes on.
@@ -88,17 +91,21 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
   small_angle_ = short_length_ / system.size();
   light_force_ = std::isfinite(mass) ? short_length_ * mass : 0.0;
   light_torque_ = std::isfinite(inertia) ? small_angle_ * inertia : 0.0;
-  for (const Driver& driver : model.drivers) {
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const Driver& driver = model.drivers[at(d)];
     const CornerKind sharp = prescribes(driver.kind) ? CornerKind::motion : CornerKind::load;
     if (driver.table) {
-      tables_.push_back({&driver.name, driver.table.get(), sharp, unit_of(driver.kind)});
+      tables_.push_back({&driver.name, driver.table.get(), sharp, unit_of(driver.kind), bends(d)});
     } else if (driver.kinematics < 0) {
-      add("driver", driver.name, driver.value, sharp, unit_of(driver.kind));
+      add("driver", driver.name, driver.value, sharp, unit_of(driver.kind), bends(d));
     }
   }
   for (const InverseKinematics& entry : model.kinematics) {
+    int moved = 0;
+    for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d)
+      moved = std::max(moved, bends(d));
     for (const std::optional<Expression>& component : entry.path) {
-      if (component) add("driver", entry.name, *component, CornerKind::motion, Unit::other);
+      if (component) add("driver", entry.name, *component, CornerKind::motion, Unit::other, moved);
     }
   }
   for (const AppliedForce& force : model.forces) {
@@ -106,17 +113,21 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
     for (const Expression& component : force.value) add("force", force.name, component, CornerKind::load, unit);
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) add_joint(j);
-  std::ranges::sort(corners_);
-  std::size_t signals = 1;
+  std::size_t signals = 2;
   for (const TimedJoint& joint : joints_) signals = std::max(signals, joint.signals);
   resolution_ = StepResolution(signals);
 }
 
+// The accelerations of driven bodies make forces and powers, but no error of an integrator.
+int InputActivity::bends(int driver) const {
+  if (system_.layout().driver_row(driver) < system_.layout().nc()) return 0;
+  return system_.model().drivers[at(driver)].kind == DriverKind::velocity ? 1 : 2;
+}
+
 void InputActivity::add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp,
-                        Unit unit) {
+                        Unit unit, int bends) {
   if (!expression.depends_on_time()) return;
-  formulas_.push_back({section, &name, &expression, expression.outline(start_, end_), sharp, unit});
-  for (const Corner& corner : formulas_.back().outline.corners) corners_.push_back(corner.time);
+  formulas_.push_back({section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, bends});
 }
 
 // In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for a second.
@@ -168,20 +179,22 @@ bool InputActivity::ask(int joint, double t, double& corner, Fault& fault) const
   return false;
 }
 
-bool InputActivity::next_corner(double t, double& corner, Fault& fault) {
-  if (t >= told_from_ && t < told_) {
+bool InputActivity::next_corner(double t, double until, double& corner, Fault& fault) {
+  if (t >= told_from_ && t < told_ && until <= told_until_) {
     corner = told_;
     return true;
   }
-  const auto next = std::ranges::upper_bound(corners_, t);
-  corner = next == corners_.end() ? unbounded : *next;
+  corner = unbounded;
+  for (Formula& formula : formulas_) {
+    if (formula.course.has_sides()) corner = std::min(corner, formula.course.next_corner(t, until));
+  }
   for (const Table& table : tables_) corner = std::min(corner, table.table->next_kink(t));
   for (const int joint : telling_) {
     double theirs = unbounded;
     if (!ask(joint, t, theirs, fault)) return false;
     corner = std::min(corner, theirs);
   }
-  told_from_ = t, told_ = corner;
+  told_from_ = t, told_until_ = corner <= until ? unbounded : until, told_ = corner;
   return true;
 }
 
@@ -189,11 +202,7 @@ CornerKind InputActivity::kind_of(double corner, double margin) const {
   const double from = corner - margin, to = corner + margin, before = from - margin;
   CornerKind kind = CornerKind::smooth;
   for (const Formula& formula : formulas_) {
-    const std::vector<Corner>& corners = formula.outline.corners;
-    for (auto c = std::ranges::lower_bound(corners, from, {}, &Corner::time); c != corners.end() && c->time <= to;
-         ++c) {
-      if (!c->smooth) kind = std::max(kind, formula.sharp);
-    }
+    if (formula.course.near(from, to).sharp) kind = std::max(kind, formula.sharp);
   }
   for (const Table& table : tables_) {
     if (table.table->next_kink(before) <= to) kind = std::max(kind, table.sharp);
@@ -206,6 +215,34 @@ CornerKind InputActivity::kind_of(double corner, double margin) const {
   return kind;
 }
 
+namespace {
+
+constexpr std::size_t signals(int bends) { return bends > 0 ? 2 : 1; }
+
+/// Fills the value of a formula or table and, if `bends`, that derivative.
+template <class Function>
+auto look_at(const Function& function, int bends) {
+  return [&function, bends](double time, double* out) {
+    Jet value;
+    EvaluationFailure failure;
+    if (!function.evaluate(time, value, failure)) return false;
+    out[0] = value.value;
+    if (bends > 0) out[1] = bends == 1 ? value.rate : value.acceleration;
+    return true;
+  };
+}
+
+}  // namespace
+
+// An acceleration matters that moves a body by more than its position may err.
+auto InputActivity::light(Unit unit, int bends) const {
+  return [this, unit, bends](std::size_t c, double dt) {
+    if (c == 0) return negligible(unit, dt);
+    const bool turns = unit == Unit::angle;
+    return bends == 1 ? 0.0 : (turns ? small_angle_ : short_length_) / (dt * dt);
+  };
+}
+
 double InputActivity::resolved(double t, double dt) {
   if (t >= seen_from_ && t + dt <= seen_to_) return dt;
   for (Formula& formula : formulas_) dt = resolved_formula(formula, t, dt);
@@ -214,21 +251,19 @@ double InputActivity::resolved(double t, double dt) {
   return dt;
 }
 
+// A motion is looked at for its acceleration as well where no integrator sees that.
 double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
-  const std::vector<Corner>& corners = formula.outline.corners;
-  const auto piece = std::ranges::upper_bound(corners, t, {}, &Corner::time) - corners.begin();
-  const double rate = formula.outline.rates[static_cast<std::size_t>(piece)];
-  if (rate * dt <= slow || dt <= unwatched(shortest_, formula.most)) return dt;
-  const auto look = [&](double time, double* out) {
-    Jet value;
-    EvaluationFailure failure;
-    if (!formula.expression->evaluate(time, value, failure)) return false;
-    *out = value.value;
-    return true;
-  };
+  const double rate = formula.course.rate_within(t, t + dt);
+  if (formula.bends > 0) {
+    if (std::isfinite(rate)) dt = std::min(dt, slow_bend / rate);
+    dt = std::min(dt, part_of_form * formula.course.length_of_form(t, formula.bends));
+  }
+  if (rate * dt <= slow) return dt;
+  if (dt <= (formula.bends > 0 ? finest * shortest_ : unwatched(shortest_, formula.most))) return dt;
   const double wanted = std::min(dt, formula.most), least = finest * shortest_;
-  const double length = resolution_.resolved(t, wanted, least, 0.0, 1, look, even(shortest_),
-                                             [&](std::size_t, double step) { return negligible(formula.unit, step); });
+  const double length = resolution_.resolved(t, wanted, least, formula.bends > 0 ? unbounded : 0.0,
+                                             signals(formula.bends), look_at(*formula.expression, formula.bends),
+                                             even(shortest_), light(formula.unit, formula.bends));
   formula.most = length < dt ? longer * length : unbounded;
   return length;
 }
@@ -237,17 +272,11 @@ double InputActivity::resolved_table(Table& table, double t, double dt) {
   if (table.table->is_straight()) return dt;
   const double least = table.table->next_point(t) - t;
   if (dt <= least) return dt;
-  const auto look = [&](double time, double* out) {
-    Jet value;
-    EvaluationFailure failure;
-    if (!table.table->evaluate(time, value, failure)) return false;
-    *out = value.value;
-    return true;
-  };
   const auto instants = [&](double from, double) { return TableInstants{table.table, from, from}; };
   const double wanted = std::min(dt, std::max(table.most, least));
-  const double length = resolution_.resolved(t, wanted, least, 0.0, 1, look, instants,
-                                             [&](std::size_t, double step) { return negligible(table.unit, step); });
+  const double length =
+      resolution_.resolved(t, wanted, least, 0.0, signals(table.bends), look_at(*table.table, table.bends), instants,
+                           light(table.unit, table.bends));
   table.most = length < dt ? longer * length : unbounded;
   return length;
 }
@@ -304,7 +333,7 @@ bool InputActivity::signals_of(const TimedJoint& timed, JointInput in, double t,
   return false;
 }
 
-std::vector<InputActivity::Unresolved> InputActivity::closer_than(double step) const {
+std::vector<InputActivity::Unresolved> InputActivity::closer_than(double step) {
   std::vector<Unresolved> found;
   const auto add_closest = [&](const char* section, const std::string* name, std::span<const double> times) {
     Unresolved closest{section, name, 0.0, unbounded};
@@ -317,9 +346,13 @@ std::vector<InputActivity::Unresolved> InputActivity::closer_than(double step) c
     const bool known = std::ranges::any_of(found, [&](const Unresolved& u) { return u.name == name; });
     if (!known && closest.to - closest.from < step * (1.0 - 1e-9)) found.push_back(closest);
   };
-  for (const Formula& formula : formulas_) {
+  for (Formula& formula : formulas_) {
     std::vector<double> times;
-    for (const Corner& corner : formula.outline.corners) times.push_back(corner.time);
+    double corner = formula.course.next_corner(start_, end_);
+    while (corner < end_ && formula.course.work() < enough_work) {
+      times.push_back(corner);
+      corner = formula.course.next_corner(corner, end_);
+    }
     add_closest(formula.section, formula.name, times);
   }
   for (const Table& table : tables_) add_closest("driver", table.name, table.table->times());

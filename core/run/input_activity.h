@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/formula_course.h"
 #include "run/step_resolution.h"
 #include "system/system.h"
 
@@ -17,13 +18,14 @@ enum class CornerKind { smooth, load, motion };
 
 class InputActivity {
  public:
-  /// Looks at all formulas of the run once. `shortest`: duration of the changes that no step may go over where a
+  /// `shortest`: duration of the changes that no step may go over where a
   /// formula cannot be analysed and a joint does not say how fine its dependence on time is [s]. `allowed`: by which
   /// positions may err in a step [m]; what moves them by much less does not matter.
   InputActivity(const System& system, double shortest, double allowed);
 
-  /// The first corner after t; infinite when there is none. False, with `fault`, when a joint does not tell.
-  bool next_corner(double t, double& corner, Fault& fault);
+  /// The first corner after t, if it is `until` or earlier; else a later time, or infinity. False, with `fault`, when a
+  /// joint does not tell. Times grow from step to step.
+  bool next_corner(double t, double until, double& corner, Fault& fault);
   /// The kind of the corners that lie within `margin` of a time.
   CornerKind kind_of(double corner, double margin) const;
 
@@ -41,7 +43,8 @@ class InputActivity {
     const std::string* name;
     double from, to;  ///< the closest two [s]
   };
-  std::vector<Unresolved> closer_than(double step) const;
+  /// To be asked of a run that has not begun.
+  std::vector<Unresolved> closer_than(double step);
 
  private:
   enum class Unit { force, torque, length, angle, other };
@@ -49,9 +52,10 @@ class InputActivity {
     const char* section;
     const std::string* name;
     const Expression* expression;
-    Outline outline;
+    FormulaCourse course;
     CornerKind sharp;  ///< kind of its kinks
     Unit unit;
+    int bends = 0;            ///< the derivative that moves bodies whose motion is known: no error of a step shows it
     double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
   };
   struct Table {
@@ -59,6 +63,7 @@ class InputActivity {
     const TimeTable* table;
     CornerKind sharp;
     Unit unit;
+    int bends = 0;
     double most = unbounded;
   };
   struct TimedJoint {
@@ -69,9 +74,12 @@ class InputActivity {
     bool varies = false;  ///< it has been seen to: then the shortest steps are looked at, too
   };
 
-  void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit);
+  void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit,
+           int bends = 0);
+  int bends(int driver) const;
   static Unit unit_of(DriverKind kind);
   double negligible(Unit unit, double dt) const;
+  auto light(Unit unit, int bends) const;
   void add_joint(int joint);
   bool ask(int joint, double t, double& corner, Fault& fault) const;
   double resolved_formula(Formula& formula, double t, double dt);
@@ -85,11 +93,11 @@ class InputActivity {
   std::vector<Table> tables_;
   std::vector<int> telling_;  ///< joints that may tell corners
   std::vector<TimedJoint> joints_;
-  std::vector<double> corners_;  ///< of formulas, in order
   StepResolution resolution_;
   std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;  // of a joint that is asked
-  double told_from_ = 0.0, told_ = 0.0;                     // the last answer of next_corner()
-  double seen_from_ = 0.0, seen_to_ = 0.0;                  // a span that was resolved
+  double told_from_ = 0.0, told_until_ = 0.0,
+         told_ = 0.0;                       // the last answer of next_corner(): none is before the second
+  double seen_from_ = 0.0, seen_to_ = 0.0;  // a span that was resolved
 };
 
 }  // namespace freeplay

@@ -14,18 +14,21 @@ namespace freeplay {
 namespace {
 
 constexpr double smallest_jump = 1e-9;  // of a speed, in parts of the larger one
+constexpr double smallest_jump = 1e-9;   // of a speed, in parts of the larger one
+constexpr double most_lengthened = 4.0;  // steps that go round a singular position are longer than asked for
 
 // Around a kink at t the side is one of rounding.
 double margin(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
 
 }  // namespace
 
-// The next corner that a step can end before.
-bool Simulation::Impl::next_corner(double& corner) {
+// The next corner that a step of the length dt, or a few times that, can end before.
+bool Simulation::Impl::next_corner(double dt, double& corner) {
   Fault fault;
+  const double until = accepted.t() + most_lengthened * dt;
   const auto next = [&](double t) {
-    if (inputs) return inputs->next_corner(t, corner, fault);
-    corner = system.motions().next_kink(t);
+    if (inputs) return inputs->next_corner(t, until, corner, fault);
+    corner = kinks.next(t, until);
     return true;
   };
   bool good = next(accepted.t());
@@ -89,7 +92,7 @@ bool Simulation::Impl::pass_kink(double kink) {
     return true;
   }
   note_jumps(kink);
-  for (double next = kink; next - kink <= margin(kink); next = system.motions().next_kink(next)) {
+  for (double next = kink; next - kink <= margin(kink); next = kinks.next(next, kink + margin(kink))) {
     accepted.t() = next + margin(next);
   }
   note_driven(e_accepted);
@@ -192,6 +195,14 @@ void Simulation::Impl::format_unresolved() {
         "{} '{}': it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over what it "
         "does between them; ask for an accuracy instead, or for steps of {:.2g} s",
         input.section, *input.name, input.from, input.to, step, 0.1 * (input.to - input.from)));
+    const std::string element = fmt::format("{} '{}'", input.section, *input.name);
+    outcome.doubts.push_back({.id = "unresolved-input",
+                              .level = Trust::doubtful,
+                              .message = fmt::format("{} has corners {:.3g} s apart, closer than the step of {:.3g} s",
+                                                     element, input.to - input.from, step),
+                              .element = element,
+                              .value = input.to - input.from,
+                              .limit = step});
   }
 }
 

@@ -48,7 +48,10 @@ bool Simulation::Impl::record_step() {
     velocity = std::max(velocity, std::abs(residual[r] - e_accepted->nu[r]));
   }
   statistics.add(row, energy.driver_work(), energy.joint_loss(), energy.force_work(), position, velocity);
-  if (adaptive && ended_abruptly) peaks.restart(accepted.t(), statistics.values());
+  if (adaptive && ended_abruptly) {
+    statistics.begin_stretch();
+    peaks.restart(accepted.t(), statistics.values());
+  }
   if (adaptive && !ended_abruptly) seek_peaks({trial, e_trial, accepted, e_accepted});
   return true;
 }
@@ -134,7 +137,7 @@ bool Simulation::Impl::note_abrupt_end() {
   const Profile::Timer timer(system.profile(), Phase::statistics);
   Fault fault;
   if (!observer.observe(point(trial), e_trial, trial.lambda(), row_between, fault)) return fail_with(fault, trial.t());
-  statistics.note(row_between);
+  statistics.end_stretch(row_between);
   seek_peaks({accepted, e_accepted, trial, e_trial});
   return true;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "run/drive_kinks.h"
 #include "run/energy_account.h"
 #include "run/event_storm.h"
 #include "run/inner_motion.h"
@@ -67,7 +68,7 @@ struct Simulation::Impl {
   bool advance_to(double target, const RunHooks& hooks);
 
   // Corners of inputs (motion_kinks.cpp).
-  bool next_corner(double& corner);
+  bool next_corner(double dt, double& corner);
   bool resolve_inputs(double& dt);
   bool resolves_joints(double& dt);
   bool loads_jump(double corner);
@@ -155,6 +156,7 @@ struct Simulation::Impl {
   StepEvents events;
   EventStorm storm;
   RestingJoints resting;
+  DriveKinks kinks;
   std::optional<InputActivity> inputs;          ///< with error control, unless a test blinds it
   CornerKind corner_kind = CornerKind::smooth;  // of the corner at which the step being accepted ends
   Statistics statistics;

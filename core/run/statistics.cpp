@@ -16,13 +16,34 @@ void raise(std::span<const double> values, std::vector<double>& largest) {
 }
 }  // namespace
 
-void Statistics::Mean::add(double value, double dt, bool first) {
-  if (!first) integral += 0.5 * dt * (last * last + value * value);
+void Statistics::Mean::add(double value, double dt, bool first, bool by_parabolas) {
+  const double square = value * value;
+  if (!first) integral += 0.5 * dt * (last * last + square);
+  if (by_parabolas && !first && known > 1 && dt > 0.0) {
+    // A step takes half of what the parabola through its start takes off, and half of that through its end; at the
+    // ends of a stretch all of the only one. No more than a part of what is there.
+    const double bend = ((square - last * last) / dt - (last * last - before) / length) / (length + dt);
+    const double most = 0.25 * (before + 2.0 * last * last + square) / ((length + dt) * (length + dt));
+    const double off = std::clamp(bend / 12.0, -most, most);
+    const double earlier = off * length * length * length, later = off * dt * dt * dt;
+    integral -= (known == 2 ? 2.0 : 1.0) * earlier + later;
+    pending = later;
+  }
+  known = first ? 1 : known + 1;
+  before = last * last;
+  length = dt;
   last = value;
 }
-double Statistics::Mean::rms(double duration) const { return std::sqrt(integral / duration); }
 
-Statistics::Statistics(const Model& model, const Channels& channels)
+void Statistics::Mean::begin_anew() {
+  integral -= pending;
+  pending = 0.0;
+  known = 1;
+}
+
+double Statistics::Mean::rms(double duration) const { return std::sqrt(std::max(integral - pending, 0.0) / duration); }
+
+Statistics::Statistics(const Model& model, const Channels& channels, bool long_steps)
     : channels_(channels),
       peaks_(model, channels),
       noise_(model, peaks_.size()),
@@ -34,7 +55,8 @@ Statistics::Statistics(const Model& model, const Channels& channels)
       joints_(model.joints.size()),
       forces_(model.force_elements.size()),
       drivers_(model.drivers.size()),
-      paths_(channels.paths.size()) {}
+      paths_(channels.paths.size()),
+      long_steps_(long_steps) {}
 
 // A step that ends a rounding error before the instant belongs to what follows.
 bool Statistics::counts(double t) const {
@@ -77,15 +99,11 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
   position_ = std::max(position_, position);
   velocity_ = std::max(velocity_, velocity);
   energy_ = std::max(energy_, std::abs(value(channels_.energy.residual)));
+  add_means(row, dt, first);
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
-    const JointColumns& columns = channels_.joints[at(j)];
     JointSums& sums = joints_[at(j)];
-    sums.force.add(values_[peaks_.force(j)], dt, first);
     if (first) sums.loss_start = joint_loss[at(j)];
     sums.loss = joint_loss[at(j)] - sums.loss_start;
-    if (columns.contact < 0) continue;
-    if (!first) sums.contact_time += 0.5 * dt * (sums.last_contact + value(columns.contact));
-    sums.last_contact = value(columns.contact);
   }
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     if (first) forces_[f].work_start = force_work[f];
@@ -93,14 +111,44 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
   }
   for (int d = 0; d < static_cast<int>(drivers_.size()); ++d) {
     DriverSums& sums = drivers_[at(d)];
-    sums.effort.add(values_[peaks_.effort(d)], dt, first);
     if (first) sums.work_start = driver_work[at(d)];
     sums.work = driver_work[at(d)] - sums.work_start;
   }
-  for (int p = 0; p < static_cast<int>(paths_.size()); ++p) {
-    paths_[at(p)].position.add(values_[peaks_.position_error(p)], dt, first);
-    paths_[at(p)].angle.add(values_[peaks_.angle_error(p)], dt, first);
+}
+
+// With the values of the row in `values_`.
+void Statistics::add_means(std::span<const double> row, double dt, bool first) {
+  for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
+    JointSums& sums = joints_[at(j)];
+    sums.force.add(values_[peaks_.force(j)], dt, first, long_steps_);
+    if (channels_.joints[at(j)].contact < 0) continue;
+    const double contact = row[at(channels_.joints[at(j)].contact)];
+    if (!first) sums.contact_time += 0.5 * dt * (sums.last_contact + contact);
+    sums.last_contact = contact;
   }
+  for (int d = 0; d < static_cast<int>(drivers_.size()); ++d) {
+    drivers_[at(d)].effort.add(values_[peaks_.effort(d)], dt, first, long_steps_);
+  }
+  for (int p = 0; p < static_cast<int>(paths_.size()); ++p) {
+    paths_[at(p)].position.add(values_[peaks_.position_error(p)], dt, first, long_steps_);
+    paths_[at(p)].angle.add(values_[peaks_.angle_error(p)], dt, first, long_steps_);
+  }
+}
+
+void Statistics::end_stretch(std::span<const double> row) {
+  note(row);
+  const double t = row[at(channels_.time)];
+  if (!seen_ || !counts(t)) return;
+  add_means(row, t - last_time_, false);
+  duration_ += t - last_time_;
+  last_time_ = t;
+  begin_stretch();
+}
+
+void Statistics::begin_stretch() {
+  for (JointSums& sums : joints_) sums.force.begin_anew();
+  for (DriverSums& sums : drivers_) sums.effort.begin_anew();
+  for (PathSums& sums : paths_) sums.position.begin_anew(), sums.angle.begin_anew();
 }
 
 void Statistics::add_contact(int joint, double time) {

@@ -31,11 +31,13 @@ struct StatisticsWindow {
   double from, to;
 };
 
-/// Accumulates while a run goes on; means weigh each step by its length (trapezoidal rule), and begin with the first
-/// row that is added from the instant on that `discard` names. Rows before it have maxima of their own.
+/// Accumulates while a run goes on; means weigh each step by its length (trapezoidal rule; where steps are long, by the
+/// parabolas through the ends of two), and begin with the first row that is added from the instant on that `discard`
+/// names. Rows before it have maxima of their own.
 class Statistics {
  public:
-  Statistics(const Model& model, const Channels& channels);
+  /// `long_steps`: as an accuracy chooses them, which end where values jump.
+  Statistics(const Model& model, const Channels& channels, bool long_steps = false);
 
   /// Whether a state at t is one of those that count.
   bool counts(double t) const;
@@ -46,8 +48,13 @@ class Statistics {
   /// energy account, `position` and `velocity` are the largest constraint residuals [m or rad, per s].
   void add(std::span<const double> row, std::span<const double> driver_work, std::span<const double> joint_loss,
            std::span<const double> force_work, double position, double velocity);
-  /// A row inside a step, or at its end before an event: its values may be the largest.
+  /// A row inside a step: its values may be the largest.
   void note(std::span<const double> row);
+  /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
+  /// instant, is on the other side.
+  void end_stretch(std::span<const double> row);
+  /// Behind the row that was added last values go on otherwise than before.
+  void begin_stretch();
   /// A row that is written.
   void note_written(std::span<const double> row);
   void add_contact(int joint, double time);
@@ -80,7 +87,11 @@ class Statistics {
  private:
   struct Mean {  // of a square over time
     double integral = 0.0, last = 0.0;
-    void add(double value, double dt, bool first);
+    double before = 0.0, length = 0.0;  ///< the square at the start of the last step, and its length
+    double pending = 0.0;               ///< what the parabola to come does not take off the last step, if none comes
+    int known = 0;                      ///< ends of steps since values went on smoothly
+    void add(double value, double dt, bool first, bool by_parabolas);
+    void begin_anew();
     double rms(double duration) const;
   };
   struct JointSums {
@@ -100,6 +111,7 @@ class Statistics {
     Mean position, angle;
   };
   void take_largest(double t);
+  void add_means(std::span<const double> row, double dt, bool first);
 
   const Channels& channels_;
   PeakValues peaks_;
@@ -115,6 +127,7 @@ class Statistics {
   std::vector<PathSums> paths_;
   long contacts_ = 0, contacts_total_ = 0;
   double position_ = 0.0, velocity_ = 0.0, energy_ = 0.0;
+  bool long_steps_;
 };
 
 }  // namespace freeplay

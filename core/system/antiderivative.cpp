@@ -17,6 +17,10 @@ constexpr double weight[4] = {0.3626837833783619829651504, 0.3137066458778872873
 constexpr int first_cuts = 6,
               unknown_cuts = 10;  // into halves, before a rule is believed that may miss what lies between
 constexpr int deepest = 40;       // 2^-40 of the run: a kink costs 1e-12 of a panel at most
+constexpr int patient_cuts = 6;   // more than at least: then what does not shrink any more is rounding
+constexpr double small = 1e-9;    // of the integral: rounding is less
+constexpr double shrinks = 0.75;  // of its part: a kink shrinks to a half of that, rounding does not
+constexpr std::size_t most_panels = 1 << 20;
 
 }  // namespace
 
@@ -39,7 +43,8 @@ Antiderivative::Antiderivative(const Expression& integrand, double start, double
 }
 
 // `cuts` are made at least.
-void Antiderivative::cut(double from, double to, double whole, int cuts, const Location& location, int depth) {
+void Antiderivative::cut(double from, double to, double whole, int cuts, const Location& location, int depth,
+                         double before) {
   const double middle = 0.5 * (from + to);
   double left = 0.0, right = 0.0;
   EvaluationFailure failure;
@@ -47,13 +52,16 @@ void Antiderivative::cut(double from, double to, double whole, int cuts, const L
     throw Error(Error::Category::input, failure.id, failure.reason, location);
   }
   const double scale = std::abs(left) + std::abs(right) + std::abs(total_);
-  if (depth >= cuts && (std::abs(left + right - whole) <= 1e-15 * scale || depth >= deepest)) {
+  const double change = std::abs(left + right - whole);
+  const bool rounded = depth >= cuts + patient_cuts && change <= small * scale && change > shrinks * before;
+  if (depth >= cuts && (change <= 1e-15 * scale || rounded || depth >= deepest || panels_.size() >= most_panels)) {
     panels_.push_back({from, total_});
     total_ += left + right;
     return;
   }
-  cut(from, middle, left, cuts, location, depth + 1);
-  cut(middle, to, right, cuts, location, depth + 1);
+  // The halves share what is left.
+  cut(from, middle, left, cuts, location, depth + 1, 0.5 * change);
+  cut(middle, to, right, cuts, location, depth + 1, 0.5 * change);
 }
 
 bool Antiderivative::gauss(double from, double to, double& sum, EvaluationFailure& failure) const noexcept {

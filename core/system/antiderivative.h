@@ -25,7 +25,8 @@ class Antiderivative {
     double start, integral;  ///< integral up to its start
   };
   bool gauss(double from, double to, double& sum, EvaluationFailure& failure) const noexcept;
-  void cut(double from, double to, double whole, int cuts, const Location& location, int depth = 0);
+  void cut(double from, double to, double whole, int cuts, const Location& location, int depth = 0,
+           double before = 0.0);
 
   const Expression* integrand_ = nullptr;
   double start_ = 0.0, total_ = 0.0;

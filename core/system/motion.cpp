@@ -27,7 +27,6 @@ Motions::Motions(const Model& model)
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
     legs_[d] = closed_form_leg(model, static_cast<int>(d));
-    if (!driver.table && driver.kinematics < 0 && prescribes(driver.kind)) add_kinks(driver.value);
     if (driver.kind != DriverKind::velocity) continue;
     if (!driver.table) {
       antiderivatives_[d] = Antiderivative(driver.value, model.settings.start, model.settings.end, driver.location);
@@ -38,27 +37,6 @@ Motions::Motions(const Model& model)
       throw Error(Error::Category::input, failure.id, failure.reason, driver.location);
     }
   }
-  for (const InverseKinematics& entry : model.kinematics) {
-    for (const std::optional<Expression>& component : entry.path) {
-      if (component) add_kinks(*component);
-    }
-  }
-  std::ranges::sort(kinks_);
-}
-
-void Motions::add_kinks(const Expression& expression) {
-  for (const Corner& corner : expression.outline(model_.settings.start, model_.settings.end).corners) {
-    if (!corner.smooth) kinks_.push_back(corner.time);
-  }
-}
-
-double Motions::next_kink(double t) const noexcept {
-  const auto next = std::ranges::upper_bound(kinks_, t);
-  double kink = next == kinks_.end() ? std::numeric_limits<double>::infinity() : *next;
-  for (const Driver& driver : model_.drivers) {
-    if (driver.table && prescribes(driver.kind)) kink = std::min(kink, driver.table->next_kink(t));
-  }
-  return kink;
 }
 
 bool Motions::follows(int driver) const {

@@ -53,9 +53,6 @@ class Motions {
 
   /// f, f', f'' of every driver: coordinates for prescribing ones, the effort for the others. Does not allocate.
   bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept;
-  /// The first time after t, up to the end of the run, at which the speed or acceleration that a driver prescribes may
-  /// jump: kinks of expressions, ends of tables and points of straight ones. Infinite when there is none.
-  double next_kink(double t) const noexcept;
   /// Components that the path leaves open are those of the ideal mechanism, and 0 before follow().
   bool path(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept;
   /// True if values of the driver are angles known up to whole turns.
@@ -66,7 +63,6 @@ class Motions {
   bool leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) const noexcept;
 
  private:
-  void add_kinks(const Expression& expression);
   Jet platform_angle(int driver, const PathPose& frame) const;
   bool reaches(int driver, double t, const CrankPose& pose, MotionFault& fault) const noexcept;
   bool function(std::size_t driver, double t, TimeValue& out, EvaluationFailure& failure) const noexcept;
@@ -75,7 +71,6 @@ class Motions {
   std::vector<std::optional<Leg>> legs_;         ///< by driver
   std::vector<Antiderivative> antiderivatives_;  ///< by driver
   std::vector<double> starts_;                   ///< by driver
-  std::vector<double> kinks_;                    ///< of expressions, in order
   std::vector<double> table_starts_;             ///< by driver: integral of its table up to the start time
   std::shared_ptr<const FollowedMotion> followed_;
 };

@@ -292,5 +292,88 @@ TEST(InputActivity, APulseOfASilentJointIsMetIfItLastsAnOutputInterval) {
   }
 }
 
+// A pulse that is the same to both sides of its middle moves the mass as if it came at once.
+TEST(InputActivity, APeriodicLoadKeepsEachOfItsPulses) {
+  const double end = 5.0, w = 2.0 * M_PI * 40.0, level = 0.998, from = std::asin(level);
+  const double impulse = 80.0 * (2.0 * std::cos(from) - level * (M_PI - 2.0 * from)) / w;
+  double way = 0.0;
+  for (int k = 0; k < 200; ++k) way += impulse * (end - (M_PI / 2.0 + 2.0 * M_PI * k) / w);
+  for (const char* integrator : {"", "verner7"}) {
+    const ModelRun run(mass(force("80*max(0, sin(2*pi*40*t) - 0.998)"), 1e-7, end), with(integrator));
+    EXPECT_NEAR(run.last("body.m.x"), way, 1e-6) << integrator;
+  }
+  const ModelRun driven(
+      mass("drivers: {motor: {joint: guide, kind: velocity, value: '80*max(0, sin(2*pi*40*t) - 0.998)'}}", 1e-7, 1.0));
+  EXPECT_NEAR(driven.last("body.m.x"), 40.0 * impulse, 1e-12);
+}
+
+// Of the side that shows it no parabola is known.
+TEST(InputActivity, ALoadInsideMaxIsMetWhateverCurveItIs) {
+  const double end = 30.0, at = 21.0301, width = 4e-4;
+  const ModelRun quartic(mass(force("1000*max(0, 1 - ((t - 21.0301)/4e-4)^4)"), 1e-6, end));
+  EXPECT_NEAR(quartic.last("body.m.x"), 1600.0 * width * (end - at), 1e-5);
+  const ModelRun clipped(mass(force("1000*max(0, 1/(1 + ((t - 21.0301)/4e-4)^2) - 0.5)"), 1e-6, end));
+  EXPECT_NEAR(clipped.last("body.m.x"), 1000.0 * (M_PI / 2.0 - 1.0) * width * (end - at), 1e-5);
+}
+
+TEST(InputActivity, ARepeatedTableKeepsEachOfItsPulses) {
+  const ModelRun run(
+      mass("drivers: {d: {joint: guide, kind: force, table: {points: [[0, 0], [11 ms, 0], [11.2 ms, 50], "
+           "[11.4 ms, 0], [30 ms, 0]], interpolation: linear, outside: repeat}}}",
+           1e-6, 3.0));
+  double way = 0.0;
+  for (int k = 0; k < 100; ++k) way += 50.0 * 2e-4 * (3.0 - 0.0112 - 0.03 * k);
+  EXPECT_NEAR(run.last("body.m.x"), way, 1e-5);
+}
+
+// The corner at t = 0 is none. Half a wave gives 2 F/w and takes the mass F pi/w^2.
+TEST(InputActivity, ALoadThatBeginsWithTheRunIsNoCorner) {
+  const ModelRun run(mass(force("30*max(0, sin(pi*t))"), 1e-7, 2.0));
+  ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  EXPECT_NEAR(run.last("body.m.x"), 30.0 / M_PI + 60.0 / M_PI, 1e-6);
+}
+
+TEST(InputActivity, AForceThatJumpsIsMeanAsItIs) {
+  const ModelRun run(
+      mass("drivers: {motor: {joint: guide, kind: velocity, table: {points: [[0, 0], [0.5, 0], [0.53, "
+           "0.6], [1.5, 0.6], [1.51, 0], [2, 0]], interpolation: linear}}}",
+           1e-6));
+  EXPECT_NEAR(run.statistics().driver(0).rms, std::sqrt((20.0 * 20.0 * 0.03 + 60.0 * 60.0 * 0.01) / 2.0), 1e-3);
+  const ModelRun wave(mass("drivers: {push: {joint: guide, kind: force, value: '7*sin(3*t)'}}", 1e-4, 2.0 * M_PI));
+  EXPECT_NEAR(wave.statistics().driver(0).rms, 7.0 / std::sqrt(2.0), 5e-3);
+}
+
+// No error of an integrator shows what a drive alone moves.
+TEST(InputActivity, WhatADriveAloneMovesIsResolved) {
+  const ModelRun run(mass(
+      "drivers: {motor: {joint: guide, kind: position, value: '0.05*sin(2*pi*5*t) + 0.01*sin(2*pi*17*t)'}}", 1e-6));
+  const double first = 2.0 * M_PI * 5.0, second = 2.0 * M_PI * 17.0;
+  double largest = 0.0;
+  for (int i = 0; i < 200000; ++i) {
+    const double t = i * 1e-5;
+    largest = std::max(
+        largest, std::abs(0.05 * first * first * std::sin(first * t) + 0.01 * second * second * std::sin(second * t)));
+  }
+  const double moved = 0.5 * std::pow(0.05 * first + 0.01 * second, 2);
+  EXPECT_NEAR(run.statistics().driver(0).max_abs, largest, 1e-3 * largest);
+  EXPECT_NEAR(run.statistics().driver(0).work, 0.0, 1e-3 * moved);
+}
+
+TEST(InputActivity, AJumpOfAnAngleIsPassed) {
+  const ModelRun run(mass(force("5*atan2(0, 0.7 - t)"), 1e-7, 1.0));
+  ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  EXPECT_NEAR(run.last("body.m.x"), 5.0 * M_PI * 0.5 * 0.3 * 0.3, 1e-6);
+}
+
+TEST(InputActivity, FixedStepsThatGoOverAPulseAreDoubted) {
+  const auto doubts = [](const char* step) {
+    const ModelRun run(replaced(mass(force("60*max(0, 1 - abs(t - 0.7)/1e-4)"), 1e-6),
+                                "accuracy: 9.9999999999999995e-07", fmt::format("step: {}", step)));
+    return std::ranges::count(run.outcome().doubts, "unresolved-input", &TrustReason::id);
+  };
+  EXPECT_EQ(doubts("1 ms"), 1);
+  EXPECT_EQ(doubts("0.09 ms"), 0);
+}
+
 }  // namespace
 }  // namespace freeplay::test

@@ -129,5 +129,24 @@ TEST(TimeTable, KinksOfARepeatedTableComeAgainAndAgain) {
   }
 }
 
+// The points of a period are where rounding of t less the periods before may pass them by.
+TEST(TimeTable, NoPointOfARepeatedTableIsPassedByInAnyPeriod) {
+  for (const std::vector<double>& times : {std::vector<double>{0.0, 0.115, 0.125, 0.135, 0.25},
+                                           {0.0, 0.01, 0.0101, 0.0102, 0.02},
+                                           {0.3, 0.7, 1.1, 1.3, 1.9}}) {
+    const TimeTable table(times, {0.0, 0.0, 1.0, 0.0, 0.0}, Interpolation::linear, SplineEnds::natural,
+                          Outside::repeat);
+    const double period = times.back() - times.front();
+    double t = times.front();
+    for (int k = 0; k < 1000; ++k) {
+      for (std::size_t i = 1; i < times.size(); ++i) {
+        const double next = table.next_kink(t);
+        ASSERT_NEAR(next, times[i] + k * period, 1e-11) << "point " << i << " of period " << k;
+        t = next;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace freeplay

@@ -1,0 +1,41 @@
+#include "run/drive_kinks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace freeplay {
+
+DriveKinks::DriveKinks(const Model& model) {
+  for (const Driver& driver : model.drivers) {
+    if (!prescribes(driver.kind)) continue;
+    if (driver.table) {
+      tables_.push_back(driver.table.get());
+    } else if (driver.kinematics < 0) {
+      add(driver.value, model.settings);
+    }
+  }
+  for (const InverseKinematics& entry : model.kinematics) {
+    for (const std::optional<Expression>& component : entry.path) {
+      if (component) add(*component, model.settings);
+    }
+  }
+}
+
+void DriveKinks::add(const Expression& expression, const Settings& settings) {
+  FormulaCourse course(expression, settings.start, settings.end);
+  if (course.has_sides()) formulas_.push_back(std::move(course));
+}
+
+double DriveKinks::next(double t, double until) {
+  double kink = std::numeric_limits<double>::infinity();
+  for (FormulaCourse& formula : formulas_) {
+    double corner = formula.next_corner(t, until);
+    while (std::isfinite(corner) && !formula.near(corner, corner).sharp) corner = formula.next_corner(corner, until);
+    kink = std::min(kink, corner);
+  }
+  for (const TimeTable* table : tables_) kink = std::min(kink, table->next_kink(t));
+  return kink;
+}
+
+}  // namespace freeplay

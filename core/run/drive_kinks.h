@@ -1,0 +1,27 @@
+// DriveKinks: when the speed or acceleration that a driver prescribes may jump.
+#pragma once
+
+#include <vector>
+
+#include "base/formula_course.h"
+#include "model/model.h"
+
+namespace freeplay {
+
+/// Kinks of expressions, ends of tables and points of straight ones, found as a run goes on.
+class DriveKinks {
+ public:
+  /// `model` must live as long as this.
+  explicit DriveKinks(const Model& model);
+
+  /// The first kink after t, if it is `until` or earlier; else a later time, or infinity. Times grow from step to step.
+  double next(double t, double until);
+
+ private:
+  void add(const Expression& expression, const Settings& settings);
+
+  std::vector<FormulaCourse> formulas_;
+  std::vector<const TimeTable*> tables_;
+};
+
+}  // namespace freeplay
