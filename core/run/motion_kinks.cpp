@@ -13,7 +13,6 @@
 namespace freeplay {
 namespace {
 
-constexpr double smallest_jump = 1e-9;  // of a speed, in parts of the larger one
 constexpr double smallest_jump = 1e-9;   // of a speed, in parts of the larger one
 constexpr double most_lengthened = 4.0;  // steps that go round a singular position are longer than asked for
 
