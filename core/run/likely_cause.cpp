@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "component/contact_stiffness.h"
+#include "run/drive_kinks.h"
 
 namespace freeplay {
 namespace {
@@ -125,7 +126,7 @@ Pace pace_of(const System& system, std::size_t driver, const Wreck& wreck) {
   const auto look = [&](double t) { return system.motions().evaluate(t, {motion.data(), motion.size()}, fault); };
   Pace pace;
   const double step = wreck.dt > 0.0 ? wreck.dt : 1e-3 * (settings.end - settings.start);
-  const double kink = system.motions().next_kink(wreck.t);
+  const double kink = DriveKinks(system.model()).next(wreck.t, wreck.t + step);
   for (const double t : {wreck.t, wreck.t + 1e-6 * step, wreck.t + 1e-3 * step, wreck.t + step, kink + 1e-9 * step}) {
     if (!(t <= wreck.t + step) || !look(t)) continue;
     const double rate = std::abs(motion[driver].rate);

@@ -12,14 +12,12 @@
 namespace freeplay {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 struct NoParameters final : Scope {
   const Quantity* find(std::string_view) const override { return nullptr; }
   std::vector<std::string> names() const override { return {}; }
 };
 
-Expression compiled(std::string_view text) { return Expression::compile(text, NoParameters{}, true); }
+Expression expression_of(std::string_view text) { return Expression::compile(text, NoParameters{}, true); }
 
 /// All corners of (from, to), asked for in steps of at most `dt`; `unknown` sums what is not known.
 struct Walk {
@@ -27,7 +25,7 @@ struct Walk {
   double unknown = 0.0;
 };
 Walk walk(std::string_view text, double from, double to, double dt) {
-  const Expression expression = compiled(text);
+  const Expression expression = expression_of(text);
   FormulaCourse course(expression, from, to);
   Walk out;
   for (double t = from; t < to;) {
@@ -42,12 +40,12 @@ Walk walk(std::string_view text, double from, double to, double dt) {
 // sin(w t) > level from (asin(level) + 2 k pi)/w to (pi - asin(level) + 2 k pi)/w.
 TEST(FormulaCourse, EveryPulseOfAPeriodicLoadIsKnownHoweverManyThereAre) {
   for (const double frequency : {3.0, 77.0, 512.0, 4096.0}) {
-    const double w = 2.0 * pi * frequency, level = 0.9985, end = 2.3;
+    const double w = 2.0 * M_PI * frequency, level = 0.9985, end = 2.3;
     const Walk found = walk(fmt::format("4*max(0, sin({:.17g}*t) - {})", w, level), 0.0, end, 0.11);
     std::vector<double> wanted;
     for (int k = 0; k < frequency * end; ++k) {
-      for (const double angle : {std::asin(level), pi - std::asin(level)}) {
-        if (const double t = (angle + 2.0 * pi * k) / w; t < end) wanted.push_back(t);
+      for (const double angle : {std::asin(level), M_PI - std::asin(level)}) {
+        if (const double t = (angle + 2.0 * M_PI * k) / w; t < end) wanted.push_back(t);
       }
     }
     ASSERT_EQ(found.corners.size(), wanted.size()) << frequency;
@@ -91,7 +89,7 @@ TEST(FormulaCourse, AShortLoadIsKnownWhateverCurveDecides) {
 
 TEST(FormulaCourse, ABeatShowsEachOfItsCrestsAboveTheLevel) {
   const double end = 30.0;
-  const auto load = [](double t) { return std::sin(2 * pi * 31 * t) * std::sin(2 * pi * 32 * t) - 0.99; };
+  const auto load = [](double t) { return std::sin(2 * M_PI * 31 * t) * std::sin(2 * M_PI * 32 * t) - 0.99; };
   const Walk found = walk("max(0, sin(2*pi*31*t)*sin(2*pi*32*t) - 0.99)", 0.0, end, 0.5);
   std::size_t changes = 0;
   const int looks = 1'000'000;
@@ -131,12 +129,12 @@ TEST(FormulaCourse, AJumpOfAnAngleIsACorner) {
   const Walk turning = walk("atan2(sin(9*t), cos(9*t))", 0.0, 2.0, 0.3);
   ASSERT_EQ(turning.corners.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_NEAR(turning.corners[k], (2.0 * static_cast<double>(k) + 1.0) * pi / 9.0, 1e-15);
+    EXPECT_NEAR(turning.corners[k], (2.0 * static_cast<double>(k) + 1.0) * M_PI / 9.0, 1e-15);
 }
 
 // What nothing can decide costs bounded work, and is said to be unknown.
 TEST(FormulaCourse, WhatCannotBeDecidedIsUnknownAndCostsLittle) {
-  const Expression expression = compiled("max(0, sin(300*t)^2 + cos(300*t)^2 - 1)");
+  const Expression expression = expression_of("max(0, sin(300*t)^2 + cos(300*t)^2 - 1)");
   FormulaCourse course(expression, 0.0, 50.0);
   double t = 0.0, unknown = 0.0;
   while (t < 50.0) {

@@ -20,7 +20,7 @@ struct Ours {
   std::string report;
 };
 
-Ours read(const std::string& text) {
+Ours read_robot(const std::string& text) {
   Ours out;
   Diagnostics diagnostics;
   diagnostics.add_source("r.urdf", text);
@@ -37,8 +37,8 @@ Ours read(const std::string& text) {
 
 const std::string inertia = "<inertia ixx='1' ixy='0.1' ixz='0.2' iyy='2' iyz='0.3' izz='2.5'/>";
 
-std::string arm(const std::string& in_joint, const std::string& inertial = "<mass value='2'/>" + inertia,
-                const std::string& type = "continuous") {
+std::string arm_of(const std::string& in_joint, const std::string& inertial = "<mass value='2'/>" + inertia,
+                   const std::string& type = "continuous") {
   return "<robot name='r'><link name='world'/><link name='a'><inertial>" + inertial +
          "</inertial></link><joint name='j' type='" + type + "'><parent link='world'/><child link='a'/>" + in_joint +
          "</joint></robot>";
@@ -47,8 +47,9 @@ std::string arm(const std::string& in_joint, const std::string& inertial = "<mas
 const std::string limit = "<limit lower='-1' upper='3' effort='4' velocity='5'/>";
 
 TEST(UrdfdomModel, GivesMassInertiaPlaceAxisLimitDynamicsAndMimic) {
-  const Ours out = read(arm("<origin xyz='1 2 3'/><axis xyz='0 0 1'/>" + limit + "<dynamics damping='6' friction='7'/>",
-                            "<origin xyz='4 5 6'/><mass value='2'/>" + inertia, "revolute"));
+  const Ours out =
+      read_robot(arm_of("<origin xyz='1 2 3'/><axis xyz='0 0 1'/>" + limit + "<dynamics damping='6' friction='7'/>",
+                        "<origin xyz='4 5 6'/><mass value='2'/>" + inertia, "revolute"));
   ASSERT_EQ(out.report, "");
   const Link& link = out.robot->links[1];
   EXPECT_EQ(link.mass, 2.0);
@@ -69,30 +70,30 @@ TEST(UrdfdomModel, GivesMassInertiaPlaceAxisLimitDynamicsAndMimic) {
 }
 
 TEST(UrdfdomModel, LosesTheLastDigitsOfATurnThatAreKeptHere) {
-  const std::string text = arm("<origin rpy='0 0 1.5707963267948966'/><axis xyz='0 0 1'/>");
+  const std::string text = arm_of("<origin rpy='0 0 1.5707963267948966'/><axis xyz='0 0 1'/>");
   const auto q = ::urdf::parseURDF(text)->getJoint("j")->parent_to_joint_origin_transform.rotation;
   const double cosine = std::cos(1.5707963267948966);
   EXPECT_NE(1.0 - 2.0 * (q.y * q.y + q.z * q.z), cosine);
-  EXPECT_EQ(read(text).robot->joints[0].parent.frame.linear()(0, 0), cosine);
+  EXPECT_EQ(read_robot(text).robot->joints[0].parent.frame.linear()(0, 0), cosine);
 }
 
 TEST(UrdfdomModel, ReadsAnAxisWithoutNumbersAsNoneWhichIsXHere) {
-  const std::string text = arm("<axis/>");
+  const std::string text = arm_of("<axis/>");
   EXPECT_EQ(::urdf::parseURDF(text)->getJoint("j")->axis.x, 0.0);
-  const Ours out = read(text);
+  const Ours out = read_robot(text);
   EXPECT_EQ(out.report, "");
   EXPECT_EQ(out.robot->joints[0].axis, Eigen::Vector3d::UnitX());
 }
 
 TEST(UrdfdomModel, DoesNotKnowAllBlanksOfXmlWhichAreTakenHere) {
-  const std::string between = arm("<axis xyz='0\t0\n1'/>"),
-                    around = arm("<axis xyz='0 0 1'/>", "<mass value=' 2 '/>" + inertia);
+  const std::string between = arm_of("<axis xyz='0\t0\n1'/>"),
+                    around = arm_of("<axis xyz='0 0 1'/>", "<mass value=' 2 '/>" + inertia);
   testing::internal::CaptureStderr();
   EXPECT_EQ(::urdf::parseURDF(between), nullptr);
   EXPECT_EQ(::urdf::parseURDF(around)->getLink("a")->inertial->mass, 0.0);
   testing::internal::GetCapturedStderr();
   for (const std::string& text : {between, around}) {
-    const Ours out = read(text);
+    const Ours out = read_robot(text);
     EXPECT_EQ(out.report, "");
     EXPECT_EQ(out.robot->joints[0].axis, Eigen::Vector3d::UnitZ());
     EXPECT_EQ(out.robot->links[1].mass, 2.0);
@@ -100,11 +101,11 @@ TEST(UrdfdomModel, DoesNotKnowAllBlanksOfXmlWhichAreTakenHere) {
 }
 
 TEST(UrdfdomModel, SortsLinksByNameWhichStayInTheOrderOfTheFileHere) {
-  const std::string text = arm("<axis xyz='0 0 1'/>");
+  const std::string text = arm_of("<axis xyz='0 0 1'/>");
   std::vector<::urdf::LinkSharedPtr> links;
   ::urdf::parseURDF(text)->getLinks(links);
   EXPECT_EQ(links[0]->name, "a");
-  EXPECT_EQ(read(text).robot->links[0].name, "world");
+  EXPECT_EQ(read_robot(text).robot->links[0].name, "world");
 }
 
 /// Two joints to link b: from a and from c, which hangs on `carrier`.
@@ -121,7 +122,7 @@ std::string two_parents(const std::string& carrier) {
 TEST(UrdfdomModel, KeepsOneParentOfALinkWhereTwoAreReadHere) {
   EXPECT_EQ(::urdf::parseURDF(two_parents("a"))->getLink("b")->parent_joint->name, "l");
   for (const char* carrier : {"a", "b"}) {  // b and c are a ring, which urdfdom takes and never frees
-    const Ours out = read(two_parents(carrier));
+    const Ours out = read_robot(two_parents(carrier));
     EXPECT_EQ(out.report, "");
     ASSERT_EQ(out.robot->joints.size(), 3u);
     EXPECT_EQ(out.robot->joints[0].child.link, 1);
@@ -134,13 +135,13 @@ TEST(UrdfdomModel, KeepsOneParentOfALinkWhereTwoAreReadHere) {
 
 TEST(UrdfdomModel, TakesInSilenceWhatIsAMistakeHere) {
   for (const std::string& text :
-       {arm("<axis xyz='0 0 1'/>", "<mass value='-2'/>" + inertia), arm("<axis xyz='0 0 0'/>"),
-        arm("<axis xyz='0 0 1'/><limit lower='1' upper='-1' effort='1' velocity='1'/>"),
-        arm("<axis xyz='0 0 1'/><dynamics damping='-1'/>"), arm("<axis xyz='0 0 1'/><axis xyz='0 1 0'/>"),
-        arm("<axis xyz='0 0 1'/>", "<mass value='2' unit='g'/>" + inertia),
-        arm("<axis xyz='0 0 1'/><orign xyz='1 0 0'/>")}) {
+       {arm_of("<axis xyz='0 0 1'/>", "<mass value='-2'/>" + inertia), arm_of("<axis xyz='0 0 0'/>"),
+        arm_of("<axis xyz='0 0 1'/><limit lower='1' upper='-1' effort='1' velocity='1'/>"),
+        arm_of("<axis xyz='0 0 1'/><dynamics damping='-1'/>"), arm_of("<axis xyz='0 0 1'/><axis xyz='0 1 0'/>"),
+        arm_of("<axis xyz='0 0 1'/>", "<mass value='2' unit='g'/>" + inertia),
+        arm_of("<axis xyz='0 0 1'/><orign xyz='1 0 0'/>")}) {
     EXPECT_NE(::urdf::parseURDF(text), nullptr) << text;
-    EXPECT_NE(read(text).report.find("error: "), std::string::npos) << text;
+    EXPECT_NE(read_robot(text).report.find("error: "), std::string::npos) << text;
   }
 }
 
@@ -150,7 +151,7 @@ TEST(UrdfdomModel, PrintsWithThePercentSignsOfNamesWhichStayAsTheyAreHere) {
   testing::internal::CaptureStderr();
   ::urdf::parseURDF(text);
   EXPECT_EQ(testing::internal::GetCapturedStderr().find("%%"), std::string::npos);
-  const Ours out = read(
+  const Ours out = read_robot(
       "<robot name='r'><link name='50%n'/><link name='\uFF05'/><joint name='%s' type='fixed'><parent link='50%n'/>"
       "<child link='\uFF05'/><mimic joint='%n%n'/></joint></robot>");
   EXPECT_NE(out.report.find("joint '%s' is to mimic '%n%n', an unknown joint"), std::string::npos) << out.report;
@@ -161,10 +162,11 @@ TEST(UrdfdomModel, PrintsWithThePercentSignsOfNamesWhichStayAsTheyAreHere) {
 }
 
 TEST(UrdfdomModel, StillGivesTheRestOfARobotWithMistakes) {
-  const Ours out = read("<robot name='r'><link name='world'/><link name='a'><inertial><mass value='x'/>" + inertia +
-                        "</inertial></link><link name='b'><inertial><mass value='3'/></inertial></link>"
-                        "<joint name='j' type='revolute'><parent link='nowhere'/><child link='a'/><origin xyz='1 2 3'/>"
-                        "<axis xyz='0 1 0'/></joint></robot>");
+  const Ours out =
+      read_robot("<robot name='r'><link name='world'/><link name='a'><inertial><mass value='x'/>" + inertia +
+                 "</inertial></link><link name='b'><inertial><mass value='3'/></inertial></link>"
+                 "<joint name='j' type='revolute'><parent link='nowhere'/><child link='a'/><origin xyz='1 2 3'/>"
+                 "<axis xyz='0 1 0'/></joint></robot>");
   for (const char* message : {"'x' is not a number", "the element 'inertia'", "unknown link 'nowhere'",
                               "the element 'limit' of joint 'j' is missing"}) {
     EXPECT_NE(out.report.find(message), std::string::npos) << message << "\n" << out.report;
@@ -179,7 +181,7 @@ TEST(UrdfdomModel, StillGivesTheRestOfARobotWithMistakes) {
 }
 
 TEST(UrdfdomModel, IsNotGivenARingOfLinksThatItWouldNeverFree) {
-  const Ours out = read(
+  const Ours out = read_robot(
       "<robot name='r'><link name='a'/><link name='b'/>"
       "<joint name='j' type='fixed'><parent link='a'/><child link='b'/><origin xyz='1 2 3'/></joint>"
       "<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>");
