@@ -231,6 +231,7 @@ class Velocities {
     Origin worst;
     double gap = 0.0;
     std::vector<int> joints;  // that take part
+    std::vector<std::string> drivers;
     const double least = std::max(tolerance, 1e-6 * rows.largest());
     for (std::size_t i = 0; i < rows.row.size(); ++i) {
       const double missed = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
@@ -239,6 +240,7 @@ class Velocities {
       if (origin.asked == 0 && origin.joint >= 0 && std::ranges::count(joints, origin.joint) == 0) {
         joints.push_back(origin.joint);
       }
+      if (origin.asked == 1) drivers.push_back(origin.words);
       if (origin.asked < worst.asked || (origin.asked == worst.asked && missed <= gap)) continue;
       gap = missed;
       worst = std::move(origin);
@@ -251,6 +253,9 @@ class Velocities {
     } else if (const auto dead = dead_start(system_, mechanism_.state)) {
       id = "dead-point";
       text = words(*dead, model_);
+    } else if (drivers.size() > 1) {
+      text = fmt::format("drivers contradict each other: {} cannot all have their speeds here; {} {} not allow it",
+                         fmt::join(drivers, " and "), held, joints.size() == 1 ? "does" : "do");
     } else if (worst.asked == 1) {
       text = fmt::format(
           "{} cannot move its joint from here: {} {} it; does each of them hold the bodies that are meant, and do "

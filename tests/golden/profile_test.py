@@ -43,7 +43,8 @@ class Profile(ProgramTest):
             self.assertEqual(len(self.read("r", "events.csv").splitlines()) - 1, numbers["events"])
             self.assertGreater(numbers["events"], 0)
             self.assertEqual(numbers["evaluations"], counts["assembly"])
-            self.assertEqual(numbers["steps"] + 1, counts["statistics"])
+            self.assertGreaterEqual(counts["statistics"], numbers["steps"] + 1)  # and once more where a step ends in a jump
+            self.assertLessEqual(counts["statistics"], numbers["steps"] + 1 + 2 * numbers["events"])
             self.assertEqual(numbers["rows"], counts["output"])
             self.assertGreaterEqual(counts["integrator"], numbers["steps"] + numbers["rejected"])
 

@@ -52,7 +52,7 @@ TEST(AssemblyFailure, TwoDriversThatContradictEachOther) {
   const auto error = failure(text);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->id(), "assembly-failed");
-  EXPECT_THAT(error->message(), HasSubstr("contradict"));
+  EXPECT_THAT(error->message(), HasSubstr("drivers contradict each other: driver 'motor' and driver 'other'"));
 }
 
 TEST(AssemblyFailure, AFreeMotionWithoutMass) {
