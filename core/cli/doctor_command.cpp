@@ -33,8 +33,8 @@ class Doctor {
 
   std::vector<Finding> examine() {
     add("ok", "program",
-        fmt::format("freeplay {} (schema {}, plugin ABI {}), gcc {}, {}", program_version, schema_version, abi_version,
-                    __VERSION__, FREEPLAY_BUILD));
+        fmt::format("freeplay {} (schema {}, plugin ABI {}), {}, {}", program_version, schema_version, abi_version,
+                    compiler, FREEPLAY_BUILD));
     examine_builtins();
     examine_folders();
     examine_asked_for();

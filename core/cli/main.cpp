@@ -36,7 +36,7 @@ int print_version(const CommonOptions& common) {
     print_json(Json{{"freeplay", program_version},
                     {"schema", schema_version},
                     {"plugin_abi", abi_version},
-                    {"compiler", "gcc " __VERSION__},
+                    {"compiler", compiler},
                     {"build", FREEPLAY_BUILD}});
   } else {
     print(fmt::format("freeplay {} (schema {}, plugin ABI {})\n", program_version, schema_version, abi_version));

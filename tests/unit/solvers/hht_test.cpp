@@ -58,14 +58,6 @@ TEST(Hht, RestartForgetsTheAuxiliaryAcceleration) {
   EXPECT_EQ(run.memory[2], -2.0 * run.z[0]);
 }
 
-TEST(Hht, TableHoldsDefaultAndRange) {
-  const Parameter& alpha = integrator_parameter("hht", "alpha");
-  EXPECT_EQ(alpha.default_value, -0.05);
-  EXPECT_EQ(alpha.minimum, -1.0 / 3.0);
-  EXPECT_EQ(alpha.maximum, 0.0);
-  EXPECT_EQ(alpha.open, Open::none);
-}
-
 TEST(Hht, KeepsItsOrderWhereStepsVary) { expect_order_with_varying_steps("hht", {{"alpha", -0.3}}); }
 
 TEST(Hht, HasOneStageAndProjectsVelocities) { expect_one_projected_stage("hht"); }

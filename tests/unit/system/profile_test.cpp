@@ -56,7 +56,5 @@ TEST(Profile, WhatIsDoneForTheStartForRowsAndEventsIsTheirs) {
   }
 }
 
-TEST(Profile, WithoutOneATimerDoesNothing) { const Profile::Timer timer(nullptr, Phase::output); }
-
 }  // namespace
 }  // namespace freeplay
