@@ -21,6 +21,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to tell than to find
+constexpr double of_racing = 0.1;                // of velocities: less by this is worth what blocks then do not keep
+constexpr double share_in_play = 1e-2;           // share of a journal's motion that constraints must leave to it
 constexpr double kept_part = 1e-9;               // of the largest velocity: a given one that differs by less is kept
 
 class Velocities {
@@ -63,6 +65,18 @@ class Velocities {
     }
     const ClosedMechanism::Rows last = mechanism_.speed_rows(leading_);
     if (last.largest() > allowed() && !yield_in_play(given)) report_contradiction(last, allowed());
+    if (std::ranges::count(ranks_, PlayRank::given) > 0 && !play_yields_) spare_runaways(given);
+  }
+
+  // Where constraints are redundant but for the play, velocities in it could hold only with the whole mechanism racing.
+  void spare_runaways(const VectorXd& given) {
+    const VectorXd racing = velocities();
+    // Of entries that are 1 for directions and lengths for turns.
+    least_in_play_ = share_in_play * std::min(1.0, system_.size()) / std::max(1.0, system_.size());
+    if (!yield_in_play(given) || velocities().norm() <= of_racing * racing.norm()) return;
+    set(racing);
+    play_yields_ = false;
+    least_in_play_ = StackedRows::rounding;
   }
 
   // Redundant constraints that hold without the rows of joints with play leave their journals fewer velocities.
@@ -175,9 +189,9 @@ class Velocities {
     const auto in_blocks = rows_of(rows, PlayRank::given), implied = rows_of(rows, PlayRank::implied);
     StackedRows stack(given.size());
     stack.add(all(rows_of(rows, PlayRank::constraint), Eigen::all), -exact_residual(rows));
-    stack.add(all(in_blocks, Eigen::all), -rows.residual(in_blocks));
+    stack.add(all(in_blocks, Eigen::all), -rows.residual(in_blocks), least_in_play_);
     stack.add(own, VectorXd::Zero(own.rows()));
-    stack.add(all(implied, Eigen::all), -rows.residual(implied));
+    stack.add(all(implied, Eigen::all), -rows.residual(implied), least_in_play_);
     return stack;
   }
 
@@ -291,6 +305,7 @@ class Velocities {
   const Model& model_;
   const VectorXd mass_;
   const std::vector<PlayRank> ranks_ = play_ranks(system_, gives_velocity);
+  double least_in_play_ = StackedRows::rounding;
   bool play_yields_ = false;                    // velocities that blocks give cannot hold as constraints do
   std::vector<ClosedMechanism::Lead> leading_;  // joints with a start speed
 };

@@ -247,7 +247,7 @@ class RunJob {
     return ended;
   }
 
-  int finish(const Outcome& outcome, const Ended& ended, const std::optional<Verification>& verification) {
+  int finish(Outcome outcome, const Ended& ended, const std::optional<Verification>& verification) {
     RunRecord record{
         *loaded_.model,    channels_,      assembled_.start.facts, outcome,
         ended.statistics,  ended.last_row, recording_.advice(),    warnings_of(loaded_.diagnostics, ended.warnings),
@@ -276,7 +276,7 @@ class RunJob {
     doubt_input(loaded_.diagnostics, record.trust);
     judge(record, record.trust);
     Json json = summary(record);
-    const int exit_code = repeats_ ? add_repeats(record, json) : outcome.exit_code;
+    const int exit_code = repeats_ ? add_repeats(record, outcome, json) : outcome.exit_code;
     recording_.seal(json);
     if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
       print_messages(fmt::format("freeplay: error: {}\n", outcome.reason), common_.no_color);
@@ -295,8 +295,7 @@ class RunJob {
   }
 
   /// Waits for the other runs of a repeated one. Returns the exit code of all together.
-  int add_repeats(RunRecord& record, Json& json) {
-    const Outcome& outcome = record.outcome;
+  int add_repeats(RunRecord& record, Outcome& outcome, Json& json) {
     ProgressLine progress(0.0, 1.0, stderr_is_terminal() && !common_.quiet);
     record.repeat = repeats_->finish(json, outcome, [&](std::size_t ended) {
       progress.update("runs", static_cast<long>(ended), static_cast<long>(repeats_->runs()));
@@ -305,7 +304,15 @@ class RunJob {
     if (outcome.exit_code != 0) return outcome.exit_code;
     const Json& failed = record.repeat["failed"];
     const bool all = record.repeat["completed"].get<std::size_t>() + failed.size() == repeats_->runs();
-    if (!all) return 130;
+    if (!all) {
+      outcome.status = RunStatus::interrupted;
+      outcome.exit_code = 130;
+      outcome.reason = "interrupted during the other runs of --repeat: the first one had come to its end";
+      json["status"] = status_word(outcome.status);
+      json["exit_code"] = outcome.exit_code;
+      json["stop_reason"] = outcome.reason;
+    }
+    if (outcome.exit_code != 0) return outcome.exit_code;
     return failed.empty() ? 0 : failed[0]["exit_code"].get<int>();
   }
 

@@ -71,9 +71,12 @@ double largest_moment(const Body& body, bool in_space) {
 
 double gyration_of(const Body& body, bool in_space) { return std::sqrt(largest_moment(body, in_space) / body.mass); }
 
-/// Whether the reach of a body says how long it is: not of a rotor whose centre of mass is a little off its only frame.
-bool is_length(const Outline& outline, double gyration) {
-  return outline.reach > 1e-12 && (outline.places.size() > 1 || outline.reach > body_limit::arm * gyration);
+/// Whether the reach of a body says how long it is: not of a rotor whose centre of mass is a little off its only frame
+/// and which is as heavy as a disc of its radius of gyration.
+bool is_length(const Outline& outline, double gyration, double mass) {
+  const double disc = 2.0 * std::numbers::pi * gyration * gyration;
+  return outline.reach > 1e-12 &&
+         (outline.places.size() > 1 || outline.reach > body_limit::arm * gyration || mass <= body_limit::sheet * disc);
 }
 
 /// Of bodies, then ground's.
@@ -81,8 +84,10 @@ std::vector<double> sorted_reaches(const std::vector<Outline>& outlines, const D
   const bool in_space = draft.model.space == Space::spatial;
   std::vector<double> reaches;
   for (std::size_t i = 0; i < outlines.size(); ++i) {
-    const double gyration = i < draft.model.bodies.size() ? gyration_of(draft.model.bodies[i], in_space) : 0.0;
-    if (is_length(outlines[i], gyration)) reaches.push_back(outlines[i].reach);
+    const bool moves = i < draft.model.bodies.size();  // the last is ground's
+    const double gyration = moves ? gyration_of(draft.model.bodies[i], in_space) : 0.0;
+    if (is_length(outlines[i], gyration, moves ? draft.model.bodies[i].mass : 0.0))
+      reaches.push_back(outlines[i].reach);
   }
   std::ranges::sort(reaches);
   return reaches;
@@ -167,7 +172,7 @@ class BodyDoubts {
   }
 
   bool judge_large_inertia(std::size_t i) const {
-    const double own_reach = is_length(outlines_[i], gyration_[i]) ? outlines_[i].reach : 0.0;
+    const double own_reach = is_length(outlines_[i], gyration_[i], body(i).mass) ? outlines_[i].reach : 0.0;
     const double around = std::max(own_reach, scale());
     if (!(around > 0.0) || gyration_[i] <= body_limit::gyration * around) return false;
     const double disc = 2.0 * std::numbers::pi * gyration_[i] * gyration_[i];

@@ -216,11 +216,12 @@ class MotionDoubts {
   }
 
   void judge_step(double speed, const CheckedValue& written) const {
-    if (settings_.adaptive || speed * settings_.step <= largest_turn) return;
+    const double step = std::min(settings_.step, settings_.interval);  // steps end at rows
+    if (settings_.adaptive || speed * step <= largest_turn) return;
     written.warn("doubtful-time",
                  fmt::format("'{}' turns the joint by {:.3g} rad in one step of {:.3g} s: shorten 'step', or give "
                              "'accuracy' in its place",
-                             written.path(), speed * settings_.step, settings_.step));
+                             written.path(), speed * step, step));
   }
 
   const Draft& draft_;

@@ -3,15 +3,12 @@
 #include <Eigen/QR>
 
 namespace freeplay {
-namespace {
-constexpr double smallest_pivot = 1e-9;  // of the largest entry of A
-}  // namespace
-
-void StackedRows::add(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+void StackedRows::add(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double least) {
   if (a.rows() == 0 || free_.cols() == 0) return;
   const Eigen::MatrixXd reduced = a * free_;
-  // Directions in which earlier ranks have left rounding alone are none.
-  if (reduced.cwiseAbs().maxCoeff() <= smallest_pivot * a.cwiseAbs().maxCoeff()) return;
+  const double largest = reduced.cwiseAbs().maxCoeff(), floor = least * a.cwiseAbs().maxCoeff();
+  if (largest <= floor) return;
+  const double smallest_pivot = least > rounding ? floor / largest : rounding;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows;
   rows.setThreshold(smallest_pivot);
   rows.compute(reduced);

@@ -12,7 +12,11 @@ class StackedRows {
   explicit StackedRows(Eigen::Index columns)
       : x_(Eigen::VectorXd::Zero(columns)), free_(Eigen::MatrixXd::Identity(columns, columns)) {}
 
-  void add(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+  static constexpr double rounding = 1e-9;
+
+  /// Directions in which earlier ranks leave less than the part `least` of the largest entry of A free count as none: a
+  /// solution grows by 1/least at most.
+  void add(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double least = rounding);
   const Eigen::VectorXd& solution() const { return x_; }
   /// Orthonormal columns: directions that no row says anything about.
   const Eigen::MatrixXd& free() const { return free_; }

@@ -15,21 +15,22 @@ namespace {
 struct Limits {
   double doubtful, bad;
 };
-constexpr Limits of_energy{1e-2, 1e-1};     // residual by what was moved
-constexpr double part_of_kinetic = 0.1;     // of the largest kinetic energy counts as moved
-constexpr double least_energy = 1e-6;       // by masses lifted by the model's size, or crossing it in the run
-constexpr Limits of_position{1e-6, 1e-3};   // residual of the constraints by the model's size
-constexpr double fewest_steps = 10.0;       // of a hard impact
-constexpr Limits of_radius{1e-2, 1e-1};     // penetration by the smaller radius
-constexpr double of_clearance = 1.0;        // penetration by the clearance
-constexpr double of_strength = 0.1;         // mean pressure by that at which a run ends
-constexpr double typical_density = 7800.0;  // steel [kg/m^3]
-constexpr Limits of_sound{2e-3, 1e-1};      // approach speed by that of sound
-constexpr double of_reach = 1.1;            // distance by what the lengths allow
-constexpr Limits of_drives{1e3, 1e6};       // force of a joint by those that drive and move the mechanism
-constexpr double of_beside = 1.5;           // force close to a singular position by that not quite so close
-constexpr double most_play = 0.1;           // clearance by the model's size
-constexpr double fewest_impacts = 10.0;     // in a window of statistics without a period
+constexpr Limits of_energy{1e-2, 1e-1};           // residual by what was moved
+constexpr double part_of_kinetic = 0.1;           // of the largest kinetic energy counts as moved
+constexpr double least_energy = 1e-6;             // by masses lifted by the model's size, or crossing it in the run
+constexpr Limits of_position{1e-6, 1e-3};         // residual of the constraints by the model's size
+constexpr double fewest_steps = 10.0;             // of a hard impact
+constexpr double fewest_steps_of_accuracy = 5.0;  // the error is controlled besides
+constexpr Limits of_radius{1e-2, 1e-1};           // penetration by the smaller radius
+constexpr double of_clearance = 1.0;              // penetration by the clearance
+constexpr double of_strength = 0.1;               // mean pressure by that at which a run ends
+constexpr double typical_density = 7800.0;        // steel [kg/m^3]
+constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of sound
+constexpr double of_reach = 1.1;                  // distance by what the lengths allow
+constexpr Limits of_drives{1e3, 1e6};             // force of a joint by those that drive and move the mechanism
+constexpr double of_beside = 1.5;                 // force close to a singular position by that not quite so close
+constexpr double most_play = 0.1;                 // clearance by the model's size
+constexpr double fewest_impacts = 10.0;           // in a window of statistics without a period
 constexpr double fewest_instants = 10.0, fewest_instants_of_accuracy = 2.0;  // that statistics are of
 constexpr double longest_period = 20.0;                                      // looked for, by the length of the run
 constexpr double whole_period = 0.99;                                        // of a window
@@ -127,12 +128,13 @@ void judge_singular(const RunRecord& record, Verdict& verdict) {
 
 void judge_steps_per_impact(const RunRecord& record, Verdict& verdict) {
   const double steps = record.advice.fewest_steps_of_hard();
-  if (!(steps < fewest_steps)) return;
+  const double limit = record.model.settings.adaptive ? fewest_steps_of_accuracy : fewest_steps;
+  if (!(steps < limit)) return;
   verdict.add({.id = "impact-steps",
                .level = Trust::doubtful,
-               .message = fmt::format("a hard impact took {:g} steps, fewer than {:g}", steps, fewest_steps),
+               .message = fmt::format("a hard impact took {:g} steps, fewer than {:g}", steps, limit),
                .value = steps,
-               .limit = fewest_steps});
+               .limit = limit});
 }
 
 void judge_redundancy(const RunRecord& record, Verdict& verdict) {

@@ -158,6 +158,13 @@ drivers: {works: {joint: arbor, kind: velocity, value: "-2*pi/3600"}}
 initial: {joints: {arbor: 90 deg}}
 simulation: {end: 86400, step: 30, output: {interval: 3600, frames: [hand/tip]}}
 """
+HANGER = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {arm: {mass: 0.5, inertia: 2e-3, com: [0.1, 0]}}
+joints: {pivot: {type: revolute, between: [ground, arm]}}
+initial: {joints: {pivot: 0.1 rad}}
+simulation: {end: 1 s, step: 1 ms}
+"""
 DRIVEN = "kind: velocity, value: 100}}\ninitial: {joints: {main: 1}}"
 PIN = "  crankpin: {type: revolute, between: [crank/tip, coupler]}\n"
 GUIDE = "  guide: {type: prismatic, between: [ground, slider]}\n"
@@ -165,6 +172,7 @@ INERTIA, MASS, LENGTH, VALUE, ANGLE = ["doubtful-" + word for word in ("inertia"
 
 # Model, text, what stands in its place, id of the warning, line of the new text where it stands, words of the message.
 MISTAKES = [
+    (HANGER, "inertia: 2e-3", "inertia: 200", INERTIA, "200", "its frames reach 0.1 m"),  # one pin: its length is the arm's
     (CRANK, "2.5e-4", "250", INERTIA, "250", "radius of gyration"),
     (CRANK, "inertia: 2.5e-4", "inertia: 250 kg*m^2", INERTIA, "250", "radius of gyration would be 34.5 m"),
     (CRANK, "inertia: 2.5e-4", "inertia: 2.5e5", INERTIA, "2.5e5", "radius of gyration"),  # g mm^2
@@ -200,7 +208,7 @@ MISTAKES = [
     (CRANK, DRIVEN, "kind: angle, value: '90*smooth(t, 0, 0.01)'}}", ANGLE, "'90", "deg"),
     (CRANK, DRIVEN, "kind: angle, value: 60}}", ANGLE, "60", "deg"),
     (CRANK, "end: 0.02, step: 1e-5", "end: 2, step: 1", "doubtful-time", "1}", "ms"),
-    (CRANK, "step: 1e-5", "step: 0.015 s", "doubtful-time", "100", "in one step"),
+    (CRANK, "step: 1e-5", "step: 0.015 s, output: {interval: 0.015 s}", "doubtful-time", "100", "in one step"),
     (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 0.02}", "doubtful-time", "0.02}}", "ms"),
     (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [10, 1], [20, 2]]}}}", "doubtful-time", "{points", "time_unit: ms"),
     (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [0.01, 90], [0.02, 0]]}}}", ANGLE, "{points", "unit: deg"),

@@ -30,5 +30,19 @@ TEST(StackedRows, WhatNoRowNamesStaysZeroAndFree) {
   EXPECT_NEAR(std::abs(stack.free()(0, 0)), 1.0, 1e-15);
 }
 
+// The second row is all but the first: to fulfil it, x would have to be 10 000.
+TEST(StackedRows, DirectionsThatEarlierRanksHardlyLeaveFreeCountAsNone) {
+  StackedRows all(2), stable(2);
+  const MatrixXd first{{1.0, 0.0}}, second{{1.0, 1e-4}};
+  const VectorXd none{{0.0}}, one{{1.0}};
+  all.add(first, none);
+  all.add(second, one);
+  EXPECT_NEAR(all.solution()[1], 1e4, 1e-6);
+  stable.add(first, none);
+  stable.add(second, one, 1e-2);
+  EXPECT_EQ(stable.solution()[1], 0.0);
+  EXPECT_EQ(stable.free().cols(), 1);
+}
+
 }  // namespace
 }  // namespace freeplay
