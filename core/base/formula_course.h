@@ -113,7 +113,7 @@ class FormulaCourse {
   const Expression& expression_;
   double from_, to_;
   double rounding_;  ///< times that are closer are one
-  double known_from_, known_to_;
+  double known_to_;
   std::vector<Side> sides_;
   std::vector<int> first_of_;       ///< by instruction: where what it depends on begins
   std::vector<int> first_side_of_;  ///< by instruction: its first side, or -1
