@@ -275,7 +275,7 @@ const StartBranches::Position& StartBranches::nearest() const {
   return *best;
 }
 
-// On the way to a position bodies may have turned round and round.
+// Newton's method may reach a position after whole turns of a body; angles are those nearest to the given ones.
 void StartBranches::count_turns_as_guessed() {
   if (mechanism_.model().space != Space::planar) return;
   const std::span<double> q = mechanism_.state.q();

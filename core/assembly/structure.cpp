@@ -363,12 +363,14 @@ class Examination {
   void judge_left_free(const std::vector<int>& moving, const MatrixXd& held, const MatrixXd& spins) {
     const auto is_moving = [&](BodyId body) { return std::ranges::count(moving, body) > 0; };
     const bool acts = acts_on(is_moving);
-    const std::vector<int> told = acts ? without_start(is_moving, held, spins) : moving;
-    if (told.empty()) return;
+    const std::vector<int> unrestrained = acts ? without_start(is_moving, held, spins) : moving;
+    if (unrestrained.empty()) return;
     std::string names;
-    for (const int b : told) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", model_.bodies[at(b)].name);
-    if (told.size() > 5) names = fmt::format("'{}' and {} others", model_.bodies[at(told[0])].name, told.size() - 1);
-    const Body& first = model_.bodies[at(told.front())];
+    for (const int b : unrestrained)
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", model_.bodies[at(b)].name);
+    if (unrestrained.size() > 5)
+      names = fmt::format("'{}' and {} others", model_.bodies[at(unrestrained[0])].name, unrestrained.size() - 1);
+    const Body& first = model_.bodies[at(unrestrained.front())];
     doubt("left-free",
           fmt::format("{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver, or "
                       "say under 'initial' how it starts",
@@ -434,14 +436,14 @@ class Examination {
     for (const int b : candidates) {
       if (posed(b)) given = stacked(given, body_rates(b));
     }
-    std::vector<int> told = moving_in(given, idle_spins(given));
+    std::vector<int> unrestrained = moving_in(given, idle_spins(given));
     const int width = closed_.body_velocities();
     for (const int b : candidates) {
       const bool turns_unnoticed = spins.middleRows(width * b, width).norm() > moves;
-      if (turns_unnoticed && !posed(b) && std::ranges::count(told, b) == 0) told.push_back(b);
+      if (turns_unnoticed && !posed(b) && std::ranges::count(unrestrained, b) == 0) unrestrained.push_back(b);
     }
-    std::ranges::sort(told);
-    return told;
+    std::ranges::sort(unrestrained);
+    return unrestrained;
   }
 
   /// Of a moving body or of ground: declared, and nothing stands on it.

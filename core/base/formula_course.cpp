@@ -139,7 +139,7 @@ double FormulaCourse::length_of_form(double t, int degree) const {
   return length;
 }
 
-// One window more. Where the work does not suffice for it the window ends early, or what is left of it stays unknown.
+// Examines the next window. If its budget of work runs out, the window ends early, or its rest is marked unknown.
 void FormulaCourse::look_further(double until) {
   const double low = known_to_, high = std::min(to_, std::max(low + (to_ - from_) / windows, until));
   const std::size_t first_corner = corners_.size();

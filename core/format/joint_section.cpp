@@ -244,7 +244,7 @@ class JointEntry {
     each_length([&](const std::string& path, double value) {
       const auto place = parameters.places.find(path);
       if (!is_play(path) || !(longest > 0.0) || value <= longest || place == parameters.places.end()) return;
-      if (layout.clearance >= value) return;  // told of the radial one
+      if (layout.clearance >= value) return;  // reported for the radial clearance already
       place->second.warn(
           "doubtful-clearance",
           fmt::format("'{}' is {:.4g} m, more than all radii and lengths of the bearing ({:.4g} m): check "

@@ -61,14 +61,14 @@ void warn_of_idle_links(const Draft& draft) {
       }
     }
   }
-  std::set<const Node*> told;
+  std::set<const Node*> doubted;
   for (std::size_t b = 0; b < links.size(); ++b) {
     const Link& link = links[b];
     if (!link.idle || link.pins.size() < 2) continue;
     const Vector3 &com = model.bodies[b].com, &place = at(link.marker).position;
     if (std::hypot(com[0] - place[0], com[1] - place[1]) < 1e-9) continue;
     const auto entry = entry_of(draft, "joints", link.pins[1]->name);
-    if (!entry || entry->key_node()->foreign || !told.insert(&entry->node()).second) continue;
+    if (!entry || entry->key_node()->foreign || !doubted.insert(&entry->node()).second) continue;
     entry->warn_at_key("same-frame",
                        fmt::format("joints '{}' and '{}' hold '{}' at one place, '{}', so that its turning "
                                    "moves nothing: is one of them meant at another frame",

@@ -17,7 +17,7 @@ constexpr double event_share = 1e-5;     // or as this part of what a position m
 constexpr double largest_defect = 0.5;   // of the motion interpolated there, as a part of what a step may err
 constexpr int most_hunts = 40;           // to end a step at an event
 constexpr int early_hunts = 4;           // of these, that trust the interpolated motion
-constexpr double most_foretold = 100.0;  // error of a step that still tells about when an event comes
+constexpr double largest_error = 100.0;  // error of a step, in tolerances, at which event times are usable
 constexpr double little_beyond = 1.01;   // of a step: its motion is continued so far
 
 }  // namespace
@@ -25,7 +25,7 @@ constexpr double little_beyond = 1.01;   // of a step: its motion is continued s
 // The length of the step to try in place of one of the length dt that erred too much: `shorter`, or to an event that it
 // met before, whose change of forces may be what it erred by.
 double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Passage& hunted) {
-  if (!(error <= most_foretold) || solver.regularity() < near_singular) return shorter;
+  if (!(error <= largest_error) || solver.regularity() < near_singular) return shorter;
   const Profile::Timer timer(system.profile(), Phase::events);
   // What no joint can be asked about tells nothing; nor does it matter, as the step does not stand.
   Fault fault;
