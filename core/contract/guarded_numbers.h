@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/same_bits.h"
 #include "freeplay/span.h"
 
 namespace freeplay {
@@ -44,10 +45,5 @@ class GuardedNumbers {
   std::vector<double> numbers_;
   std::size_t count_;
 };
-
-/// Equal bit for bit, so that NaN equals itself and 0 differs from -0.
-inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
-}
 
 }  // namespace freeplay

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/index.h"
+#include "base/same_bits.h"
 #include "freeplay/pairs.h"
 
 namespace freeplay {
@@ -208,7 +208,7 @@ bool IndexOneSolver::velocities_hold(std::span<const double> v) { return rows_ho
 // Phi_q depends on time and coordinates only.
 bool IndexOneSolver::is_factored_here() const {
   return has_factors() && factored_time_ == e_->time &&
-         std::memcmp(factored_at_.data(), e_->q.data(), factored_at_.size() * sizeof(double)) == 0;
+         same_bits(factored_at_, std::span(e_->q).first(factored_at_.size()));
 }
 
 bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
