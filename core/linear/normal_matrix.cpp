@@ -213,7 +213,7 @@ double NormalMatrix::factor(std::span<const double> numbers) {
 }
 
 template <int width>
-void NormalMatrix::substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+void NormalMatrix::substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) {
   if (!rows_.empty()) solve_others<width>(numbers, x, l);
   for (const AnchoredBody<width>& own : anchored<width>(*this)) {
     by_rows<width>(own.rows, [&]<int count>() { own.template substitute<count>(numbers, x, l); });
@@ -223,7 +223,7 @@ void NormalMatrix::substitute(std::span<const double> numbers, std::span<double>
 
 // The multipliers of the rows in S, and from x = b to b - G^T l with these alone.
 template <int width>
-void NormalMatrix::solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+void NormalMatrix::solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) {
   double* const multipliers = multipliers_.data();
   for (std::size_t r = 0; r < rows_.size(); ++r) multipliers[r] = -l[at(rows_[r])];
   const double* weighted = weighted_.data();
@@ -251,7 +251,7 @@ void NormalMatrix::solve_others(std::span<const double> numbers, std::span<doubl
   for (std::size_t r = 0; r < rows_.size(); ++r) l[at(rows_[r])] = multipliers[r];
 }
 
-void NormalMatrix::solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
+void NormalMatrix::solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) {
   width_ == 3 ? substitute<3>(numbers, x, l) : substitute<6>(numbers, x, l);
 }
 

@@ -28,7 +28,7 @@ class NormalMatrix {
   /// entry: 1 for rows that have nothing to do with each other, 0 where S is not positive definite to rounding.
   double factor(std::span<const double> numbers);
   /// Starts with x = b and l = c; leaves the solution. `numbers` as they were factored.
-  void solve(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
+  void solve(std::span<const double> numbers, std::span<double> x, std::span<double> l);
 
  private:
   /// S[target] += G_a W G_b^T: where the numbers of G_a and those of G_b W begin.
@@ -57,9 +57,9 @@ class NormalMatrix {
   template <int width>
   double factor_in(std::span<const double> numbers);
   template <int width>
-  void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
+  void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l);
   template <int width>
-  void solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l) const;
+  void solve_others(std::span<const double> numbers, std::span<double> x, std::span<double> l);
 
   int width_ = 3;
   std::vector<AnchoredBody<3>> anchored_in_plane_;
@@ -77,7 +77,7 @@ class NormalMatrix {
   std::vector<double> shares_;    // as others_: S^-1 G W g^T of the body's own rows
   std::vector<double> diagonal_;  // of G M^-1 G^T
   ListedCholesky factors_;
-  mutable std::vector<double> multipliers_;
+  std::vector<double> multipliers_;
 };
 
 }  // namespace freeplay

@@ -281,7 +281,7 @@ bool Simulation::Impl::look_inside(double t) {
 }
 
 bool Simulation::Impl::write_row_at(double t) {
-  const Profile::Timer timer(system.profile(), Phase::output);
+  const Profile::Timer timer(context.profile, Phase::output);
   if (!look_inside(t)) return false;
   Fault fault;
   if (!observer.observe(point(between), e_between, between.lambda(), row_between, fault)) return fail_with(fault, t);

@@ -43,7 +43,8 @@ bool Simulation::Impl::watch_row(double dt) {
   if (!know_row()) return false;
   const int joint = watch.add(row, e_accepted);
   // A look at the drivers takes longer than many steps, so it waits until something is wrong.
-  if (!torn_from && watch.deeper_than_play()) torn_from = out_of_reach_from(all_bodies, first_start.state);
+  if (!torn_from && watch.deeper_than_play())
+    torn_from = out_of_reach_from(equations->whole(), equations->start().state);
   if (joint < 0) return true;
   TrustReason reason = watch.why(joint, row);
   const std::string cause = likely_cause(system, e_accepted, {accepted.t(), adaptive ? 0.0 : dt, joint, first_forces});
@@ -57,7 +58,7 @@ bool Simulation::Impl::watch_row(double dt) {
 bool Simulation::Impl::note_warnings() {
   for (const ForceBlock& block : system.force_blocks()) {
     Warning& warning = joint_warnings[at(block.joint)];
-    if (warning.text != nullptr || system.rest(block.joint).now) continue;
+    if (warning.text != nullptr || context.rests_now(block.joint)) continue;
     const Point here = point(accepted);
     Fault fault;
     if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
@@ -85,7 +86,7 @@ void Simulation::Impl::note_first_forces() {
 // Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.
 void Simulation::Impl::explain_dead_point() {
   if (outcome.status != RunStatus::failed || outcome.exit_code != 4) return;
-  auto why = why_out_of_reach(all_bodies, first_start.state, outcome.time);
+  auto why = why_out_of_reach(equations->whole(), equations->start().state, outcome.time);
   if (!why) return;
   outcome.reason = std::move(*why);
   for (TrustReason& reason : outcome.doubts) {

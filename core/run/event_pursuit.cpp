@@ -26,7 +26,7 @@ constexpr double little_beyond = 1.01;   // of a step: its motion is continued s
 // met before, whose change of forces may be what it erred by.
 double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Passage& hunted) {
   if (!(error <= largest_error) || solver.regularity() < near_singular) return shorter;
-  const Profile::Timer timer(system.profile(), Phase::events);
+  const Profile::Timer timer(context.profile, Phase::events);
   // What no joint can be asked about tells nothing; nor does it matter, as the step does not stand.
   Fault fault;
   StepEvents::Passage found;
@@ -42,7 +42,7 @@ double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Pas
 // Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
 // is where to try next.
 bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int hunts, bool& done) {
-  const Profile::Timer timer(system.profile(), Phase::events);
+  const Profile::Timer timer(context.profile, Phase::events);
   Fault fault;
   StepEvents::Passage found;
   if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
@@ -123,7 +123,7 @@ bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, 
   const double whole = trial.t() - accepted.t(), last = std::min(longest, little_beyond * whole);
   if (hunted.joint < 0 || hunts >= early_hunts || !(dt < last) || system.layout().nz() > 0) return false;
   if (solver.regularity() < near_singular) return false;
-  const Profile::Timer timer(system.profile(), Phase::events);
+  const Profile::Timer timer(context.profile, Phase::events);
   const DenseStep motion(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate);
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   StepEvents::Passage end = hunted;

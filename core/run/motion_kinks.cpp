@@ -40,7 +40,7 @@ bool Simulation::Impl::resolve_inputs(double& dt) {
   if (!inputs) return true;
   dt = inputs->resolved(accepted.t(), dt);
   if (!inputs->watches_joints()) return true;
-  const Profile::Timer timer(system.profile(), Phase::joints);
+  const Profile::Timer timer(context.profile, Phase::joints);
   Fault fault;
   return inputs->resolved_by_joints(point(accepted), e_accepted, accepted.t(), dt, fault) ||
          fail_with(fault, accepted.t());
@@ -49,7 +49,7 @@ bool Simulation::Impl::resolve_inputs(double& dt) {
 // The same for joints where the step of the length dt that was just made has brought them.
 bool Simulation::Impl::resolves_joints(double& dt) {
   if (!inputs || !inputs->watches_joints()) return true;
-  const Profile::Timer timer(system.profile(), Phase::joints);
+  const Profile::Timer timer(context.profile, Phase::joints);
   Fault fault;
   return inputs->resolved_by_joints(point(trial), e_trial, accepted.t(), dt, fault) || fail_with(fault, trial.t());
 }
@@ -61,8 +61,8 @@ bool Simulation::Impl::loads_jump(double corner) {
     return std::abs(to - from) > smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(corner) * rates;
   };
   MotionFault fault;
-  if (!system.motions().evaluate(before, {motion_before.data(), motion_before.size()}, fault) ||
-      !system.motions().evaluate(behind, {motion_behind.data(), motion_behind.size()}, fault)) {
+  if (!system.motions().evaluate(before, {motion_before.data(), motion_before.size()}, motion_work, fault) ||
+      !system.motions().evaluate(behind, {motion_behind.data(), motion_behind.size()}, motion_work, fault)) {
     return true;  // the run will meet it
   }
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
@@ -167,8 +167,10 @@ void Simulation::Impl::book_jump(double kink) {
 // Whether the speed of a driver jumps.
 bool Simulation::Impl::note_jumps(double kink) {
   MotionFault fault;
-  if (!system.motions().evaluate(kink - margin(kink), {motion_before.data(), motion_before.size()}, fault) ||
-      !system.motions().evaluate(kink + margin(kink), {motion_behind.data(), motion_behind.size()}, fault)) {
+  if (!system.motions().evaluate(kink - margin(kink), {motion_before.data(), motion_before.size()}, motion_work,
+                                 fault) ||
+      !system.motions().evaluate(kink + margin(kink), {motion_behind.data(), motion_behind.size()}, motion_work,
+                                 fault)) {
     return false;  // the run will meet it
   }
   bool any = false;

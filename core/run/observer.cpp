@@ -15,7 +15,7 @@ namespace freeplay {
 namespace {}  // namespace
 
 bool Observer::observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
-                       Fault& fault) const {
+                       Fault& fault) {
   const Model& model = system_.model();
   row[at(channels_.time)] = point.t;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, e, row);
@@ -105,10 +105,9 @@ void Observer::observe_driver(int index, const Evaluation& e, std::span<const do
   row[at(columns.power)] = effort * e.coordinate_rate[joint];
 }
 
-bool Observer::observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row,
-                            Fault& fault) const {
+bool Observer::observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault) {
   PathPose wanted;
-  if (!system_.motions().path(index, point.t, wanted, fault.motion)) {
+  if (!system_.motions().path(index, point.t, wanted, motion_work_, fault.motion)) {
     fault.kind = Fault::Kind::motion;
     return false;
   }

@@ -16,7 +16,7 @@ class Observer {
 
   /// `e` holds all terms at `point`. False, with `fault` filled, when a joint's observation fails.
   bool observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
-               Fault& fault) const;
+               Fault& fault);
 
  private:
   void observe_body(int index, const Evaluation& e, std::span<double> row) const;
@@ -24,11 +24,12 @@ class Observer {
   bool observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
                      std::span<double> row, Fault& fault) const;
   void observe_driver(int index, const Evaluation& e, std::span<const double> lambda, std::span<double> row) const;
-  bool observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault) const;
+  bool observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault);
   void observe_force(int index, const Evaluation& e, std::span<double> row) const;
   void observe_frame(int index, const Evaluation& e, std::span<double> row) const;
 
   const System& system_;
+  MotionWork motion_work_;
   const Channels& channels_;
 };
 

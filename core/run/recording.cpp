@@ -28,7 +28,7 @@ bool Simulation::Impl::know_row() {
 }
 
 bool Simulation::Impl::record_step() {
-  const Profile::Timer timer(system.profile(), Phase::statistics);
+  const Profile::Timer timer(context.profile, Phase::statistics);
   double position = 0.0, velocity = 0.0;
   for (std::size_t r = 0; r < residual.size(); ++r) position = std::max(position, std::abs(e_accepted->phi[r]));
   watch.add_open(position);
@@ -67,7 +67,7 @@ std::string Simulation::Impl::why_open(double position) const {
 }
 
 bool Simulation::Impl::write_row() {
-  const Profile::Timer timer(system.profile(), Phase::output);
+  const Profile::Timer timer(context.profile, Phase::output);
   if (!know_row()) return false;
   ++outcome.rows;
   statistics.note_written(row);
@@ -77,7 +77,7 @@ bool Simulation::Impl::write_row() {
 
 bool Simulation::Impl::tell_sinks() {
   outcome.events += static_cast<long>(events.happenings().size());
-  const Profile::Timer timer(system.profile(), Phase::events);
+  const Profile::Timer timer(context.profile, Phase::events);
   for (const StepEvents::Happening& happening : events.happenings()) {
     const char* name = system.joint_layout(happening.joint).events[at(happening.event)].name;
     if (std::string_view(name).ends_with("contact_begin")) statistics.add_contact(happening.joint, happening.time);
@@ -134,7 +134,7 @@ void Simulation::Impl::seek_peaks(const Leg& leg) {
 // An event or a kink changes what acts at the end of the step that was just made: until there it goes on smoothly.
 bool Simulation::Impl::note_abrupt_end() {
   if (!statistics.counts(trial.t()) && !statistics.noise().active()) return true;
-  const Profile::Timer timer(system.profile(), Phase::statistics);
+  const Profile::Timer timer(context.profile, Phase::statistics);
   Fault fault;
   if (!observer.observe(point(trial), e_trial, trial.lambda(), row_between, fault)) return fail_with(fault, trial.t());
   statistics.end_stretch(row_between);
@@ -146,7 +146,7 @@ bool Simulation::Impl::note_abrupt_end() {
 bool Simulation::Impl::begin_statistics_inside() {
   const double t = statistics.first_instant();
   if (!statistics.begins_inside(accepted.t(), trial.t())) return true;
-  const Profile::Timer timer(system.profile(), Phase::statistics);
+  const Profile::Timer timer(context.profile, Phase::statistics);
   if (!observe_inside(t, {accepted, e_accepted, trial, e_trial})) return true;
   energy.fill_inside((t - accepted.t()) / (trial.t() - accepted.t()), e_between, between.lambda(), channels,
                      row_between);

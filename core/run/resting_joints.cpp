@@ -13,7 +13,8 @@ constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
 }  // namespace
 
-RestingJoints::RestingJoints(System& system) : system_(system) {
+RestingJoints::RestingJoints(const System& system, RunContext& context) : system_(system), context_(context) {
+  context.rests.resize(system.model().joints.size());
   const std::span<const ForceBlock> blocks = system.force_blocks();
   for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {
     const int j = blocks[at(f)].joint;
@@ -24,7 +25,7 @@ RestingJoints::RestingJoints(System& system) : system_(system) {
 
 // Lengths are never more than the sums of their parts.
 void RestingJoints::look(Candidate& candidate, const Evaluation& e) const {
-  const Rest& rest = system_.rest(candidate.joint);
+  const Rest& rest = context_.rests[at(candidate.joint)];
   const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
   double moved = 0.0, speed = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -37,7 +38,7 @@ void RestingJoints::look(Candidate& candidate, const Evaluation& e) const {
 
 bool RestingJoints::begin(double dt, const Point& start, const Evaluation& e, Fault& fault) {
   for (Candidate& candidate : candidates_) {
-    Rest& rest = system_.rest(candidate.joint);
+    Rest& rest = context_.rests[at(candidate.joint)];
     rest.left = false;
     const double way = steps_to_begin * dt;
     if (rest.now && !all_awake_ && candidate.room > way * candidate.speed) continue;
@@ -63,7 +64,7 @@ bool RestingJoints::begin(double dt, const Point& start, const Evaluation& e, Fa
 
 bool RestingJoints::stayed() {
   for (const Candidate& candidate : candidates_) {
-    const Rest& rest = system_.rest(candidate.joint);
+    const Rest& rest = context_.rests[at(candidate.joint)];
     if (rest.now && rest.left) all_awake_ = true;
   }
   return !all_awake_;
@@ -71,7 +72,7 @@ bool RestingJoints::stayed() {
 
 bool RestingJoints::held(double dt, const Evaluation& e) {
   for (Candidate& candidate : candidates_) {
-    const Rest& rest = system_.rest(candidate.joint);
+    const Rest& rest = context_.rests[at(candidate.joint)];
     if (!rest.now) continue;
     look(candidate, e);
     if (rest.left || !(candidate.room > steps_left * dt * candidate.speed)) all_awake_ = true;

@@ -13,10 +13,11 @@ namespace freeplay {
 /// away and taken again with all of them awake.
 class RestingJoints {
  public:
-  explicit RestingJoints(System& system);
+  /// Decides on the joints of `context`, which must outlive it.
+  RestingJoints(const System& system, RunContext& context);
 
-  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (System::rest). False, with
-  /// `fault`, when a joint fails.
+  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (RunContext::rests). False,
+  /// with `fault`, when a joint fails.
   bool begin(double dt, const Point& start, const Evaluation& e, Fault& fault);
   /// After an attempt, and at the end of a step, evaluated in `e`: whether they could. If not, all are awake in the
   /// next attempt.
@@ -31,7 +32,8 @@ class RestingJoints {
   };
   void look(Candidate& candidate, const Evaluation& e) const;
 
-  System& system_;
+  const System& system_;
+  RunContext& context_;
   std::vector<Candidate> candidates_;
   bool all_awake_ = false;
 };

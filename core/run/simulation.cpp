@@ -74,23 +74,15 @@ EventStorm::Limits storm_limits(const Settings& settings, bool adaptive) {
   return {instant, adaptive ? settings.step : 0.0, StepEvents::most_per_step};
 }
 
-// Multipliers that are not determined come out with efforts of drivers as small as can be: these must be among the
-// unknowns.
-Unknowns unknowns_of(const ModelFacts& facts) {
-  const bool determined = facts.actual.redundant == 0 && facts.actual.driver_redundant == 0;
-  return determined ? Unknowns::free_bodies : Unknowns::all_bodies;
-}
-
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 
-Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& all_channels,
+Simulation::Impl::Impl(std::shared_ptr<const RunEquations> all_equations, const Channels& all_channels,
                        std::span<Sink* const> all_sinks)
-    : all_bodies(owner),
-      first_start(start),
-      system(owner.model(), Variant::released, unknowns_of(start.facts)),
-      model(owner.model()),
+    : equations(std::move(all_equations)),
+      system(equations->system()),
+      model(system.model()),
       settings(model.settings),
       channels(all_channels),
       sinks(all_sinks.begin(), all_sinks.end()),
@@ -98,21 +90,23 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       integrator_layout(declare(system, energy.flows())),
       adaptive(settings.adaptive || integrator_layout.always_adaptive != 0),
       flows(integrator_layout.explicit_stages != 0 ? energy.flows() : 0),
-      solver(system, {.tolerance = integrator_layout.newton_tolerance,
-                      .max_iterations = integrator_layout.newton_max_iterations}),
+      solver(
+          system,
+          {.tolerance = integrator_layout.newton_tolerance, .max_iterations = integrator_layout.newton_max_iterations},
+          &context),
       control(step_limits(settings),
               integrator_layout.error_order > 0 ? integrator_layout.error_order : integrator_layout.order + 1),
       accepted(system.layout(), integrator_layout.memory, flows),
       trial(system.layout(), integrator_layout.memory, flows),
       between(system.layout(), integrator_layout.memory, flows),
-      e_accepted(system),
-      e_trial(system),
-      own_between(adaptive ? std::optional<KeptEvaluation>(std::in_place, system) : std::nullopt),
+      e_accepted(system, &context),
+      e_trial(system, &context),
+      own_between(adaptive ? std::optional<KeptEvaluation>(std::in_place, system, &context) : std::nullopt),
       e_between(own_between ? *own_between : solver.evaluation()),
       observer(system, all_channels),
-      events(system, adaptive, between, e_between),
+      events(system, context, adaptive, between, e_between),
       storm(model.joints.size(), storm_limits(settings, adaptive)),
-      resting(system),
+      resting(system, context),
       kinks(model),
       statistics(model, all_channels, adaptive),
       watch(system, all_channels),
@@ -142,11 +136,11 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
     require_attainable_accuracy(system);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
-    system.end_steps_at_events(settings.per_contact);
+    context.per_contact = settings.per_contact;
     inputs.emplace(system, shortest_change(settings), allowed);
   }
   if (flows > 0) solver.integrate_flows(energy);
-  system.begin_at(owner, start.state, accepted);
+  accepted.assign_motion(equations->first_state());
   for (const StopCondition& stop : settings.stop) stop_columns.push_back(channels.find(stop.channel));
   std::size_t values = 0;
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
@@ -255,7 +249,7 @@ std::string Simulation::Impl::why_not_converged(double dt) const {
 }
 
 bool Simulation::Impl::begin() {
-  const Profile::Timer timer(system.profile(), Phase::start);
+  const Profile::Timer timer(context.profile, Phase::start);
   e_accepted->forget_motions();
   if (!system.evaluate(point(accepted), all_terms, e_accepted)) return fail_with(e_accepted->fault, accepted.t());
   system.fill_driven_jacobian(e_accepted);
@@ -282,14 +276,14 @@ bool Simulation::Impl::begin() {
 
 // The joints' history in `state` at the begin of a step of the length dt from the accepted state.
 bool Simulation::Impl::begin_steps(double dt, State& state) {
-  const Profile::Timer timer(system.profile(), Phase::joints);
+  const Profile::Timer timer(context.profile, Phase::joints);
   std::ranges::copy(accepted.h(), state.h().begin());
   const Point here{accepted.t(), accepted.q(), accepted.v(), accepted.z(), accepted.h()};
   if (!adaptive && !resting.begin(dt, here, e_accepted, e_trial->fault)) {
     return fail_with(e_trial->fault, accepted.t());
   }
   for (const int j : with_history) {
-    if (system.rest(j).now) continue;
+    if (context.rests_now(j)) continue;
     const Slice h = system.layout().history(j);
     MarkerAccelerations accelerations;
     system.marker_accelerations(j, e_accepted, accepted.a(), accelerations);
@@ -342,7 +336,7 @@ bool Simulation::Impl::step(double dt, bool& converged) {
   if (!begin_steps(dt, trial)) return false;
   solver.use_history(trial.h());
   if (adaptive) solver.local_error().begin_attempt(accepted.v());
-  const Profile::Timer timer(system.profile(), Phase::integrator);
+  const Profile::Timer timer(context.profile, Phase::integrator);
   StateView view = trial.view();
   Attempt attempt{};
   Message message;
@@ -420,7 +414,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
     return run.solver.mobility(run.trial, joint, {out, 9});
   };
   {
-    const Profile::Timer timer(system.profile(), Phase::events);
+    const Profile::Timer timer(context.profile, Phase::events);
     if (!events.apply(accepted, e_accepted, trial, e_trial, fault) ||
         !events.tell_at_end(located, adaptive ? event_lateness() : 0.0, trial, e_trial, mobility, this, fault)) {
       return fail_with(fault, trial.t());
@@ -430,7 +424,7 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const Span<double> all_history(trial.h());
   const double* const lambda = trial.lambda().data();
   for (const int j : with_history) {
-    if (system.rest(j).now) continue;
+    if (context.rests_now(j)) continue;
     const Slice h = system.layout().history(j), rows = system.layout().rows(j);
     const Span<double> history = all_history.part(at(h.offset), at(h.size));
     if (!system.joint(j).commit(system.input(j, end, e_trial), {lambda + rows.offset, at(rows.size)}, history,
@@ -519,7 +513,7 @@ double Simulation::Impl::row_time(long index) const {
 
 Outcome Simulation::Impl::run(const RunHooks& hooks) {
   started = Clock::now();
-  system.set_profile(hooks.profile);
+  context.profile = hooks.profile;
   if (hooks.profile != nullptr) hooks.profile->start();
   if (hooks.blind_to_inputs) inputs.reset();
   outcome.time = accepted.t();
@@ -527,7 +521,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.wall_seconds = seconds_since(started);
   explain_dead_point();
   if (hooks.profile != nullptr) hooks.profile->stop();
-  system.set_profile(nullptr);
+  context.profile = nullptr;
   outcome.iterations = solver.iterations();
   outcome.factorizations = solver.factorizations();
   format_warnings();
@@ -538,8 +532,11 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   return outcome;
 }
 
-Simulation::Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks)
-    : impl_(std::make_unique<Impl>(system, start, channels, sinks)) {}
+Simulation::Simulation(std::shared_ptr<const RunEquations> equations, const Channels& channels,
+                       std::span<Sink* const> sinks)
+    : impl_(std::make_unique<Impl>(std::move(equations), channels, sinks)) {}
+Simulation::Simulation(const System& whole, const Start& start, const Channels& channels, std::span<Sink* const> sinks)
+    : Simulation(std::make_shared<const RunEquations>(whole, start), channels, sinks) {}
 Simulation::~Simulation() = default;
 Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->statistics; }

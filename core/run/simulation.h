@@ -10,11 +10,11 @@
 
 #include "assembly/assembly.h"
 #include "model/channel.h"
+#include "run/equations.h"
 #include "run/sink.h"
 #include "run/statistics.h"
 #include "run/trust.h"
 #include "run/watch.h"
-#include "system/system.h"
 
 namespace freeplay {
 
@@ -44,8 +44,10 @@ struct RunHooks {
 /// Advances a model from its start to Settings::end and feeds sinks and statistics.
 class Simulation {
  public:
-  /// `system` and `start` must outlive the simulation.
-  Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks);
+  /// Simulations that share equations may run at the same time, in threads of their own.
+  Simulation(std::shared_ptr<const RunEquations> equations, const Channels& channels, std::span<Sink* const> sinks);
+  /// With equations of its own. `whole` and `start` must outlive the simulation.
+  Simulation(const System& whole, const Start& start, const Channels& channels, std::span<Sink* const> sinks);
   ~Simulation();
   Outcome run(const RunHooks& hooks);
   const Statistics& statistics() const;

@@ -33,7 +33,7 @@ inline constexpr double rounding = std::numeric_limits<double>::epsilon();
 inline constexpr double near_singular = 1e-2;
 
 struct Simulation::Impl {
-  Impl(const System& owner, const Start& start, const Channels& all_channels, std::span<Sink* const> all_sinks);
+  Impl(std::shared_ptr<const RunEquations> equations, const Channels& channels, std::span<Sink* const> sinks);
 
   Outcome run(const RunHooks& hooks);
 
@@ -135,9 +135,9 @@ struct Simulation::Impl {
   void explain_dead_point();
   void explain_failure();
 
-  const System& all_bodies;  ///< of the whole model
-  const Start& first_start;  ///< of the run
-  System system;             ///< of the unknowns
+  std::shared_ptr<const RunEquations> equations;
+  const System& system;  ///< of the unknowns
+  RunContext context;
   const Model& model;
   const Settings& settings;
   const Channels& channels;
@@ -185,6 +185,7 @@ struct Simulation::Impl {
   };
   std::vector<SpeedJump> speed_jumps;  ///< by driver
   std::vector<TimeValue> motion_before, motion_behind;
+  MotionWork motion_work;
   std::vector<double> q_before, v_before, driven_change, impulses;
   std::vector<std::string> warnings;
   /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.

@@ -26,8 +26,10 @@ bool fields_make_sense(const Event& event, Span<const double> fields, Message& m
 }
 }  // namespace
 
-StepEvents::StepEvents(const System& system, bool located, State& between, KeptEvaluation& e_between)
+StepEvents::StepEvents(const System& system, const RunContext& context, bool located, State& between,
+                       KeptEvaluation& e_between)
     : system_(system),
+      context_(context),
       located_(located),
       between_(between),
       e_between_(e_between),
@@ -84,7 +86,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
-    if (inside_[at(watched_[w])] == 0 || system_.rest(watched_[w]).now) continue;
+    if (inside_[at(watched_[w])] == 0 || context_.rests_now(watched_[w])) continue;
     // A joint's present history decides what can happen next.
     const Step step{before,      e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
                     point(after)};

@@ -22,7 +22,7 @@ class StepEvents {
 
   /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `between` and `e_between`
   /// are lent for each call: what they hold does not matter, and is lost.
-  StepEvents(const System& system, bool located, State& between, KeptEvaluation& e_between);
+  StepEvents(const System& system, const RunContext& context, bool located, State& between, KeptEvaluation& e_between);
 
   /// A crossing that a step passes or ends at.
   struct Passage {
@@ -90,6 +90,7 @@ class StepEvents {
             const double* mobility = nullptr);
 
   const System& system_;
+  const RunContext& context_;
   bool located_;
   State& between_;
   KeptEvaluation& e_between_;

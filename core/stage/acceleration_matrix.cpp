@@ -174,7 +174,7 @@ double AccelerationMatrix::invert_blocks() {
 }
 
 template <int width>
-void AccelerationMatrix::substitute(std::span<double> x, std::span<double> l) const {
+void AccelerationMatrix::substitute(std::span<double> x, std::span<double> l) {
   using Square = Eigen::Matrix<double, width, width>;
   using Vector = Eigen::Matrix<double, width, 1>;
   double* const a = x.data();
@@ -214,7 +214,7 @@ void AccelerationMatrix::substitute(std::span<double> x, std::span<double> l) co
   }
 }
 
-void AccelerationMatrix::solve_whole(std::span<double> x, std::span<double> l) const {
+void AccelerationMatrix::solve_whole(std::span<double> x, std::span<double> l) {
   std::ranges::copy(x, right_.begin());
   std::copy(l.begin(), l.end(), right_.begin() + static_cast<std::ptrdiff_t>(x.size()));
   whole_->solve(right_, update_);
@@ -222,8 +222,7 @@ void AccelerationMatrix::solve_whole(std::span<double> x, std::span<double> l) c
   std::copy_n(update_.begin() + static_cast<std::ptrdiff_t>(x.size()), l.size(), l.begin());
 }
 
-void AccelerationMatrix::solve(std::span<double> x, std::span<double> l) const {
-  const Profile::Timer timer(system_.profile(), Phase::solution);
+void AccelerationMatrix::solve(std::span<double> x, std::span<double> l) {
   if (!by_normal_) return solve_whole(x, l);
   if (all_free_) return normal_.solve(numbers_, x, l);
   system_.body_velocities() == 3 ? substitute<3>(x, l) : substitute<6>(x, l);

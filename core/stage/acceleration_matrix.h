@@ -30,7 +30,7 @@ class AccelerationMatrix {
   /// Factors at `e`, which holds Phi_q. Returns the smallest pivot over the largest.
   double factor(Evaluation& e);
   /// Takes x = f and l = gamma for the solution a and lambda.
-  void solve(std::span<double> x, std::span<double> l) const;
+  void solve(std::span<double> x, std::span<double> l);
   /// After factor(): a solution satisfies all equations as well as its forces and accelerations are rounded.
   bool is_well_conditioned() const { return by_normal_ && smallest_ > well_conditioned; }
   /// After factor(): the rows are far from depending on each other. False says nothing.
@@ -71,8 +71,8 @@ class AccelerationMatrix {
   template <int width>
   double invert_blocks();
   template <int width>
-  void substitute(std::span<double> x, std::span<double> l) const;
-  void solve_whole(std::span<double> x, std::span<double> l) const;
+  void substitute(std::span<double> x, std::span<double> l);
+  void solve_whole(std::span<double> x, std::span<double> l);
 
   const System& system_;
   std::vector<char> dependent_;
@@ -95,10 +95,10 @@ class AccelerationMatrix {
   double smallest_ = 0.0;  // pivot of the normal matrix and of the blocks that prescribe bodies
   static constexpr double well_conditioned = 1e-2;
   std::unique_ptr<StageMatrix> whole_;
-  double unit_ = 0.0;  // pivot of whole_ over that of normal_, where both were factored last; 0: not yet
-  mutable std::vector<double> multipliers_;  // of free rows
-  mutable std::vector<double> forces_;       // on prescribed bodies
-  mutable std::vector<double> right_, update_;
+  double unit_ = 0.0;                // pivot of whole_ over that of normal_, where both were factored last; 0: not yet
+  std::vector<double> multipliers_;  // of free rows
+  std::vector<double> forces_;       // on prescribed bodies
+  std::vector<double> right_, update_;
 };
 
 }  // namespace freeplay

@@ -14,9 +14,10 @@ namespace freeplay {
 
 class StageEquations {
  public:
-  explicit StageEquations(const System& system);
+  explicit StageEquations(const System& system, RunContext* run = nullptr);
 
   const System& system() const { return system_; }
+  Profile* profile() const { return e_->profile(); }
   /// h of the states handed in from now on; views must stay valid.
   void use_history(std::span<const double> h) { h_ = h; }
   Point point_of(const StateView& s) const { return {*s.t, s.q, s.v, s.z, h_}; }

@@ -43,7 +43,7 @@ double FactorCache::factorize(StageFactor& factor) {
 // Of a small system the patterns of all factors are set at once: no other length of steps allocates then.
 void FactorCache::set_pattern(StageFactor& factor) {
   const System& system = equations_.system();
-  const Profile::Timer start(system.profile(), Phase::start);
+  const Profile::Timer start(equations_.profile(), Phase::start);
   const bool alone = system.layout().nv() + system.layout().nc() > few_unknowns;
   for (StageFactor& each : factors_) {
     if (&each != &factor && alone) continue;

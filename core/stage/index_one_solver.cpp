@@ -57,13 +57,13 @@ IndexOneSolver::IndexOneSolver(StageEquations& equations, const ConvergenceParam
 // The pivots of all rows are much cheaper than a rank-revealing decomposition, and mostly enough.
 void IndexOneSolver::know_rows() {
   if (equations_.rows().is_known()) return;
-  const Profile::Timer start(system_.profile(), Phase::start);
+  const Profile::Timer start(equations_.profile(), Phase::start);
   const bool independent = factor_once() > IndependentRows::singular_pivot && matrix_.has_independent_rows();
   independent ? equations_.rows().keep_all() : static_cast<void>(equations_.rows().find(e_));
 }
 
 void IndexOneSolver::set_pattern() {
-  const Profile::Timer start(system_.profile(), Phase::start);
+  const Profile::Timer start(equations_.profile(), Phase::start);
   matrix_.set_pattern(dependent_);
   pattern_choice_ = equations_.rows().choice();
   valid_ = false;
@@ -75,8 +75,14 @@ double IndexOneSolver::factor_once() {
   return matrix_.factor(e_);
 }
 
+// x = M^-1 (x - Phi_q^T l) and the multipliers l, in place of both right sides.
+void IndexOneSolver::solve_linear(std::span<double> x, std::span<double> l) {
+  const Profile::Timer timer(equations_.profile(), Phase::solution);
+  matrix_.solve(x, l);
+}
+
 bool IndexOneSolver::factor() {
-  const Profile::Timer timer(system_.profile(), Phase::factorization);
+  const Profile::Timer timer(equations_.profile(), Phase::factorization);
   know_rows();
   double pivot = factor_once();
   factored_time_ = e_->time;
@@ -127,7 +133,7 @@ double IndexOneSolver::refine_once(std::span<double> x_a, std::span<double> x_c,
   system_.multiply(e_, x_a, pressure);
   for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.mass()[i] * x_a[i] - motion[i];
   for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent_[r] ? 0.0 : right_c_[r] - pressure[r];
-  matrix_.solve(motion, pressure);
+  solve_linear(motion, pressure);
   for (std::size_t i = 0; i < nv; ++i) x_a[i] += motion[i];
   for (std::size_t r = 0; r < nc; ++r) x_c[r] += pressure[r];
   const double moved = equations_.norm(motion), pressed = largest(pressure);
@@ -219,7 +225,7 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
     return false;
   }
   if (choice.any_dependent()) {
-    const Profile::Timer timer(system_.profile(), Phase::factorization);
+    const Profile::Timer timer(equations_.profile(), Phase::factorization);
     // Rows that were left out in a singular position count again, but not those that seem independent only because a
     // stage is a little off the constraints.
     choice.find_more(e_, off_constraints * largest(e_->phi) / system_.size());
@@ -229,7 +235,7 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   const std::size_t nv = state.a.size, nc = state.lambda.size;
   in_pairs(nv, [&](auto at) { at(state.a) = at(e_->force); });
   for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = dependent_[r] ? 0.0 : e_->gamma[r];
-  matrix_.solve(state.a, state.lambda);
+  solve_linear(state.a, state.lambda);
   if (!matrix_.is_well_conditioned()) {
     std::copy_n(e_->force.begin(), nv, right_a_.begin());
     std::ranges::copy(e_->gamma, right_c_.begin());
@@ -238,7 +244,7 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   }
   std::ranges::copy(e_->internal_rate, z_rate.begin());
   if (choice.any_dependent()) {
-    const Profile::Timer timer(system_.profile(), Phase::solution);
+    const Profile::Timer timer(equations_.profile(), Phase::solution);
     choice.least_norm(state.lambda);
   }
   if (flows_ != nullptr) {
@@ -285,7 +291,7 @@ void IndexOneSolver::solve_rows(std::span<const double> gap) {
   const std::size_t nv = increment_.size();
   std::fill_n(update_.begin(), nv, 0.0);
   for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
-  matrix_.solve(std::span(update_).first(nv), std::span(update_).subspan(nv));
+  solve_linear(std::span(update_).first(nv), std::span(update_).subspan(nv));
 }
 
 bool IndexOneSolver::project_position(StateView& state) {
@@ -314,7 +320,7 @@ bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<
   for (std::size_t i = 0; i < error.size(); ++i) along[i] = system_.mass()[i] * error[i];
   const std::span<double> multipliers = std::span(update_).subspan(error.size());
   std::ranges::fill(multipliers, 0.0);
-  matrix_.solve(along, multipliers);
+  solve_linear(along, multipliers);
   return true;
 }
 
@@ -361,7 +367,7 @@ bool IndexOneSolver::move_by_forces() {
   const std::span<double> multipliers = std::span(update_).subspan(increment_.size());
   std::ranges::copy(right_a_, increment_.begin());
   std::ranges::fill(multipliers, 0.0);
-  matrix_.solve(increment_, multipliers);
+  solve_linear(increment_, multipliers);
   return true;
 }
 

@@ -55,6 +55,7 @@ class IndexOneSolver {
   /// rounding, of itself or of `scale`, and with `multipliers` x_c, too.
   bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
   /// One such update. Returns how large it is, relative.
+  void solve_linear(std::span<double> x, std::span<double> l);
   double refine_once(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers);
   bool move_by_forces();
   /// Whether every equation holds as well as its terms are rounded (Oettli and Prager 1964), and parts of it; the

@@ -248,13 +248,12 @@ void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const d
   }
 }
 
-void StageMatrix::solve(std::span<double> right, std::span<double> update) const {
-  const Profile::Timer timer(system_.profile(), Phase::solution);
+void StageMatrix::solve(std::span<double> right, std::span<double> update) {
   system_.body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
 }
 
 template <int width>
-void StageMatrix::substitute(std::span<double> right, std::span<double> update) const {
+void StageMatrix::substitute(std::span<double> right, std::span<double> update) {
   using Square = Eigen::Matrix<double, width, width>;
   using Vector = Eigen::Matrix<double, width, 1>;
   const int nv = system_.layout().nv();

@@ -30,7 +30,7 @@ class StageMatrix {
   /// the largest.
   double factor(Evaluation& e, double beta_q, double beta_v, double beta_z);
   /// The update (da, dlambda) for a right side, which is used up.
-  void solve(std::span<double> right, std::span<double> update) const;
+  void solve(std::span<double> right, std::span<double> update);
   InternalElimination& internal() { return internal_; }
 
  private:
@@ -55,7 +55,7 @@ class StageMatrix {
   template <int width>
   double invert_blocks();
   template <int width>
-  void substitute(std::span<double> right, std::span<double> update) const;
+  void substitute(std::span<double> right, std::span<double> update);
   /// Where the unknowns are solved for, by their place in the whole system.
   struct Division {
     std::vector<int> owner;     // prescribed body of a coordinate or row; -1: a free one
@@ -95,7 +95,7 @@ class StageMatrix {
   // A number for what is left out, Phi_q of each prescribed body by columns, then couplings_, alone_, rest_.
   std::vector<double> values_;
   std::size_t first_coupling_ = 0, first_alone_ = 0, first_rest_ = 0;
-  mutable std::vector<double> rest_right_, rest_update_;
+  std::vector<double> rest_right_, rest_update_;
 };
 
 }  // namespace freeplay

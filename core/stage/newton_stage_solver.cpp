@@ -11,10 +11,10 @@
 namespace freeplay {
 namespace {}  // namespace
 
-NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters)
+NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters, RunContext* run)
     : system_(system),
       table_(stage_solver_table(*this)),
-      equations_(system),
+      equations_(system, run),
       index_one_(equations_, parameters),
       factors_(equations_),
       floor_(equations_, parameters),
@@ -41,7 +41,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergencePara
     ++iterations_;
     ++result.iterations;
     fill_right_side(stage, out, factor, iteration == 0);
-    factor.matrix.solve(right_, update_);
+    solve_linear(factor, update_);
     const Convergence state = apply_update(stage, out, factor, iteration == 0);
     if (state == Convergence::not_finite) return give_up("a number in the state is not finite");
     if (state == Convergence::diverged) break;
@@ -89,7 +89,7 @@ bool NewtonStageSolver::evaluate(const Stage& stage, const StateView& at, bool w
 }
 
 bool NewtonStageSolver::refactor(StageFactor& factor) {
-  const Profile::Timer timer(system_.profile(), Phase::factorization);
+  const Profile::Timer timer(equations_.profile(), Phase::factorization);
   index_one_.know_rows();
   factors_.follow_choice_of_rows();
   double pivot = factors_.factorize(factor);
@@ -100,6 +100,12 @@ bool NewtonStageSolver::refactor(StageFactor& factor) {
   if (!factor.record.usable) equations_.note_trouble("the equations of motion are singular");
   if (factor.record.usable) monitor_.jacobian_renewed();
   return factor.record.usable;
+}
+
+// From the right side in right_.
+void NewtonStageSolver::solve_linear(StageFactor& factor, std::span<double> update) {
+  const Profile::Timer timer(equations_.profile(), Phase::solution);
+  factor.matrix.solve(right_, update);
 }
 
 bool NewtonStageSolver::find_dependent_rows() {
@@ -187,7 +193,7 @@ void NewtonStageSolver::correct_drift(StageFactor& factor, StateView& out) {
   factor.on_phi_since = 0;
   std::fill(right_.begin(), right_.end(), 0.0);
   for (std::size_t r = 0; r < phi.size(); ++r) right_[nv + r] = dependent[r] ? 0.0 : -phi[r] / factor.beta_q;
-  factor.matrix.solve(right_, work_);
+  solve_linear(factor, work_);
   in_pairs(nv, [&](auto at) {
     at(out.a) += part * at(work_);
     at(drift_) = (1.0 - part) * factor.beta_q * at(work_);
@@ -195,12 +201,12 @@ void NewtonStageSolver::correct_drift(StageFactor& factor, StateView& out) {
   for (std::size_t r = 0; r < phi.size(); ++r) out.lambda[r] += part * work_[nv + r];
 }
 
-bool NewtonStageSolver::is_rounding_of_phi(const Stage& stage, const StageFactor& factor) {
+bool NewtonStageSolver::is_rounding_of_phi(const Stage& stage, StageFactor& factor) {
   if (stage.level != ConstraintLevel::position || !floor_.phi_is_below_at_singular()) return false;
   const std::size_t nv = increment_.size();
   std::fill(right_.begin(), right_.end(), 0.0);
   fill_position_residual(factor.beta_q);
-  factor.matrix.solve(right_, work_);
+  solve_linear(factor, work_);
   for (std::size_t i = 0; i < nv; ++i) work_[i] = update_[i] - work_[i];
   return equations_.norm(std::span(work_).first(nv)) * monitor_.largest_beta() <= monitor_.parameters().tolerance;
 }

@@ -26,7 +26,8 @@ namespace freeplay {
 
 class NewtonStageSolver {
  public:
-  NewtonStageSolver(const System& system, const ConvergenceParameters& parameters);
+  /// `run`: of the run that it solves for, or null; must outlive it.
+  NewtonStageSolver(const System& system, const ConvergenceParameters& parameters, RunContext* run = nullptr);
 
   const System& system() const { return system_; }
   const abi::StageSolverTable& table() const { return table_; }
@@ -87,6 +88,7 @@ class NewtonStageSolver {
   bool evaluate(const Stage& stage, const StateView& at, bool with_jacobian);
   /// Factors at the present evaluation, which must hold Phi_q and derivatives.
   [[gnu::noinline]] bool refactor(StageFactor& factor);
+  void solve_linear(StageFactor& factor, std::span<double> update);
   [[gnu::noinline]] bool find_dependent_rows();
   /// right_ <- minus the residuals.
   void fill_right_side(const Stage& stage, const StateView& out, StageFactor& factor, bool first);
@@ -105,7 +107,7 @@ class NewtonStageSolver {
   [[gnu::noinline]] void correct_drift(StageFactor& factor, StateView& out);
   /// Whether the last update is what the rounding of Phi makes of itself: close to a singular position it grows without
   /// bound, and nothing more can be gained.
-  [[gnu::noinline]] bool is_rounding_of_phi(const Stage& stage, const StageFactor& factor);
+  [[gnu::noinline]] bool is_rounding_of_phi(const Stage& stage, StageFactor& factor);
   /// The first redundant equation that does not hold by itself, or -1.
   int violated_redundant_row(const Stage& stage) const;
   [[gnu::noinline]] int row_of_largest_residual() const;

@@ -81,7 +81,7 @@ void System::complete_markers(Evaluation& e) const {
 }
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
-  const Profile::Timer timer(profile_, Phase::assembly);
+  const Profile::Timer timer(e.profile(), Phase::assembly);
   // At the end of a step velocities are projected where everything else stays.
   const bool all_placed = (e.filled & ~terms & only_asked) == 0 && (driven_.empty() || e.driven_time == point.t);
   // nu depends on time and coordinates alone; rows that are made one by one are made anew.
@@ -172,7 +172,7 @@ bool System::fill_in(const Point& point, unsigned terms, unsigned kept, Evaluati
     std::swap(e.motion_time, e.other_motion_time);
     if (e.motion_time != point.t) {
       e.motion_time = std::numeric_limits<double>::quiet_NaN();
-      if (!motions_->evaluate(point.t, {e.motion.data(), e.motion.size()}, e.fault.motion)) {
+      if (!motions_->evaluate(point.t, {e.motion.data(), e.motion.size()}, e.motion_work, e.fault.motion)) {
         e.fault.kind = Fault::Kind::motion;
         return false;
       }

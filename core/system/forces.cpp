@@ -59,7 +59,7 @@ bool System::take_forces(std::size_t f, const JointForces& out, bool derivatives
 
 template <class Bodies>
 bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e) const {
-  const Profile::Timer timer(profile_, Phase::joints);
+  const Profile::Timer timer(e.profile(), Phase::joints);
   std::ranges::copy(weight_, e.force.begin());
   e.acting = 0;
   JointForces out;
@@ -68,7 +68,8 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
     const JointRecord& record = records_[at(j)];
-    if (const Rest& rest = rests_[at(j)]; rest.now) {
+    if (e.run != nullptr && e.run->rests_now(j)) {
+      Rest& rest = e.run->rests[at(j)];
       if (!rest.holds(e.markers[at(record.marker_a)], e.markers[at(record.marker_b)])) {
         rest.left = true;
       } else if (!derivatives && e.acts[f] == 0) {

@@ -64,12 +64,17 @@ bool Motions::modulo_turns(int driver) const {
   return driven.kinematics >= 0 && driven.kind == DriverKind::angle;
 }
 
-bool Motions::path(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept {
+FollowedMotion::Work& Motions::own_part(MotionWork& work) const {
+  if (!work.followed) work.followed = followed_->make_work();
+  return *work.followed;
+}
+
+bool Motions::path(int kinematics, double t, PathPose& pose, MotionWork& work, MotionFault& fault) const noexcept {
   const InverseKinematics& entry = model_.kinematics[static_cast<std::size_t>(kinematics)];
   const bool whole = entry.path[0] && entry.path[1] && entry.path[2];
   if (!whole) {
     pose = {};
-    if (followed_ && !followed_->frame(kinematics, t, pose, fault)) return false;
+    if (followed_ && !followed_->frame(kinematics, t, pose, own_part(work), fault)) return false;
   }
   for (std::size_t i = 0; i < pose.size(); ++i) {
     EvaluationFailure failure;
@@ -128,7 +133,7 @@ bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailur
   return true;
 }
 
-bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept {
+bool Motions::evaluate(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept {
   PathPose frame;
   PlatformTurn platform;
   int framed = -1;  // the entry that both are of
@@ -137,7 +142,7 @@ bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const 
       out[d] = {};
       if (!legs_[d]) continue;
       if (framed != kinematics) {
-        if (!path(kinematics, t, frame, fault)) return false;
+        if (!path(kinematics, t, frame, work, fault)) return false;
         platform = platform_angle(static_cast<int>(d), frame);
       }
       framed = kinematics;
@@ -152,7 +157,17 @@ bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const 
     fail(fault, failure.id, failure.reason);
     return false;
   }
-  return !followed_ || followed_->evaluate(t, out, fault);
+  return !followed_ || followed_->evaluate(t, out, own_part(work), fault);
+}
+
+bool Motions::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept {
+  MotionWork work;
+  return evaluate(t, out, work, fault);
+}
+
+bool Motions::path(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept {
+  MotionWork work;
+  return path(kinematics, t, pose, work, fault);
 }
 
 }  // namespace freeplay

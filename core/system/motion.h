@@ -27,14 +27,25 @@ using PathPose = std::array<Jet, 3>;
 /// Drivers that follow a path through the whole mechanism instead of a leg of their own.
 class FollowedMotion {
  public:
+  /// Work space of one caller at a time.
+  struct Work {
+    virtual ~Work() = default;
+  };
   virtual ~FollowedMotion() = default;
+  virtual std::unique_ptr<Work> make_work() const = 0;
   /// Fills the entries of these drivers.
-  virtual bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept = 0;
+  virtual bool evaluate(double t, Span<TimeValue> out, Work& work, MotionFault& fault) const noexcept = 0;
   /// Pose of the frame of an inverse-kinematics entry, components that the path leaves open included.
-  virtual bool frame(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept = 0;
+  virtual bool frame(int kinematics, double t, PathPose& pose, Work& work, MotionFault& fault) const noexcept = 0;
 };
 
-/// All driver motions of a model. Stateless: values depend on t alone.
+/// Work space of Motions. Allocates when it is first used.
+struct MotionWork {
+  std::unique_ptr<FollowedMotion::Work> followed{};
+};
+
+/// All driver motions of a model. Values depend on t alone, and any number of threads may ask, each with its work
+/// space.
 class Motions {
  public:
   explicit Motions(const Model& model);
@@ -51,9 +62,12 @@ class Motions {
   bool entry_follows(int kinematics) const;
   void follow(std::shared_ptr<const FollowedMotion> followed) { followed_ = std::move(followed); }
 
-  /// f, f', f'' of every driver: coordinates for prescribing ones, the effort for the others. Does not allocate.
-  bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept;
+  /// f, f', f'' of every driver: coordinates for prescribing ones, the effort for the others.
+  bool evaluate(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept;
   /// Components that the path leaves open are those of the ideal mechanism, and 0 before follow().
+  bool path(int kinematics, double t, PathPose& pose, MotionWork& work, MotionFault& fault) const noexcept;
+  /// The same with a work space of the call.
+  bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept;
   bool path(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept;
   /// True if values of the driver are angles known up to whole turns.
   bool modulo_turns(int driver) const;
@@ -64,6 +78,7 @@ class Motions {
 
  private:
   Jet platform_angle(int driver, const PathPose& frame) const;
+  FollowedMotion::Work& own_part(MotionWork& work) const;
   bool reaches(int driver, double t, const CrankPose& pose, MotionFault& fault) const noexcept;
   bool function(std::size_t driver, double t, TimeValue& out, EvaluationFailure& failure) const noexcept;
 

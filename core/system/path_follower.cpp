@@ -47,18 +47,18 @@ PathFollower::PathFollower(const System& closed, std::span<const double> q, std:
   }
   row_of_.assign(at(system_.layout().nc()), -1);
   for (std::size_t i = 0; i < kept_.size(); ++i) row_of_[at(kept_[i])] = static_cast<int>(i);
-  work_ = std::make_unique<Work>(system_, static_cast<int>(kept_.size() + paths_.size()));
+  Work work(system_, rows());
   State start(system_.layout(), 0);
   start.t() = model_.settings.start;
   std::ranges::copy(q, start.q().begin());
   std::ranges::copy(h, start.h().begin());
   MotionFault fault;
-  if (solve(start.t(), start, *work_, fault) != Found::yes) {
+  if (solve(start.t(), start, work, fault) != Found::yes) {
     const InverseKinematics& entry = model_.kinematics[at(paths_.front().kinematics)];
     fail(start.t(), fault);
     throw Error(Error::Category::input, fault.id, fault.text, entry.path_location);
   }
-  way_.push_back(work_->state);
+  way_.push_back(work.state);
   find_way();
 }
 
@@ -66,13 +66,13 @@ PathFollower::PathFollower(const System& closed, std::span<const double> q, std:
 void PathFollower::find_way() {
   const double start = model_.settings.start, end = model_.settings.end;
   const double longest = (end - start) / fewest_pieces;
-  Work work = Work(system_, static_cast<int>(paths_.size() + kept_.size()));
+  Work work(system_, rows()), other(system_, rows());
   MotionFault fault;
   for (double piece = longest; way_.back().t() < end;) {
     const double t = way_.back().t();
     double next = t + piece;
     if (next > end - 1e-3 * piece) next = end;
-    if (solve(next, way_.back(), work, fault) == Found::yes && certain(way_.back(), work.state)) {
+    if (solve(next, way_.back(), work, fault) == Found::yes && certain(way_.back(), work.state, other)) {
       way_.push_back(work.state);
       piece = std::min(2.0 * piece, longest);
       continue;
@@ -84,12 +84,12 @@ void PathFollower::find_way() {
   }
 }
 
-bool PathFollower::certain(const State& left, const State& right) {
+bool PathFollower::certain(const State& left, const State& right, Work& work) {
   const double middle = 0.5 * (left.t() + right.t());
   MotionFault fault;
-  if (solve(middle, left, *work_, fault) != Found::yes) return false;
-  const std::vector<double> q(work_->state.q().begin(), work_->state.q().end());
-  return solve(middle, right, *work_, fault) == Found::yes && distance(q, work_->state.q()) <= same_place;
+  if (solve(middle, left, work, fault) != Found::yes) return false;
+  const std::vector<double> q(work.state.q().begin(), work.state.q().end());
+  return solve(middle, right, work, fault) == Found::yes && distance(q, work.state.q()) <= same_place;
 }
 
 double PathFollower::distance(std::span<const double> a, std::span<const double> b) const {
@@ -197,18 +197,22 @@ void PathFollower::fail(double t, MotionFault& fault) const noexcept {
   *end.out = '\0';
 }
 
-bool PathFollower::reach(double t, MotionFault& fault) const noexcept {
+std::unique_ptr<FollowedMotion::Work> PathFollower::make_work() const {
+  return std::make_unique<Work>(system_, rows());
+}
+
+bool PathFollower::reach(double t, Work& work, MotionFault& fault) const noexcept {
   const Found found = t > lost_ + shortest_piece * (model_.settings.end - model_.settings.start)
                           ? Found::no
-                          : solve(t, nearest(t), *work_, fault);
+                          : solve(t, nearest(t), work, fault);
   if (found == Found::no) fail(t, fault);
   return found == Found::yes;
 }
 
-bool PathFollower::evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept {
-  const std::lock_guard lock(mutex_);
-  if (!reach(t, fault)) return false;
-  Work& work = *work_;
+bool PathFollower::evaluate(double t, Span<TimeValue> out, FollowedMotion::Work& own,
+                            MotionFault& fault) const noexcept {
+  Work& work = static_cast<Work&>(own);
+  if (!reach(t, work, fault)) return false;
   for (const int d : drivers_) {
     const int j = model_.drivers[at(d)].joint;
     const JointElement& joint = model_.joints[at(j)];
@@ -228,20 +232,20 @@ bool PathFollower::evaluate(double t, Span<TimeValue> out, MotionFault& fault) c
   return true;
 }
 
-bool PathFollower::frame(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept {
-  const std::lock_guard lock(mutex_);
-  if (!reach(t, fault)) return false;
+bool PathFollower::frame(int kinematics, double t, PathPose& pose, FollowedMotion::Work& own,
+                         MotionFault& fault) const noexcept {
+  Work& work = static_cast<Work&>(own);
+  if (!reach(t, work, fault)) return false;
   const int marker = model_.kinematics[at(kinematics)].marker;
   const BodyId body = model_.markers[at(marker)].body;
-  const Evaluation& e = work_->e;
+  const Evaluation& e = work.e;
   const MarkerKinematics& k = e.markers[at(marker)];
   const double rest[3] = {0.0, 0.0, 0.0};
   double acceleration[6];
-  planar::marker_acceleration(body == ground ? rest : &work_->state.a()[3 * at(body)], e.arms[at(marker)],
-                              acceleration);
+  planar::marker_acceleration(body == ground ? rest : &work.state.a()[3 * at(body)], e.arms[at(marker)], acceleration);
   pose[0] = {k.position[0], k.velocity[0], acceleration[0]};
   pose[1] = {k.position[1], k.velocity[1], acceleration[1]};
-  pose[2] = {system_.marker_angle(marker, work_->state.q()), k.angular_velocity[2], acceleration[5]};
+  pose[2] = {system_.marker_angle(marker, work.state.q()), k.angular_velocity[2], acceleration[5]};
   return true;
 }
 

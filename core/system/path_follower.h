@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -21,12 +20,14 @@ class PathFollower final : public FollowedMotion {
   /// Error{input} "ik-unreachable" when it cannot move along them from there.
   PathFollower(const System& closed, std::span<const double> q, std::span<const double> h);
 
-  bool evaluate(double t, Span<TimeValue> out, MotionFault& fault) const noexcept override;
-  bool frame(int kinematics, double t, PathPose& pose, MotionFault& fault) const noexcept override;
+  std::unique_ptr<FollowedMotion::Work> make_work() const override;
+  bool evaluate(double t, Span<TimeValue> out, FollowedMotion::Work& work, MotionFault& fault) const noexcept override;
+  bool frame(int kinematics, double t, PathPose& pose, FollowedMotion::Work& work,
+             MotionFault& fault) const noexcept override;
 
  private:
   /// Work space of one solution; `state` is the solution.
-  struct Work {
+  struct Work final : FollowedMotion::Work {
     Work(const System& system, int rows);
     State state;
     Evaluation e;
@@ -37,13 +38,14 @@ class PathFollower final : public FollowedMotion {
   enum class Found { yes, no, fault };
 
   void find_way();
-  bool certain(const State& left, const State& right);
+  bool certain(const State& left, const State& right, Work& work);
   Found solve(double t, const State& from, Work& work, MotionFault& fault) const noexcept;
   bool assemble(double t, Work& work, MotionFault& fault) const noexcept;
+  int rows() const { return static_cast<int>(kept_.size() + paths_.size()); }
   double distance(std::span<const double> a, std::span<const double> b) const;
   double scaled(std::span<const double> step) const;
   const State& nearest(double t) const;
-  bool reach(double t, MotionFault& fault) const noexcept;
+  bool reach(double t, Work& work, MotionFault& fault) const noexcept;
   void fail(double t, MotionFault& fault) const noexcept;
 
   const Model& model_;
@@ -54,8 +56,6 @@ class PathFollower final : public FollowedMotion {
   std::vector<int> drivers_;  ///< that follow
   std::vector<State> way_;    ///< solutions in order of time
   double lost_ = 0.0;         ///< where the way ends before the run does; beyond the run: nowhere
-  mutable std::unique_ptr<Work> work_;
-  mutable std::mutex mutex_;  ///< of the work space
 };
 
 }  // namespace freeplay

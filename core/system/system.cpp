@@ -106,7 +106,6 @@ System::System(const Model& model, Variant variant, Unknowns unknowns)
   const auto offset_of = [&](int block) { return block < 0 ? -1 : blocks_[at(block)].offset; };
   std::vector<int> declared;  // joints that declare their coordinate
   records_.reserve(model.joints.size());
-  rests_.resize(model.joints.size());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
     const bool closed = variant == Variant::closed;
@@ -248,7 +247,7 @@ InternalDerivatives::InternalDerivatives(const ForceBlock& block, int body_veloc
   rate_z = take(nz * nz);
 }
 
-Evaluation::Evaluation(const System& system) {
+Evaluation::Evaluation(const System& system, RunContext* run_context) : run(run_context) {
   const Model& model = system.model_;
   const Layout& layout = system.layout_;
   const std::size_t joints = model.joints.size();

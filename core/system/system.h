@@ -22,7 +22,7 @@
 #include "system/layout.h"
 #include "system/motion.h"
 #include "system/planar_kinematics.h"
-#include "system/profile.h"
+#include "system/run_context.h"
 #include "system/spatial_kinematics.h"
 #include "system/state.h"
 
@@ -103,23 +103,6 @@ struct JointRecord {
   int turn = -1;  ///< Layout::turn
 };
 
-/// A joint that nobody asks for forces while the origin of its second marker stays within `radius` of `from`, both seen
-/// from the origin of the first in world axes [m] (Joint::free_distance).
-struct Rest {
-  bool now = false;
-  double radius = 0.0, from[3] = {};
-  mutable bool left = false;  ///< set by evaluations that found it elsewhere, and asked it
-
-  bool holds(const MarkerKinematics& a, const MarkerKinematics& b) const {
-    double squared = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const double moved = b.position[i] - a.position[i] - from[i];
-      squared += moved * moved;
-    }
-    return squared < radius * radius;
-  }
-};
-
 struct Evaluation;
 class KeptEvaluation;
 
@@ -170,16 +153,8 @@ class System {
   BodyId unknown_of(int marker) const { return unknown(marker_places_[static_cast<std::size_t>(marker)]); }
   /// Angle of a marker [rad], for the coordinates of all bodies as in Evaluation::q.
   double marker_angle(int marker, std::span<const double> q) const;
-  /// The run ends its steps at events and gives an impact so many steps (JointInput::per_contact).
-  void end_steps_at_events(double per_contact) { per_contact_ = per_contact; }
   /// Angles of joints are differences of those of bodies, which do not jump: in the plane, where joints declare them.
   bool angles_follow_bodies() const;
-  /// By joint; a run decides who rests (run/resting_joints.h).
-  Rest& rest(int joint) { return rests_[static_cast<std::size_t>(joint)]; }
-  const Rest& rest(int joint) const { return rests_[static_cast<std::size_t>(joint)]; }
-  /// Who is told where the time goes; null: nobody.
-  void set_profile(Profile* profile) { profile_ = profile; }
-  Profile* profile() const { return profile_; }
   /// Largest distance that matters: unit of position tolerances [m].
   double size() const { return size_; }
 
@@ -319,7 +294,6 @@ class System {
   std::vector<spatial::Matrix> principal_;  // by body: body axes from principal axes; in space
   std::vector<InitialOffset> offsets_;
   std::vector<JointRecord> records_;              // by joint
-  std::vector<Rest> rests_;                       // by joint
   std::vector<int> with_coordinate_, with_rows_;  // joints that are asked; gears have no rows of their own here
   planar::DeclaredRows declared_;                 // of joints that are not
   std::vector<int> moving_markers_;  // not on ground: body after body, of each first those of Term::only_asked
@@ -366,15 +340,17 @@ class System {
   std::vector<std::array<int, 4>> gear_blocks_;  // by gear: of the bodies of its first and of its second joint
   std::vector<double> gear_offsets_;
   std::vector<ForceBlock> force_blocks_;
-  double size_ = 1.0, per_contact_ = 0.0;
-  Profile* profile_ = nullptr;
+  double size_ = 1.0;
   friend struct Evaluation;
 };
 
-/// Results and work space of System::evaluate. Sized once.
+/// Results and work space of System::evaluate. Sized once. `run` must outlive it; null: outside of a run, where every
+/// joint is awake.
 struct Evaluation {
-  explicit Evaluation(const System& system);
+  explicit Evaluation(const System& system, RunContext* run = nullptr);
 
+  RunContext* run = nullptr;
+  Profile* profile() const { return run == nullptr ? nullptr : run->profile; }
   std::vector<MarkerKinematics> markers;
   std::vector<planar::Arm> arms;           ///< by marker, in the plane
   std::vector<spatial::Arm> spatial_arms;  ///< by marker, in space
@@ -390,13 +366,14 @@ struct Evaluation {
   std::vector<double> coordinate, coordinate_rate;  ///< by joint
   std::vector<CoordinateRow> coordinate_rows;       ///< by joint, in marker space
   std::vector<TimeValue> motion;                    ///< by driver
-  std::vector<double> potential;                    ///< stored energy by joint [J]
-  std::vector<double> potential_rate;               ///< its time derivative [W]; NaN where the joint does not tell
-  std::vector<double> wrench;                       ///< by joint: 6 numbers on a, 6 on b, at the markers
-  std::vector<double> internal_rate;                ///< z'
-  std::vector<double> applied;                      ///< by applied force: wrench in world axes at its marker
-  std::vector<unsigned char> acts;                  ///< by force block: whether its wrenches are not all zero
-  std::uint64_t acting = 0;                         ///< the same of all blocks together
+  MotionWork motion_work;
+  std::vector<double> potential;       ///< stored energy by joint [J]
+  std::vector<double> potential_rate;  ///< its time derivative [W]; NaN where the joint does not tell
+  std::vector<double> wrench;          ///< by joint: 6 numbers on a, 6 on b, at the markers
+  std::vector<double> internal_rate;   ///< z'
+  std::vector<double> applied;         ///< by applied force: wrench in world axes at its marker
+  std::vector<unsigned char> acts;     ///< by force block: whether its wrenches are not all zero
+  std::uint64_t acting = 0;            ///< the same of all blocks together
   Fault fault;
 
   /// Prescribed motions are not those of their times any more.
@@ -440,7 +417,8 @@ struct Evaluation {
 /// An Evaluation that changes places with another one by its address.
 class KeptEvaluation {
  public:
-  explicit KeptEvaluation(const System& system) : evaluation_(std::make_unique<Evaluation>(system)) {}
+  explicit KeptEvaluation(const System& system, RunContext* run = nullptr)
+      : evaluation_(std::make_unique<Evaluation>(system, run)) {}
   operator Evaluation&() { return *evaluation_; }
   operator const Evaluation&() const { return *evaluation_; }
   Evaluation* operator->() { return evaluation_.get(); }
@@ -466,7 +444,7 @@ inline JointInput System::input(const JointRecord& record, const Point& point, c
           e.coordinate_rate[at(record.index)],
           {point.z.data() + record.internal.offset, at(record.internal.size)},
           {point.h.data() + record.history.offset, at(record.history.size)},
-          per_contact_};
+          e.run == nullptr ? 0.0 : e.run->per_contact};
 }
 
 inline JointInput System::input(int index, const Point& point, const Evaluation& e) const {

@@ -21,7 +21,7 @@ joints:
 
 struct Swinging : ::testing::Test {
   Swinging() : model(test::load(swinging)), system(*model), state(assemble(system).state), before(state) {
-    system.set_profile(&profile);
+    context.profile = &profile;
     solver.use_history(state.h());
     const double v[] = {0.0, 1.5, 2.0};
     std::ranges::copy(v, before.v().begin());
@@ -55,7 +55,8 @@ struct Swinging : ::testing::Test {
   std::shared_ptr<const Model> model;
   System system;
   Profile profile;
-  NewtonStageSolver solver{system, {}};
+  RunContext context;
+  NewtonStageSolver solver{system, {}, &context};
   State state, before;
 };
 

@@ -1,0 +1,40 @@
+// RunContext: what one run alone has, so that the equations of motion can be shared by many.
+#pragma once
+
+#include <vector>
+
+#include "freeplay/joint.h"
+#include "system/profile.h"
+
+namespace freeplay {
+
+/// A sleeping joint: it is not asked for forces while the origin of its second marker stays within `radius` of `from`,
+/// both seen from the origin of the first in world axes [m] (Joint::free_distance).
+struct Rest {
+  bool now = false;
+  double radius = 0.0, from[3] = {};
+  bool left = false;  ///< set by evaluations that found it elsewhere, and asked it
+
+  bool holds(const MarkerKinematics& a, const MarkerKinematics& b) const {
+    double squared = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double moved = b.position[i] - a.position[i] - from[i];
+      squared += moved * moved;
+    }
+    return squared < radius * radius;
+  }
+};
+
+/// Evaluations of a run refer to its context. Not for several threads.
+struct RunContext {
+  double per_contact = 0.0;    ///< JointInput::per_contact
+  Profile* profile = nullptr;  ///< where the time of the run is counted, or null
+  std::vector<Rest> rests{};   ///< by joint; a run decides which joints sleep (run/resting_joints.h)
+
+  bool rests_now(int joint) const {
+    const auto j = static_cast<std::size_t>(joint);
+    return j < rests.size() && rests[j].now;
+  }
+};
+
+}  // namespace freeplay
