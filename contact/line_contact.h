@@ -11,7 +11,7 @@
 
 namespace freeplay {
 
-/// What tells the line contact laws from each other: B = factor E* L c and the constant k.
+/// In what the line contact laws differ: B = factor E* L c and the constant k.
 struct LineForm {
   double factor, constant;
 };

@@ -29,7 +29,7 @@ enum Slot : std::size_t {
   slots
 };
 
-/// Values of `phase`. `on_from_start` is a contact that nobody has been told of: its begin event is still armed.
+/// Values of `phase`. `on_from_start` is a contact without an event so far: its begin event is still armed.
 inline constexpr double flight = 0.0, contact = 1.0, on_from_start = 2.0;
 
 /// v_0 is at least this [m/s]; laws divide by it.
@@ -120,7 +120,7 @@ inline void write_events(const JointInput& in, const Approach& gap, Span<double>
 inline void tell_begin(const JointInput& in, const Approach& gap, Span<double> history, Span<double> fields) {
   std::fill(fields.begin(), fields.end(), not_a_number);
   begin(in.t, gap.rate, in.t >= history[step_end], history);
-  // The speed that the law uses: where the crossing lies inside the step, the motion behind it feels the contact.
+  // The speed that the law uses: where the crossing lies inside the step, the motion after it feels the contact.
   const bool exact = history[approach_speed] == 0.0 || in.per_contact > 0.0;
   fields[0] = exact ? std::max(gap.rate, 0.0) : history[approach_speed];
 }
@@ -138,7 +138,7 @@ inline void stay_in_flight(Span<double> history) { history[predicted] = 0.0; }
 /// `share`: of the law's force that this contact has.
 inline void commit(const JointInput& in, const Approach& gap, const ContactLawRef& law, double share,
                    Span<double> history) {
-  // Crossings that no event told, because delta stood at its zero to rounding when the step began.
+  // Crossings without an event, because delta stood at its zero to rounding when the step began.
   if (history[phase] == flight && gap.penetration > 0.0 && gap.rate > 0.0) begin(in.t, gap.rate, false, history);
   if (history[phase] != flight && gap.penetration <= 0.0 && gap.rate <= 0.0) reset(history);
   stay_in_flight(history);

@@ -169,7 +169,7 @@ inline double foreseen_speed(const Approach& gap, double second, const Eigen::Ve
 }
 
 /// What a contact remembers: its internal variables less what they were when the last contact ended, since not every
-/// end is told by an event that could clear them.
+/// end is marked by an event that could clear them.
 struct Memory {
   Memory(Span<const double> internal, Span<const double> forgotten) : size(internal.size) {
     for (std::size_t i = 0; i < size; ++i) z[i] = internal[i] - forgotten[i];

@@ -134,7 +134,7 @@ class Bathe final : public Integrator {
     solver.retract(n.q, n.increment_known, to.q);
   }
 
-  /// Both, or the second behind the first as it is guessed.
+  /// Both, or the second after the first as it is predicted.
   bool solve_stages(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history,
                     bool second_alone) const {
     history.guess(0, split_, to);

@@ -9,7 +9,7 @@
 
 namespace freeplay {
 
-/// What tells the methods of the family from each other.
+/// In what the methods of the family differ.
 struct NewmarkWeights {
   double alpha_m, alpha_f, beta, gamma;
 };

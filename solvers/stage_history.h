@@ -14,7 +14,7 @@ namespace freeplay {
 ///   x_n + c (x_n - x_n-1) + c (c + 1)/2 (x_n - 2 x_n-1 + x_n-2) + d
 ///
 /// with d what the same sum was off in the step before: the error falls with h^4 where the motion is smooth, so that
-/// one iteration does. Where such a guess would have been no better than a_n, as behind an impact, and in steps of
+/// one iteration does. Where such a guess would have been no better than a_n, as after an impact, and in steps of
 /// another length than those before, it is not used. Of a stage that is solved, a guess changes the cost alone.
 ///
 /// Where guesses miss by a small part of what the iteration of a stage may leave, both stages of a step may be left as

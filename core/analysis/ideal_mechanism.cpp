@@ -187,7 +187,7 @@ void IdealMechanism::find_parts() {
   for (int i = 0; i < static_cast<int>(platform_.inputs.size()); ++i) {
     parts_[part_of_joint[at(platform_.inputs[at(i)])]].inputs.push_back(i);
   }
-  // Legs in the order of their inputs, what has none behind them.
+  // Legs in the order of their inputs, what has none after them.
   const auto first_input = [](const Limb& part) {
     return part.inputs.empty() ? std::numeric_limits<int>::max() : part.inputs.front();
   };

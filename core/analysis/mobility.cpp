@@ -78,11 +78,11 @@ GeneralMobility general_mobility(PostureSolver& solver, double t, const Posture&
     Posture moved = posture;
     int turns = 0;
     for (std::size_t i = 0; i < increment.size(); ++i) {
-      if (!system.is_turn(static_cast<int>(i))) continue;
+      if (!system.coordinates().is_turn(static_cast<int>(i))) continue;
       const double share = ++turns * 0.6180339887498949;  // golden ratio: spread evenly
       increment[i] = turn * (2.0 * (share - std::floor(share)) - 1.0);
     }
-    system.retract(posture.q, increment, moved.q);
+    system.coordinates().retract(posture.q, increment, moved.q);
     Demand demand;
     demand.t = t;
     if (!solver.settle(demand, moved)) continue;

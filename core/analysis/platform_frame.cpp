@@ -66,7 +66,7 @@ FramePose PlatformFrame::pose(std::span<const double> q) const {
     const double cosine = std::cos(c[2]), sine = std::sin(c[2]);
     return {c[0] + cosine * dx - sine * dy, c[1] + sine * dx + cosine * dy, c[2] + marker.angle};
   }
-  const Pose body = system_.frame_pose(marker.body, q);
+  const Pose body = system_.coordinates().frame_pose(marker.body, q);
   const Eigen::Map<const RowMajor> rotation(body.rotation), own(marker.rotation.data());
   const Vector3d position = spatial::vector(body.position) + rotation * spatial::vector(marker.position.data());
   const Vector3d turns = roll_pitch_yaw_of(rotation * own);
@@ -91,7 +91,7 @@ void PlatformFrame::place(const FramePose& pose, std::span<double> q) const {
   Eigen::Map<RowMajor> rotation(body.rotation);
   rotation = rotation_of(&pose[3]) * own.transpose();
   spatial::target(body.position) = spatial::vector(pose.data()) - rotation * spatial::vector(marker.position.data());
-  system_.set_frame_pose(marker.body, body, q);
+  system_.coordinates().set_frame_pose(marker.body, body, q);
 }
 
 void PlatformFrame::rows(const Components& given, const std::array<Jet, most_components>& pose, const Evaluation& e,

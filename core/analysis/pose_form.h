@@ -10,9 +10,9 @@
 namespace freeplay {
 
 inline constexpr std::size_t most_components = 6;
-/// A pose of the platform's frame in world axes, as PoseForm says; 0 behind its size.
+/// A pose of the platform's frame in world axes, as PoseForm says; 0 beyond its size.
 using FramePose = std::array<double, most_components>;
-/// Which numbers of a pose are meant; none behind the form's size.
+/// Which numbers of a pose are meant; none beyond the form's size.
 using Components = std::array<bool, most_components>;
 
 inline int count(const Components& components) {

@@ -195,7 +195,7 @@ void PostureSolver::move(const Task& task, const Eigen::VectorXd& step, Posture&
   for (std::size_t b = 0; b < task.bodies.size(); ++b) {
     std::copy_n(step.data() + width * b, width, &increment_[width * at(task.bodies[b])]);
   }
-  system_.retract(posture.q, increment_, posture.q);
+  system_.coordinates().retract(posture.q, increment_, posture.q);
 }
 
 // Newton's method. The first step follows the tangent; the others together measure how far the way bends from it.
@@ -212,7 +212,7 @@ PostureSolver::Step PostureSolver::correct(const Task& task, const Demand& deman
     const Eigen::VectorXd step = solver_.solve(right_);
     double largest = 0.0;
     for (Eigen::Index k = 0; k < step.size(); ++k) {
-      const double change = std::abs(step[k]) / (system_.is_turn(static_cast<int>(k)) ? 1.0 : size);
+      const double change = std::abs(step[k]) / (system_.coordinates().is_turn(static_cast<int>(k)) ? 1.0 : size);
       if (!(change <= largest)) largest = change;
     }
     if (i == 0 ? !(largest <= longest) : !((bend += largest) <= longest * longest_bend / longest_step)) {

@@ -58,7 +58,7 @@ class PostureSolver {
   /// All bodies at the origin.
   Posture blank() const;
 
-  /// Number of driven legs that reach the pose, each by itself; `why` tells of the first that does not.
+  /// Number of driven legs that reach the pose, each by itself; `why` describes the first that does not.
   int legs_in_reach(const Demand& demand, const Posture& from, Unreachable& why);
 
   /// Speeds and accelerations of all bodies [m/s, rad/s and per s] for the rates of `demand`; false at a singular

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 constexpr double rank_limit = 1e-10;     // of pivots, relative to the largest
 constexpr double folded_limit = 1e-7;    // of both at a fold, which is known to the root of the rounding
 constexpr double nothing = 1e-9;         // of rows, relative to null vectors of length 1
-constexpr double regular_inputs = 1e-9;  // pivots of B of a part that can be told apart by inputs
+constexpr double regular_inputs = 1e-9;  // pivots of B of a part that inputs can distinguish
 
 }  // namespace
 
@@ -241,7 +241,7 @@ void VelocityMapper::scale_several(const Group& group, Eigen::Ref<MatrixXd> rows
   }
 }
 
-// Rows that only play can violate get behind the others, which are told; of a single output these become orthonormal.
+// Rows that only play can violate go after the others, which are reported; of a single output these become orthonormal.
 Index VelocityMapper::separate(const Group& group, Eigen::Ref<MatrixXd> rows) const {
   const Index inputs = static_cast<Index>(group.inputs.size());
   MatrixXd scaled = rows.leftCols(kept_ + inputs);

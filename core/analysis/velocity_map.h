@@ -24,7 +24,7 @@ namespace freeplay {
 /// of A and B then do not depend on the choice of rows. Where a part has as many rows as inputs, more than one, each
 /// row belongs to one input (of a single kept component it does not); where it has another number, its rows are
 /// orthonormal in the shifts and L times the turns. Rows that only play can violate (redundant joints) have A = B = 0
-/// and stand behind the others of their part.
+/// and stand after the others of their part.
 struct VelocityMap {
   Eigen::MatrixXd a;         ///< rows x kept components
   Eigen::MatrixXd b;         ///< rows x inputs
@@ -58,7 +58,7 @@ class VelocityMapper {
     std::vector<int> parts, inputs, plays;
     std::vector<Fill> fills;
     std::vector<int> play_rows;     // by play: first row of its joint in the group
-    std::vector<int> play_columns;  // by play: first column behind those of the inputs
+    std::vector<int> play_columns;  // by play: first column after those of the inputs
     int rows = 0, columns = 0, play_numbers = 0;
     Eigen::MatrixXd passive, right;
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;

@@ -120,7 +120,7 @@ class Assembler {
     mechanism_.count_gears(std::move(counted), from_slides);
   }
 
-  // Driven joints without a closed form: the ideal mechanism stands on the paths, which tells where the joints are now
+  // Driven joints without a closed form: the ideal mechanism stands on the paths, which gives where the joints are now
   // and, followed from here, at any time.
   void follow_paths() {
     hold_followed_drivers(false);
@@ -248,11 +248,11 @@ class Assembler {
       std::ranges::copy(guess, state_.q().begin());
       std::vector<double> increment(state_.v().size(), 0.0);
       for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
-        if (!closed_.is_turn(i)) continue;
+        if (!closed_.coordinates().is_turn(i)) continue;
         const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
         increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
       }
-      closed_.retract(guess, increment, state_.q());
+      closed_.coordinates().retract(guess, increment, state_.q());
       if (mechanism_.holds(mechanism_.converge())) return true;
     }
     return false;
@@ -324,7 +324,7 @@ class Assembler {
     }
   }
 
-  // Where Newton has left a given pose, or came from a guess from which it could not tell two ways apart.
+  // Where Newton has left a given pose, or came from a guess from which two ways could not be distinguished.
   bool take_nearest(const std::vector<double>& guess, bool found, bool chosen_by_turn) {
     if (found && !chosen_by_turn && StartBranches::keeps(GivenPoses(closed_), state_.q())) return true;
     StartBranches branches(mechanism_, guess);

@@ -141,7 +141,7 @@ ClosedMechanism::Rows ClosedMechanism::converge() {
     double length = 1.0, after = before;
     for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
       const VectorXd increment = length * step;
-      system.retract(q, {increment.data(), at(static_cast<int>(increment.size()))}, state.q());
+      system.coordinates().retract(q, {increment.data(), at(static_cast<int>(increment.size()))}, state.q());
       now = position_rows();
       after = now.residual.norm();
       if (after < before) break;

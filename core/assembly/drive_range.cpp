@@ -31,10 +31,10 @@ constexpr double takes_part = 1e-3;  // share of a joint in the stress that its 
 
 double largest_move(const System& system, std::span<const double> from, std::span<const double> to) {
   std::vector<double> increment(at(system.layout().nv()));
-  system.difference(from, to, increment);
+  system.coordinates().difference(from, to, increment);
   double largest = 0.0;
   for (int i = 0; i < static_cast<int>(increment.size()); ++i) {
-    largest = std::max(largest, std::abs(increment[at(i)]) / (system.is_turn(i) ? 1.0 : system.size()));
+    largest = std::max(largest, std::abs(increment[at(i)]) / (system.coordinates().is_turn(i) ? 1.0 : system.size()));
   }
   return largest;
 }
@@ -68,11 +68,11 @@ bool leave_dead_point(ClosedMechanism& mechanism, double sign) {
     for (const double turn : {0.0, 0.1, -0.1, 0.3, -0.3}) {
       std::vector<double> increment(at(mechanism.system.layout().nv()), 0.0);
       for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
-        if (!mechanism.system.is_turn(i)) continue;
+        if (!mechanism.system.coordinates().is_turn(i)) continue;
         const double share = static_cast<double>(++turned) * 0.6180339887498949;
         increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
       }
-      mechanism.system.retract(q, increment, mechanism.state.q());
+      mechanism.system.coordinates().retract(q, increment, mechanism.state.q());
       lead.value = start + sign * part * first_step * unit;
       if (mechanism.holds(mechanism.converge()) &&
           largest_move(mechanism.system, q, mechanism.state.q()) <= longest_way) {
@@ -476,7 +476,7 @@ std::optional<std::string> why_out_of_reach(const System& system, const State& s
     if (!dead) return std::nullopt;
     return fmt::format("t = {:.9g} s: {} [dead-point]", t, words(*dead, system.model()));
   } catch (const Error&) {
-    return std::nullopt;  // a joint or a driver that cannot answer there has told already
+    return std::nullopt;  // a joint or a driver that cannot answer there has been reported already
   }
 }
 

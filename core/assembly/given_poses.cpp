@@ -28,7 +28,7 @@ std::array<double, 3> GivenPoses::turn_vector(BodyId id, std::span<const double>
   const Body& body = model_.bodies[at(id)];
   if (!gives_turn(body)) return {};
   if (planar_) return {0.0, 0.0, std::remainder(q[3 * at(id) + 2] - *body.angle, 2.0 * std::numbers::pi)};
-  const Pose pose = system_.frame_pose(id, q);
+  const Pose pose = system_.coordinates().frame_pose(id, q);
   const Eigen::Matrix3d turned =
       Eigen::Map<const RowMajor>(pose.rotation) * Eigen::Map<const RowMajor>(body.rotation->data()).transpose();
   const Eigen::AngleAxisd angle(turned);
@@ -42,7 +42,7 @@ Eigen::VectorXd GivenPoses::misses(std::span<const double> q) const {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     const Body& body = model_.bodies[at(b)];
     if (body.position) {
-      const Pose pose = system_.frame_pose(b, q);
+      const Pose pose = system_.coordinates().frame_pose(b, q);
       for (std::size_t c = 0; c < (planar_ ? 2u : 3u); ++c) {
         out[row++] = (pose.position[c] - (*body.position)[c]) / system_.size();
       }
@@ -62,13 +62,13 @@ Eigen::MatrixXd GivenPoses::derivative(std::span<const double> q) const {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     const Body& body = model_.bodies[at(b)];
     if (!body.position && !gives_turn(body)) continue;
-    const Pose pose = system_.frame_pose(b, q);
+    const Pose pose = system_.coordinates().frame_pose(b, q);
     const Eigen::Vector3d arm = -(Eigen::Map<const RowMajor>(pose.rotation) * Eigen::Vector3d(body.com.data()));
     Eigen::Index row = first;
     for (int k = 0; k < width; ++k) {
       v[at(width * b + k)] = 1.0;
       double twist[6];
-      system_.body_twist(b, q, v, twist);
+      system_.coordinates().body_twist(b, q, v, twist);
       v[at(width * b + k)] = 0.0;
       const Eigen::Vector3d w(twist + 3), origin = Eigen::Vector3d(twist) + w.cross(arm);
       row = first;
@@ -84,7 +84,7 @@ Eigen::MatrixXd GivenPoses::derivative(std::span<const double> q) const {
 double GivenPoses::shift(BodyId id, std::span<const double> q) const {
   const Body& body = model_.bodies[at(id)];
   if (!body.position) return 0.0;
-  const Pose pose = system_.frame_pose(id, q);
+  const Pose pose = system_.coordinates().frame_pose(id, q);
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c) sum = std::hypot(sum, pose.position[c] - (*body.position)[c]);
   return sum;
@@ -99,7 +99,7 @@ void GivenPoses::put_as_given(std::span<double> q) const {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     const Body& body = model_.bodies[at(b)];
     if (!body.position && !gives_turn(body)) continue;
-    Pose pose = system_.frame_pose(b, q);
+    Pose pose = system_.coordinates().frame_pose(b, q);
     if (body.position) std::copy_n(body.position->data(), planar_ ? 2 : 3, pose.position);
     if (body.rotation) std::ranges::copy(*body.rotation, pose.rotation);
     if (planar_ && body.angle) {
@@ -107,7 +107,7 @@ void GivenPoses::put_as_given(std::span<double> q) const {
       const double rotation[9] = {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0};
       std::ranges::copy(rotation, pose.rotation);
     }
-    system_.set_frame_pose(b, pose, q);
+    system_.coordinates().set_frame_pose(b, pose, q);
   }
 }
 

@@ -53,7 +53,8 @@ class Opening {
       MatrixXd damped = MatrixXd::Zero(static_cast<Eigen::Index>(own.size()) + columns, columns);
       damped.topRows(static_cast<Eigen::Index>(own.size())) = all(own, Eigen::all);
       for (int i = 0; i < static_cast<int>(columns); ++i) {
-        damped(static_cast<Eigen::Index>(own.size()) + i, i) = system_.is_turn(i) ? damping : damping / system_.size();
+        damped(static_cast<Eigen::Index>(own.size()) + i, i) =
+            system_.coordinates().is_turn(i) ? damping : damping / system_.size();
       }
       VectorXd wanted = VectorXd::Zero(damped.rows());
       wanted.head(static_cast<Eigen::Index>(own.size())) = -miss;
@@ -63,12 +64,12 @@ class Opening {
       VectorXd increment = stack.solution();
       double size = 0.0;
       for (int i = 0; i < static_cast<int>(columns); ++i) {
-        size = std::max(size, std::abs(increment[i]) / (system_.is_turn(i) ? 1.0 : system_.size()));
+        size = std::max(size, std::abs(increment[i]) / (system_.coordinates().is_turn(i) ? 1.0 : system_.size()));
       }
       if (!(size > last)) break;
       increment *= std::min(1.0, longest / size);
       const std::vector<double> before(q.begin(), q.end());
-      system_.retract(before, {increment.data(), at(static_cast<int>(columns))}, q);
+      system_.coordinates().retract(before, {increment.data(), at(static_cast<int>(columns))}, q);
     }
     return {open, others};
   }
@@ -106,11 +107,11 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
   for (const double turn : {0.0, 0.2, 0.7, 1.5}) {
     std::vector<double> increment(at(mechanism.system.layout().nv()), 0.0);
     for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
-      if (!mechanism.system.is_turn(i)) continue;
+      if (!mechanism.system.coordinates().is_turn(i)) continue;
       const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
       increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
     }
-    mechanism.system.retract(q, increment, mechanism.state.q());
+    mechanism.system.coordinates().retract(q, increment, mechanism.state.q());
     opening.settle(-1);
     const int joint = opening.worst_joint();
     if (joint < 0) continue;

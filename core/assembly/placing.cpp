@@ -192,7 +192,7 @@ void place_bodies(const System& closed, std::span<const double> coordinates, std
       Pose pose;
       spatial::target(pose.position) = frame.position;
       Eigen::Map<SpatialPose::RowMajor>(pose.rotation) = frame.rotation;
-      closed.set_frame_pose(b, pose, q);
+      closed.coordinates().set_frame_pose(b, pose, q);
     }
     return;
   }
@@ -211,7 +211,7 @@ void start_velocities(const System& closed, std::span<const double> q, std::span
   const Model& model = closed.model();
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[at(b)];
-    const Pose frame = closed.frame_pose(b, q);
+    const Pose frame = closed.coordinates().frame_pose(b, q);
     const Vector3& w = body.angular_velocity;
     double arm[3] = {};
     for (std::size_t r = 0; r < 3; ++r) {
@@ -223,7 +223,7 @@ void start_velocities(const System& closed, std::span<const double> q, std::span
                              w[0],
                              w[1],
                              w[2]};
-    closed.set_body_twist(b, q, twist, v);
+    closed.coordinates().set_body_twist(b, q, twist, v);
   }
 }
 

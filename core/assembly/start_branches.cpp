@@ -30,8 +30,8 @@ constexpr Eigen::Index most_columns = 180, columns_for_many = 45, columns_for_so
 
 VectorXd scaled(const System& system, VectorXd increment) {
   for (int i = 0; i < static_cast<int>(increment.size()); ++i) {
-    increment[i] =
-        system.is_turn(i) ? std::remainder(increment[i], 2.0 * std::numbers::pi) : increment[i] / system.size();
+    increment[i] = system.coordinates().is_turn(i) ? std::remainder(increment[i], 2.0 * std::numbers::pi)
+                                                   : increment[i] / system.size();
   }
   return increment;
 }
@@ -47,7 +47,7 @@ bool StartBranches::keeps(const GivenPoses& given, std::span<const double> q) {
 
 VectorXd StartBranches::difference(std::span<const double> from, std::span<const double> to) const {
   VectorXd out(system_.layout().nv());
-  system_.difference(from, to, {out.data(), static_cast<std::size_t>(out.size())});
+  system_.coordinates().difference(from, to, {out.data(), static_cast<std::size_t>(out.size())});
   return out;
 }
 
@@ -58,7 +58,7 @@ double StartBranches::from_guess(std::span<const double> q) const {
   double sum = 0.0;
   for (int i = 0; i < static_cast<int>(away.size()); ++i) {
     const Body& body = mechanism_.model().bodies[at(i / width)];
-    const bool given = system_.is_turn(i) ? body.angle || body.rotation : body.position.has_value();
+    const bool given = system_.coordinates().is_turn(i) ? body.angle || body.rotation : body.position.has_value();
     if (!given) sum += away[i] * away[i];
   }
   return std::sqrt(sum);
@@ -103,7 +103,7 @@ void StartBranches::come_nearer() {
     double length = std::min(1.0, longest_turn / scaled(system_, step).lpNorm<Eigen::Infinity>());
     for (int halving = 0; halving < 8 && !better; ++halving, length *= 0.5) {
       const VectorXd increment = length * step;
-      system_.retract(before, {increment.data(), at(static_cast<int>(increment.size()))}, q);
+      system_.coordinates().retract(before, {increment.data(), at(static_cast<int>(increment.size()))}, q);
       better = mechanism_.holds(mechanism_.converge()) && given_.misses(q).norm() < (1.0 - 1e-9) * misses.norm();
     }
     if (better) continue;
@@ -142,7 +142,7 @@ void StartBranches::refine() {
     if (down.lpNorm<Eigen::Infinity>() <= 1e-9 * misses.norm()) return;
     const std::vector<double> here(q.begin(), q.end());
     const auto go = [&](const VectorXd& increment) {
-      system_.retract(here, {increment.data(), at(static_cast<int>(increment.size()))}, q);
+      system_.coordinates().retract(here, {increment.data(), at(static_cast<int>(increment.size()))}, q);
       return mechanism_.holds(mechanism_.converge());
     };
     MatrixXd curvature(ways.cols(), ways.cols());
@@ -179,7 +179,8 @@ void StartBranches::approach(std::span<const double> start) {
   std::ranges::copy(start, q.begin());
   const Eigen::Index columns = system_.layout().nv();
   VectorXd scale(columns);
-  for (int i = 0; i < static_cast<int>(columns); ++i) scale[i] = system_.is_turn(i) ? 1.0 : system_.size();
+  for (int i = 0; i < static_cast<int>(columns); ++i)
+    scale[i] = system_.coordinates().is_turn(i) ? 1.0 : system_.size();
   const auto cost = [&](const ClosedMechanism::Rows& rows, double weight) {
     const double away = weight_of_guess * scaled(system_, difference(start, q)).norm();
     const double given = given_.any() ? given_.misses(q).norm() : 0.0;
@@ -208,7 +209,7 @@ void StartBranches::approach(std::span<const double> start) {
       const double now = cost(rows, weight);
       bool better = false;
       for (int halving = 0; halving < 6 && !better; ++halving, step *= 0.5) {
-        system_.retract(before, {step.data(), at(static_cast<int>(columns))}, q);
+        system_.coordinates().retract(before, {step.data(), at(static_cast<int>(columns))}, q);
         rows = mechanism_.position_rows();
         better = cost(rows, weight) < now;
       }
@@ -230,7 +231,7 @@ std::vector<double> StartBranches::turned(int seed) const {
   VectorXd increment = VectorXd::Zero(system_.layout().nv());
   const int width = system_.body_velocities();
   for (int i = 0, count = 0; i < static_cast<int>(increment.size()); ++i) {
-    if (!system_.is_turn(i)) continue;
+    if (!system_.coordinates().is_turn(i)) continue;
     const Body& body = mechanism_.model().bodies[at(i / width)];
     const bool given = body.angle || body.rotation;
     // Golden ratio and its square: spread evenly.
@@ -238,7 +239,7 @@ std::vector<double> StartBranches::turned(int seed) const {
     increment[i] = (given ? 0.3 : std::numbers::pi) * (2.0 * (share - std::floor(share)) - 1.0);
   }
   std::vector<double> q = guess_;
-  system_.retract(guess_, {increment.data(), static_cast<std::size_t>(increment.size())}, q);
+  system_.coordinates().retract(guess_, {increment.data(), static_cast<std::size_t>(increment.size())}, q);
   return q;
 }
 
@@ -255,7 +256,7 @@ void StartBranches::search() {
   for (const Position& one : known) {
     const VectorXd back = -difference(guess_, one.q);
     std::vector<double> mirrored = guess_;
-    system_.retract(guess_, {back.data(), static_cast<std::size_t>(back.size())}, mirrored);
+    system_.coordinates().retract(guess_, {back.data(), static_cast<std::size_t>(back.size())}, mirrored);
     add_approached(mirrored);
   }
   std::ranges::copy(state, mechanism_.state.q().begin());

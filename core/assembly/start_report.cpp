@@ -51,8 +51,8 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
     if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (!body.velocity_given && !body.angular_velocity_given) continue;
     double wanted[6], is[6];
-    closed.body_twist(b, q, given, wanted);
-    closed.body_twist(b, q, v, is);
+    closed.coordinates().body_twist(b, q, given, wanted);
+    closed.coordinates().body_twist(b, q, v, is);
     const auto length = [](double x, double y, double z) { return std::hypot(x, y, z); };
     const double turn = length(is[3] - wanted[3], is[4] - wanted[4], is[5] - wanted[5]);
     const double asked = length(wanted[3], wanted[4], wanted[5]);
@@ -62,7 +62,7 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
     }
     if (!body.velocity_given) continue;
     // Of the origin of the body's frame.
-    const Pose frame = closed.frame_pose(b, q);
+    const Pose frame = closed.coordinates().frame_pose(b, q);
     double miss[3], arm[3] = {};
     for (std::size_t r = 0; r < 3; ++r) {
       for (std::size_t c = 0; c < 3; ++c) arm[r] -= frame.rotation[3 * r + c] * body.com[c];
@@ -94,21 +94,22 @@ void add_moved_journal(const JointElement& joint, bool gives_velocity, const Ini
 TwinStart twin_start(const System& closed, std::span<const double> taken, std::span<const double> other) {
   const Model& model = closed.model();
   std::vector<double> difference(at(closed.layout().nv()));
-  closed.difference(taken, other, difference);
+  closed.coordinates().difference(taken, other, difference);
   const int width = closed.body_velocities();
   int worst = 0;
   double largest = -1.0;
   bool turns = true;
   for (int i = 0; i < static_cast<int>(difference.size()); ++i) {
-    const double size = closed.is_turn(i) ? std::abs(std::remainder(difference[at(i)], 2.0 * std::numbers::pi))
-                                          : std::abs(difference[at(i)]) / closed.size();
-    if (size > largest * (1.0 + 1e-6)) largest = size, worst = i / width, turns = closed.is_turn(i);
+    const double size = closed.coordinates().is_turn(i)
+                            ? std::abs(std::remainder(difference[at(i)], 2.0 * std::numbers::pi))
+                            : std::abs(difference[at(i)]) / closed.size();
+    if (size > largest * (1.0 + 1e-6)) largest = size, worst = i / width, turns = closed.coordinates().is_turn(i);
   }
   const Body& body = model.bodies[at(worst)];
   const auto where = [&](std::span<const double> q) {
     if (turns && width == 3)
       return fmt::format("{:.1f} deg", degrees(std::remainder(q[3 * at(worst) + 2], 2.0 * std::numbers::pi)));
-    const Pose pose = closed.frame_pose(worst, q);
+    const Pose pose = closed.coordinates().frame_pose(worst, q);
     if (width == 3) return fmt::format("[{:.4g}, {:.4g}] m", pose.position[0], pose.position[1]);
     if (!turns) return fmt::format("[{:.4g}, {:.4g}, {:.4g}] m", pose.position[0], pose.position[1], pose.position[2]);
     const double* r = pose.rotation;

@@ -166,11 +166,11 @@ class Velocities {
 
   // Component c of the velocity of a body's origin against its centre of mass at unit rate of its k-th turn.
   double arm_rate(int body, int k, int c) const {
-    const Pose frame = system_.frame_pose(body, mechanism_.state.q());
+    const Pose frame = system_.coordinates().frame_pose(body, mechanism_.state.q());
     std::vector<double> v(mechanism_.state.v().size(), 0.0);
     v[at(system_.body_velocities() * body + linear() + k)] = 1.0;
     double twist[6];
-    system_.body_twist(body, mechanism_.state.q(), v, twist);
+    system_.coordinates().body_twist(body, mechanism_.state.q(), v, twist);
     const Vector3& com = model_.bodies[at(body)].com;
     double arm[3] = {};
     for (std::size_t r = 0; r < 3; ++r) {
@@ -240,7 +240,7 @@ class Velocities {
     int joint = -1;  ///< of an element that is no driver
   };
 
-  // Least squares share a contradiction among all rows that take part; what was asked for is told before joints.
+  // Least squares share a contradiction among all rows that take part; what was asked for is reported before joints.
   [[noreturn]] void report_contradiction(const ClosedMechanism::Rows& rows, double tolerance) const {
     Origin worst;
     double gap = 0.0;

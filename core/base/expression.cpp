@@ -150,7 +150,7 @@ bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexc
   Jet stack[depth];
   Jet* top = stack;  // one past the last operand
   for (const Instruction& instruction : program_) {
-    // What most formulas are made of, without a call; what is not finite, or has no value, is told of below.
+    // What most formulas are made of, without a call; what is not finite, or has no value, is reported below.
     Jet quick;
     switch (instruction.operation) {
       case Operation::push_time:

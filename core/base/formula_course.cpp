@@ -337,7 +337,7 @@ FormulaCourse::Where FormulaCourse::decide(std::size_t side, IntervalJet value, 
   if (decision.where != Where::open && decision.depth < depth) return decision.where;
   value.tighten(middle, span.half());
   decision = {Where::open, depth};
-  // What is so near to zero that rounding of the time tells the side is left to the values at the ends.
+  // What is so near to zero that rounding of the time decides the side is left to the values at the ends.
   const double near = value.rate.is_finite() ? rounding_ * largest(value.rate) : 0.0;
   if (value.value.low >= near) {
     decision.where = Where::above;

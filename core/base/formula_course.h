@@ -14,7 +14,7 @@ namespace freeplay {
 /// ends, atan2 goes through its jump. What decides is bounded over spans of time, with its derivatives, by interval
 /// arithmetic (Moore, Kearfott and Cloud 2009): a span in which it cannot be zero, or in which it is monotone or bends
 /// one way, is known; any other is halved. So no change is missed, however short its form lasts and however often it
-/// comes again, but for those that rounding of the run's times cannot tell apart. The work in a window is bounded;
+/// comes again, but for those that rounding of the run's times cannot separate. The work in a window is bounded;
 /// where it does not suffice the rest of the window is unknown.
 ///
 /// A window is looked at once, when it is first asked for; times that are asked for grow. Allocates when it is made,
@@ -27,7 +27,7 @@ class FormulaCourse {
   /// The first corner after t that is `until` or earlier, or a later one that is known already; infinite: none. What is
   /// before t is forgotten, but for corners a few roundings away and the last one.
   double next_corner(double t, double until);
-  /// Whether a corner in [from, to], close to what next_corner() told last, is sharp, or there is one at all.
+  /// Whether a corner in [from, to], close to what next_corner() gave last, is sharp, or there is one at all.
   struct Near {
     bool any, sharp;
   };

@@ -8,7 +8,7 @@
 namespace freeplay {
 
 /// [low, high]. The operations below contain every result of numbers in their operands, but for rounding: what is
-/// that close to a bound is not told apart (Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009).
+/// that close to a bound is not distinguished (Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009).
 struct Interval {
   double low = 0.0, high = 0.0;
 
@@ -21,7 +21,7 @@ struct Interval {
   bool is_finite() const { return std::isfinite(low) && std::isfinite(high); }
 };
 
-/// Bounds that are no numbers, as of infinity less infinity, tell nothing.
+/// Bounds that are no numbers, as of infinity less infinity, bound nothing.
 inline Interval bounds(double low, double high) {
   const Interval whole = Interval::whole();
   return {std::isnan(low) ? whole.low : low, std::isnan(high) ? whole.high : high};

@@ -41,7 +41,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t li
 
 constexpr std::size_t contains_it = 100, is_contained = 101, unrelated = std::numeric_limits<std::size_t>::max();
 
-/// Edit distance when it is small enough to be a slip, else a rank behind all distances.
+/// Edit distance when it is small enough to be a slip, else a rank after all distances.
 std::size_t rank(std::string_view word, std::string_view candidate) {
   if (candidate.size() > longest_word) return unrelated;
   if (same_but_for_case(word, candidate)) return word == candidate ? 0 : 1;

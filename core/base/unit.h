@@ -60,7 +60,7 @@ using ExponentLookup = std::function<std::optional<double>(std::string_view name
 /// Throws ExpressionError `bad-unit`.
 Unit parse_unit(std::string_view text, const ExponentLookup& exponents = {});
 
-/// Reads the unit that begins at byte `position` of an expression and moves `position` behind it. A `*` or `/`
+/// Reads the unit that begins at byte `position` of an expression and moves `position` past it. A `*` or `/`
 /// continues the unit only if a unit name follows it. Throws ExpressionError `bad-unit`, with a place in `text`.
 Unit parse_unit_at(std::string_view text, std::size_t& position);
 

@@ -19,7 +19,7 @@ void count_one() {
 
 #if FREEPLAY_ADDRESS_SANITIZER
 
-// The sanitizer has replaced the allocator; it tells of every allocation.
+// The sanitizer has replaced the allocator; it reports every allocation.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
                                                          void (*on_free)(const volatile void*));
 

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/play_law.h"
-#include "analysis/station.h"
+#include "analysis/request.h"
 #include "cli/options.h"
 
 namespace freeplay {
@@ -17,12 +16,6 @@ struct AnalyzeOptions {
   std::vector<std::string> grid, pose, input;
   bool sensitivity = false, branches = false;
   ModelOptions build;
-};
-
-/// Components of a pose that are given, and their values.
-struct PoseWords {
-  Components given{};
-  FramePose value{};
 };
 
 /// "0.05,0,0" or "x=5 cm,angle=10 deg". Throws Error{usage} "bad-value".

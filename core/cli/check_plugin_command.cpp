@@ -23,7 +23,7 @@ struct CheckOptions {
   std::uint64_t seed = 1;
 };
 
-/// Words set in lines, each behind `indent`.
+/// Words set in lines, each after `indent`.
 std::string paragraph(std::string_view text, const std::string& indent) {
   std::string result, row = indent;
   while (!text.empty()) {

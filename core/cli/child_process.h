@@ -16,8 +16,8 @@ namespace freeplay {
 struct ChildEnd {
   enum class How {
     finished,  ///< the work came to its end
-    exited,    ///< somebody ended the process with `code` before that
-    crashed,   ///< by the signal `code`; `finished_first` tells whether the work had come to its end
+    exited,    ///< something ended the process with `code` before that
+    crashed,   ///< by the signal `code`; `finished_first` says whether the work had come to its end
     stuck,     ///< the time was up, and the last noted call did not return for a while
     late       ///< the time was up
   };

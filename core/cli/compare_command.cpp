@@ -40,7 +40,7 @@ ComparisonRules rules_of(const CompareOptions& options) {
   if (!options.until.empty()) rules.until = value_of("--until", options.until, true);
   if (rules.from > rules.until) {
     throw Error(Error::Category::usage, "bad-value",
-                fmt::format("--from {} is behind --until {}", options.from, options.until));
+                fmt::format("--from {} is after --until {}", options.from, options.until));
   }
   if (!options.channels.empty()) rules.channels = options.channels;
   return rules;
@@ -98,7 +98,7 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
 }  // namespace
 
 Command add_compare_command(CLI::App& program, CommonOptions& common) {
-  CLI::App* app = add_command(program, "compare", "Tell how far two results agree");
+  CLI::App* app = add_command(program, "compare", "Print how far two results agree");
   const auto options = std::make_shared<CompareOptions>();
   add_option(*app, "A", options->a, "Result directory or CSV file");
   add_option(*app, "B", options->b, "Another; it is interpolated where its times differ");

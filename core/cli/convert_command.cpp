@@ -61,7 +61,7 @@ std::string new_name(const Model& written, const Renaming& renamed, const std::s
 /// Where a body's centre of mass starts [m], and the world axes of its frame: 12 numbers. The place of the frame itself
 /// is a matter of writing.
 std::array<double, 12> start_of(const AssembledModel& assembled, std::size_t body) {
-  const Pose frame = assembled.system.frame_pose(static_cast<BodyId>(body), assembled.start.state.q());
+  const Pose frame = assembled.system.coordinates().frame_pose(static_cast<BodyId>(body), assembled.start.state.q());
   const Vector3& com = assembled.system.model().bodies[body].com;
   std::array<double, 12> out{};
   for (std::size_t r = 0; r < 3; ++r) {

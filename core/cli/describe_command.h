@@ -1,4 +1,4 @@
-// `freeplay describe NAME`: everything that a type's table tells.
+// `freeplay describe NAME`: everything that a type's table says.
 #pragma once
 
 #include "cli/options.h"

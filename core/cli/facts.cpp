@@ -107,7 +107,7 @@ Json start_json(const Model& model, const Start& start) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.space == Space::spatial) {
       const std::span<const double> pose = start.state.q().subspan(7 * i, 7);
-      const std::array<double, 4> turn = system.frame_quaternion(static_cast<BodyId>(i), start.state.q());
+      const std::array<double, 4> turn = system.coordinates().frame_quaternion(static_cast<BodyId>(i), start.state.q());
       json[model.bodies[i].name] = {{"x", pose[0]},  {"y", pose[1]},  {"z", pose[2]}, {"qw", turn[0]},
                                     {"qx", turn[1]}, {"qy", turn[2]}, {"qz", turn[3]}};
       continue;

@@ -1,4 +1,4 @@
-// Facts: what `freeplay validate` tells about a model.
+// Facts: what `freeplay validate` says of a model.
 #pragma once
 
 #include <string>

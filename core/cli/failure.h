@@ -1,4 +1,4 @@
-// Failure: how a command tells that something is wrong.
+// Failure: how a command reports that something is wrong.
 #pragma once
 
 #include <string>

@@ -171,7 +171,7 @@ Examination read_header(const ChildProcess& child, const fs::path& library, doub
   });
   const std::string failure = failure_of(child, "", time_limit);
   if (!failure.empty()) refuse(library, failure.substr(1));
-  if (found.types.empty()) refuse(library, "ended the program before it told its types");
+  if (found.types.empty()) refuse(library, "ended the program before it gave its types");
   return found;
 }
 

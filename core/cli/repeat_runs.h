@@ -36,7 +36,7 @@ class RepeatRuns {
 
   std::size_t runs() const { return plan_.runs; }
   /// Waits for all, also on this process's share of the machine. Returns what they and the first one found, by its
-  /// summary and how it ended; once the program is interrupted, what they have found so far. `progress` is told how
+  /// summary and how it ended; once the program is interrupted, what they have found so far. `progress` receives how
   /// many have ended.
   Json finish(const Json& first, const Outcome& outcome, const std::function<void(std::size_t)>& progress);
 

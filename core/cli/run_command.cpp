@@ -49,7 +49,7 @@ void refuse_idle_options(const RunOptions& options) {
   if (options.dry_run && (options.verify || options.profile || !options.repeat.empty())) {
     const char* idle = options.verify ? "--verify" : options.profile ? "--profile" : "--repeat";
     throw Error(Error::Category::usage, "usage",
-                fmt::format("--dry-run runs nothing, so {} has nothing to tell", idle));
+                fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
   }
   if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
   if (options.format.empty() || options.format == "csv") return;
@@ -139,7 +139,7 @@ class Recording {
   ContactAdvice advice_;
 };
 
-/// Runs to the end and tells it as a record.
+/// Runs to the end and returns it as a record.
 class RunJob {
  public:
   RunJob(const LoadedModel& loaded, AssembledModel& assembled, std::filesystem::path path, const RunOptions& options,
@@ -185,7 +185,7 @@ class RunJob {
   }
 
  private:
-  /// What is told of a simulation when it is over.
+  /// What is reported of a simulation when it is over.
   struct Ended {
     Statistics statistics;
     RunExtremes extremes;
@@ -357,7 +357,7 @@ int run(const RunOptions& options, const CommonOptions& common) {
   const auto assembled = assemble_model(loaded);
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
-  // What it refuses is told before the directory is cleared of an earlier result.
+  // What it refuses is reported before the directory is cleared of an earlier result.
   require_sound_integrator(assembled->system);
   loaded.document.reset();  // nothing asks for it any more, and that of a large model is large
   if (options.dry_run) return dry_run(loaded, *assembled, common);
@@ -376,12 +376,12 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um", "L");
   add_option(*app, "--integrator", options->integrator, "Integrator, with its default parameters", "NAME");
   add_flag(*app, "--verify", options->verify,
-           "Run again by a method of another kind and tell the observed errors; exit code 7 when both disagree");
+           "Run again by a method of another kind and print the observed errors; exit code 7 when both disagree");
   add_option(*app, "--repeat", options->repeat, "Run N times, from starts moved in the play: median and range of peaks",
              "N");
   add_option(*app, "--seed", options->seed, "Of the starts of --repeat (1)", "S");
   add_flag(*app, "--profile", options->profile,
-           "Tell where the time went: assembly, factorization, joints, events, output");
+           "Print where the time went: assembly, factorization, joints, events, output");
   add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");
   add_flag(*app, "--force", options->force, "Write into a directory that holds other files");
   add_option(*app, "--format", options->format, "Of the results: csv", "FORMAT");

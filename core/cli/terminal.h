@@ -22,8 +22,8 @@ void print_json(const Json& json);
 /// Why stdout did not take all that was printed; empty if it did, or if its pipe was closed.
 std::string stdout_failure();
 
-/// Writes messages to stderr, control characters replaced, with colour where it is wanted. A failure there is nobody's
-/// to hear.
+/// Writes messages to stderr, control characters replaced, with colour where it is wanted. A failure there is not
+/// reported, for lack of a place.
 void print_messages(std::string_view text, bool no_color);
 
 bool stderr_is_terminal();

@@ -24,7 +24,7 @@ struct VerifiedRun {
 
 /// Runs the model again by an integrator of another kind (implicit where the run was explicit, and the other way round)
 /// with error control and steps no longer than the output interval: what one method steps over the other meets. Where
-/// the two do not agree a third run, of the second's method, tells why. Empty, with `trouble`, when there is no second
+/// the two do not agree a third run, of the second's method, shows why. Empty, with `trouble`, when there is no second
 /// run.
 std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trouble);
 

@@ -7,7 +7,7 @@
 namespace freeplay {
 namespace {
 
-// Beyond is a number that somebody forgot to set.
+// Beyond is a number that was not set.
 constexpr int most_of_a_joint = 10000, most_of_an_integrator = 100000000;
 constexpr std::size_t most_names = 1000;
 

@@ -13,7 +13,7 @@ struct CallNote {
   char function[32] = "";                ///< called now or last; "" before the first call
   char circumstances[128] = "";          ///< which parameters, in the plane or in space
   std::atomic<std::uint32_t> inside{0};  ///< nonzero during the call
-  std::atomic<std::uint64_t> calls{0};   ///< so far; one that does not change tells of a call that does not return
+  std::atomic<std::uint64_t> calls{0};   ///< so far; one that does not change shows a call that does not return
 
   void enter(const char* name) noexcept {
     write(function, sizeof function, name);

@@ -15,7 +15,7 @@ struct Conditions {
   std::uint64_t seed = 1;                 ///< of the random states; equal seeds give equal findings
   AllocationCount allocations = nullptr;  ///< null: allocations are not watched
   CallNote* note = nullptr;               ///< where each call is noted; null: nowhere
-  FindingSink found = {};                 ///< told of findings as they are made; empty: nobody
+  FindingSink found = {};                 ///< receives findings as they are made; may be empty
 };
 
 /// A call of a component's function, from construction to end(): noted, and its allocations counted.

@@ -22,7 +22,7 @@ using FindingSink = std::function<void(const Finding&)>;
 /// What a suite found: one entry per rule that was examined, in order. Of a broken rule the first case is kept.
 class Findings {
  public:
-  /// `sink` is told of a rule when it is examined first and when it is first found broken.
+  /// `sink` receives a rule when it is examined first and when it is first found broken.
   explicit Findings(FindingSink sink = {}) : sink_(std::move(sink)) {}
 
   /// Notes one case of a rule; `detail` is called where the rule is broken for the first time, and returns text.

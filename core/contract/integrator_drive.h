@@ -53,8 +53,8 @@ class IntegratorDrive {
   /// One attempt with a solver that has solved nothing before and scratch filled with `scratch`; nothing is accepted.
   /// With `good_stages` >= 0 the stage after these gives up. Empty when the call fails.
   std::vector<double> attempt(double dt, double scratch, int good_stages, bool& converged, int& stages);
-  /// Error that one attempt from the accepted state tells, and about the true one, where `tolerance` [m] is allowed:
-  /// how much further it is from the known motion at its end than at its start. Nothing is accepted.
+  /// Error that one attempt from the accepted state estimates, and about the true one, where `tolerance` [m] is
+  /// allowed: how much further it is from the known motion at its end than at its start. Nothing is accepted.
   double estimate(double dt, double tolerance, double& truth, const KnownState& now, const KnownState& end);
   /// Largest residuals of the accepted state: position [model sizes] and velocity [m/s].
   void residuals(double& position, double& velocity);

@@ -12,7 +12,7 @@
 namespace freeplay {
 namespace {
 
-/// The numbers that a walk of `steps` steps leaves behind.
+/// The numbers that a walk of `steps` steps leaves.
 std::vector<double> trace(const JointProbe& probe, const ClosedPath& path, JointMoment& moment, int from, int steps) {
   constexpr int around = 60;
   const double dt = path.period() / around;
@@ -64,7 +64,7 @@ void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findi
   const std::vector<double> at_rest = g_of(0.0, true);
   const Slope d = slope([&](double x) { return g_of(x, false); }, 0.01);
   for (std::size_t i = 0; i < std::min(here.g.size(), d.value.size()); ++i) {
-    // A function of speed has a rate that depends on accelerations, which the joint is not told.
+    // A function of speed has a rate that depends on accelerations, which the joint does not get.
     if (std::isnan(here.g[i]) || here.g[i] != at_rest[i]) continue;
     findings.expect("event-rate", agrees(here.rate[i], d.value[i], d.error[i], std::max(1.0, std::abs(here.rate[i]))),
                     [&] {

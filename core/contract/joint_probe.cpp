@@ -15,7 +15,7 @@
 namespace freeplay {
 namespace {
 
-/// A struct with marked numbers behind it, so that a write past its end is seen.
+/// A struct with marked numbers after it, so that a write past its end is seen.
 template <class T>
 struct Fenced {
   T inside{};

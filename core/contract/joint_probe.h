@@ -33,7 +33,7 @@ struct ForceValues {
   std::vector<double> wrench;  ///< on a and on b, 12 numbers
   double potential = 0.0;
   std::vector<double> z_rate, derivatives;
-  double potential_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not told
+  double potential_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
 };
 struct EventValues {
   std::vector<double> g, rate;

@@ -52,7 +52,7 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
       JointMoment behind = there;
       probe.begin_step(there, random_twelve(probe.space(), random, 10.0), 1e-4, behind);
       probe.commit(behind);
-      expect(same_bits(probe.all(there), probe.all(behind)), "begin_step() and commit() change what it tells");
+      expect(same_bits(probe.all(there), probe.all(behind)), "begin_step() and commit() change what it answers");
     }
   }
 }

@@ -44,7 +44,7 @@ void JointWalk::advance_internal(JointMoment& trial, double dt) const {
 
 void JointWalk::tell_events(JointMoment& trial) const {
   const Span<const Event> events = probe_.layout().events;
-  // An event may arm another: each is told once in a step, in the order of the table.
+  // An event may arm another: each is passed on once in a step, in the order of the table.
   for (std::size_t i = 0; i < events.size; ++i) {
     JointMoment before = now_;
     before.h = trial.h;

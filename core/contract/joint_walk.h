@@ -10,7 +10,7 @@ class JointWalk {
   JointWalk(const JointProbe& probe, const JointMoment& start) : probe_(probe), now_(start) {}
 
   /// Takes a step of length `dt` to `next`. Internal variables follow by a linearly implicit rule, so that stiff ones
-  /// stay bounded; events are told at the end of the step.
+  /// stay bounded; events are passed on at the end of the step.
   void step(const MarkerPair& next, const Twelve& acceleration, double dt);
 
   const JointMoment& now() const { return now_; }

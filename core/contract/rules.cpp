@@ -108,7 +108,7 @@ constexpr Rule rules[] = {
     {"free-distance", joints,
      "Wherever the origins of the markers move within free_distance(), the joint exerts and stores nothing, no event "
      "is "
-     "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it tells later."},
+     "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it answers later."},
     {"time-scale", joints,
      "`time_scale` is a time above zero, or zero where it is not known; a joint that declares `unbounded` gives the "
      "same "
@@ -125,7 +125,7 @@ constexpr Rule rules[] = {
      "that there is a jump."},
     {"monotone", contact_laws, "The elastic force grows with penetration."},
     {"elastic-part", contact_laws,
-     "An approach speed of zero leaves the elastic force, whatever the rate; `elastic`, where it is told, is that "
+     "An approach speed of zero leaves the elastic force, whatever the rate; `elastic`, where it is given, is that "
      "force "
      "at any approach speed."},
     {"potential", contact_laws,

@@ -22,7 +22,7 @@ ComponentKind law_kind(const Parameter& p) {
   return p.kind == ParameterKind::contact_law ? ComponentKind::contact_law : ComponentKind::friction_law;
 }
 
-/// How the numbers of one unit are told apart: constructors compare lengths or speeds with each other.
+/// How the numbers of one unit are distinguished: constructors compare lengths or speeds with each other.
 enum class Order { rising, falling, equal };
 
 /// What a block says beyond its defaults.

@@ -30,7 +30,7 @@ std::vector<std::string> all_names(const Model& model) {
 
 Renaming renaming_of(const Model& model, const Readout& readout, const Document& document) {
   std::vector<std::string> names = all_names(model);
-  // Forces of gravity leave no element of their name behind.
+  // Forces of gravity leave no element of their name.
   for (const Readout::Instance& instance : readout.instances()) {
     for (const char* section : {"forces", "drivers"}) {
       const Node* entries = instance.content->find(section);

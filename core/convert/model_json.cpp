@@ -170,7 +170,7 @@ class ModelWriter {
     return {{"position", vector(one.position, "m")}, {"angle", number(one.angle, "rad")}};
   }
 
-  /// Frames that a body was given, by the part of their name behind the slash.
+  /// Frames that a body was given, by the part of their name after the slash.
   Json frames(const std::string& body) const {
     Json json = Json::object();
     const std::string stem = body + "/";
@@ -349,7 +349,7 @@ class ModelWriter {
             {"max", number(settings.largest_step, "s")}, {"per_contact", settings.per_contact}};
   }
 
-  /// The limit has the unit of the channel; it is told where the file tells it.
+  /// The limit has the unit of the channel; it is written where the file writes it.
   Json condition(const StopCondition& one) const {
     const bool dimensioned = one.quantity.kind == DimensionKind::dimensioned;
     const std::string unit = dimensioned ? si_unit(one.quantity.dimension) : "1";

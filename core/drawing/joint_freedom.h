@@ -16,7 +16,7 @@ struct JointFreedom {
 };
 
 /// Freedom of a joint of a spatial model whose markers are where `a` and `b` say; vectors are of length 1, world axes.
-/// A joint that fails there is told as one that leaves nothing free.
+/// A joint that fails there counts as one that leaves nothing free.
 JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                            const MarkerKinematics& b);
 

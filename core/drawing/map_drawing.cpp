@@ -348,7 +348,7 @@ std::vector<std::array<double, 4>> contour(const std::vector<double>& x, const s
       if (up[1] != up[2]) ends.push_back(cross(i + 1, j, i + 1, j + 1));
       if (up[3] != up[2]) ends.push_back(cross(i, j + 1, i + 1, j + 1));
       if (up[0] != up[3]) ends.push_back(cross(i, j, i, j + 1));
-      if (ends.size() == 4) {  // a saddle: the mean tells which corners hang together
+      if (ends.size() == 4) {  // a saddle: the mean decides which corners are connected
         const bool middle = corner[0] + corner[1] + corner[2] + corner[3] >= 0.0;
         // With the first corner's side in the middle, lines cut off corners 1 and 3, else 0 and 2.
         if (middle != up[0]) std::swap(ends[1], ends[3]);

@@ -20,7 +20,7 @@ struct PositionMap {
 };
 
 /// Contours with their values, steps of grey from light to dark, hatched where nothing is reached, crosses at singular
-/// points, singular curves dashed, the path on top: nothing is told by colour alone. Same input, same bytes.
+/// points, singular curves dashed, the path on top: nothing is shown by colour alone. Same input, same bytes.
 std::string map_svg(const PositionMap& map);
 
 /// "Nice" levels between two values: 1, 2 or 5 times a power of ten apart, about seven of them; `logarithmic`: 1, 2 and

@@ -11,7 +11,8 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 SpatialScene::SpatialScene(const System& system, std::span<const double> q)
     : system_(system), model_(system.model()), q_(q) {
-  for (std::size_t b = 0; b < model_.bodies.size(); ++b) poses_.push_back(system.frame_pose(static_cast<BodyId>(b), q));
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+    poses_.push_back(system.coordinates().frame_pose(static_cast<BodyId>(b), q));
   for (const JointElement& one : model_.joints) {
     freedoms_.push_back(
         one.gear >= 0 ? JointFreedom{}

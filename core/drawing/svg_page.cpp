@@ -114,7 +114,7 @@ void Page::label(std::string text, const Point& at, const char* style) {
 
 // The first of many places around what it names where a label meets no other and no symbol; the nearest one else.
 void Page::place_labels(const Box& bounds) {
-  // Nobody reads a thousand names; finding room for them would take minutes.
+  // A thousand names cannot be read; finding room for them would take minutes.
   const int rings = names_.size() > 400 ? 1 : 6;
   for (const Label& name : names_) {
     const double wide = letter_width * character_count(name.text);

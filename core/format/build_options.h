@@ -16,7 +16,7 @@ struct BuildOptions {
   std::optional<double> end, step;                       ///< [s]
   std::optional<double> accuracy = std::nullopt;         ///< [m per s]; in place of any step
   std::optional<std::string> integrator;                 ///< name
-  Readout* readout = nullptr;                            ///< is told what values and names came to
+  Readout* readout = nullptr;                            ///< receives what values and names came to
   std::optional<double> largest_step = std::nullopt;     ///< of runs with an accuracy [s]
 };
 

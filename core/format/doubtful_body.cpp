@@ -208,7 +208,7 @@ class BodyDoubts {
                     "m: {}",
                     value->key() == "com" ? body(*i).name + "/com" : outline.farthest, number, scale_of_others(),
                     foreign ? "robot files are in metres"
-                            : fmt::format("write the unit behind the numbers, as in '{:.4g} mm'", number)));
+                            : fmt::format("write the unit after the numbers, as in '{:.4g} mm'", number)));
     return true;
   }
 

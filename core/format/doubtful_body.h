@@ -5,7 +5,7 @@
 
 namespace freeplay {
 
-/// Beyond these a body is doubted; docs/trust.md tells them with examples.
+/// Beyond these a body is doubted; docs/trust.md gives them with examples.
 namespace body_limit {
 /// Radius of gyration, in terms of how far the body's frames reach and of the mechanism's lengths, of a body that would
 /// have less mass than `sheet` [kg/m^2] on the disc with this radius of gyration; and of any. A homogenous body that

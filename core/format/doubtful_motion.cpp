@@ -211,7 +211,7 @@ class MotionDoubts {
       return doubt_slide_speed(written, course.fastest);
     }
     written.warn("doubtful-length", fmt::format("'{}' moves by {:.4g} m where the lengths of the mechanism are about "
-                                                "{:.3g} m: write the unit behind the number, as in 'mm'",
+                                                "{:.3g} m: write the unit after the number, as in 'mm'",
                                                 written.path(), range, scale));
   }
 

@@ -93,10 +93,9 @@ void doubt_range(const CheckedValue& written, std::string_view unit, double valu
     }
     const bool bare = !names_a_unit(written), plain = unit == "1";
     if (value <= range.most && value >= (bare ? range.least_bare : range.least)) continue;
-    written.warn(
-        "doubtful-value",
-        fmt::format("'{}' is {:.4g}{}{}, but {}{}", written.path(), value, plain ? "" : " ", plain ? "" : unit,
-                    range.words, bare && !plain ? ": write the unit behind the number" : ": check the number"));
+    written.warn("doubtful-value",
+                 fmt::format("'{}' is {:.4g}{}{}, but {}{}", written.path(), value, plain ? "" : " ", plain ? "" : unit,
+                             range.words, bare && !plain ? ": write the unit after the number" : ": check the number"));
   }
 }
 
@@ -104,7 +103,7 @@ void doubt_length(const CheckedValue& written, double value, double scale, doubl
   if (!(scale > 0.0) || std::abs(value) <= most * scale || names_a_unit(written)) return;
   written.warn("doubtful-length",
                fmt::format("'{}' is {:.4g} m where the lengths of the mechanism are about {:.3g} m: write the unit "
-                           "behind the number, as in '{:.4g} mm'",
+                           "after the number, as in '{:.4g} mm'",
                            written.path(), value, scale, value));
 }
 
@@ -161,7 +160,7 @@ void doubt_gravity(const CheckedValue& written, const Vector3& gravity) {
     if (std::abs(gravity[i]) > 0.5 * size && names_a_unit(written.item(i))) return;
   }
   written.warn("doubtful-value", fmt::format("'{0}' is {1:.4g} m/s^2, {2:.0f} times that of the earth: write the unit "
-                                             "behind the number, as in '{1:.4g} mm/s^2'",
+                                             "after the number, as in '{1:.4g} mm/s^2'",
                                              written.path(), size, size / 9.81));
 }
 
@@ -190,7 +189,7 @@ void doubt_interval(const CheckedValue& written, double interval, double span) {
 void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale,
                       double most_lengths) {
   for (const auto& [path, written] : places) {
-    // A law's own parameters stand behind the path of the law.
+    // A law's own parameters stand after the path of the law.
     const ParameterBlock* owner = &block;
     std::string name = path;
     for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1)) {

@@ -26,7 +26,7 @@ std::optional<int> look_up(const NameTable& table, const std::string& name, cons
 std::vector<int> matching(const Draft& draft, const NameTable& table, const CheckedValue& value,
                           const std::string& pattern, const Part& part) {
   std::vector<int> found;
-  // Behind a star a name may be tried once for each of its characters.
+  // After a star a name may be tried once for each of its characters.
   const std::size_t repeated = 1 + std::min<std::size_t>(pattern.size() - pattern.rfind('*'), 16);
   draft.compared += 2 * (table.names().size() + repeated * table.characters());
   if (draft.compared > most_comparisons) {

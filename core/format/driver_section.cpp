@@ -128,7 +128,7 @@ class DriverEntry {
     }
   }
 
-  /// `value` or `table`; the key tells which.
+  /// `value` or `table`, by the key.
   std::optional<CheckedValue> read_function_key() {
     const auto value = map_.find("value"), table = map_.find("table");
     if (map_.conflict("value", "table")) return std::nullopt;

@@ -13,7 +13,7 @@ enum class StartKind { coordinate, speed };
 bool is_prescribed(const Draft& draft, int joint, StartKind what) {
   for (const Driver& driver : draft.model.drivers) {
     if (driver.joint != joint || !prescribes(driver.kind)) continue;
-    // The integral of a speed starts at a value that somebody must choose.
+    // The integral of a speed starts at a value that must be chosen.
     if (what == StartKind::speed || driver.kind != DriverKind::velocity) return true;
   }
   return false;

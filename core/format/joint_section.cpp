@@ -48,7 +48,7 @@ class JointEntry {
     known_ = named != nullptr;
     if (!known_ && type) named = meant_type(draft_.registry, ComponentKind::joint, *type, other_words());
     read_ends(named);
-    // Without a type nobody knows which keys are allowed.
+    // Without a type it is unknown which keys are allowed.
     if (named == nullptr || !serves_space(*named, *type)) return;
     choose_twins(*named);
     read_turn(named->description.axis);

@@ -16,7 +16,7 @@ struct Reading {
   Diagnostics* diagnostics;
   const ParameterScope* scope;
   const PresetTable* presets = nullptr;
-  Readout* readout = nullptr;  ///< keeps what is read, when somebody wants it
+  Readout* readout = nullptr;  ///< keeps what is read; null where it is not wanted
   std::string instance{};      ///< full name of the instance; empty at top level
   double start_time = 0.0;     ///< time functions are tried here [s]
   std::size_t dimensions = 2;  ///< of vectors: 2 in planar, 3 in spatial models

@@ -151,12 +151,12 @@ class SimulationSection {
     }
   }
 
-  /// An integrator that cannot tell its error cannot choose its steps.
+  /// An integrator without an error estimate cannot choose its steps.
   void require_estimate() {
     if (!settings_.integrator) return;
     IntegratorLayout layout;
     Message message;
-    if (!settings_.integrator.declare(layout, message)) return;  // told when the run begins
+    if (!settings_.integrator.declare(layout, message)) return;  // reported when the run begins
     if (layout.always_adaptive != 0) settings_.adaptive = true;
     if (!settings_.adaptive || layout.error_estimate != 0) return;
     const std::string why = fmt::format("integrator '{}' gives no error estimate: it takes fixed steps only",

@@ -9,7 +9,7 @@ namespace freeplay {
 double read_start_time(const CheckedValue& section);
 
 /// Fills the settings; `section` may be missing. All frames are known. The command line wins over the file. False when
-/// a frame of the output could not be told.
+/// a frame of the output could not be found.
 bool read_simulation(Draft& draft, const std::optional<CheckedValue>& section);
 
 }  // namespace freeplay

@@ -18,7 +18,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t most_bytes = 2 * largest_input, most_points = CsvText::most_rows;  // of all tables of a model
-constexpr int most_mistakes = 100;                                                       // that are told of one table
+constexpr int most_mistakes = 100;  // that are reported of one table
 
 /// Times and values in SI.
 struct Points {
@@ -232,7 +232,7 @@ class TableReader {
     return good;
   }
 
-  /// Goes on after a mistake, so that all are told, up to a number that nobody mends by hand.
+  /// Goes on after a mistake, so that all are reported, up to a number that is no longer mended by hand.
   bool read_rows(const CsvText& text, std::size_t time, std::size_t values, Points& table) const {
     const std::size_t columns = text.names().size();
     std::optional<double> last;

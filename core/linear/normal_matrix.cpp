@@ -99,7 +99,7 @@ bool NormalMatrix::set_pattern_in(std::span<const double> mass, int rows, std::s
     const int row = number[at(pieces[p].row)];
     if (row >= 0) pieces_.push_back({row, width * pieces[p].body, width * static_cast<int>(p)});
   }
-  // Pieces of one body, behind each other.
+  // Pieces of one body, one after another.
   std::vector<int> by_body(pieces_.size());
   std::iota(by_body.begin(), by_body.end(), 0);
   const auto body_of = [&](int i) { return pieces_[at(i)].column / width; };

@@ -44,7 +44,7 @@ void leave_robot_out(Document& document) {
   for (const Node::Entry& entry : document.root().entries) {
     if (entry.key->text != "urdf") root.entries.push_back(entry);
   }
-  // What space the robot would have had is told by the length of vectors alone.
+  // The length of vectors alone shows what space the robot would have had.
   const Node* gravity = root.find("gravity");
   if (root.find("space") == nullptr && gravity != nullptr && gravity->items.size() == 3) {
     Node& key = document.add(Node::Kind::scalar, 1, 1);

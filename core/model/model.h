@@ -64,7 +64,7 @@ struct JointElement {
   JointRef joint;
   JointLayout layout;
   int marker_a = 0, marker_b = 0;                    ///< indices into Model::markers
-  std::shared_ptr<const ParameterBlock> parameters;  ///< what the type that is written was told; null for a gear
+  std::shared_ptr<const ParameterBlock> parameters;  ///< the parameters of the type that is written; null for a gear
   // The ideal twin of a joint with play; equal to the above for all others.
   const Component* ideal_component = nullptr;
   JointRef ideal;

@@ -1,4 +1,4 @@
-// Time functions of components: an expression behind the plain function that crosses the plugin boundary.
+// Time functions of components: an expression called through the plain function that crosses the plugin boundary.
 #pragma once
 
 #include "base/error.h"
@@ -11,7 +11,7 @@ namespace freeplay {
 void set_function(ParameterValue& value, double constant);
 /// Makes `value` serve the expression that is written at `begin`; with `places_inside` the text stands there as it is,
 /// so that characters of it are places in the file. Where it has no value, its call fails with Status::bad_parameter,
-/// the id of the failure and a text that begins with the place: so a type that passes the failure on tells that not it
+/// the id of the failure and a text that begins with the place: so a type that passes the failure on shows that not it
 /// but the model file is at fault.
 void set_function(ParameterValue& value, Expression expression, Location begin, bool places_inside);
 

@@ -107,7 +107,7 @@ bool TimeTable::locate(double t, Place& place, EvaluationFailure& failure) const
   const double first = times_.front(), last = times_.back();
   const double inside = std::clamp(t, first, last);
   place = {inside, t - inside, 0.0};
-  // A step that ends a rounding error behind the last time is still at it.
+  // A step that ends a rounding error after the last time is still at it.
   if (outside_ != Outside::repeat && std::abs(place.beyond) <= end_rounding()) place.beyond = 0.0;
   if (outside_ == Outside::hold || (place.beyond == 0.0 && (outside_ == Outside::error || t < last))) return true;
   if (outside_ == Outside::repeat) {

@@ -30,7 +30,7 @@ class TimeTable {
   /// Value and exact derivatives. False, with "bad-table", where there is none.
   bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
   /// The first time after t at which the slope jumps; infinite when there is none. That of a repeated
-  /// table may be told twice, with different rounding.
+  /// table may be given twice, with different rounding.
   double next_kink(double t) const noexcept { return next_place(t, straight_); }
   /// The first of its points after t, those of every period and the ends included; infinite when there is none.
   double next_point(double t) const noexcept { return next_place(t, true); }

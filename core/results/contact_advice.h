@@ -10,7 +10,7 @@
 
 namespace freeplay {
 
-/// Looks at events that tell `duration` and `steps` of a contact that ended, from Settings::discard on.
+/// Looks at events with the fields `duration` and `steps` of a contact that ended, from Settings::discard on.
 class ContactAdvice : public Sink {
  public:
   explicit ContactAdvice(const Model& model);

@@ -14,7 +14,7 @@
 
 namespace freeplay {
 
-/// Everything that a summary tells about.
+/// Everything that goes into a summary.
 struct RunRecord {
   const Model& model;
   const Channels& channels;

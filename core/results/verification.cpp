@@ -69,7 +69,7 @@ double farthest_way(const ResultTable& table, const VerificationRules& rules) {
   return way;
 }
 
-/// What peaks are compared with: the largest of their kind, which is told by the last word of the name.
+/// What peaks are compared with: the largest of their kind, which the last word of the name says.
 double largest_of_kind(std::span<const PeakPair> peaks, const std::string& name) {
   const auto kind = [](const std::string& text) { return text.substr(text.rfind(' ') + 1); };
   double largest = 0.0;

@@ -64,7 +64,7 @@ struct Verification {
   bool throughout() const { return agreement == Agreement::agree; }
 };
 
-/// Differences of both runs as far as both go; `agreement` is `agree` or `err`: what else it is, judge() tells.
+/// Differences of both runs as far as both go; `agreement` is `agree` or `err`: what else it is, judge() decides.
 Verification compare_runs(const RunResult& run, const RunResult& second, const VerificationRules& rules);
 
 /// What to make of runs that do not agree, by a third one that takes the second's method less accurately. Where that

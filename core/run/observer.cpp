@@ -44,8 +44,8 @@ void Observer::observe_body(int index, const Evaluation& e, std::span<double> ro
     return;
   }
   std::copy_n(&e.q[7 * at(place)], 3, to);
-  std::ranges::copy(system_.frame_quaternion(place, e.q), to + 3);
-  system_.body_twist(place, e.q, e.v, to + 7);
+  std::ranges::copy(system_.coordinates().frame_quaternion(place, e.q), to + 3);
+  system_.coordinates().body_twist(place, e.q, e.v, to + 7);
 }
 
 // A wrench (6 numbers) in the columns from `to` on.

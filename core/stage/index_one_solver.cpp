@@ -309,7 +309,7 @@ bool IndexOneSolver::project_position(StateView& state) {
     previous = gap;
     for (std::size_t r = 0; r < e_->phi.size(); ++r) right_c_[r] = -e_->phi[r];
     solve_rows(right_c_);
-    system_.retract(state.q, std::span(update_).first(increment_.size()), state.q);
+    system_.coordinates().retract(state.q, std::span(update_).first(increment_.size()), state.q);
   }
   equations_.note_trouble("positions could not be projected on the constraints");
   return false;

@@ -75,7 +75,7 @@ void NewtonStageSolver::follow_accelerations(const Stage& stage, StateView& out)
     at(out.v) = at(stage.v_known) + stage.beta_v * at(out.a);
     at(increment_) = at(stage.increment_known) + stage.beta_q * at(out.a);
   });
-  system_.retract(stage.q_base, increment_, out.q);
+  system_.coordinates().retract(stage.q_base, increment_, out.q);
   for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
 }
 
@@ -233,7 +233,7 @@ int NewtonStageSolver::row_of_largest_residual() const {
 }
 
 bool NewtonStageSolver::accept(StateView& out, StageResult& result) {
-  if (drifted_) system_.retract(out.q, drift_, out.q);
+  if (drifted_) system_.coordinates().retract(out.q, drift_, out.q);
   result.converged = 1;
   return true;
 }

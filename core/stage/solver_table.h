@@ -33,14 +33,14 @@ abi::StageSolverTable stage_solver_table(Solver& solver) {
             return of(self).error_norm(position, velocity);
           },
           [](void* self, Span<const double> q_base, Span<const double> increment, Span<double> q) noexcept {
-            of(self).system().retract(q_base, increment, q);
+            of(self).system().coordinates().retract(q_base, increment, q);
           },
           0,
           [](void* self, double dt, const StateView* end, Span<const double> error) noexcept {
             return of(self).internal_error_norm(dt, *end, error);
           },
           [](void* self, Span<const double> increment, Span<const double> v, Span<double> rate) noexcept {
-            of(self).system().increment_rate(increment, v, rate);
+            of(self).system().coordinates().increment_rate(increment, v, rate);
           },
           [](void* self) noexcept { return of(self).guess_error(); },
           [](void* self, double beta_q, double beta_v, Span<const double> missed) noexcept {

@@ -1,4 +1,4 @@
-// System: driven bodies, which move as time tells, and the loads of the rows that hold them.
+// System: driven bodies, whose motion is a function of time, and the loads of the rows that hold them.
 #include <algorithm>
 #include <cmath>
 

@@ -16,7 +16,7 @@ struct DrivenBody {
   bool second = true;  ///< it is the joint's second body
 };
 
-/// Those of a planar model with its clearances open, each behind the one that it is held at. A body is listed where
+/// Those of a planar model with its clearances open, each after the one that it is held at. A body is listed where
 /// rows that are declared (JointLayout::planar_rows) and at most one driver leave it no freedom, and nothing else
 /// holds it there as well: contradictions and redundancy are left to the equations.
 std::vector<DrivenBody> driven_bodies(const Model& model);

@@ -92,7 +92,7 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   if (!fill(point, terms, kept, e)) return false;
   e.filled = terms;
   e.time = point.t;
-  std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals behind
+  std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals after them
   in_pairs(e.h.size(), [&](auto at) { at(e.h) = at(point.h); });
   return true;
 }
@@ -241,7 +241,7 @@ bool System::blame(int joint, Evaluation& e) {
   return false;
 }
 
-/// Notes what a joint has done wrong. A point that is no number itself is nobody's fault but the iteration's.
+/// Notes what a joint has done wrong. A point that is no number itself is the fault of the iteration alone.
 bool System::refuse(int joint, const char* why, Evaluation& e) {
   e.fault.message.id[0] = '\0';
   abi::copy_text(e.fault.message.text, sizeof e.fault.message.text, why);

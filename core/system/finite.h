@@ -30,7 +30,7 @@ inline bool rests(const JointForces& f) {
   }
   return true;
 }
-/// Finite only if the numbers of energy are that were told.
+/// Finite only if the numbers of energy are that were given.
 inline double energy_of(const JointForces& f) {
   return f.potential + (std::isnan(f.potential_rate) ? 0.0 : f.potential_rate);
 }

@@ -63,7 +63,7 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
   std::ranges::copy(weight_, e.force.begin());
   e.acting = 0;
   JointForces out;
-  bool clean = false;  // zeroed for the first that is asked, and behind those that wrote into it
+  bool clean = false;  // zeroed for the first that is asked, and after those that wrote into it
   for (std::size_t f = 0; f < force_blocks_.size(); ++f) {
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;

@@ -10,7 +10,7 @@ namespace freeplay {
 namespace {
 
 constexpr double part = 6e-6;               // step over what it differentiates
-constexpr double smallest_speed = 1e-3;     // that friction laws tell from rest [m/s]
+constexpr double smallest_speed = 1e-3;     // that friction laws distinguish from rest [m/s]
 constexpr double smallest_internal = 1e-3;  // unless the joint has a smaller clearance
 constexpr double of_coordinates = 1e-11;    // below that rounding of positions and speeds shows
 constexpr double smallest_angle = 1e-10;    // [rad]

@@ -26,7 +26,7 @@ constexpr std::size_t difference_numbers(std::size_t internal, std::size_t event
 /// With L = the clearance or, without one, the distance of the markers and at least a hundredth of the model's size,
 /// V = the relative speed and at least 1 mm/s, steps are 6e-6 (cube root of the rounding unit, where central
 /// differences err least) of L and V, of L over the size of the model for angles; and no less than what rounding of
-/// large coordinates needs. A difference does not reach across the zero of one of the joint's event functions, behind
+/// large coordinates needs. A difference does not reach across the zero of one of the joint's event functions, beyond
 /// which other forces act: it is then one-sided, from the side on which the joint stands. False when the joint fails.
 bool difference_forces(const DifferencedJoint& differenced, const JointInput& input, const JointForces& here,
                        std::span<double> derivatives, Message& message);

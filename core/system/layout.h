@@ -16,8 +16,8 @@ struct Slice {
 /// Which joints run: as the model says, or with every clearance closed by its ideal twin.
 enum class Variant { released, closed };
 
-/// Rows stand in the order joints, then prescribing drivers. Driven bodies stand behind all others and are no part of
-/// the unknowns, and the rows that hold them behind all other rows. Fixed when the System is built.
+/// Rows stand in the order joints, then prescribing drivers. Driven bodies stand after all others and are no part of
+/// the unknowns, and the rows that hold them after all other rows. Fixed when the System is built.
 class Layout {
  public:
   Layout(const Model& model, Variant variant, std::span<const planar::DrivenBody> driven = {});

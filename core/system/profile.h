@@ -1,5 +1,5 @@
-// Profile: where the time of a run goes. The parts that do the work hold a pointer to one, which is null where nobody
-// asked: then a timer is one comparison, and no clock is read.
+// Profile: where the time of a run goes. The parts that do the work hold a pointer to one, which is null where it is
+// not wanted: then a timer is one comparison, and no clock is read.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ enum class Phase {
   joints,         ///< forces of joints and contacts with their derivatives, what joints keep
   factorization,  ///< matrices filled in and factored
   solution,       ///< solved with their factors
-  events,         ///< looked for and told
+  events,         ///< looked for and recorded
   statistics,     ///< all channels, energy and statistics of every accepted step
   output,         ///< rows: states between steps, channels, handed to the files
 };

@@ -12,11 +12,11 @@
 namespace freeplay {
 
 /// [t | q | v | a | lambda | z | h | integrator memory]. Copying it is the only rollback. q, v and a are those of the
-/// unknowns; lambda has the loads of driven bodies behind theirs.
+/// unknowns; lambda has the loads of driven bodies after theirs.
 class State {
  public:
   State() : block_(guard::marks) {}
-  /// `flows`: integrals that the integrator carries along behind the internal variables of the joints.
+  /// `flows`: integrals that the integrator carries along after the internal variables of the joints.
   State(const Layout& layout, int memory, int flows = 0)
       : nq_(size(layout.nq())),
         nv_(size(layout.nv())),
@@ -64,7 +64,7 @@ class State {
   std::span<const double> before_history() const { return part(0, 1 + nq_ + 2 * nv_ + rows_ + nz_); }
   /// For checkpoints and hashes.
   std::span<const double> block() const { return std::span(block_).first(block_.size() - guard::marks); }
-  /// False when somebody wrote past the end of the block.
+  /// False when something was written past the end of the block.
   bool intact() const { return guard::intact(block_.data() + block().size()); }
   StateView view() {
     return {&block_[0],

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "base/index.h"
 #include "system/joint_derivatives.h"
 
@@ -19,18 +17,6 @@ double length(const Vector3& v) { return std::hypot(std::hypot(v[0], v[1]), v[2]
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 planar::DeclaredRows::Ends ends_of(const JointRecord& r) { return {r.marker_a, r.marker_b, r.body_a, r.body_b}; }
-
-// Body axes from principal axes, right-handed; the body's own where they are principal already.
-spatial::Matrix principal_axes(const Body& body, spatial::Vector& moments) {
-  const spatial::Matrix inertia = Eigen::Map<const RowMajor>(body.inertia.data());
-  moments = inertia.diagonal();
-  if (inertia(0, 1) == 0.0 && inertia(0, 2) == 0.0 && inertia(1, 2) == 0.0) return spatial::Matrix::Identity();
-  const Eigen::SelfAdjointEigenSolver<spatial::Matrix> solver(inertia);
-  moments = solver.eigenvalues();
-  spatial::Matrix axes = solver.eigenvectors();
-  if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
-  return axes;
-}
 
 std::vector<planar::DrivenBody> driven(const Model& model, Variant variant, Unknowns unknowns) {
   if (variant != Variant::released || unknowns != Unknowns::free_bodies) return {};
@@ -60,6 +46,7 @@ System::System(const Model& model, Variant variant, Unknowns unknowns)
       variant_(variant),
       layout_(model, variant, driven(model, variant, unknowns)),
       motions_(std::make_shared<Motions>(model)),
+      coordinates_(model),
       offsets_(model.joints.size(), InitialOffset{}),
       size_(model_size(model)) {
   const bool planar = model.space == Space::planar;
@@ -71,8 +58,7 @@ System::System(const Model& model, Variant variant, Unknowns unknowns)
       weight_.insert(weight_.end(), {m * body.gravity[0], m * body.gravity[1], 0.0});
       continue;
     }
-    spatial::Vector moments;
-    principal_.push_back(principal_axes(body, moments));
+    const spatial::Vector& moments = coordinates_.principal_moments(layout_.body_at(place));
     mass_.insert(mass_.end(), {m, m, m, moments[0], moments[1], moments[2]});
     weight_.insert(weight_.end(), {m * body.gravity[0], m * body.gravity[1], m * body.gravity[2], 0.0, 0.0, 0.0});
   }
@@ -85,7 +71,7 @@ System::System(const Model& model, Variant variant, Unknowns unknowns)
     spatial::Mount mount{marker.body, spatial::vector(marker.position.data()),
                          Eigen::Map<const RowMajor>(marker.rotation.data())};
     if (marker.body != ground) {
-      const spatial::Matrix to_principal = principal_[at(marker.body)].transpose();
+      const spatial::Matrix to_principal = coordinates_.principal_axes(marker.body).transpose();
       mount.position = to_principal * (mount.position - spatial::vector(model.bodies[at(marker.body)].com.data()));
       mount.rotation = to_principal * mount.rotation;
     }
@@ -226,6 +212,11 @@ void System::sort_markers() {
   for (int b = 0; b < bodies(); ++b) {
     markers_of_body_.push_back({first_of(2 * b), first_of(2 * b + 1), first_of(2 * b + 2)});
   }
+}
+
+double System::marker_angle(int marker, std::span<const double> q) const {
+  const BodyId place = marker_places_[at(marker)];
+  return model_.markers[at(marker)].angle + (place == ground ? 0.0 : q[3 * at(place) + 2]);
 }
 
 void System::take_start_of(const System& other) {
@@ -389,7 +380,7 @@ void System::reaction(int index, const Evaluation& e, std::span<const double> la
       wrench_of(force, e.arms_of<Bodies>()[at(second ? element.marker_b : element.marker_a)], constraint);
     });
     if (!second) {
-      // Only the first body moves: its force turned round, and the moment carried to the second marker.
+      // Only the first body moves: the opposite of its force, and the moment carried to the second marker.
       const MarkerKinematics& a = e.markers[at(element.marker_a)];
       const MarkerKinematics& b = e.markers[at(element.marker_b)];
       const double d[3] = {a.position[0] - b.position[0], a.position[1] - b.position[1], a.position[2] - b.position[2]};

@@ -3,8 +3,8 @@
 //   M a + Phi_q^T lambda = f(t, q, v, z),   Phi(q, t) = 0,   Phi_q v = nu,   Phi_q a = gamma
 //
 // Phi_q is nc x nv: the derivative along tangent increments of q. The force of the constraints on the bodies is
-// -Phi_q^T lambda. Driven bodies may be left out of the unknowns: they move as time tells, nu and gamma hold what their
-// motion does to the rows, and the loads of the rows that hold them follow from everything else.
+// -Phi_q^T lambda. Driven bodies may be left out of the unknowns: their motion is a function of time, nu and gamma hold
+// what their motion does to the rows, and the loads of the rows that hold them follow from everything else.
 #pragma once
 
 #include <array>
@@ -18,6 +18,7 @@
 
 #include "component/joint_ref.h"
 #include "linear/sparse_matrix.h"
+#include "system/body_coordinates.h"
 #include "system/declared_rows.h"
 #include "system/layout.h"
 #include "system/motion.h"
@@ -129,24 +130,8 @@ class System {
   void set_gear_offset(int gear, double offset) { gear_offsets_[static_cast<std::size_t>(gear)] = offset; }
   int body_coordinates() const { return layout_.body_coordinates(); }
   int body_velocities() const { return layout_.body_velocities(); }
-  /// Whether an entry of v is the rate of an angle [rad/s], not of a length.
-  bool is_turn(int velocity) const { return model_.space == Space::planar ? velocity % 3 == 2 : velocity % 6 >= 3; }
-  /// q <- base + increment: rotations in space turn by the increment's rotation vector in principal axes.
-  void retract(std::span<const double> base, std::span<const double> increment, std::span<double> q) const;
-  /// The increment that leads from `base` to `q`.
-  void difference(std::span<const double> base, std::span<const double> q, std::span<double> increment) const;
-  /// Rate of an increment at the velocities v where it has led to; and the velocities for its rate. The same numbers in
-  /// the plane.
-  void increment_rate(std::span<const double> increment, std::span<const double> v, std::span<double> rate) const;
-  void velocities_of(std::span<const double> increment, std::span<const double> rate, std::span<double> v) const;
-  /// Pose of a body's frame in the world, and the coordinates for one.
-  Pose frame_pose(BodyId body, std::span<const double> q) const;
-  void set_frame_pose(BodyId body, const Pose& pose, std::span<double> q) const;
-  /// Unit quaternion w x y z of a body's frame; spatial models.
-  std::array<double, 4> frame_quaternion(BodyId body, std::span<const double> q) const;
-  /// Velocity of a body's centre of mass and its angular velocity [m/s, rad/s], 6 numbers in world axes; and v for it.
-  void body_twist(BodyId body, std::span<const double> q, std::span<const double> v, double* twist) const;
-  void set_body_twist(BodyId body, std::span<const double> q, const double* twist, std::span<double> v) const;
+  /// Poses and twists of bodies in q and v.
+  const BodyCoordinates& coordinates() const { return coordinates_; }
   /// Diagonal of M: mass, mass, inertia of every free body; in space mass three times and the principal inertias.
   std::span<const double> mass() const { return std::span(mass_).first(static_cast<std::size_t>(layout_.nv())); }
   /// Where the body of a marker stands among the unknowns (Layout::place); `ground` for driven bodies, too.
@@ -205,7 +190,7 @@ class System {
   /// Wrench (6 numbers) on the second body at its marker: constraint and applied parts together. Of a gear: what it
   /// exerts on the second body of its second joint at that joint.
   void reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const;
-  /// Adds the loads of driven bodies behind the multipliers of the unknowns: `lambda` has Layout::all_rows() numbers.
+  /// Adds the loads of driven bodies after the multipliers of the unknowns: `lambda` has Layout::all_rows() numbers.
   /// `e` holds all forces.
   void recover_loads(Evaluation& e, std::span<double> lambda) const;
   /// Their part of Phi_q: before it, reaction() says nothing of joints that hold driven bodies.
@@ -213,7 +198,7 @@ class System {
   /// The same for impulses: rows of free bodies have given `impulse`, and driven bodies changed their velocities (3
   /// numbers each) by `change`.
   void recover_impulses(Evaluation& e, std::span<const double> change, std::span<double> impulse) const;
-  /// Power of the rows of joints between free and driven bodies on the driven ones, turned round [W].
+  /// Power of the rows of joints between free and driven bodies on the driven ones, with the opposite sign [W].
   double power_from_driven(const Evaluation& e, std::span<const double> lambda) const;
   /// The row that holds a driven body last: that of its driver, if it has one.
   int row_of_driven(std::size_t driven) const { return driven_[driven].rows[2]; }
@@ -291,7 +276,7 @@ class System {
   std::vector<double> mass_, weight_;
   std::vector<planar::Mount> mounts_;
   std::vector<spatial::Mount> spatial_mounts_;
-  std::vector<spatial::Matrix> principal_;  // by body: body axes from principal axes; in space
+  BodyCoordinates coordinates_;
   std::vector<InitialOffset> offsets_;
   std::vector<JointRecord> records_;              // by joint
   std::vector<int> with_coordinate_, with_rows_;  // joints that are asked; gears have no rows of their own here
@@ -368,7 +353,7 @@ struct Evaluation {
   std::vector<TimeValue> motion;                    ///< by driver
   MotionWork motion_work;
   std::vector<double> potential;       ///< stored energy by joint [J]
-  std::vector<double> potential_rate;  ///< its time derivative [W]; NaN where the joint does not tell
+  std::vector<double> potential_rate;  ///< its time derivative [W]; NaN where the joint gives none
   std::vector<double> wrench;          ///< by joint: 6 numbers on a, 6 on b, at the markers
   std::vector<double> internal_rate;   ///< z'
   std::vector<double> applied;         ///< by applied force: wrench in world axes at its marker
@@ -398,7 +383,7 @@ struct Evaluation {
   }
   // Work space.
   std::vector<MarkerKinematics> shifted;  ///< by joint: second marker of a closed joint that stands off
-  std::vector<double> row_space;          ///< of every joint with rows: G, phi, nu, gamma, with marks behind each
+  std::vector<double> row_space;          ///< of every joint with rows: G, phi, nu, gamma, with marks after each
   std::vector<double> rate_space, derivative_space;
   std::vector<planar::Turn> turns;
   std::vector<spatial::Turn> spatial_turns;

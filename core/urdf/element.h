@@ -60,7 +60,7 @@ std::optional<double> read_number(std::string_view text, std::string& why, std::
 
 class Element {
  public:
-  /// With `exact`, an attribute that nobody asked for is an error; without, one that looks like a misspelt one is.
+  /// With `exact`, an attribute that was not read is an error; without, one that looks like a misspelt one is.
   /// `owner` names it in messages: "link 'arm'".
   Element(XmlElement& xml, std::string owner, Messages& messages, bool exact);
 

@@ -18,7 +18,7 @@ class NameGiver {
  public:
   NameGiver(std::string kind, Messages& messages) : kind_(std::move(kind)), messages_(messages) {}
   std::string give(const std::string& name, const Spot& spot);
-  /// For one whose own name has a meaning here that it does not have: `name`, with '_' behind it while it is taken.
+  /// For one whose own name has a meaning here that it does not have: `name`, followed by '_' while it is taken.
   std::string give_other(std::string name, const Spot& spot);
 
  private:
@@ -27,7 +27,7 @@ class NameGiver {
   std::unordered_map<std::string, int> lines_;
 };
 
-/// The names of a robot's links and joints in the model. Also of one that has errors already, so that all are told
+/// The names of a robot's links and joints in the model. Also of one that has errors already, so that all are reported
 /// together; what exists twice in the file has been reported by the reader.
 class Names {
  public:
@@ -35,7 +35,7 @@ class Names {
   /// For a joint that is not in the file.
   std::string add_joint(const std::string& name, const Spot& spot);
 
-  /// For a frame that is not in the file: the name, with '_' behind it as long as a link or joint has it.
+  /// For a frame that is not in the file: the name, followed by '_' as long as a link or joint has it.
   std::string fresh_frame(std::string name) const;
 
   std::vector<std::string> links, joints;  ///< of each in the robot

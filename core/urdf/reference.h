@@ -36,7 +36,7 @@ class LinkNames {
   std::vector<std::string> names_;
 };
 
-/// Makes `axis` a unit vector; reports a zero one, and notes one that nobody rounded to this length.
+/// Makes `axis` a unit vector; reports a zero one, and notes one whose length is no rounding of 1.
 inline Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const Spot& spot, const std::string& owner,
                                  Messages& messages) {
   const double length = axis.stableNorm();

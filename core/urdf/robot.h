@@ -106,12 +106,12 @@ struct Robot {
   std::vector<Link> links;
   std::vector<Joint> joints;  ///< in file order, those of the tree first
   bool places_known = true;   ///< false after a message about the place, type or axis of a joint: a guess stands there
-  bool ambiguous = false;     ///< a link was named twice, or a joint names none: nobody knows what hangs where
+  bool ambiguous = false;     ///< a link was named twice, or a joint names none: the tree is not determined
 
   // Filled by build_tree().
   int root = no_link;
   std::vector<int> parent_joint;  ///< of each link; -1 for the root
-  std::vector<int> order;         ///< links, each behind its parent
+  std::vector<int> order;         ///< links, each after its parent
   std::vector<Mount> mounts;      ///< of each link
 };
 

@@ -1,4 +1,4 @@
-// UrdfShape: what a link looks like and what it collides with. Nothing of it is used, but mistakes in it are told.
+// UrdfShape: what a link looks like and what it collides with. Nothing of it is used, but mistakes in it are reported.
 #pragma once
 
 #include <string>

@@ -271,7 +271,7 @@ class UrdfWriter {
     if (kept.add_parameters(root, content)) {
       notes_.push_back("bodies and frames are written as numbers: parameters no longer change them");
     }
-    // A URDF with a joint of the type floating is read in space where nobody says otherwise.
+    // A URDF with a joint of the type floating is read in space unless the reader is asked for the plane.
     const bool floats = std::ranges::any_of(tree_joint_, [](int joint) { return joint < 0; });
     if (floats && source_->find("space") == nullptr) put(root, "space", scalar("planar"));
     const bool needed = floats || !bodies.entries.empty() || !joints.entries.empty() || !rest.empty();

@@ -39,7 +39,7 @@ class TreeBuilder : public YAML::EventHandler {
   /// False if something was left out whose absence would cause other errors.
   bool trusted() const { return trusted_; }
 
-  /// To be called behind the last document.
+  /// To be called after the last document.
   void finish_text() {
     const bool directive = text_.starts_with('%') || text_.find("\n%") != std::string_view::npos;
     if (documents_ == 0 && directive) refuse({text_.find('%'), "a directive needs a document after it, '---'"});
@@ -181,7 +181,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   bool accept_key(Frame& frame, Node& key, const TextPlace& at) {
-    if (key.is_null()) key.kind = Node::Kind::scalar;  // an empty key is a key that nobody knows
+    if (key.is_null()) key.kind = Node::Kind::scalar;  // an empty key is an unknown key
     if (!key.is_scalar()) {
       error(at, 1, "wrong-type", fmt::format("a key must be a word, not {}", key.kind_name()));
       return false;
@@ -279,7 +279,7 @@ class TreeBuilder : public YAML::EventHandler {
     return 0;
   }
 
-  /// Position of the value itself behind its anchor and tag. Tags are refused.
+  /// Position of the value itself after its anchor and tag. Tags are refused.
   std::size_t skip_properties(const YAML::Mark& mark, YAML::anchor_t anchor, const std::string& tag) {
     std::size_t begin = std::min(static_cast<std::size_t>(mark.pos), text_.size());
     while (begin < text_.size()) {
@@ -361,7 +361,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (next != std::string_view::npos && text_[next] == ':') return;
     const std::size_t line_begin = begin == 0 ? 0 : text_.find_last_of('\n', begin - 1) + 1;
     const bool explicit_key = text_.substr(line_begin, begin - line_begin).find('?') != std::string_view::npos;
-    if (!explicit_key) refuse({begin, "this is not a key: a ':' is missing behind it"});
+    if (!explicit_key) refuse({begin, "this is not a key: a ':' is missing after it"});
   }
 
   /// An anchor must be indented like the value that it names.
@@ -400,7 +400,7 @@ struct Explanation {
   std::string_view library_message, message, hint;
 };
 
-// What the common messages of the parser mean for somebody who writes a model.
+// What the common messages of the parser mean for the author of a model.
 constexpr Explanation explanations[] = {
     {"end of sequence flow not found", "this '[' is not closed before the text goes on", "add ']' or a comma"},
     {"end of map flow not found", "this '{' is not closed before the text goes on", "add '}' or a comma"},
@@ -411,7 +411,7 @@ constexpr Explanation explanations[] = {
     {"the referenced anchor is not defined", "the alias names an anchor that is not defined before it", ""},
 };
 
-/// What a faulty escape means; the parser stands behind it.
+/// What a faulty escape means; the parser stands after it.
 std::optional<Explanation> explain_escape(const std::string& message) {
   if (message == YAML::ErrorMsg::INVALID_HEX) {
     return Explanation{"", "this escape is not complete",
@@ -449,7 +449,7 @@ std::optional<Explanation> explain_in_line(const std::string& message, std::stri
   if (message != YAML::ErrorMsg::END_OF_MAP && message != YAML::ErrorMsg::END_OF_SEQ) return std::nullopt;
   if (first >= position) return std::nullopt;
   if (text[position] == '*')
-    return Explanation{"", "an alias cannot stand behind something else", "it is a whole value"};
+    return Explanation{"", "an alias cannot stand after something else", "it is a whole value"};
   const char before = text[text.find_last_not_of(" \t", position - 1)];
   if (before == ':' || before == '-')
     return Explanation{"", "a value cannot begin with this character", "quote the value"};

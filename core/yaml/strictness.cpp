@@ -58,7 +58,7 @@ class FlowScanner {
     do {
       if (auto fault = step()) return fault;
     } while (depth_ > 0 && at_ < text_.size());
-    if (depth_ > 0) return std::nullopt;  // an open bracket is the fault, and the parser's to tell
+    if (depth_ > 0) return std::nullopt;  // an open bracket is the fault, and the parser reports it
     if (outdented_) return outdented_;
     if (at_ < text_.size() && text_[at_] == '#') return YamlFault{at_, comment_without_blank};
     return std::nullopt;
@@ -125,7 +125,7 @@ class FlowScanner {
   std::optional<YamlFault> outdented_;  // the first line with too few blanks
   bool token_begins_ = true;            // a quote would open a quoted scalar here
   bool entry_begins_ = false;           // nothing of the entry has come
-  bool after_json_ = false;             // behind a quoted scalar or a bracket a ':' needs no blank
+  bool after_json_ = false;             // after a quoted scalar or a bracket a ':' needs no blank
 };
 
 }  // namespace
@@ -164,7 +164,7 @@ std::string without_tabs_in_empty_lines(std::string text) {
 }
 
 std::optional<YamlFault> find_directive_fault(std::string_view text, bool map) {
-  constexpr const char* alone = "a line that begins with '%' is a directive and needs a '---' behind it";
+  constexpr const char* alone = "a line that begins with '%' is a directive and needs a '---' after it";
   std::size_t directive = none;
   bool content = false;
   for (std::size_t at = 0; at < text.size(); at = line_end(text, at) + 1) {

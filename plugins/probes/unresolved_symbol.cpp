@@ -1,4 +1,4 @@
-// Probe: needs a function that nobody has.
+// Probe: needs a function that no library has.
 #include "probe.h"
 
 namespace freeplay {

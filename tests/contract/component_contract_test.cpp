@@ -274,7 +274,7 @@ TEST(DescriptionContract, FindsWrongParameters) {
   EXPECT_TRUE(describe({.name = "law", .summary = "Some.", .parameters = twice}).broken("parameter-names"));
 }
 
-TEST(DescriptionContract, FindsParametersThatNobodyCanGive) {
+TEST(DescriptionContract, FindsParametersThatCannotBeGiven) {
   const auto names = [](auto make, const char* name) {
     const Parameter table[] = {{.name = name, .default_value = 1.0, .summary = "S."}};
     return check_description(make(Description{.name = "some-type",
@@ -293,7 +293,7 @@ TEST(DescriptionContract, FindsParametersThatNobodyCanGive) {
   EXPECT_FALSE(names(contact_law<Scaled>, "type"));
 }
 
-TEST(DescriptionContract, FindsASpaceThatIsNone) {
+TEST(DescriptionContract, FindsAnUnknownSpace) {
   const auto of = [](std::uint32_t space) {
     return check_description(
         joint<Shows<fx>>({.name = "some-joint", .space = static_cast<Space>(space), .summary = "S."}));

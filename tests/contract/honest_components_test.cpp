@@ -44,7 +44,7 @@ std::string test_name(const testing::TestParamInfo<const Component*>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Every, HonestComponentLong, testing::ValuesIn(honest()), test_name);
 
-TEST(RulesLong, EveryRuleThatIsExaminedIsExplained) {
+TEST(RulesLong, EveryExaminedRuleIsExplained) {
   for (const RegisteredComponent& entry : registry().components()) {
     const Component& component = *entry.component;
     const Findings findings = check_component(component, registry(), {.allocations = &allocations});

@@ -102,7 +102,7 @@ TEST(JointContract, FindsFaultsFarFromTheOrdinary) {
   }
 }
 
-TEST(JointContract, FindsAPinThatIsNone) { expect_found<Tether>({{Flaw::no_pin, "pin"}}); }
+TEST(JointContract, FindsAPinThatDoesNotHold) { expect_found<Tether>({{Flaw::no_pin, "pin"}}); }
 
 TEST(JointContract, FindsRowsOtherThanDeclared) {
   expect_found<Swivel>({{Flaw::other_rows, "planar-rows"}, {Flaw::wrong_when_fast, "planar-rows"}});

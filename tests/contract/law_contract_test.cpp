@@ -85,7 +85,7 @@ TEST(ContactLawContract, DoesNotJudgeTheRoundingOfStoredEnergy) {
   EXPECT_TRUE(judge(wall).held()) << broken_rules(judge(wall));
 }
 
-TEST(ContactLawContract, FindsAJumpUnlessTheLawTells) {
+TEST(ContactLawContract, FindsAJumpThatTheLawDoesNotDeclare) {
   const auto jumps = [](const ContactState& s) {
     const double damping = s.approach_speed > 0.0 ? 50.0 : 0.0, force = 1e5 * s.penetration + damping * s.rate;
     const double potential = 5e4 * s.penetration * s.penetration;

@@ -82,7 +82,7 @@ simulation: {end: 2 s, accuracy: 1 um}
         self.assertGreater(advice["under_resolved"], 0)
         self.assertLess(advice["step"], 1e-5)
 
-    def test_verify_tells_errors_and_until_when_runs_agree(self):
+    def test_verify_prints_errors_and_until_when_runs_agree(self):
         out, _ = self.freeplay("run", mechanism("slider-crank"), "--accuracy", "1e-9", "--end", "10 ms", "--verify",
                                "--out", "r")
         self.assertIn("verified by bathe (implicit), accuracy 5e-10 m, steps of 2e-05 s at most", out)
@@ -152,7 +152,7 @@ class Compare(ProgramTest):
         self.assertEqual(6, len(rows))
         self.assertEqual({"channel", "max_abs", "max_rel", "rms", "at_time", "ok"}, set(rows[0]))
 
-    def test_channels_that_are_asked_for_are_all_shown_and_others_counted(self):
+    def test_requested_channels_are_all_shown_and_others_counted(self):
         names = self.read("a", "results.csv").split("\n")[0].split(",")[1:]
         self.assertGreater(len(names), 10)
         everything, err = self.freeplay("compare", "a", "c", "--channels", "*")

@@ -86,7 +86,7 @@ class AnalyzeInSpace(ProgramTest):
                 for k, length in enumerate(lengths):
                     self.assertAlmostEqual(length - ROD, float(row["joint.L%d.position" % k]), 10)
 
-    def test_inputs_tell_the_pose(self):
+    def test_inputs_decide_the_pose(self):
         pose = (0.02, -0.01, 0.58, 0.05, -0.1, 0.15)
         words = ",".join("L%d=%r" % (k, length - ROD) for k, length in enumerate(leg_lengths(*pose)))
         row, = self.rows("ik", "stewart.yaml", "--input", words)

@@ -154,7 +154,7 @@ class Analyze(ProgramTest):
                     gap = float(found["joint.%s.angle" % name]) - crank(a, side, 0.04, 0.25)
                     self.assertAlmostEqual(0, math.remainder(gap, 2 * math.pi), 9)
 
-    def test_elbow_that_chooses_nothing_is_told(self):
+    def test_an_elbow_without_effect_is_reported(self):
         five_bar = ("ik", mechanism("five-bar"), "--pose", "0.04,0.25")
         for words, wanted in (
                 (("ik", mechanism("3-rpr"), "--pose", "0,0.1,0.1", "--elbow", "-1"), "lead from 'leg1.P', 'leg2.P', 'leg3.P' to"),
@@ -361,7 +361,7 @@ class Analyze(ProgramTest):
             self.assertEqual((130, "interrupted"), (json.loads(out)["error"]["exit_code"], json.loads(out)["error"]["messages"][0]["id"]))
             self.assertEqual([], os.listdir(self.folder))
 
-    def test_long_analyses_tell_how_far_they_are(self):
+    def test_long_analyses_show_progress(self):
         def line(*options):
             ours, theirs = pty.openpty()
             words = [PROGRAM, "analyze", "error", mechanism("4-rrr"), "--pose", "0,0", "--samples", "1000000000", *options]

@@ -196,7 +196,7 @@ class CheckPlugin(ProgramTest):
             self.assertGreater(len(found & named), 3)
             self.assertLessEqual(len(named - found), 1)
 
-    def test_the_report_tells_library_types_parameters_and_rules(self):
+    def test_the_report_has_library_types_parameters_and_rules(self):
         out, _ = self.freeplay("check-plugin", os.path.join(EXAMPLES, "torsional_spring_damper.so"), "--json")
         report = json.loads(out)
         self.assertEqual(["library", "name", "version", "abi", "compiler", "ok", "types"], list(report))
@@ -231,7 +231,7 @@ class CheckPlugin(ProgramTest):
         _, err = self.freeplay("check-plugin", "./no_such_file.so", code=5)
         self.assertIn("[plugin-not-found]", err)
 
-    def test_wrong_usage_is_told(self):
+    def test_wrong_usage_is_reported(self):
         _, err = self.freeplay("check-plugin", code=2)
         self.assertIn("check-plugin needs a library", err)
         _, err = self.freeplay("check-plugin", probe("mixed"), "--time-limit", "3 kg", code=2)
@@ -239,7 +239,7 @@ class CheckPlugin(ProgramTest):
         _, err = self.freeplay("check-plugin", probe("mixed"), "--sed", "3", code=2)
         self.assertIn("did you mean '--seed'?", err)
 
-    def test_an_interrupt_leaves_no_process_behind(self):
+    def test_an_interrupt_leaves_no_process(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             with self.subTest(number.name):
                 running = subprocess.Popen([PROGRAM, "check-plugin", probe("never_returns")], cwd=self.folder,

@@ -33,7 +33,7 @@ simulation: {end: 20 ms, step: 5 us, output: {interval: 0.1 ms}%s}
         self.assert_column(columns, "joint.B.delta", lambda t: depth, 1e-12)
         self.assert_column(columns, "joint.B.fn", lambda t: 2 * 9.81, 1e-6)
 
-    def test_a_journal_starts_where_it_is_told_and_falls(self):
+    def test_a_journal_starts_where_the_model_puts_it_and_falls(self):
         block = BLOCK % ', initial: {eccentricity: [50 um, "0.1 mm"], velocity: [2 mm/s, 0]}'
         columns = self.run_model(self.pin(block, ", stop: [{channel: joint.B.delta, above: 0}]"))
         self.assert_column(columns, "joint.B.ex", lambda t: 5e-5 + 2e-3 * t, 1e-12)

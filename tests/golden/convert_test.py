@@ -161,7 +161,7 @@ simulation: {end: 0.3 s, step: 1 ms, integrator: {type: bathe, newton: {toleranc
         self.freeplay("convert", mechanism("pendulum"), "p.yaml", "--set", "l=3 m")
         self.assertAlmostEqual(1.5, self.verdict("p.yaml")["start"]["rod"]["x"], places=12)
 
-    def test_nothing_is_overwritten_unasked(self):
+    def test_nothing_is_overwritten_without_force(self):
         self.write("p.yaml", "mine")
         self.freeplay("convert", mechanism("pendulum"), "p.yaml", code=6)
         self.assertEqual("mine", self.read("p.yaml"))

@@ -265,7 +265,7 @@ drivers:
 simulation: {end: 2, step: 10 ms}
 """
 
-    def test_the_legs_of_a_five_bar_bend_as_told(self):
+    def test_the_legs_of_a_five_bar_bend_to_the_given_side(self):
         self.facts(self.FIVE_BAR, bodies=5, joints=6, drivers=2, constraints=12, dof=3, dof_driven=1)
         columns = self.run_model(self.FIVE_BAR)
 

@@ -126,7 +126,7 @@ class PeaksTest(ProgramTest):
             self.assertIsNone(summary["joints"]["pivot"]["max_force"])
             self.assertIsNone(summary["statistics"]["to"])
 
-    def test_rows_that_miss_a_peak_are_told(self):
+    def test_rows_that_miss_a_peak_are_reported(self):
         _, _, out, _ = self.run_model(mechanism("slider-crank"), "--end", "16 ms", "--accuracy", "1um")
         self.assertRegex(out, r"rows 2e-05 s apart miss peaks between them: they show \S+ N of the .* in wrist\n")
 

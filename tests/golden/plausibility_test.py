@@ -340,7 +340,7 @@ class Plausibility(ProgramTest):
                 line = text.splitlines()[one["line"] - 1]
                 self.assertTrue(line[one["column"] - 1:].startswith(place), (line, one))
 
-    def test_a_rod_held_twice_at_one_frame_is_told_beside_the_gap(self):
+    def test_a_rod_held_twice_at_one_frame_is_reported_with_the_gap(self):
         found = self.messages(text_of(CRANK, "bearing: coupler/tip", "bearing: coupler"), code=3)
         self.assertEqual(["unused", "assembly-failed", "same-frame"], [m["id"] for m in found])
         self.assertIn("'crankpin' and 'wrist' both hold 'coupler/origin'", found[0]["message"])
@@ -350,7 +350,7 @@ class Plausibility(ProgramTest):
             with self.subTest(new or model[:60]):
                 self.assertEqual([], self.messages(text_of(model, old, new, *more)))
 
-    def test_strict_makes_doubts_errors_before_and_behind_assembly(self):
+    def test_strict_makes_doubts_errors_before_and_after_assembly(self):
         for old, new, wanted in [("{main: 1}", "{main: 60}", "doubtful-angle"), (GUIDE, GUIDE + GUIDE.replace("guide", "two"), "duplicate-joint")]:
             text = text_of(CRANK, old, new)
             found = self.messages(text, "--strict", code=3)

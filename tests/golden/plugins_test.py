@@ -117,7 +117,7 @@ class LoadingTest(ProgramTest):
         self.assertIn("revolute", out)
         self.assertRegex(err, r"warning: plugin '.*text\.so' cannot be loaded")
 
-    def test_misspelt_parameters_of_a_plugin_are_told_like_all_others(self):
+    def test_misspelt_parameters_of_a_plugin_are_reported_like_all_others(self):
         model = self.write("twisted.yaml", (TWISTED % "").replace("stiffness", "stifness"))
         _, err = self.freeplay("validate", model, "--plugin", EXAMPLE, code=3)
         self.assertIn("did you mean 'stiffness'?", err)

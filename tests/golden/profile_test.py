@@ -76,7 +76,7 @@ class Profile(ProgramTest):
         self.assertEqual(json.loads(self.read("r", "summary.json")), json.loads(out))
         self.table(err)
 
-    def test_it_is_printed_though_quiet_and_not_without_being_asked_for(self):
+    def test_it_is_printed_though_quiet_and_only_on_request(self):
         out, _ = self.run_model("four-bar", "r", "--profile", "--quiet")
         self.assertTrue(out.startswith("  profile "), out)
         self.assertNotIn("profile", self.run_model("four-bar", "r")[0])

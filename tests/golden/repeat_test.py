@@ -83,7 +83,7 @@ class Repeat(ProgramTest):
     def run_json(self, *arguments, **options):
         return json.loads(self.freeplay("run", *arguments, "--json", **options)[0])
 
-    def test_peaks_are_told_as_median_and_range(self):
+    def test_peaks_are_given_as_median_and_range(self):
         self.write("m.yaml", SIX_BAR)
         out, _ = self.freeplay("run", "m.yaml", "--repeat", "8", "--seed", "3")
         with open(self.path("results", "six-bar", "summary.json"), encoding="utf-8") as file:
@@ -190,7 +190,7 @@ class Repeat(ProgramTest):
         self.assertEqual((5, 5), (repeat["completed"], repeat["failed"][0]["exit_code"]))
         self.assertEqual(1, repeat["joints"]["wrist"]["max_force"]["values"].count(None))
 
-    def test_an_interrupt_tells_what_is_known(self):
+    def test_an_interrupt_prints_what_is_known(self):
         self.write("m.yaml", SIX_BAR)
         process = self.start("m.yaml", "--repeat", "10000")
         workers = self.wait_for_children(process)

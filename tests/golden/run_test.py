@@ -373,7 +373,7 @@ simulation: {end: 10 ms, step: 1 ms}
         rows = self.rows("r", "results.csv")
         self.assertEqual({len(rows[0])}, {len(row) for row in rows})
 
-    def test_what_a_failed_run_leaves_is_told_from_other_files(self):
+    def test_what_a_failed_run_leaves_differs_from_other_files(self):
         model = self.pendulum(end="20 s")
         limit = (20000, 20000)
         self.freeplay("run", model, "--out", "r", code=6,

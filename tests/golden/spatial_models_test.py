@@ -306,7 +306,7 @@ joints:
 simulation: {end: 30 ms, %s, output: {interval: 1 ms}}
 """
 
-    def test_ends_that_touch_at_the_same_instant_are_both_told(self):
+    def test_ends_that_touch_at_the_same_instant_are_both_recorded(self):
         for steps in ("accuracy: 10 nm", "step: 10 us"):
             with self.subTest(steps=steps):
                 self.write("m.yaml", self.JOURNAL % steps)
@@ -440,7 +440,7 @@ class Mistakes(SpatialTest):
         verdict = json.loads(self.freeplay("validate", self.model(text), "--json")[0])
         return [(one["id"], one["line"], one["message"]) for one in verdict["messages"]]
 
-    def test_directions_of_other_lengths_are_made_unit_ones_and_that_is_told(self):
+    def test_directions_of_other_lengths_are_normalised_with_a_note(self):
         joint = self.BODY % "[1, 1, 1]" + "joints: {A: {type: revolute, between: [ground, rod], axis: %s}}\n"
         self.assertEqual([("not-unit", 4, "the axis has length 2: made one of length 1")],
                          self.warnings(joint % "[0, 2, 0]"))

@@ -133,11 +133,11 @@ CASES = {
         (0, pendulum("0 deg", "60"), RUN),
     "'...' is ... rad/s, that is ... rpm: write '... rpm' if revolutions per minute are meant, else '... rad/s' [doubtful-speed]":
         (0, driven("value: t", "value: 3000*t"), RUN + ["--step", "10 us"]),
-    "'...' is ... m/s^2, ... times that of the earth: write the unit behind the number, as in '... mm/s^2' [doubtful-value]":
+    "'...' is ... m/s^2, ... times that of the earth: write the unit after the number, as in '... mm/s^2' [doubtful-value]":
         (0, pendulum("-9.81", "-9810"), RUN),
     "'...' is ... s in a run of ... s: write '... ms' if milliseconds are meant, else '... s' [doubtful-time]":
         (0, pendulum("step: 1 ms", "step: 0.01"), RUN),
-    "'...' is ... m from the origin of its body, but the lengths around it are about ... m: write the unit behind the numbers, "
+    "'...' is ... m from the origin of its body, but the lengths around it are about ... m: write the unit after the numbers, "
     "as in '... mm' [doubtful-length]":
         (0, pendulum("joints:\n", "  arm: {mass: 1 kg, inertia: 1, frames: {hand: [500, 0]}}\njoints:\n"
                                 "  hinge: {type: revolute, between: [rod/tip, arm]}\n").replace("step: 1 ms", "step: 1 ms, output: {frames: [arm/hand]}"), RUN),

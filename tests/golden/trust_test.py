@@ -116,7 +116,7 @@ class Trust(ProgramTest):
 
     JOHNSON = ("law: lankarani-nikravesh", "law: johnson, damping: flores"), ("      material:", "      length: 12 mm\n      material:")
 
-    def test_the_end_of_a_law_of_the_program_is_told_with_its_cause(self):
+    def test_the_end_of_the_range_of_a_law_is_reported_with_its_cause(self):
         for steps in ((), ("--accuracy", "1um")):
             self.assert_cause("inertia of 'coupler' is 90 kg m^2", words=steps,
                               changes=(("inertia: 2.5e-4", "inertia: 90"), *self.JOHNSON))
@@ -152,7 +152,7 @@ class Trust(ProgramTest):
             self.assert_cause("driver 'motor' jumps at t = 0.010", words=steps,
                               changes=(("kind: velocity, value: $speed", table), ("initial: {joints: {main: 0 deg}}", "")))
 
-    def test_a_journal_that_starts_in_the_wall_is_told_behind_a_discard(self):
+    def test_a_journal_that_starts_in_the_wall_is_reported_in_spite_of_a_discard(self):
         text = slider_crank(("radial_clearance: $c", "radial_clearance: $c\n      initial: {eccentricity: [1.2 mm, 0]}"),
                             ("speed: 5000 rpm", "speed: 10 rpm"))
         self.run_model(text)
@@ -280,7 +280,7 @@ simulation: {end: 2 s, step: 1 ms}
         self.run_model(flat.replace("tip: [0.12, 0]}, pose: {angle: 50 deg}}\njoints", "tip: [0.2, 0]}, pose: {angle: 50 deg}}\njoints"))
         self.assertNotIn("singular-position", self.ids())
 
-    def test_few_impacts_behind_a_discard_are_doubtful(self):
+    def test_few_impacts_after_a_discard_are_doubtful(self):
         self.run_model(BALL % "")
         self.assertNotIn("statistics-window", self.ids())
         self.run_model(BALL % ", discard: 99 ms")

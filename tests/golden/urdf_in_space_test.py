@@ -115,7 +115,7 @@ class SpaceTest(RobotTest):
 
 
 class Space(SpaceTest):
-    def test_the_robot_decides_where_nobody_says(self):
+    def test_the_robot_decides_the_space_where_the_model_does_not(self):
         flat = TWIST.replace("1 0 0", "0 0 1").replace('rpy="0.2 0 0"', "")
         self.assertEqual("spatial", self.verdict(TWIST)["facts"]["space"])
         self.assertEqual([0, 0, -9.81], self.sections(TWIST)["gravity"])

@@ -30,7 +30,7 @@ class Published(ProgramTest):
             named = {case["model"] for case in json.load(file) if "/" not in case["model"]}
         self.assertEqual({name for name in os.listdir(MODELS) if name.endswith(".yaml")}, named)
 
-    def test_a_wrong_digit_is_told(self):
+    def test_a_wrong_digit_is_reported(self):
         folder = self.path("models")
         os.mkdir(folder)
         shutil.copy(os.path.join(MODELS, "a01-pendulum.yaml"), folder)

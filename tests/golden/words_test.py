@@ -183,7 +183,7 @@ class Types(ProgramTest):
         text, _ = self.freeplay("describe", "revolute")
         self.assertLess(text.index("\nchannels\n"), text.index("\nchannels in space\n"))
 
-    def test_describe_tells_default_and_range(self):
+    def test_describe_shows_default_and_range(self):
         text = self.freeplay("describe", "lankarani-nikravesh")[0]
         self.assertRegex(text, r"\n  name +unit +default +range +meaning\n")
         self.assertRegex(text, r"\n  restitution +1 +\S+ +\S.*")

@@ -333,7 +333,7 @@ TEST(InputActivity, ALoadThatBeginsWithTheRunIsNoCorner) {
   EXPECT_NEAR(run.last("body.m.x"), 30.0 / M_PI + 60.0 / M_PI, 1e-6);
 }
 
-TEST(InputActivity, AForceThatJumpsIsMeanAsItIs) {
+TEST(InputActivity, TheMeanOfAForceThatJumpsIsExact) {
   const ModelRun run(
       mass("drivers: {motor: {joint: guide, kind: velocity, table: {points: [[0, 0], [0.5, 0], [0.53, "
            "0.6], [1.5, 0.6], [1.51, 0], [2, 0]], interpolation: linear}}}",

@@ -46,7 +46,7 @@ TEST(MotionKink, AJumpOfTheSpeedIsAnImpulse) {
   }
 }
 
-TEST(MotionKink, ARowThereIsThatBehindIt) {
+TEST(MotionKink, ARowAtACornerHasTheValuesAfterIt) {
   const ModelRun run(cart("value: 'max(0, t - 0.3)'"));
   ASSERT_EQ(run.rows(), 11u);
   EXPECT_DOUBLE_EQ(run.at(3, "time"), 0.3);

@@ -37,9 +37,9 @@ struct Channel {
 
 enum class Crossing : std::uint32_t { rising, falling };
 
-/// A zero crossing that the joint wants to be told of: the event function passes zero in the given direction. One that
-/// is NaN cannot happen now; one that an event turns from NaN to a number past its zero happens at once, and a rising
-/// one whose function is positive when the run starts happens then.
+/// A zero crossing at which the joint wants on_event() called: the event function passes zero in the given direction.
+/// One that is NaN cannot happen now; one that an event turns from NaN to a number past its zero happens at once, and a
+/// rising one whose function is positive when the run starts happens then.
 struct Event {
   const char* name;
   Crossing crossing;
@@ -47,7 +47,7 @@ struct Event {
   Span<const Channel> fields;  ///< numbers recorded with each occurrence; NaN is recorded as empty
 };
 
-/// The one number that tells where a joint stands. Drivers, gears and start values work on it.
+/// The one number that says where a joint stands. Drivers, gears and start values work on it.
 enum class Coordinate : std::uint32_t { none, angle, position };
 
 /// Rows of a planar joint that the host can make itself. With d = P_b - P_a, h the x axis of marker a, n = h turned by
@@ -174,7 +174,7 @@ class Joint {
   /// Event `index` happened at the state of the input (interpolated inside the step in fixed-step runs).
   virtual void on_event(int /*index*/, const JointInput&, Span<double> /*internal*/, Span<double> /*history*/,
                         Span<double> /*fields*/) const {}
-  /// After a step was accepted and its events were told. `lambda` are the joint's multipliers.
+  /// After a step was accepted and its events were passed on. `lambda` are the joint's multipliers.
   virtual void commit(const JointInput&, Span<const double> /*lambda*/, Span<double> /*history*/) const {}
   /// Values of the channels, all finite.
   virtual void observe(const JointInput&, Span<const double> /*lambda*/, Span<double> /*channels*/) const {}

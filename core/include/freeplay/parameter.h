@@ -1,4 +1,4 @@
-// Parameters: what a component may be told in the model file, and how its constructor reads it.
+// Parameters: what may be given to a component in the model file, and how its constructor reads it.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct Message {
 
 /// Marks a number that the model file must give.
 inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
-/// Marks a number that may be absent; Parameters::given() tells.
+/// Marks a number that may be absent, see Parameters::given().
 inline constexpr double optional = -std::numeric_limits<double>::infinity();
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 

@@ -50,7 +50,7 @@ struct Description {
   const char* first_end = nullptr;
   const char* second_end = nullptr;
   /// Of a type that the library could bring but does not, as what it stands on was not there when it was built: what it
-  /// needs and how to get that. Such a row has neither table nor `create`, and is told to those who ask for the type.
+  /// needs and how to get that. Such a row has neither table nor `create`, and is reported where the type is asked for.
   const char* missing = nullptr;
   /// Joints in spatial models: the marker axis that the key `axis` of the model file stands for. The host turns both
   /// markers so that this axis of theirs is the given one.

@@ -171,7 +171,7 @@ TEST(Posture, LegsReachToTheirLastDigit) {
   }
 }
 
-TEST(Posture, WaysEndOnAFoldAndNotBehindIt) {
+TEST(Posture, WaysEndOnAFoldAndNotBeyondIt) {
   Bench bench(test::mechanism("five-bar"));
   const Posture start = bench.mechanism.start();
   const Components flat{true, true, false};

@@ -140,7 +140,7 @@ TEST(Diagnostics, ShowALongLineAroundTheCaret) {
   EXPECT_EQ(out.find("bad", source) - source, out.find("^~~\n") - caret);
 }
 
-TEST(Diagnostics, PointBehindTheEndOfALine) {
+TEST(Diagnostics, PointPastTheEndOfALine) {
   Diagnostics diagnostics = with_source("mass:\n");
   diagnostics.error({"m.yaml", 1, 40}, 9, "i", "b");
   EXPECT_EQ(diagnostics.format(0), "m.yaml:1:40: error: b [i]\n    1 | mass:\n      |      ^\n");

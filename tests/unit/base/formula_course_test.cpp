@@ -105,7 +105,7 @@ TEST(FormulaCourse, ACornerAtTheStartIsNone) {
   EXPECT_EQ(walk("max(0, sin(7*(t - 2)))", 2.0, 2.3, 0.01).corners.size(), 0u);
 }
 
-TEST(FormulaCourse, CornersThatTimesCannotTellApartAreOne) {
+TEST(FormulaCourse, CornersWithinRoundingOfTheTimeAreOne) {
   EXPECT_EQ(walk("abs(t - 3) + abs(t - 3.0000000000000004) + max(0, 3 - t)", 0.0, 10.0, 1.0).corners.size(), 1u);
 }
 

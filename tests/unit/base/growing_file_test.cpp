@@ -28,7 +28,7 @@ TEST(GrowingFile, HoldsWholeLinesOnlyUntilItIsClosed) {
   EXPECT_EQ(written, folder.read("rows").size());
 }
 
-TEST(GrowingFile, KeepsTheFirstFailureAndTellsItAtTheEnd) {
+TEST(GrowingFile, KeepsTheFirstFailureAndThrowsItAtTheEnd) {
   GrowingFile file("/dev/full");
   file.line() += "x";
   file.end_line();

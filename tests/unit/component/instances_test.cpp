@@ -85,7 +85,7 @@ TEST(Instances, ComposeThePathOfALawsFault) {
   EXPECT_EQ(fault.text, "too soft");
 }
 
-TEST(Instances, TellAPluginsOwnFailureApart) {
+TEST(Instances, NameAPluginInItsOwnFailure) {
   Instances instances;
   CreationFault fault;
   EXPECT_FALSE(instances.create_joint(block(0, true), Space::planar, fault));

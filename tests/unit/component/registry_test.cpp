@@ -40,7 +40,7 @@ TEST(Registry, KnowsTheTwinForABlock) {
   EXPECT_EQ(registry.twin("slide", "play"), nullptr);
 }
 
-TEST(Registry, TellsWhatATypeThatIsMissingNeedsUnlessAnotherLibraryBringsIt) {
+TEST(Registry, SaysWhatAMissingTypeNeedsUnlessAnotherLibraryHasIt) {
   Registry registry;
   registry.add(
       [](const Host* host, Manifest* manifest) noexcept {

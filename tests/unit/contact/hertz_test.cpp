@@ -61,7 +61,7 @@ TEST(Hertz, RefusesAStiffnessThatDoesNotFollow) {
   EXPECT_EQ(make({}, pair_of(0.005, 0.0049)), "");
 }
 
-TEST(Hertz, TellsWhatTheStiffnessIsMissing) {
+TEST(Hertz, SaysWhichParametersOfTheStiffnessAreMissing) {
   try {
     ContactUnderTest("hertz", {}, pair_of(0.005, 0.0049, steel, no_material));
     FAIL();

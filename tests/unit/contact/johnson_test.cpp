@@ -28,7 +28,7 @@ TEST(Johnson, ReboundsAsItsLossFactorSays) {
   EXPECT_NEAR(rebound_ratio(law.law, 0.2, 0.1, 10e-9), 0.909015741349202, 1e-6);  // the slope has a kink at delta = 0
 }
 
-TEST(Johnson, TellsWhatIsMissing) {
+TEST(Johnson, SaysWhichParameterIsMissing) {
   try {
     ContactUnderTest("johnson", {}, bare_pair());
     FAIL();

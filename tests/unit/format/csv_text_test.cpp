@@ -25,7 +25,7 @@ TEST(CsvText, ReadsNumbersWithAPointOnly) {
   for (const char* bad : {"", "1 2", "1;5", "nan", "inf", "0x10", "1,5"}) EXPECT_FALSE(csv_number(bad)) << bad;
 }
 
-TEST(CsvText, TellsNumbersTooLargeFromNumbersTooSmall) {
+TEST(CsvText, DistinguishesNumbersTooLargeFromNumbersTooSmall) {
   EXPECT_EQ(csv_number("1e999"), HUGE_VAL);
   EXPECT_EQ(csv_number("-0.001e999"), -HUGE_VAL);
   EXPECT_EQ(csv_number("1e-400"), 0.0);
@@ -40,7 +40,7 @@ TEST(CsvText, EndsLinesAtCarriageReturnsToo) {
   EXPECT_EQ(csv.field(2, 0).location.line, 4);
 }
 
-TEST(CsvText, TellsAZeroByteFromBytesThatAreNotUtf8) {
+TEST(CsvText, DistinguishesAZeroByteFromBytesThatAreNotUtf8) {
   EXPECT_EQ(CsvText("t.csv", std::string("t,v\n0,0\0\n", 9)).foreign_byte()->text, std::string_view("\0", 1));
   EXPECT_EQ(CsvText("t.csv", "t,v\n0,\xFF\n").foreign_byte()->text, "\xFF");
 }

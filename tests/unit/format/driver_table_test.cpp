@@ -161,7 +161,7 @@ TEST(DriverTable, ReportsAllMistakesOfAFileUpToALimit) {
   EXPECT_NE(places.find(" 102:1 bad-table "), std::string::npos);
 }
 
-TEST(DriverTable, BlamesALineThatIsThere) {
+TEST(DriverTable, ReportsALineThatExists) {
   EXPECT_EQ(places_in("# bench\nt;v\n0;1\n1;2\n"), "2:1 bad-table ");
   EXPECT_EQ(places_in("# bench\nt,v\n"), "2:1 bad-table ");
   EXPECT_EQ(places_in("# nothing\n"), "1:1 bad-table ");

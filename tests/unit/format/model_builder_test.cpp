@@ -297,7 +297,7 @@ TEST(ModelBuilder, CountsAFrameOfATemplateAsUsedWhereOneInstanceUsesIt) {
   EXPECT_EQ(build(text).places, "2:73 unused ");
 }
 
-TEST(NamedPlugins, AreToldWithTheirPlaces) {
+TEST(NamedPlugins, AreReportedWithTheirPlaces) {
   Diagnostics diagnostics(false);
   const auto document = parse_yaml("freeplay: 1\nplugins: [./mine.so, yours]\n", "model.yaml", diagnostics);
   ASSERT_TRUE(document);

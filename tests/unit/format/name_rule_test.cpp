@@ -7,7 +7,7 @@
 namespace freeplay {
 namespace {
 
-TEST(NameRule, TellsNamesFromOtherWords) {
+TEST(NameRule, DistinguishesNamesFromOtherWords) {
   for (const char* good : {"a", "_", "leg-2", "A_b9", "x"}) EXPECT_TRUE(is_name(good)) << good;
   for (const char* bad : {"", "4D", "-a", "a.b", "a/b", "x-note", "ä", "a b"}) EXPECT_FALSE(is_name(bad)) << bad;
   EXPECT_TRUE(is_name(std::string(64, 'a')));

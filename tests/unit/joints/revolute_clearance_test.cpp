@@ -118,7 +118,7 @@ TEST(RevoluteClearance, EndOfContactReportsItsHistory) {
   EXPECT_EQ(play.observe()[6], 0.0);
 }
 
-TEST(RevoluteClearance, ContactThatNoEventToldBeginsOnCommit) {
+TEST(RevoluteClearance, ContactWithoutAnEventBeginsOnCommit) {
   Play play(radii());
   play.b = planar_marker(c + 1e-6, 0.0, 0.0, 0.1);
   play.commit(1e-4);
@@ -132,7 +132,7 @@ TEST(RevoluteClearance, ContactThatNoEventToldBeginsOnCommit) {
   EXPECT_EQ(leaving.observe()[6], 0.0);
 }
 
-TEST(RevoluteClearance, ContactFromTheStartIsElasticAndStillToBeTold) {
+TEST(RevoluteClearance, ContactFromTheStartIsElasticAndItsEventIsStillDue) {
   Play play(radii());
   play.b = planar_marker(c + 1e-6, 0.0, 0.0, 0.3);
   play.initialize();

@@ -10,7 +10,7 @@ Json figures(double force) {
           {"drivers", {{"motor", {{"kind", "angle"}, {"max_abs", 2.0 * force}}}}}};
 }
 
-TEST(RepeatSummary, TellsMedianRangeAndAllValues) {
+TEST(RepeatSummary, HasMedianRangeAndAllValues) {
   RepeatSummary summary(4, 7, 0.01);
   for (const auto& [run, force] : {std::pair{0u, 3.0}, {1u, 1.0}, {2u, 9.0}, {3u, 5.0}})
     summary.add(run, figures(force));

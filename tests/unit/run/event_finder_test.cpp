@@ -10,7 +10,7 @@ namespace {
 /// The cubic a + b s + c s^2 + d s^3 by its ends.
 Hermite cubic(double a, double b, double c, double d) { return {a, b, a + b + c + d, b + 2.0 * c + 3.0 * d}; }
 
-TEST(HermiteCubic, GoesOnBehindItsInterval) {
+TEST(HermiteCubic, ContinuesPastItsInterval) {
   const Hermite ahead = cubic(-0.1, 0.2, 0.3, 0.4).ahead(0.7);
   for (const double s : {0.0, 0.25, 1.0}) {
     const double x = 1.0 + 0.7 * s;

@@ -60,7 +60,7 @@ TEST(StopCondition, TakesNoNoticeBeforeItsTime) {
   EXPECT_GE(run.outcome().time, 0.25);
 }
 
-TEST(StopCondition, OneThatIsNeverMetLetsTheRunComplete) {
+TEST(StopCondition, ThatIsNeverMetLetsTheRunComplete) {
   const ModelRun run(pendulum("{end: 0.1 s, step: 1 ms, stop: [{channel: body.rod.omega, above: 100}]}"));
   EXPECT_EQ(run.outcome().status, RunStatus::completed);
   EXPECT_EQ(run.outcome().time, 0.1);
@@ -102,7 +102,7 @@ ModelRun run_faulty(const std::string& fault) {
                   {}, {}, types_with_faulty_joint());
 }
 
-TEST(FailedRun, ANumberThatIsNoneEndsItAndKeepsEarlierRows) {
+TEST(FailedRun, ANaNEndsItAndKeepsEarlierRows) {
   const ModelRun run = run_faulty("nan");
   EXPECT_EQ(run.outcome().status, RunStatus::failed);
   EXPECT_EQ(run.outcome().exit_code, 5);  // the joint is to blame: its markers were finite
@@ -180,7 +180,7 @@ TEST(FailedRun, ASinkThatCannotWriteEndsIt) {
 }
 
 // Roundings of positions, divided by the square of a short step, are accelerations that no guess could know.
-TEST(Simulation, ShortStepsFollowTheirGuessesInSpiteOfRoundings) {
+TEST(Simulation, ShortStepsFollowTheirPredictionInSpiteOfRounding) {
   const std::string text = test::replaced(test::mechanism("slider-crank"), "end: 24 ms, step: 1 us",
                                           "end: 0.2 ms, step: 0.1 us, integrator: bathe");
   const ModelRun run(test::replaced(text, "discard: 12 ms", "discard: 0 ms"));

@@ -35,7 +35,7 @@ TEST(StepControl, FirstStepMayGrowFar) {
   expect_far_growth_once(control, 1e-5);
 }
 
-TEST(StepControl, FirstStepThatIsRejectedGrowsNoMore) {
+TEST(StepControl, ARejectedFirstStepGrowsNoMore) {
   StepControl control({1.0, 1e-6, 1e3}, 5);
   control.reject(1.0, 2.0);
   const double cut = control.next();
@@ -54,7 +54,7 @@ TEST(StepControl, RejectedStepIsMadeShorterAndTheNextDoesNotGrow) {
   EXPECT_GT(control.next(), 0.45);
 }
 
-TEST(StepControl, ErrorThatIsNoNumberTakesTheLargestCut) {
+TEST(StepControl, AnErrorThatIsNaNTakesTheLargestCut) {
   StepControl control({1.0, 1e-6, 10.0}, 3);
   control.reject(1.0, std::nan(""));
   EXPECT_NEAR(control.next(), 0.1, 1e-15);
@@ -76,14 +76,14 @@ TEST(StepControl, StepThatHardlyErredSaysLittleOfTheNext) {
   EXPECT_EQ(control.next(), 10.0);
 }
 
-TEST(StepControl, StepBehindAnEventMayBeFarTooShort) {
+TEST(StepControl, AStepAfterAnEventMayBeFarTooShort) {
   StepControl control({1.0, 1e-6, 1e3}, 5);
   control.accept(1.0, 0.5);
   control.cut(1);
   expect_far_growth_once(control, 1e-3);
 }
 
-TEST(StepControl, LawThatHeldBeforeBeginsWithTheStepThatItsFirstErrorToldToBeRight) {
+TEST(StepControl, AForceLawMetBeforeBeginsWithTheStepThatSuitedItThen) {
   constexpr std::uint64_t flight = 0, contact = 1;
   StepControl control({1.0, 1e-6, 1e3}, 5);
   control.accept(1.0, 0.5);
@@ -115,7 +115,7 @@ TEST(StepControl, LawThatEndedInItsFirstStepLeavesTheProposal) {
   }
 }
 
-TEST(StepControl, OfManyLawsThoseThatHeldLastAreKnown) {
+TEST(StepControl, OfManyForceLawsTheLatestAreRemembered) {
   StepControl control({1.0, 1e-6, 1e3}, 5);
   std::vector<double> first;
   for (std::uint64_t law = 0; law < 20; ++law) {
@@ -131,7 +131,7 @@ TEST(StepControl, OfManyLawsThoseThatHeldLastAreKnown) {
   EXPECT_EQ(control.next(), first[15]);
 }
 
-TEST(StepControl, ErrorsBehindAnEventFallWithThePowerOfThreeOfTheStep) {
+TEST(StepControl, ErrorsAfterAnEventFallWithTheCubeOfTheStep) {
   StepControl control({1.0, 1e-6, 10.0}, 6);
   control.cut(1);
   control.reject(1.0, 27.0);

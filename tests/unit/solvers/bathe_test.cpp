@@ -104,7 +104,7 @@ TEST(Bathe, StagesHoldPositionsAndThenVelocitiesAreProjected) {
 }
 
 // The accelerations of the first stage are off those of the motion by a third of their change, in every step alike.
-TEST(Bathe, GuessesStagesFromThoseOfTheStepsBefore) {
+TEST(Bathe, PredictsStagesFromTheStepsBefore) {
   Trial run(0.5, 0.0, {}, 1.0, 0.0);
   for (int step = 0; step < 8; ++step) run.step(0.01);
   const double a = run.a[0];
@@ -119,8 +119,8 @@ TEST(Bathe, GuessesStagesFromThoseOfTheStepsBefore) {
 // What smooth steps may leave of the velocities of their stages: half of what is allowed, in each.
 constexpr double allowed = 1e-8, short_step = 1e-3;
 
-struct Foreseen : ::testing::Test {
-  explicit Foreseen(Oscillator model = {.zeta = 0.05, .internal = false})
+struct Prediction : ::testing::Test {
+  explicit Prediction(Oscillator model = {.zeta = 0.05, .internal = false})
       : told([&] {
           Oscillator telling = model;
           telling.allowed = allowed;
@@ -152,7 +152,7 @@ struct Foreseen : ::testing::Test {
   int steps = 0;
 };
 
-TEST_F(Foreseen, StagesOfSmoothStepsAreSolvedOnceInSixteen) {
+TEST_F(Prediction, StagesOfSmoothStepsAreSolvedOnceInSixteen) {
   for (int i = 0; i < 10; ++i) step();
   std::size_t stages = 0;
   for (int i = 0; i < 320; ++i) stages += step();
@@ -161,7 +161,7 @@ TEST_F(Foreseen, StagesOfSmoothStepsAreSolvedOnceInSixteen) {
   EXPECT_NE(run.v[0], full.v[0]);
 }
 
-TEST_F(Foreseen, EveryStepEndsWithTheAccelerationsOfItsOwnState) {
+TEST_F(Prediction, EveryStepEndsWithTheAccelerationsOfItsOwnState) {
   for (int i = 0; i < 40; ++i) {
     step();
     EXPECT_EQ(run.a[0], run.oscillator.acceleration(run.q[0], run.v[0], run.t)) << i;
@@ -169,7 +169,7 @@ TEST_F(Foreseen, EveryStepEndsWithTheAccelerationsOfItsOwnState) {
   }
 }
 
-TEST_F(Foreseen, AStepThatIsNotAsForeseenIsMadeWithItsStagesSolved) {
+TEST_F(Prediction, AStepWithAWrongPredictionIsMadeAgainWithItsStagesSolved) {
   foresee();
   for (Trial* both : {&run, &full}) {
     both->oscillator.push = 3.0;
@@ -185,7 +185,7 @@ TEST_F(Foreseen, AStepThatIsNotAsForeseenIsMadeWithItsStagesSolved) {
   expect_alike();
 }
 
-TEST_F(Foreseen, OtherStepsAndRestartsForgetWhatWasForeseen) {
+TEST_F(Prediction, StepsOfAnotherLengthAndRestartsDropThePrediction) {
   for (int i = 0; i < 40; ++i) step();
   foresee();
   std::size_t before = run.oscillator.stages.size();
@@ -217,7 +217,7 @@ TEST(Bathe, EveryStageIsSolvedWhereInternalVariablesOrErrorsNeedIt) {
 }
 
 // At rest nothing tells how stiff a motion is, until something disturbs it.
-TEST(Bathe, StiffMotionsStayDampedWhereStagesAreForeseen) {
+TEST(Bathe, StiffMotionsStayDampedWherePredictionsAreTaken) {
   Trial run(0.5, 0.0,
             {.omega = 1e4, .zeta = 0.01, .allowed = allowed, .push = 1.0, .push_from = 0.0, .internal = false}, 1e-8,
             0.0);
@@ -243,7 +243,7 @@ TEST(Bathe, StiffMotionsStayDampedWhereStagesAreForeseen) {
 }
 
 // Each try that fails costs a step's end. Between them the first stage alone is left as guessed.
-TEST(Bathe, WhatIsNeverAsForeseenIsSeldomTried) {
+TEST(Bathe, AMotionThatIsNeverAsPredictedIsSeldomPredicted) {
   const Oscillator silent{.zeta = 0.05, .stages_to_converge = 10000, .internal = false};
   Oscillator off = silent;
   off.allowed = allowed;

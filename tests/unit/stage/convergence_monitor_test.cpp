@@ -238,7 +238,7 @@ TEST_F(Monitor, WaitsForInternalVariables) {
   EXPECT_EQ(Convergence::converged, judge(1e-12, true));
 }
 
-TEST_F(Monitor, TellsNumbersThatAreNotFinite) {
+TEST_F(Monitor, FindsNumbersThatAreNotFinite) {
   for (const double size : {std::numeric_limits<double>::infinity(), std::nan("")}) {
     begin();
     EXPECT_EQ(Convergence::not_finite, judge(size));

@@ -107,7 +107,7 @@ void expect_solution(const std::string& text, double press) {
     }
   };
   const auto numbers = [](Eigen::VectorXd& x) { return std::span(x.data(), static_cast<std::size_t>(x.size())); };
-  const auto solution_of = [&](const StageMatrix& matrix, Eigen::VectorXd right) {
+  const auto solution_of = [&](StageMatrix& matrix, Eigen::VectorXd right) {
     Eigen::VectorXd update = Eigen::VectorXd::Zero(nv + nc);
     matrix.solve(numbers(right), numbers(update));
     return update;

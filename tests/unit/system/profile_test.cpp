@@ -35,7 +35,7 @@ TEST(Profile, TimeBelongsToTheInnermostTimer) {
   EXPECT_EQ(profile.count(Phase::joints), 1);
 }
 
-TEST(Profile, WhatIsDoneForTheStartForRowsAndEventsIsTheirs) {
+TEST(Profile, TimeInsideStartOutputAndEventsCountsForThem) {
   for (const Phase whole : {Phase::start, Phase::output, Phase::events}) {
     Profile profile;
     profile.start();

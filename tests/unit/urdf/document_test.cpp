@@ -377,7 +377,7 @@ TEST(ReadUrdf, TakesBlanksAroundANumber) {
             "");
 }
 
-TEST(ReadUrdf, TellsMistakesOfUnusedElementsAtTheirPlacesTogether) {
+TEST(ReadUrdf, ReportsAllMistakesOfUnusedElementsAtTheirPlaces) {
   const std::string report = read(hinged("<calibration rising='x'/>\n<safety_controller k_position='y'/>",
                                          "<material name='m'><color rgba='0 0 2 1'/></material>\n<material name='n'/>"))
                                  .report;
@@ -405,7 +405,7 @@ TEST(ReadUrdf, SaysThatARootOnGroundDoesNotFloat) {
   EXPECT_EQ(read(robot(link("a")), options).report, "");
 }
 
-TEST(ReadUrdf, TellsMistakesOfOneKindBesideThoseOfAnother) {
+TEST(ReadUrdf, ReportsMistakesOfSeveralKindsTogether) {
   const std::string inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz=";
   const std::string rest =
       "<link name='a'><inertial><mass value='1'/>\n" + inertia + "'-5'/></inertial></link>\n" +

@@ -72,7 +72,7 @@ TEST(ReadYaml, MapsAnOffsetToAPlaceWhereTheTextIsVerbatim) {
   EXPECT_EQ(document.root().find("e")->location_at(3).column, 4);
 }
 
-TEST(ReadYaml, TellsAnAbsentValueFromTheWordNull) {
+TEST(ReadYaml, DistinguishesAnAbsentValueFromTheWordNull) {
   const Document document = read("a:\nnull: ~\nb: null\nc: [~, 1]\nd:\n  -\n");
   EXPECT_TRUE(document.root().find("a")->is_null());
   EXPECT_EQ(place(*document.root().find("a")), "1:1+1");
@@ -299,7 +299,7 @@ TEST(ReadYaml, RefusesWhatIsNoCharacter) {
   EXPECT_EQ(errors("a: \"\uFFFD\"\n"), "");
 }
 
-TEST(ReadYaml, PointsAtAnEscapeThatIsNotComplete) {
+TEST(ReadYaml, PointsAtAnIncompleteEscape) {
   EXPECT_EQ(errors("a: 1\nb: \"a\\u12\"\nc: 2\n"), "2:6 yaml-syntax");
   EXPECT_EQ(errors("b: \"\\x4\"\n"), "1:5 yaml-syntax");
   EXPECT_NE(yaml_message("b: \"\\U12\"\n").find("8"), std::string::npos);
@@ -308,17 +308,17 @@ TEST(ReadYaml, PointsAtAnEscapeThatIsNotComplete) {
 TEST(ReadYaml, SaysThatAValueHasEndedWhereMoreFollowsOnItsLine) {
   EXPECT_EQ(errors("a: 'b' c\n"), "1:8 yaml-syntax");
   EXPECT_EQ(yaml_message("a: 'b' c\n"), "the value before this has ended already | quote the value as a whole");
-  EXPECT_EQ(yaml_message("a: &x 1\nb: &y *x\n"), "an alias cannot stand behind something else | it is a whole value");
+  EXPECT_EQ(yaml_message("a: &x 1\nb: &y *x\n"), "an alias cannot stand after something else | it is a whole value");
   EXPECT_EQ(yaml_message("a:\n    b: 1\n  c: 1\n").substr(0, 21), "this line is indented");
 }
 
-TEST(ReadYaml, PointsAtAnEscapeThatNobodyKnows) {
+TEST(ReadYaml, PointsAtAnUnknownEscape) {
   EXPECT_EQ(errors("a: 1\nb: \"x\\q\"\n"), "2:6 yaml-syntax");
   EXPECT_EQ(errors("b: \"\\uD800\"\n"), "1:5 yaml-syntax");
   EXPECT_EQ(yaml_message("b: \"\\uD800\"\n").substr(0, 30), "this escape names no character");
 }
 
-TEST(ReadYaml, SaysOfAWordWhyItIsNotRead) {
+TEST(ReadYaml, SaysWhyAWordIsRefused) {
   EXPECT_EQ(errors("a: {e: 1, b c\n  d: 1}\n"), "1:11 yaml-syntax");
   EXPECT_EQ(yaml_message("a: {b c\n  d: 1}\n"),
             "a key between brackets goes over more than one line here | write it on one line");

@@ -1,21 +1,14 @@
-// AnalysisRows: the rows that each kind of analysis has for its stations (cli.md, section 9).
+// AnalysisRows: the rows that each kind of analysis has for its stations.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "analysis/play_law.h"
+#include "analysis/request.h"
 #include "analysis/station.h"
-#include "cli/analysis_table.h"
+#include "analysis/table.h"
 
 namespace freeplay {
-
-struct ErrorColumns {
-  long samples = 0;  ///< of random play
-  std::uint64_t seed = 0;
-  PlayLaw law;
-  bool sensitivity = false;
-};
 
 /// `branch_of`: by station, the number of its branch; empty: there is no such column.
 /// Warnings that the rows give rise to are appended to `warnings`.

@@ -1,12 +1,13 @@
-// System: coordinates of bodies, for those who see poses and twists.
+#include "system/body_coordinates.h"
+
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/index.h"
 #include "freeplay/pairs.h"
-#include "system/system.h"
 
 namespace freeplay {
 namespace {
@@ -19,9 +20,31 @@ std::array<double, 4> quaternion_of(const spatial::Matrix& rotation) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
+// Body axes from principal axes, right-handed; the body's own where they are principal already.
+spatial::Matrix principal_axes_of(const Body& body, spatial::Vector& moments) {
+  const spatial::Matrix inertia = Eigen::Map<const RowMajor>(body.inertia.data());
+  moments = inertia.diagonal();
+  if (inertia(0, 1) == 0.0 && inertia(0, 2) == 0.0 && inertia(1, 2) == 0.0) return spatial::Matrix::Identity();
+  const Eigen::SelfAdjointEigenSolver<spatial::Matrix> solver(inertia);
+  moments = solver.eigenvalues();
+  spatial::Matrix axes = solver.eigenvectors();
+  if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
+  return axes;
+}
+
 }  // namespace
 
-void System::retract(std::span<const double> base, std::span<const double> increment, std::span<double> q) const {
+BodyCoordinates::BodyCoordinates(const Model& model) : model_(model) {
+  if (model.space == Space::planar) return;
+  for (const Body& body : model.bodies) {
+    spatial::Vector moments;
+    principal_.push_back(principal_axes_of(body, moments));
+    moments_.push_back(moments);
+  }
+}
+
+void BodyCoordinates::retract(std::span<const double> base, std::span<const double> increment,
+                              std::span<double> q) const {
   if (model_.space == Space::planar) {
     return in_pairs(q.size(), [&](auto at) { at(q) = at(base) + at(increment); });
   }
@@ -30,7 +53,8 @@ void System::retract(std::span<const double> base, std::span<const double> incre
   }
 }
 
-void System::difference(std::span<const double> base, std::span<const double> q, std::span<double> increment) const {
+void BodyCoordinates::difference(std::span<const double> base, std::span<const double> q,
+                                 std::span<double> increment) const {
   if (model_.space == Space::planar) {
     for (std::size_t i = 0; i < q.size(); ++i) increment[i] = q[i] - base[i];
     return;
@@ -40,8 +64,8 @@ void System::difference(std::span<const double> base, std::span<const double> q,
   }
 }
 
-void System::increment_rate(std::span<const double> increment, std::span<const double> v,
-                            std::span<double> rate) const {
+void BodyCoordinates::increment_rate(std::span<const double> increment, std::span<const double> v,
+                                     std::span<double> rate) const {
   std::ranges::copy(v, rate.begin());
   if (model_.space == Space::planar) return;
   for (std::size_t i = 3; i < v.size(); i += 6) {
@@ -50,7 +74,8 @@ void System::increment_rate(std::span<const double> increment, std::span<const d
   }
 }
 
-void System::velocities_of(std::span<const double> increment, std::span<const double> rate, std::span<double> v) const {
+void BodyCoordinates::velocities_of(std::span<const double> increment, std::span<const double> rate,
+                                    std::span<double> v) const {
   std::ranges::copy(rate, v.begin());
   if (model_.space == Space::planar) return;
   for (std::size_t i = 3; i < v.size(); i += 6) {
@@ -59,7 +84,7 @@ void System::velocities_of(std::span<const double> increment, std::span<const do
   }
 }
 
-Pose System::frame_pose(BodyId body, std::span<const double> q) const {
+Pose BodyCoordinates::frame_pose(BodyId body, std::span<const double> q) const {
   const Vector3& com = model_.bodies[at(body)].com;
   Pose pose{};
   Eigen::Map<RowMajor> rotation(pose.rotation);
@@ -77,7 +102,7 @@ Pose System::frame_pose(BodyId body, std::span<const double> q) const {
   return pose;
 }
 
-void System::set_frame_pose(BodyId body, const Pose& pose, std::span<double> q) const {
+void BodyCoordinates::set_frame_pose(BodyId body, const Pose& pose, std::span<double> q) const {
   const Eigen::Map<const RowMajor> rotation(pose.rotation);
   const spatial::Vector centre =
       spatial::vector(pose.position) + rotation * spatial::vector(model_.bodies[at(body)].com.data());
@@ -91,7 +116,7 @@ void System::set_frame_pose(BodyId body, const Pose& pose, std::span<double> q) 
   std::ranges::copy(quaternion_of(rotation * principal_[at(body)]), c + 3);
 }
 
-std::array<double, 4> System::frame_quaternion(BodyId body, std::span<const double> q) const {
+std::array<double, 4> BodyCoordinates::frame_quaternion(BodyId body, std::span<const double> q) const {
   std::array<double, 4> out;
   std::copy_n(&q[7 * at(body) + 3], 4, out.begin());
   if (principal_[at(body)].isIdentity(0.0)) return out;
@@ -100,12 +125,8 @@ std::array<double, 4> System::frame_quaternion(BodyId body, std::span<const doub
   return out;
 }
 
-double System::marker_angle(int marker, std::span<const double> q) const {
-  const BodyId place = marker_places_[at(marker)];
-  return model_.markers[at(marker)].angle + (place == ground ? 0.0 : q[3 * at(place) + 2]);
-}
-
-void System::body_twist(BodyId body, std::span<const double> q, std::span<const double> v, double* twist) const {
+void BodyCoordinates::body_twist(BodyId body, std::span<const double> q, std::span<const double> v,
+                                 double* twist) const {
   std::fill_n(twist, 6, 0.0);
   if (model_.space == Space::planar) {
     const double* from = &v[3 * at(body)];
@@ -117,7 +138,8 @@ void System::body_twist(BodyId body, std::span<const double> q, std::span<const 
   std::copy_n(w.data(), 3, twist + 3);
 }
 
-void System::set_body_twist(BodyId body, std::span<const double> q, const double* twist, std::span<double> v) const {
+void BodyCoordinates::set_body_twist(BodyId body, std::span<const double> q, const double* twist,
+                                     std::span<double> v) const {
   if (model_.space == Space::planar) {
     double* to = &v[3 * at(body)];
     to[0] = twist[0], to[1] = twist[1], to[2] = twist[5];

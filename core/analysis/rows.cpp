@@ -1,4 +1,4 @@
-#include "cli/analysis_rows.h"
+#include "analysis/rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -365,7 +365,7 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
                     "--preload: no driver is redundant, so there is no inner tension to choose");
       case InverseDynamics::Found::many_preloads:
         throw Error(Error::Category::usage, "bad-value",
-                    "--preload: several drivers are redundant, one value does not tell the inner tension");
+                    "--preload: several drivers are redundant, one value does not determine the inner tension");
     }
     Row row;
     append(row, {station.time});

@@ -1,4 +1,4 @@
-#include "cli/analysis_table.h"
+#include "analysis/table.h"
 
 #include <cmath>
 
