@@ -158,7 +158,7 @@ class Analyze(ProgramTest):
         five_bar = ("ik", mechanism("five-bar"), "--pose", "0.04,0.25")
         for words, wanted in (
                 (("ik", mechanism("3-rpr"), "--pose", "0,0.1,0.1", "--elbow", "-1"), "lead from 'leg1.P', 'leg2.P', 'leg3.P' to"),
-                ((*five_bar, "--elbow", "-1"), "lead from 'A1' to the platform: the start tells its working mode"),
+                ((*five_bar, "--elbow", "-1"), "lead from 'A1' to the platform: the start decides its working mode"),
                 ((*five_bar, "--elbow", "1", "--branches"), "chooses nothing with --branches"),
                 (("ik", mechanism("five-bar"), "--input", "A1=2,A2=1.1", "--elbow", "1"), "chooses nothing with --input"),
                 (five_bar, None), (("ik", mechanism("3-rrr"), "--pose", "0,0,0", "--elbow", "-1"), None)):
@@ -182,7 +182,7 @@ class Analyze(ProgramTest):
         self.assertEqual((["x", "y"], ""), outputs(mechanism("five-bar"), "--input", "A1=2,A2=1.1"))
         names, err = outputs(model, "--input", "A=1.2")
         self.assertEqual(["x"], names)
-        self.assertIn("tells the outputs: x is taken", err)
+        self.assertIn("gives the outputs: x is taken", err)
         # Dead centres of a slider-crank: of the slider, not of the crank.
         for frame, component, kind in (("slider", "x", "inverse"), ("crank", "angle", "none")):
             row, = self.rows("singularity", self.write("s.yaml", self.text("slider-crank") + "analysis: {grid: {%s: 0}}\n" % component),
