@@ -46,6 +46,15 @@ IntegratorLayout declare(const System& system, int flows) {
   return plain.explicit_stages != 0 ? ask(flows) : plain;
 }
 
+// With which an error estimate falls with the step.
+int error_power(const IntegratorLayout& layout) {
+  return layout.error_order > 0 ? layout.error_order : layout.order + 1;
+}
+
+// Accuracies per second that steps over short loads may show. They err by a tenth of that or less; those of implicit
+// methods, whose estimate is of their order 2, by still less.
+double load_errors(int error_power) { return error_power < 5 ? 64.0 : 4.0; }
+
 // Length by which positions may err in one step [m].
 double local_tolerance(const System& system) {
   const Settings& settings = system.model().settings;
@@ -100,8 +109,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       flows(integrator_layout.explicit_stages != 0 ? energy.flows() : 0),
       solver(system, {.tolerance = integrator_layout.newton_tolerance,
                       .max_iterations = integrator_layout.newton_max_iterations}),
-      control(step_limits(settings),
-              integrator_layout.error_order > 0 ? integrator_layout.error_order : integrator_layout.order + 1),
+      control(step_limits(settings), error_power(integrator_layout)),
       accepted(system.layout(), integrator_layout.memory, flows),
       trial(system.layout(), integrator_layout.memory, flows),
       between(system.layout(), integrator_layout.memory, flows),
@@ -114,6 +122,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       storm(model.joints.size(), storm_limits(settings, adaptive)),
       resting(system),
       kinks(model),
+      budget(load_errors(error_power(integrator_layout)) / accuracy_per_step, error_power(integrator_layout)),
       statistics(model, all_channels, adaptive),
       watch(system, all_channels),
       peaks(statistics.peak_values().size()),
@@ -142,6 +151,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
     require_attainable_accuracy(system);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
+    velocity_allowed = allowed;
     system.end_steps_at_events(settings.per_contact);
     inputs.emplace(system, shortest_change(settings), allowed);
   }

@@ -8,6 +8,7 @@
 
 #include "run/drive_kinks.h"
 #include "run/energy_account.h"
+#include "run/error_budget.h"
 #include "run/event_storm.h"
 #include "run/inner_motion.h"
 #include "run/input_activity.h"
@@ -85,6 +86,8 @@ struct Simulation::Impl {
   // Runs with error control (adaptive_run.cpp).
   bool run_adaptive(const RunHooks& hooks);
   bool adaptive_step();
+  void allow_error();
+  bool in_contact(const Evaluation& e) const;
   bool bounded_step(double& dt, int& limiting_joint);
   bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
   bool write_rows_inside();
@@ -158,6 +161,9 @@ struct Simulation::Impl {
   RestingJoints resting;
   DriveKinks kinks;
   std::optional<InputActivity> inputs;          ///< with error control, unless a test blinds it
+  ErrorBudget budget;                           ///< of steps over short loads
+  bool acts_quickly = false;                    // one, in the step to come
+  double velocity_allowed = 0.0;                // by which velocities may err in it [m/s]
   CornerKind corner_kind = CornerKind::smooth;  // of the corner at which the step being accepted ends
   Statistics statistics;
   RunWatch watch;
