@@ -420,13 +420,18 @@ FormulaCourse::Where FormulaCourse::sought(std::size_t side, const IntervalJet& 
 }
 
 // It touches zero where it turns back, if it turns there within a time that is short against the run: seen from farther
-// off that is a corner.
+// off that is a corner. A turn at the very end of a span is found at the begin of the next one.
 FormulaCourse::Where FormulaCourse::sought_touch(std::size_t side, const IntervalJet& value, const Span& span) {
-  if (value.rate.low >= 0.0 || value.rate.high <= 0.0 || value.acceleration.high <= 0.0) return Where::above;
-  if (!(value.acceleration.low >= 0.0)) return Where::open;
+  const double turn = short_turn * (to_ - from_), small = 0.5 * turn * turn * value.acceleration.high;
+  const bool down = value.acceleration.high <= 0.0;
+  if (value.rate.is(0.0) || value.rate.high <= 0.0 || down) return Where::above;
+  const bool monotone = value.rate.low >= 0.0;
+  if (!monotone && !(value.acceleration.low >= 0.0)) return Where::open;
   Jet low, high, here;
   if (!value_of(side, span.low, low) || !value_of(side, span.high, high)) return Where::open;
-  if (!(low.rate < 0.0 && high.rate > 0.0)) return Where::above;
+  const bool turns_at_low = std::abs(low.rate) <= 4.0 * rounding_ * largest(value.acceleration);
+  if (turns_at_low && low.value <= small) note_corner({span.low, false});
+  if (monotone || turns_at_low || !(low.rate < 0.0 && high.rate > 0.0)) return Where::above;
   double a = span.low, b = span.high;
   for (int i = 0; i < bisections; ++i) {
     double middle = 0.5 * (a + b);
@@ -437,9 +442,7 @@ FormulaCourse::Where FormulaCourse::sought_touch(std::size_t side, const Interva
     (here.rate < 0.0 ? a : b) = middle;
     (here.rate < 0.0 ? low : high) = here;
   }
-  const bool at_end = a <= span.low + rounding_ || b >= span.high - rounding_;
-  const double turn = short_turn * (to_ - from_);
-  if (at_end || !(high.value <= 0.5 * turn * turn * value.acceleration.high)) return Where::above;
+  if (b >= span.high - rounding_ || !(high.value <= small)) return Where::above;
   roots_.push_back({b, false});
   ++located_;
   return Where::open;

@@ -53,8 +53,10 @@ void Simulation::Impl::allow_error() {
   double in_position = allowed, in_velocity = allowed;
   if (acts_quickly) {
     const double least = std::min(allowed, least_allowed * rounding * system.size());
-    in_position = std::max(budget.share(1.0) * allowed, least);
-    in_velocity = std::max(budget.share(std::max(1.0, settings.end - accepted.t())) * allowed, least);
+    const double lasting = std::max(1.0, settings.end - accepted.t());
+    slope_unbounded = inputs->hides_errors(accepted.t());
+    in_position = std::max(budget.share(1.0, slope_unbounded) * allowed, least);
+    in_velocity = std::max(budget.share(lasting, slope_unbounded) * allowed, least);
   }
   if (in_velocity == velocity_allowed) return;
   control.allow(in_velocity / velocity_allowed);
@@ -180,7 +182,7 @@ bool Simulation::Impl::adaptive_step() {
   }
   const bool at_kink = to_kink && trial.t() == goal;
   corner_kind = !inputs ? CornerKind::motion : at_kink ? inputs->kind_of(kink, kink - goal) : CornerKind::smooth;
-  if (acts_quickly) budget.spend(error);
+  if (acts_quickly) budget.spend(error, slope_unbounded);
   budget.pass(trial.t() - accepted.t());
   if (at_kink && corner_kind == CornerKind::motion) {
     control.restart();

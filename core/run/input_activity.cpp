@@ -293,8 +293,10 @@ double InputActivity::hidden_error(double t, double dt) const {
   for (const Formula& formula : formulas_) {
     if (formula.sharp == CornerKind::motion || !formula.course.has_sides()) continue;
     const FormulaCourse::Beside beside = formula.course.singular(t);
-    times = std::max({times, hidden_behind / (1.0 + 25.0 * beside.before / dt),
-                      hidden_before / (1.0 + 16.0 * std::max(0.0, beside.after / dt - 1.0))});
+    if (beside.before < unbounded) times = std::max(times, hidden_behind / (1.0 + 25.0 * beside.before / dt));
+    if (beside.after < unbounded) {
+      times = std::max(times, hidden_before / (1.0 + 16.0 * std::max(0.0, beside.after / dt - 1.0)));
+    }
   }
   return times;
 }

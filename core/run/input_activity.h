@@ -2,6 +2,7 @@
 // torques and efforts that the model file gives as functions of time, and what joints of plugins make of the time.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,6 +45,8 @@ class InputActivity {
   /// How many times more than it shows a step from t of the length dt may err beside a corner of a load towards which
   /// its second derivative has no bound: a pair of methods that look at the same instants shares most of that error.
   double hidden_error(double t, double dt) const;
+  /// Whether there is such a corner before or after t.
+  bool hides_errors(double t) const { return hidden_error(t, std::numeric_limits<double>::infinity()) > 1.0; }
 
   /// An input whose corners follow each other within `step`, by the name of what has it; formulas and tables.
   struct Unresolved {

@@ -163,6 +163,7 @@ struct Simulation::Impl {
   std::optional<InputActivity> inputs;          ///< with error control, unless a test blinds it
   ErrorBudget budget;                           ///< of steps over short loads
   bool acts_quickly = false;                    // one, in the step to come
+  bool slope_unbounded = false;                 // of it, at a corner beside the step
   double velocity_allowed = 0.0;                // by which velocities may err in it [m/s]
   CornerKind corner_kind = CornerKind::smooth;  // of the corner at which the step being accepted ends
   Statistics statistics;
