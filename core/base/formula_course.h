@@ -53,6 +53,8 @@ class FormulaCourse {
   /// Instructions that were executed so far.
   long work() const { return work_; }
 
+  class PeriodFinder;  ///< formula_period.cpp
+
   /// A span without corners, as far as it is known.
   struct Piece {
     double from, to;

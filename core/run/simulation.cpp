@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double shortest_part = 1e-6;      // of the run, see shortest_change()
+constexpr std::size_t most_corners_in_step = 64;  // that a step of fixed size tells apart
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
@@ -122,6 +124,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       storm(model.joints.size(), storm_limits(settings, adaptive)),
       resting(system),
       kinks(model),
+      load_kinks(model, DriveKinks::Of::loads),
       budget(load_errors(error_power(integrator_layout)) / accuracy_per_step, error_power(integrator_layout)),
       statistics(model, all_channels, adaptive),
       watch(system, all_channels),
@@ -131,7 +134,9 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       row_between(all_channels.all().size(), 0.0),
       residual(at(system.layout().nc())),
       z_rate(at(system.layout().nz() + flows)),
-      flow_half_way(at(energy.flows())),
+      flow_begin(at(energy.flows())),
+      flow_half_way(flow_begin.size()),
+      flow_end(flow_begin.size()),
       defect(at(system.layout().nv())),
       inner(at(system.layout().nv()), z_rate.size()),
       inner_before(defect.size()),
@@ -146,6 +151,7 @@ Simulation::Impl::Impl(const System& owner, const Start& start, const Channels& 
       v_before(e_accepted->v.size()),
       driven_change(e_accepted->driven_a.size()),
       impulses(at(system.layout().all_rows())) {
+  corners.reserve(most_corners_in_step);
   if (adaptive) {
     allowed = local_tolerance(system);
     require_attainable_accuracy(system);
@@ -420,7 +426,7 @@ void Simulation::Impl::add_energy() {
 // A finite `kink` lies at its end.
 bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const double dt = trial.t() - accepted.t();
-  add_energy();
+  if (adaptive || energy.flows() == 0 || !add_energy_by_parts()) add_energy();
   if (adaptive && (!write_rows_inside() || !begin_statistics_inside())) return false;
   const bool expected = adaptive && (located.joint >= 0 || kink < unbounded);
   if (expected && !note_abrupt_end()) return false;
@@ -459,7 +465,8 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const bool changed = !events.happenings().empty() || ended_inside;
   ended_inside = false;
   ended_abruptly = changed || expected;
-  if ((changed && !refresh()) || (kink < unbounded && !pass_kink(kink))) {
+  const double corner = std::exchange(ends_at_corner, unbounded);
+  if ((changed && !refresh()) || (corner < unbounded && !begin_behind(corner)) || (kink < unbounded && !pass_kink(kink))) {
     // The row of the last state from which the run could go on may still be asked for.
     std::swap(accepted, trial);
     swap(e_accepted, e_trial);
@@ -535,6 +542,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.time = accepted.t();
   if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
+  watch.note_exchanged(energy.exchanged());
   explain_dead_point();
   if (hooks.profile != nullptr) hooks.profile->stop();
   system.set_profile(nullptr);
