@@ -16,6 +16,7 @@ constexpr std::size_t many_corners = 8;       // or a part of the window: worth 
 constexpr double good_part = 1.0 / 16.0;
 constexpr int deepest = 200;        // nested spans
 constexpr int highest_degree = 10;  // of a polynomial that counts as smooth
+constexpr double short_turn = 1.0 / 64.0;  // of the run
 constexpr int false_positions = 12, bisections = 130;
 constexpr std::size_t most_corners = 1 << 18;  // in an outline
 
@@ -82,6 +83,17 @@ void FormulaCourse::list_sides() {
         if (!constant || y.constant == 0.0) sides_.push_back({i, first, 1, false});
         break;
       }
+      case Operation::power_constant:
+        if (instruction.constant == std::floor(instruction.constant)) break;
+        [[fallthrough]];
+      case Operation::root:
+        sides_.push_back({i, first, 0, false, true});
+        break;
+      case Operation::arcsine:
+      case Operation::arccosine:
+        sides_.push_back({i, first, 0, false, true});
+        sides_.push_back({i, first, 1, false, true});
+        break;
       default:
         break;
     }
@@ -137,6 +149,33 @@ double FormulaCourse::length_of_form(double t, int degree) const {
     if (there && bends) length = after->time - std::prev(after)->time;
   }
   return length;
+}
+
+double FormulaCourse::length_of_change(double t, int degree, double longest) {
+  auto after = std::ranges::upper_bound(corners_, t, {}, &Corner::time);
+  while (after == corners_.end() && known_to_ < std::min(t + longest, to_)) {
+    forget_before(t);
+    look_further(known_to_);
+    after = std::ranges::upper_bound(corners_, t, {}, &Corner::time);
+  }
+  const double end = after == corners_.end() ? to_ : after->time;
+  const double begin = after == corners_.begin() ? from_ : std::prev(after)->time;
+  if (!(end - begin <= longest)) return unknown;
+  for (const Piece& piece : pieces_) {
+    const bool polynomial = piece.rate == 0.0 && piece.degree <= degree;
+    if (piece.from <= t && t < piece.to) return polynomial ? unknown : end - begin;
+  }
+  return unknown;
+}
+
+FormulaCourse::Beside FormulaCourse::singular(double t) const {
+  Beside out{unknown, unknown};
+  for (const Piece& piece : pieces_) {
+    if (!(piece.from <= t && t < piece.to)) continue;
+    if (piece.singular_at_begin) out.before = t - piece.from;
+    if (piece.singular_at_end) out.after = piece.to - t;
+  }
+  return out;
 }
 
 // Examines the next window. If its budget of work runs out, the window ends early, or its rest is marked unknown.
@@ -303,6 +342,7 @@ IntervalJet FormulaCourse::bound_operation(int i, const IntervalJet* x, const Je
     case Operation::divide:
       return x[0] / x[1];
     case Operation::power_constant:
+      if (instruction.constant != std::floor(instruction.constant)) decide(side, x[0], middle[0], hangs, span, depth);
       return pow(x[0], instruction.constant);
     case Operation::power:
       return pow(x[0], x[1]);
@@ -313,10 +353,14 @@ IntervalJet FormulaCourse::bound_operation(int i, const IntervalJet* x, const Je
     case Operation::tangent:
       return tan(x[0]);
     case Operation::arcsine:
-      return asin(x[0]);
-    case Operation::arccosine:
-      return acos(x[0]);
+    case Operation::arccosine: {
+      const IntervalJet end = IntervalJet::constant(Interval::at(1.0));
+      decide(side, end - x[0], Jet::constant(1.0) - middle[0], hangs, span, depth);
+      decide(side + 1, end + x[0], Jet::constant(1.0) + middle[0], hangs, span, depth);
+      return instruction.operation == Operation::arcsine ? asin(x[0]) : acos(x[0]);
+    }
     case Operation::root:
+      decide(side, x[0], middle[0], hangs, span, depth);
       return sqrt(x[0]);
     case Operation::exponential:
       return exp(x[0]);
@@ -346,7 +390,7 @@ FormulaCourse::Where FormulaCourse::decide(std::size_t side, IntervalJet value, 
   } else if (hangs) {
     hidden_ = true;
   } else {
-    decision.where = sought(side, value, span);
+    decision.where = sides_[side].touches ? sought_touch(side, value, span) : sought(side, value, span);
   }
   return decision.where;
 }
@@ -371,6 +415,35 @@ FormulaCourse::Where FormulaCourse::sought(std::size_t side, const IntervalJet& 
   }
   refine(side, span.low, other, !above);
   refine(side, other, span.high, above);
+  ++located_;
+  return Where::open;
+}
+
+// It touches zero where it turns back, if it turns there within a time that is short against the run: seen from farther
+// off that is a corner. A turn at the very end of a span is found at the begin of the next one.
+FormulaCourse::Where FormulaCourse::sought_touch(std::size_t side, const IntervalJet& value, const Span& span) {
+  const double turn = short_turn * (to_ - from_), small = 0.5 * turn * turn * value.acceleration.high;
+  const bool down = value.acceleration.high <= 0.0;
+  if (value.rate.is(0.0) || value.rate.high <= 0.0 || down) return Where::above;
+  const bool monotone = value.rate.low >= 0.0;
+  if (!monotone && !(value.acceleration.low >= 0.0)) return Where::open;
+  Jet low, high, here;
+  if (!value_of(side, span.low, low) || !value_of(side, span.high, high)) return Where::open;
+  const bool turns_at_low = std::abs(low.rate) <= 4.0 * rounding_ * largest(value.acceleration);
+  if (turns_at_low && low.value <= small) note_corner({span.low, false});
+  if (monotone || turns_at_low || !(low.rate < 0.0 && high.rate > 0.0)) return Where::above;
+  double a = span.low, b = span.high;
+  for (int i = 0; i < bisections; ++i) {
+    double middle = 0.5 * (a + b);
+    // Where the rate would vanish if it grew evenly; every other time, as it may not.
+    if (i % 2 == 0) middle = std::clamp(a + (b - a) * low.rate / (low.rate - high.rate), a, b);
+    if (!(a < middle && middle < b)) middle = 0.5 * (a + b);
+    if (!(a < middle && middle < b) || !value_of(side, middle, here)) break;
+    (here.rate < 0.0 ? a : b) = middle;
+    (here.rate < 0.0 ? low : high) = here;
+  }
+  if (b >= span.high - rounding_ || !(high.value <= small)) return Where::above;
+  roots_.push_back({b, false});
   ++located_;
   return Where::open;
 }
@@ -453,7 +526,13 @@ bool FormulaCourse::value_of(std::size_t s, double t, Jet& value) {
   }
   switch (expression_.program_[static_cast<std::size_t>(side.instruction)].operation) {
     case Operation::absolute:
+    case Operation::root:
+    case Operation::power_constant:
       value = stack_[0];
+      break;
+    case Operation::arcsine:
+    case Operation::arccosine:
+      value = Jet::constant(1.0) + (side.which == 0 ? -stack_[0] : stack_[0]);
       break;
     case Operation::arctangent2:
       value = stack_[static_cast<std::size_t>(side.which)];
@@ -491,16 +570,29 @@ void FormulaCourse::note_pieces(double from, double to, std::size_t first_corner
       pieces_.back().to = high;
     } else {
       pieces_.push_back({low, high, form.rate, form.degree});
+      if (!std::isfinite(form.rate)) pieces_.back().singular_at_begin = bends_without_bound(low, high - low);
     }
+    if (!std::isfinite(form.rate)) pieces_.back().singular_at_end = bends_without_bound(high, low - high);
     low = high;
   }
 }
 
-// Of a span without corners, as an instant inside shows it; another one where the formula has no value at the first.
+// Whether the second derivative grows towards `corner`, seen from the side of corner + by.
+bool FormulaCourse::bends_without_bound(double corner, double by) {
+  Jet far, near;
+  EvaluationFailure failure;
+  work_ += 2 * static_cast<long>(expression_.program_.size());
+  return expression_.evaluate(corner + 1e-3 * by, far, failure) &&
+         expression_.evaluate(corner + 1e-6 * by, near, failure) &&
+         !(std::abs(near.acceleration) <= 4.0 * std::abs(far.acceleration));
+}
+
+// Of a span without corners, as two instants inside show it: at one of them a side may be touched.
 FormulaCourse::Form FormulaCourse::form_between(double low, double high) {
-  Form form;
-  if (look(0.5 * (low + high), form) || look(low + 0.381966 * (high - low), form)) return form;
-  return no_form;
+  Form first, second;
+  const bool one = look(0.5 * (low + high), first), other = look(low + 0.381966 * (high - low), second);
+  if (one && other) return sum(first, second);
+  return one ? first : other ? second : no_form;
 }
 
 bool FormulaCourse::look(double t, Form& form) {

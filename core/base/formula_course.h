@@ -11,7 +11,8 @@
 namespace freeplay {
 
 /// The forms that a formula takes over a run: an abs, min or max takes the other side, a ramp of smooth() begins or
-/// ends, atan2 goes through its jump. What decides is bounded over spans of time, with its derivatives, by interval
+/// ends, atan2 goes through its jump, what stands under a root or a broken power touches zero, or what asin and acos
+/// are of touches 1 or -1, as in sqrt(x^2) and asin(sin(x)). What decides is bounded over spans of time, with its derivatives, by interval
 /// arithmetic (Moore, Kearfott and Cloud 2009): a span in which it cannot be zero, or in which it is monotone or bends
 /// one way, is known; any other is halved. So no change is missed, however short its form lasts and however often it
 /// comes again, but for those that rounding of the run's times cannot separate. The work in a window is bounded;
@@ -38,16 +39,28 @@ class FormulaCourse {
   /// The time from the corner before t to that after it, where the formula is no polynomial of `degree` there; infinite
   /// where it is one, where one of both corners is not known, or the rate is not.
   double length_of_form(double t, int degree) const;
+  /// The time between the corners (or the ends of the run) around t, where the formula is no polynomial of `degree`
+  /// between them; infinite where it is one, or where they are farther than `longest` apart or not known. Looks as far ahead.
+  double length_of_change(double t, int degree, double longest);
+  /// The time from t to the corner (or end of the run) before and after it if the second derivative grows without bound
+  /// towards that, as beside the end of a root or of a power below two; infinite if not.
+  struct Beside {
+    double before, after;
+  };
+  Beside singular(double t) const;
   /// Whether it can have corners at all.
   bool has_sides() const { return !sides_.empty(); }
   /// Instructions that were executed so far.
   long work() const { return work_; }
+
+  class PeriodFinder;  ///< formula_period.cpp
 
   /// A span without corners, as far as it is known.
   struct Piece {
     double from, to;
     double rate;  ///< [1/s]
     int degree;   ///< of a polynomial in it
+    bool singular_at_begin = false, singular_at_end = false;
   };
   /// Of the windows that are known.
   const std::vector<Corner>& corners() const { return corners_; }
@@ -75,6 +88,7 @@ class FormulaCourse {
     int instruction, first;
     int which;  ///< of smooth(): 0 for the begin of the ramp, 1 for its end
     bool smooth;
+    bool touches = false;  ///< zero is where it ends: it comes there and turns back
   };
   enum class Where : unsigned char { open, below, above };
   struct Decision {
@@ -100,6 +114,8 @@ class FormulaCourse {
   IntervalJet bound_operation(int i, const IntervalJet* x, const Jet* middle, bool open, const Span& span, int depth);
   Where decide(std::size_t side, IntervalJet value, const Jet& middle, bool open, const Span& span, int depth);
   Where sought(std::size_t side, const IntervalJet& value, const Span& span);
+  Where sought_touch(std::size_t side, const IntervalJet& value, const Span& span);
+  bool bends_without_bound(double corner, double by);
   bool passes_within(std::size_t side, const Span& span, bool above, double& instant);
   void refine(std::size_t side, double a, double b, bool at_b);
   bool value_of(std::size_t side, double t, Jet& value);

@@ -83,10 +83,11 @@ void judge_energy(const RunRecord& record, Verdict& verdict) {
   const double time = record.outcome.time - record.model.settings.start, size = seen.size;
   const double speed = time > 0.0 ? size / time : 0.0;
   const double least = least_energy * (weight(record.model) * size + mass(record.model) * speed * speed);
-  const double moved = seen.kinetic.span() + seen.potential.span() +
+  const double range = seen.kinetic.span() + seen.potential.span() +
                        std::max(std::abs(seen.work.least), std::abs(seen.work.most)) +
                        std::max(0.0, seen.dissipated.most) + part_of_kinetic * seen.kinetic.most;
-  if (!std::isfinite(moved)) return;  // no row was seen
+  if (!std::isfinite(range)) return;  // no row was seen
+  const double moved = std::max(range, seen.exchanged);  // what comes and goes may leave no net work
   const double part = seen.residual / std::max(moved, least);
   std::string text = fmt::format("the energy residual of {:.2g} J is {:.3g} % of the {:.3g} J that were moved",
                                  seen.residual, 100.0 * part, std::max(moved, least));

@@ -18,6 +18,8 @@ constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by
 constexpr double astray_inside = 1.0;      // and by which its ends may mislead: no more than a step may err by
 constexpr int most_sweeps = 3;
 constexpr double most_growth = 2.0;    // of changes from sweep to sweep: more is a stiff force, less may be rounding
+constexpr double beside_a_root = 1.5;  // power of the step with which errors fall there
+constexpr double least_allowed = 64.0;  // roundings of positions and, per second, of velocities
 constexpr double largest_turn = 1.0;   // of a joint in one step [rad]: angles are continued over turns
 constexpr double barely = 1.0 - 1e-6;  // of a step: what is shorter by the rounding of times alone is as long
 
@@ -41,6 +43,33 @@ bool Simulation::Impl::run_adaptive(const RunHooks& hooks) {
     while (row_time(next_row) <= accepted.t() && accepted.t() < settings.end) ++next_row;
   }
   return true;
+}
+
+// A step over a short load takes its error from a budget, as what it makes of the position at the end of the run. Where
+// a contact acts its own errors rule, and no sum of them is one of the load.
+void Simulation::Impl::allow_error() {
+  if (!inputs || !(settings.accuracy > 0.0)) return;
+  acts_quickly = inputs->acts_quickly(accepted.t()) && !in_contact(e_accepted);
+  double in_position = allowed, in_velocity = allowed;
+  if (acts_quickly) {
+    const double least = std::min(allowed, least_allowed * rounding * system.size());
+    const double lasting = std::max(1.0, settings.end - accepted.t());
+    slope_unbounded = inputs->hides_errors(accepted.t());
+    in_position = std::max(budget.share(1.0, slope_unbounded) * allowed, least);
+    in_velocity = std::max(budget.share(lasting, slope_unbounded) * allowed, least);
+  }
+  if (in_velocity == velocity_allowed) return;
+  control.allow(in_velocity / velocity_allowed);
+  velocity_allowed = in_velocity;
+  solver.control_error(in_position, in_velocity, 0.0);
+}
+
+bool Simulation::Impl::in_contact(const Evaluation& e) const {
+  const std::span<const ForceBlock> blocks = system.force_blocks();
+  for (std::size_t f = 0; f < blocks.size(); ++f) {
+    if (e.acts[f] != 0 && system.joint_layout(blocks[f].joint).clearance > 0.0) return true;
+  }
+  return false;
 }
 
 // The proposal of the error control, no longer than any joint allows and than what is left.
@@ -70,6 +99,7 @@ bool Simulation::Impl::adaptive_step() {
   double dt = 0.0;
   int limiting = -1;
   Fault fault;
+  allow_error();
   if (!bounded_step(dt, limiting)) return false;
   if (!events.look_from(accepted, e_accepted, fault)) return fail_with(fault, accepted.t());
   if (!(dt >= smallest)) {
@@ -97,6 +127,8 @@ bool Simulation::Impl::adaptive_step() {
     bool converged = false;
     ended_inside = false;
     if (!step(dt, converged)) return false;
+    const double hidden = inputs && converged ? inputs->hidden_error(accepted.t(), dt) : 1.0;
+    error *= hidden;
     const bool passed = converged && error <= 1.0;
     if (hunted.joint < 0 && take_detour(passed, detours, asked, dt)) continue;
     if (passed && solver.regularity() < hopeless) return fail(4, why_singular());
@@ -104,7 +136,7 @@ bool Simulation::Impl::adaptive_step() {
       ++outcome.rejected;
       hunted = {};
       if (converged) {
-        control.reject(dt, error);
+        control.reject(dt, error, hidden > 1.0 ? beside_a_root : unbounded);
         dt = before_event(dt, control.next(), hunted);
       } else {
         control.halve(dt);
@@ -150,6 +182,8 @@ bool Simulation::Impl::adaptive_step() {
   }
   const bool at_kink = to_kink && trial.t() == goal;
   corner_kind = !inputs ? CornerKind::motion : at_kink ? inputs->kind_of(kink, kink - goal) : CornerKind::smooth;
+  if (acts_quickly) budget.spend(error, slope_unbounded);
+  budget.pass(trial.t() - accepted.t());
   if (at_kink && corner_kind == CornerKind::motion) {
     control.restart();
   } else if (hunted.joint < 0) {

@@ -6,14 +6,20 @@
 
 namespace freeplay {
 
-DriveKinks::DriveKinks(const Model& model) {
+DriveKinks::DriveKinks(const Model& model, Of of) {
   for (const Driver& driver : model.drivers) {
-    if (!prescribes(driver.kind)) continue;
+    if (prescribes(driver.kind) != (of == Of::motions)) continue;
     if (driver.table) {
       tables_.push_back(driver.table.get());
     } else if (driver.kinematics < 0) {
       add(driver.value, model.settings);
     }
+  }
+  if (of == Of::loads) {
+    for (const AppliedForce& force : model.forces) {
+      for (const Expression& component : force.value) add(component, model.settings);
+    }
+    return;
   }
   for (const InverseKinematics& entry : model.kinematics) {
     for (const std::optional<Expression>& component : entry.path) {

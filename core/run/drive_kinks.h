@@ -1,4 +1,4 @@
-// DriveKinks: when the speed or acceleration that a driver prescribes may jump.
+// DriveKinks: when the speed or acceleration that a driver prescribes may jump, or a load.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,9 @@ namespace freeplay {
 /// Kinks of expressions, ends of tables and points of straight ones, found as a run goes on.
 class DriveKinks {
  public:
-  /// `model` must live as long as this.
-  explicit DriveKinks(const Model& model);
+  enum class Of { motions, loads };
+  /// `model` must live as long as this. Of prescribed motions, or of efforts and applied forces.
+  explicit DriveKinks(const Model& model, Of of = Of::motions);
 
   /// The first kink after t, if it is `until` or earlier; else a later time, or infinity. Times grow from step to step.
   double next(double t, double until);

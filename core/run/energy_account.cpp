@@ -86,11 +86,14 @@ void EnergyAccount::take(double dt, const Evaluation& e, std::span<const double>
     power_[i] = powers[i];
     integral_before_[i] = integral_[i];
     integral_[i] = integrals[i];
+    exchanged_ += std::abs(integral_[i] - integral_before_[i]);
   }
   row_power_before_ = row_power_;
   row_work_before_ = row_work_;
   look(e, lambda);
-  row_work_ += 0.5 * dt * (row_power_before_ + row_power_);
+  const double row_work = 0.5 * dt * (row_power_before_ + row_power_);
+  row_work_ += row_work;
+  exchanged_ += std::abs(row_work);
 }
 
 bool EnergyAccount::is_like_last(double dt, const Evaluation& e) const {
@@ -117,7 +120,16 @@ void EnergyAccount::add(double dt, std::span<const double> half_way, const Evalu
                         std::span<const double> lambda) {
   take(dt, e, lambda, integral_);
   for (std::size_t i = 0; i < power_.size(); ++i) {
-    integral_[i] += dt / 6.0 * (power_before_[i] + 4.0 * half_way[i] + power_[i]);
+    const double work = dt / 6.0 * (power_before_[i] + 4.0 * half_way[i] + power_[i]);
+    integral_[i] += work;
+    exchanged_ += std::abs(work);
+  }
+}
+
+void EnergyAccount::add_part(double dt, std::span<const double> begin, std::span<const double> half_way,
+                             std::span<const double> end) {
+  for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
+    integral_inside_[i] += dt / 6.0 * (begin[i] + 4.0 * half_way[i] + end[i]);
   }
 }
 

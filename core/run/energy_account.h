@@ -1,6 +1,8 @@
 // EnergyAccount: work put in and energy dissipated since the start, by element.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,6 +43,15 @@ class EnergyAccount final : public Flows {
   bool add_smooth(double dt, const Evaluation& e, std::span<const double> lambda);
   /// The same of any step, with the powers in its middle.
   void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
+  /// The same of a step in which powers may jump, part by part, with those at the begin, in the middle and at the end of
+  /// each; then the whole step.
+  void begin_parts() { std::copy(integral_.begin(), integral_.end(), integral_inside_.begin()); }
+  void add_part(double dt, std::span<const double> begin, std::span<const double> half_way,
+                std::span<const double> end);
+  void take_parts(double dt, const Evaluation& e, std::span<const double> lambda) {
+    flow(e, lambda, power_end_);
+    take(dt, e, lambda, power_end_, integral_inside_);
+  }
   /// Fills dissipated, work and residual of a row that holds the observed columns, at the end of the last step.
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row) {
     fill(e, channels, row, integral_, row_work_);
@@ -75,7 +86,12 @@ class EnergyAccount final : public Flows {
   }
 
   /// Work of an impulse at the end of the last step [J].
-  void add_driver_work(int driver, double work) { integral_[static_cast<std::size_t>(driver)] += work; }
+  void add_driver_work(int driver, double work) {
+    integral_[static_cast<std::size_t>(driver)] += work;
+    exchanged_ += std::abs(work);
+  }
+  /// Work put in and taken out since the start, both counted as positive, by element and step [J].
+  double exchanged() const { return exchanged_; }
 
   std::span<const double> driver_work() const { return driver_work_; }  ///< at the last fill() [J]
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
@@ -103,7 +119,7 @@ class EnergyAccount final : public Flows {
   static double integral_at(double s, double dt, const Ends& integral, double begin, double here, double end);
 
   const System& system_;
-  double dt_ = 0.0, initial_ = 0.0;
+  double dt_ = 0.0, initial_ = 0.0, exchanged_ = 0.0;
   double row_power_ = 0.0, row_work_ = 0.0;                // at the end of the last step
   double row_power_before_ = 0.0, row_work_before_ = 0.0;  // at its start
   std::vector<double> driver_work_, joint_loss_, stored_start_, force_work_;

@@ -21,6 +21,9 @@ constexpr double slow_bend = 0.4;           // of a motion whose powers are inte
 constexpr double coarsest = 0.5;            // of the shortest change: no step up to there goes over one
 constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
 constexpr long enough_work = 20'000'000;    // instructions, to see whether steps of one size go over a change
+constexpr double hidden_behind = 64.0, hidden_before = 8.0;
+constexpr int seen_degree = 4;  // of polynomials that integrators take as they are
+constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
 constexpr double longer = 4.0;              // the next step to look at, of one that had to be shortened
 
 /// Steps up to there need not be looked at; behind one that had to be shortened a change goes on.
@@ -130,13 +133,15 @@ void InputActivity::add(const char* section, const std::string& name, const Expr
   formulas_.push_back({section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, bends});
 }
 
-// In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for a second.
+// In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for the run, or a
+// second.
 double InputActivity::negligible(Unit unit, double dt) const {
+  const double lasting = std::max({dt, 1.0, end_ - start_});
   switch (unit) {
     case Unit::force:
-      return light_force_ / (dt * std::max(dt, 1.0));
+      return light_force_ / (dt * lasting);
     case Unit::torque:
-      return light_torque_ / (dt * std::max(dt, 1.0));
+      return light_torque_ / (dt * lasting);
     case Unit::length:
       return short_length_;
     case Unit::angle:
@@ -158,7 +163,7 @@ void InputActivity::add_joint(int joint) {
   }
   double corner = 0.0;
   Fault fault;
-  if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back(joint);
+  if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back({joint});
   const JointLayout& layout = system_.joint_layout(joint);
   const std::size_t rows = at(layout.constraint_rows), internal = at(layout.internal_variables);
   const std::size_t signals = rows + (layout.forces != 0 ? 12 + internal : 0);
@@ -189,7 +194,7 @@ bool InputActivity::next_corner(double t, double until, double& corner, Fault& f
     if (formula.course.has_sides()) corner = std::min(corner, formula.course.next_corner(t, until));
   }
   for (const Table& table : tables_) corner = std::min(corner, table.table->next_kink(t));
-  for (const int joint : telling_) {
+  for (const auto& [joint, between] : telling_) {
     double theirs = unbounded;
     if (!ask(joint, t, theirs, fault)) return false;
     corner = std::min(corner, theirs);
@@ -207,7 +212,7 @@ CornerKind InputActivity::kind_of(double corner, double margin) const {
   for (const Table& table : tables_) {
     if (table.table->next_kink(before) <= to) kind = std::max(kind, table.sharp);
   }
-  for (const int joint : telling_) {
+  for (const auto& [joint, between] : telling_) {
     double theirs = unbounded;
     Fault fault;
     if (!ask(joint, before, theirs, fault) || theirs <= to) kind = CornerKind::motion;
@@ -251,12 +256,66 @@ double InputActivity::resolved(double t, double dt) {
   return dt;
 }
 
+double InputActivity::quick(CornerKind sharp) const {
+  return (sharp == CornerKind::motion ? quick_motion : quick_load) * (end_ - start_);
+}
+
+bool InputActivity::acts_quickly(double t) {
+  const auto move_on = [&](Stretch& between, double next) {
+    if (t < between.to) return;
+    between = {between.to > -unbounded ? between.to : start_, next};
+  };
+  for (Formula& formula : formulas_) {
+    const double longest = quick(formula.sharp);
+    if (t < formula.quick_until || formula.course.length_of_change(t, 0, longest) <= longest) return true;
+  }
+  for (Table& table : tables_) {
+    if (t < table.quick_until) return true;
+    if (!table.table->is_straight()) continue;
+    move_on(table.between, table.table->next_point(t));
+    Jet value;
+    EvaluationFailure failure;
+    if (!(table.between.length() <= quick(table.sharp))) continue;
+    if (!table.table->evaluate(t, value, failure) || value.rate != 0.0) return true;
+  }
+  for (auto& [joint, between] : telling_) {
+    double corner = unbounded;
+    Fault fault;
+    if (t >= between.to && ask(joint, t, corner, fault)) move_on(between, corner);
+    if (between.length() <= quick(CornerKind::load)) return true;
+  }
+  return std::ranges::any_of(joints_, [t](const TimedJoint& timed) { return t < timed.quick_until; });
+}
+
+// For powers of 0.1 to 1.8 that begin or end so far from a step these are bounds of what the pair of dopri5 hides.
+double InputActivity::hidden_error(double t, double dt) const {
+  double times = 1.0;
+  for (const Formula& formula : formulas_) {
+    if (formula.sharp == CornerKind::motion || !formula.course.has_sides()) continue;
+    const FormulaCourse::Beside beside = formula.course.singular(t);
+    if (beside.before < unbounded) times = std::max(times, hidden_behind / (1.0 + 25.0 * beside.before / dt));
+    if (beside.after < unbounded) {
+      times = std::max(times, hidden_before / (1.0 + 16.0 * std::max(0.0, beside.after / dt - 1.0)));
+    }
+  }
+  return times;
+}
+
+// A step from t of the length dt had to be shortened: the change is in it.
+template <class Input>
+void InputActivity::note_change(Input& input, double t, double dt, CornerKind sharp) const {
+  if (dt <= quick(sharp)) input.quick_until = std::max(input.quick_until, t + dt);
+}
+
 // A motion is looked at for its acceleration as well where no integrator sees that.
 double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
   const double rate = formula.course.rate_within(t, t + dt);
   if (formula.bends > 0) {
     if (std::isfinite(rate)) dt = std::min(dt, slow_bend / rate);
     dt = std::min(dt, part_of_form * formula.course.length_of_form(t, formula.bends));
+  } else if (formula.sharp == CornerKind::load) {
+    // In a single step over a ramp errors may cancel that a pair compares.
+    dt = std::min(dt, part_of_form * formula.course.length_of_change(t, seen_degree, quick(formula.sharp)));
   }
   if (rate * dt <= slow) return dt;
   if (dt <= (formula.bends > 0 ? finest * shortest_ : unwatched(shortest_, formula.most))) return dt;
@@ -264,6 +323,7 @@ double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
   const double length = resolution_.resolved(t, wanted, least, formula.bends > 0 ? unbounded : 0.0,
                                              signals(formula.bends), look_at(*formula.expression, formula.bends),
                                              even(shortest_), light(formula.unit, formula.bends));
+  if (length < wanted) note_change(formula, t, wanted, formula.sharp);
   formula.most = length < dt ? longer * length : unbounded;
   return length;
 }
@@ -277,6 +337,7 @@ double InputActivity::resolved_table(Table& table, double t, double dt) {
   const double length =
       resolution_.resolved(t, wanted, least, 0.0, signals(table.bends), look_at(*table.table, table.bends), instants,
                            light(table.unit, table.bends));
+  if (length < wanted) note_change(table, t, wanted, table.sharp);
   table.most = length < dt ? longer * length : unbounded;
   return length;
 }
@@ -295,6 +356,7 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
     const double length = resolution_.resolved(t, wanted, least, coarsest * timed.shortest, timed.signals, look,
                                                even(timed.shortest), light);
     if (!good) return false;
+    if (length < wanted) note_change(timed, t, wanted, CornerKind::load);
     timed.varies = timed.varies || length < wanted || resolution_.saw_change();
     if (length < dt || here.t == t) timed.most = length < dt ? longer * length : unbounded;
     dt = length;

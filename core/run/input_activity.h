@@ -2,6 +2,7 @@
 // torques and efforts that the model file gives as functions of time, and what joints of plugins make of the time.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,6 +38,16 @@ class InputActivity {
   bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
   bool watches_joints() const { return !joints_.empty(); }
 
+  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or told by a
+  /// joint, or where a step had to be shortened. Short is a tenth of the run, of a prescribed motion a hundredth.
+  bool acts_quickly(double t);
+
+  /// How many times more than it shows a step from t of the length dt may err beside a corner of a load towards which
+  /// its second derivative has no bound: a pair of methods that look at the same instants shares most of that error.
+  double hidden_error(double t, double dt) const;
+  /// Whether there is such a corner before or after t.
+  bool hides_errors(double t) const { return hidden_error(t, std::numeric_limits<double>::infinity()) > 1.0; }
+
   /// An input whose corners follow each other within `step`, by the name of what has it; formulas and tables.
   struct Unresolved {
     const char* section;  ///< "driver", "force" or "joint"
@@ -47,6 +58,10 @@ class InputActivity {
   std::vector<Unresolved> closer_than(double step);
 
  private:
+  struct Stretch {
+    double from = -unbounded, to = -unbounded;
+    double length() const { return to - from; }
+  };
   enum class Unit { force, torque, length, angle, other };
   struct Formula {
     const char* section;
@@ -57,6 +72,7 @@ class InputActivity {
     Unit unit;
     int bends = 0;            ///< the derivative that moves bodies whose motion is known: no error of a step shows it
     double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
+    double quick_until = -unbounded;  ///< there the change lies that had it shortened
   };
   struct Table {
     const std::string* name;
@@ -65,12 +81,19 @@ class InputActivity {
     Unit unit;
     int bends = 0;
     double most = unbounded;
+    double quick_until = -unbounded;
+    Stretch between{};  ///< two points
+  };
+  struct TellingJoint {
+    int joint;
+    Stretch between{};  ///< two corners
   };
   struct TimedJoint {
     int joint;
     double shortest;
     std::size_t signals;
     double most = unbounded;
+    double quick_until = -unbounded;
     bool varies = false;  ///< it has been seen to: then the shortest steps are looked at, too
   };
 
@@ -82,6 +105,9 @@ class InputActivity {
   auto light(Unit unit, int bends) const;
   void add_joint(int joint);
   bool ask(int joint, double t, double& corner, Fault& fault) const;
+  double quick(CornerKind sharp) const;
+  template <class Input>
+  void note_change(Input& input, double t, double dt, CornerKind sharp) const;
   double resolved_formula(Formula& formula, double t, double dt);
   double resolved_table(Table& table, double t, double dt);
   bool signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault);
@@ -91,7 +117,7 @@ class InputActivity {
   double light_force_, light_torque_, short_length_, small_angle_;  ///< over a second; see negligible()
   std::vector<Formula> formulas_;
   std::vector<Table> tables_;
-  std::vector<int> telling_;  ///< joints that may tell corners
+  std::vector<TellingJoint> telling_;  ///< joints that may tell corners
   std::vector<TimedJoint> joints_;
   StepResolution resolution_;
   std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;  // of a joint that is asked

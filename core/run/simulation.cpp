@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
 constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
 constexpr double shortest_part = 1e-6;      // of the run, see shortest_change()
+constexpr std::size_t most_corners_in_step = 64;  // that a step of fixed size tells apart
 constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
@@ -45,6 +47,15 @@ IntegratorLayout declare(const System& system, int flows) {
   const IntegratorLayout plain = ask(0);
   return plain.explicit_stages != 0 ? ask(flows) : plain;
 }
+
+// With which an error estimate falls with the step.
+int error_power(const IntegratorLayout& layout) {
+  return layout.error_order > 0 ? layout.error_order : layout.order + 1;
+}
+
+// Accuracies per second that steps over short loads may show. They err by a tenth of that or less; those of implicit
+// methods, whose estimate is of their order 2, by still less.
+double load_errors(int error_power) { return error_power < 5 ? 64.0 : 4.0; }
 
 // Length by which positions may err in one step [m].
 double local_tolerance(const System& system) {
@@ -94,8 +105,7 @@ Simulation::Impl::Impl(std::shared_ptr<const RunEquations> all_equations, const 
           system,
           {.tolerance = integrator_layout.newton_tolerance, .max_iterations = integrator_layout.newton_max_iterations},
           &context),
-      control(step_limits(settings),
-              integrator_layout.error_order > 0 ? integrator_layout.error_order : integrator_layout.order + 1),
+      control(step_limits(settings), error_power(integrator_layout)),
       accepted(system.layout(), integrator_layout.memory, flows),
       trial(system.layout(), integrator_layout.memory, flows),
       between(system.layout(), integrator_layout.memory, flows),
@@ -108,6 +118,8 @@ Simulation::Impl::Impl(std::shared_ptr<const RunEquations> all_equations, const 
       storm(model.joints.size(), storm_limits(settings, adaptive)),
       resting(system, context),
       kinks(model),
+      load_kinks(model, DriveKinks::Of::loads),
+      budget(load_errors(error_power(integrator_layout)) / accuracy_per_step, error_power(integrator_layout)),
       statistics(model, all_channels, adaptive),
       watch(system, all_channels),
       peaks(statistics.peak_values().size()),
@@ -116,7 +128,9 @@ Simulation::Impl::Impl(std::shared_ptr<const RunEquations> all_equations, const 
       row_between(all_channels.all().size(), 0.0),
       residual(at(system.layout().nc())),
       z_rate(at(system.layout().nz() + flows)),
-      flow_half_way(at(energy.flows())),
+      flow_begin(at(energy.flows())),
+      flow_half_way(flow_begin.size()),
+      flow_end(flow_begin.size()),
       defect(at(system.layout().nv())),
       inner(at(system.layout().nv()), z_rate.size()),
       inner_before(defect.size()),
@@ -131,11 +145,13 @@ Simulation::Impl::Impl(std::shared_ptr<const RunEquations> all_equations, const 
       v_before(e_accepted->v.size()),
       driven_change(e_accepted->driven_a.size()),
       impulses(at(system.layout().all_rows())) {
+  corners.reserve(most_corners_in_step);
   if (adaptive) {
     allowed = local_tolerance(system);
     require_attainable_accuracy(system);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);
+    velocity_allowed = allowed;
     context.per_contact = settings.per_contact;
     inputs.emplace(system, shortest_change(settings), allowed);
   }
@@ -404,7 +420,7 @@ void Simulation::Impl::add_energy() {
 // A finite `kink` lies at its end.
 bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const double dt = trial.t() - accepted.t();
-  add_energy();
+  if (adaptive || energy.flows() == 0 || !add_energy_by_parts()) add_energy();
   if (adaptive && (!write_rows_inside() || !begin_statistics_inside())) return false;
   const bool expected = adaptive && (located.joint >= 0 || kink < unbounded);
   if (expected && !note_abrupt_end()) return false;
@@ -443,7 +459,8 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   const bool changed = !events.happenings().empty() || ended_inside;
   ended_inside = false;
   ended_abruptly = changed || expected;
-  if ((changed && !refresh()) || (kink < unbounded && !pass_kink(kink))) {
+  const double corner = std::exchange(ends_at_corner, unbounded);
+  if ((changed && !refresh()) || (corner < unbounded && !begin_behind(corner)) || (kink < unbounded && !pass_kink(kink))) {
     // The row of the last state from which the run could go on may still be asked for.
     std::swap(accepted, trial);
     swap(e_accepted, e_trial);
@@ -519,6 +536,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   outcome.time = accepted.t();
   if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
+  watch.note_exchanged(energy.exchanged());
   explain_dead_point();
   if (hooks.profile != nullptr) hooks.profile->stop();
   context.profile = nullptr;

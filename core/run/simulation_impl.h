@@ -8,6 +8,7 @@
 
 #include "run/drive_kinks.h"
 #include "run/energy_account.h"
+#include "run/error_budget.h"
 #include "run/event_storm.h"
 #include "run/inner_motion.h"
 #include "run/input_activity.h"
@@ -47,6 +48,11 @@ struct Simulation::Impl {
   bool begin_steps(double dt, State& state);
   bool accept(const StepEvents::Passage& located, double kink = unbounded);
   void add_energy();
+  bool add_energy_by_parts();
+  bool flow_inside(double t, std::span<double> powers);
+  void list_corners(double until);
+  double corner_at(double t) const;
+  bool begin_behind(double corner);
   // Steps that end with too much energy (energy_growth.cpp).
   double energy_of(const Evaluation& e) const;
   double energy_of_drives() const;
@@ -85,6 +91,8 @@ struct Simulation::Impl {
   // Runs with error control (adaptive_run.cpp).
   bool run_adaptive(const RunHooks& hooks);
   bool adaptive_step();
+  void allow_error();
+  bool in_contact(const Evaluation& e) const;
   bool bounded_step(double& dt, int& limiting_joint);
   bool take_detour(bool passed, std::size_t& detours, double& asked, double& dt);
   bool write_rows_inside();
@@ -156,13 +164,24 @@ struct Simulation::Impl {
   StepEvents events;
   EventStorm storm;
   RestingJoints resting;
-  DriveKinks kinks;
+  DriveKinks kinks, load_kinks;
+  struct StepCorner {
+    double time;
+    bool of_motion;
+  };
+  std::vector<StepCorner> corners;  ///< of inputs, of a step of fixed size
+  double corners_from = unbounded, corners_near = 0.0;
+  double ends_at_corner = unbounded;  ///< the step that is being accepted
   std::optional<InputActivity> inputs;          ///< with error control, unless a test blinds it
+  ErrorBudget budget;                           ///< of steps over short loads
+  bool acts_quickly = false;                    // one, in the step to come
+  bool slope_unbounded = false;                 // of it, at a corner beside the step
+  double velocity_allowed = 0.0;                // by which velocities may err in it [m/s]
   CornerKind corner_kind = CornerKind::smooth;  // of the corner at which the step being accepted ends
   Statistics statistics;
   RunWatch watch;
   PeakSearch peaks;  ///< with error control
-  std::vector<double> scratch, row, row_between, residual, z_rate, flow_half_way, defect;
+  std::vector<double> scratch, row, row_between, residual, z_rate, flow_begin, flow_half_way, flow_end, defect;
   InnerMotion inner;  ///< of the step that was made last, where a row or a peak was sought inside
   std::vector<double> inner_before, rate_defect, start_rate, end_rate;
   std::vector<int> stop_columns, with_history;

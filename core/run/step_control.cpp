@@ -37,12 +37,17 @@ void StepControl::accept(double dt, double error) {
   law_ = nullptr;
 }
 
-void StepControl::reject(double dt, double error) {
-  const double power = broken_ ? std::min(power_, broken_power) : power_;
+void StepControl::reject(double dt, double error, double most_power) {
+  const double power = std::min(broken_ ? std::min(power_, broken_power) : power_, most_power);
   const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(error, -1.0 / power), 0.1, 0.9) : 0.1;
   next_ = dt * factor;
   rejected_ = true;
   first_ = false;
+}
+
+void StepControl::allow(double times) {
+  if (!first_) next_ = std::min(next_ * std::pow(times, 1.0 / power_), limits_.largest);
+  last_error_ = std::max(last_error_ / times, smallest_error);
 }
 
 void StepControl::halve(double dt) {

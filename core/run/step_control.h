@@ -38,7 +38,10 @@ class StepControl {
   void cut(std::uint64_t law);
   /// Behind a kink of what is prescribed the motion is a new one: its steps begin as those of the run did.
   void restart() { next_ = limits_.first, last_error_ = 1.0, rejected_ = false, first_ = true; }
-  void reject(double dt, double error);
+  /// `most_power`: with which its error falls at most.
+  void reject(double dt, double error, double most_power = std::numeric_limits<double>::infinity());
+  /// From now on errors may be so many times what they might be.
+  void allow(double times);
   /// The step did not converge.
   void halve(double dt);
 

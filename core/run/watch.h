@@ -33,6 +33,7 @@ struct RunExtremes {
     double span() const { return most >= least ? most - least : 0.0; }
   };
   Range kinetic, potential, work, dissipated;  ///< [J]
+  double exchanged = 0.0;                      ///< work put in and taken out, both positive, by element and step [J]
   double residual = 0.0;                       ///< largest |energy residual| [J]
   double residual_time = 0.0;                  ///< when it had reached half of that [s]
   /// Of each of sixteen parts of the run: largest kinetic energy [J] and largest force of a joint's rows [N].
@@ -90,6 +91,8 @@ class RunWatch {
   int add(std::span<const double> row, const Evaluation& e);
   /// How near to a singular position the last step came (NewtonStageSolver::regularity).
   void add_regularity(double regularity, double t) { passage_.add(regularity, t, seen_); }
+  /// EnergyAccount::exchanged() by now.
+  void note_exchanged(double work) { seen_.exchanged = work; }
   /// Largest residual of positions after a step [m or rad].
   void add_open(double residual) { seen_.open = std::max(seen_.open, residual); }
   /// Why add() returned this joint: the row is the same. Allocates.

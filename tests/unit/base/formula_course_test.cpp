@@ -167,5 +167,52 @@ TEST(FormulaCourse, CornersDoNotDependOnWhoAsksHowFar) {
   for (const double dt : {1e-3, 0.017, 0.4}) EXPECT_EQ(walk(text, 0.0, 3.0, dt).corners, wide);
 }
 
+// Half periods of the sine, in windows of the run and between them.
+TEST(FormulaCourse, WhatTouchesTheEndOfARootOrAnArcHasItsCornerThere) {
+  for (const double frequency : {1.0, 10.0, 77.7}) {
+    const double w = 2.0 * M_PI * frequency;
+    for (const char* text : {"sqrt(sin({0:.17g}*t)^2)", "(sin({0:.17g}*t)^2)^0.5", "sqrt(1 - cos({0:.17g}*t)^2)",
+                             "acos(cos({0:.17g}*t))", "asin(cos({0:.17g}*t))", "acos(1 - sin({0:.17g}*t)^2)",
+                             "max(-1, sqrt(sin({0:.17g}*t)^2 + 1e-26))"}) {
+      const Walk found = walk(fmt::format(fmt::runtime(text), w), 0.0, 4.0, 0.11);
+      std::vector<double> wanted;
+      for (int k = 1; k * M_PI < w * 4.0 - 1e-9; ++k) wanted.push_back(k * M_PI / w);
+      ASSERT_EQ(found.corners.size(), wanted.size()) << text << frequency;
+      // 1 - cos^2 is known to the root of the rounding alone.
+      for (std::size_t i = 0; i < wanted.size(); ++i) ASSERT_NEAR(found.corners[i], wanted[i], 1e-8) << text;
+    }
+  }
+}
+
+TEST(FormulaCourse, ARootThatStaysAwayFromItsEndHasNoCorner) {
+  EXPECT_TRUE(walk("sqrt(0.2 - 0.1*sin(7*t)^2) + asin(0.5*sin(5*t)) + (2 + cos(t))^1.5", 0.0, 10.0, 0.3).corners.empty());
+}
+
+TEST(FormulaCourse, InfiniteSlopesAreKnownOnTheirSideOfACorner) {
+  const auto singular = [](const char* text, double t) {
+    const Expression expression = expression_of(text);
+    FormulaCourse course(expression, 0.0, 4.0);
+    course.next_corner(t - 0.5, 4.0), course.next_corner(t, 4.0);
+    return course.singular(t);
+  };
+  const auto after_root = singular("sqrt(max(0, t - 1))", 1.5);
+  EXPECT_NEAR(after_root.before, 0.5, 1e-12);
+  EXPECT_TRUE(std::isinf(after_root.after));
+  const auto before_arc = singular("asin(min(1, t/2))", 1.5);
+  EXPECT_NEAR(before_arc.after, 0.5, 1e-12);
+  EXPECT_NEAR(singular("max(0, t - 1)^1.3", 1.5).before, 0.5, 1e-12);
+  EXPECT_TRUE(std::isinf(singular("max(0, t - 1)^2.5", 1.5).before));
+  EXPECT_NEAR(singular("sqrt(t)", 0.5).before, 0.5, 1e-12);
+}
+
+// Its middle is the very place where smooth() is touched, and shows nothing of it.
+TEST(FormulaCourse, ALoadThatTouchesTheBeginOfARampInItsMiddleChanges) {
+  const Expression expression = expression_of("1 - smooth(((t - 2)/0.5)^2, 0, 1)");
+  FormulaCourse course(expression, 0.0, 4.0);
+  EXPECT_NEAR(course.length_of_change(2.0, 0, 4.0), 1.0, 1e-9);
+  EXPECT_TRUE(std::isinf(course.length_of_change(2.0, 0, 0.5)));
+  EXPECT_TRUE(std::isinf(course.length_of_change(3.0, 0, 4.0)));
+}
+
 }  // namespace
 }  // namespace freeplay
