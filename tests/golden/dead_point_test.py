@@ -142,6 +142,15 @@ class DeadPoint(ProgramTest):
         self.assertRegex(err, "driver 'motor' cannot move its joint from here: joints .*'stay' hold it")
         self.assertNotIn("start speeds", err)
 
+    def test_what_locks_a_loose_mechanism_is_named(self):
+        text = FOUR_BAR % (0.1, PLAY, SPEED, "", "step: 10 us")
+        text = text.replace("coupler/tip, rocker/tip", "coupler/tip, ground/D").replace("tip: [0.2, 0]}, pose: {angle: -10", "tip: [0.35, 0]}, pose: {angle: -10")
+        text = text.replace("  rocker: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}, pose: {angle: 120 deg}}\n", "")
+        text = text.replace("  D: {type: revolute, between: [ground/D, rocker]}\n", "").replace("initial: {joints: {}}\n", "")
+        _, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", code=4)
+        self.assertRegex(err, r"driver 'motor' cannot move joint 'A' beyond the play: joints 'B', 'C' hold it at \S+ deg; .*\[locked\]")
+        self.assertNotIn("dead", err)
+
     def test_two_drivers(self):
         text = FOUR_BAR % (0.2, "", SPEED, "A: 40 deg", "step: 1 ms")
         text = text.replace("  D: {type: revolute, between: [ground/D, rocker]}",
