@@ -20,6 +20,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 // In rad, and over the size of the model.
 constexpr double first_step = 0.02, longest_step = 0.1, shortest_step = 1e-7;
 constexpr double longest_way = 0.4;     // of a body in one step: beyond, it has leapt
+constexpr double locked = 1e-5;         // range: a mechanism that moves nowhere, to what limits are sought to
 constexpr double close_to_limit = 0.1;  // of a run that ends before it: forces grow without bound there
 constexpr int instants = 4000;          // of a run that are looked at
 constexpr int most_pieces = 4000;       // of the way of several drivers
@@ -117,6 +118,22 @@ struct Ranks {
   Eigen::BDCSVD<Eigen::MatrixXd> svd;
   Eigen::Index rank = 0;
 };
+
+// Joints whose rows take part in a state of stress without load.
+std::vector<int> joints_under(const Eigen::VectorXd& stress, const ClosedMechanism::Rows& rows,
+                              const ClosedMechanism& mechanism) {
+  std::vector<int> joints;
+  for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
+    const Slice own = mechanism.system.layout().rows(j);
+    double share = 0.0;
+    for (std::size_t r = 0; r < rows.row.size(); ++r) {
+      if (rows.row[r] < own.offset || rows.row[r] >= own.offset + own.size) continue;
+      share = std::max(share, std::abs(stress[static_cast<Eigen::Index>(r)]));
+    }
+    if (share > takes_part * stress.lpNorm<Eigen::Infinity>()) joints.push_back(j);
+  }
+  return joints;
+}
 
 class Reach {
  public:
@@ -299,6 +316,12 @@ class Reach {
     const Coordinate kind = coordinate(d);
     const double end = exit.up ? range.to : range.from;
     const std::optional<Widest> most = widest(range, exit);
+    if (range.to - range.from <= locked * unit(d)) {
+      return fmt::format(
+          "t = {:.9g} s: driver '{}' cannot move joint '{}' beyond the play: {} it at {}; does each of them hold the "
+          "bodies that are meant, and do lengths and angles let the loop move [locked]",
+          t_, driver.name, model_.joints[at(driver.joint)].name, what_locks(driver.joint), words(end, kind));
+    }
     std::string text = fmt::format(
         "t = {:.9g} s: driver '{}' asks for a position that the mechanism cannot take: joint '{}' comes to a dead "
         "point "
@@ -311,6 +334,18 @@ class Reach {
     }
     return text +
            fmt::format("; it can {}: keep the driver within, or check the lengths [dead-point]", words(range, kind));
+  }
+
+  // With the driver's joint leading: its row depends on those of the joints that hold it.
+  std::string what_locks(int driven) {
+    const ClosedMechanism::Rows rows = mechanism_.position_rows();
+    const Ranks ranks{Eigen::MatrixXd(rows.matrix)};
+    const auto lead = std::ranges::find(rows.lead, driven) - rows.lead.begin();
+    const auto dependent = ranks.svd.matrixU().rightCols(ranks.svd.matrixU().cols() - ranks.rank);
+    std::vector<int> joints = joints_under(dependent * dependent.row(lead).transpose(), rows, mechanism_);
+    std::erase(joints, driven);
+    return joints.empty() ? "the mechanism holds"
+                          : fmt::format("{} {}", joint_names(joints, model_), joints.size() == 1 ? "holds" : "hold");
   }
 
   const Model& model_;
@@ -433,15 +468,7 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
       Eigen::VectorXd stress = here.svd.matrixU().col(last);
       const auto always = there.svd.matrixU().rightCols(there.svd.matrixU().cols() - there.rank);
       stress -= always * (always.transpose() * stress);
-      for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-        const Slice own = mechanism.system.layout().rows(j);
-        double share = 0.0;
-        for (std::size_t r = 0; r < rows.row.size(); ++r) {
-          if (rows.row[r] < own.offset || rows.row[r] >= own.offset + own.size) continue;
-          share = std::max(share, std::abs(stress[static_cast<Eigen::Index>(r)]));
-        }
-        if (share > takes_part * stress.lpNorm<Eigen::Infinity>()) found.joints.push_back(j);
-      }
+      found.joints = joints_under(stress, rows, mechanism);
       return found;
     }
   }

@@ -47,8 +47,9 @@ std::string joint_names(std::span<const int> joints, const Model& model);
 std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism);
 
 /// Why a run that ended at time `t` could not go on, where a driver asks for a position that the ideal mechanism cannot
-/// take: which joint, where, how far the loop then is from closing, and between which values it can be driven. Empty
-/// where the mechanism could follow. `start` is the state in which the run of `system` began.
+/// take: which joint, where, how far the loop then is from closing, and between which values it can be driven, or what
+/// holds it where it can be driven nowhere. It ends with its word: "[dead-point]" or "[locked]". Empty where the
+/// mechanism could follow. `start` is the state in which the run of `system` began.
 std::optional<std::string> why_out_of_reach(const System& system, const State& start, double t);
 
 /// The first time at which a driver asks for a position that the mechanism could not take though all its play were

@@ -391,8 +391,30 @@ class Examination {
           joint.gear < 0 && (is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b)));
       if (on_moving && (joint.is_force || joint.start_speed)) return true;
     }
+    if (efforts_act_on(is_moving)) return true;
     return std::ranges::any_of(model_.forces,
                                [&](const AppliedForce& force) { return is_moving(body_of(force.marker)); });
+  }
+
+  /// Whether a torque or force of a driver reaches a moving body through joints: links in line with it move though
+  /// the joint on which it acts stands still.
+  template <class IsMoving>
+  bool efforts_act_on(const IsMoving& is_moving) const {
+    std::vector<char> reached(model_.bodies.size(), 0);
+    for (std::size_t b = 0; b < reached.size(); ++b) reached[b] = is_moving(static_cast<BodyId>(b)) ? 1 : 0;
+    const auto is_reached = [&](BodyId body) { return body != ground && reached[at(body)]; };
+    for (bool more = true; std::exchange(more, false);) {
+      for (const JointElement& joint : model_.joints) {
+        const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+        if (a == ground || b == ground || is_reached(a) == is_reached(b)) continue;
+        reached[at(a)] = reached[at(b)] = 1;
+        more = true;
+      }
+    }
+    return std::ranges::any_of(model_.drivers, [&](const Driver& driver) {
+      const JointElement& joint = model_.joints[at(driver.joint)];
+      return !prescribes(driver.kind) && (is_reached(body_of(joint.marker_a)) || is_reached(body_of(joint.marker_b)));
+    });
   }
 
   /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is

@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/error.h"
@@ -15,9 +16,14 @@ namespace {
 
 constexpr std::size_t many = 1 << 16;
 
-[[noreturn]] void fail(const std::filesystem::path& path, int reason) {
-  throw Error(Error::Category::file, "cannot-write",
-              fmt::format("cannot write '{}': {}", path.string(), std::strerror(reason)));
+[[noreturn]] void fail(const std::filesystem::path& path, const char* reason) {
+  throw Error(Error::Category::file, "cannot-write", fmt::format("cannot write '{}': {}", path.string(), reason));
+}
+
+/// Whether no folder names the file any more: it was removed, or another took its place.
+bool has_no_name(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
 }
 
 }  // namespace
@@ -26,7 +32,7 @@ GrowingFile::GrowingFile(std::filesystem::path path)
     : path_(std::move(path)),
       descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
       last_flush_(std::chrono::steady_clock::now()) {
-  if (descriptor_ < 0) fail(path_, errno);
+  if (descriptor_ < 0) fail(path_, std::strerror(errno));
   text_.reserve(2 * many);
 }
 
@@ -73,10 +79,12 @@ void GrowingFile::flush() {
 void GrowingFile::close() {
   if (descriptor_ >= 0) {
     flush();
+    removed_ = has_no_name(descriptor_);
     if (::close(descriptor_) != 0 && failure_ == 0) failure_ = errno;
     descriptor_ = -1;
   }
-  if (failure_ != 0) fail(path_, failure_);
+  if (failure_ != 0) fail(path_, std::strerror(failure_));
+  if (removed_) fail(path_, "it was removed or replaced while it was written");
 }
 
 }  // namespace freeplay

@@ -25,7 +25,7 @@ class GrowingFile {
   void end_line();
   /// Writes if the last time was a second ago.
   void flush_if_due();
-  /// Writes everything. Throws Error{file} "cannot-write" for the first failure of all.
+  /// Writes everything. Throws Error{file} "cannot-write" for the first failure of all, and where the file was removed.
   void close();
 
   bool ok() const { return failure_ == 0; }
@@ -36,6 +36,7 @@ class GrowingFile {
   std::filesystem::path path_;
   int descriptor_ = -1;
   int failure_ = 0;  // errno of the first failure
+  bool removed_ = false;
   std::string text_;
   std::chrono::steady_clock::time_point last_flush_;
 };

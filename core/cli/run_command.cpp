@@ -122,14 +122,19 @@ class Recording {
     log_.close();
   }
 
-  std::vector<std::string> files() const {
-    std::vector<std::string> names = directory_.files();
-    const auto place = std::ranges::lower_bound(names, "summary.json");
-    names.insert(place, "summary.json");
+  /// With the summary, which seal() writes.
+  std::vector<std::string> files() {
+    names_ = directory_.files();
+    std::vector<std::string> names = names_;
+    names.insert(std::ranges::lower_bound(names, "summary.json"), "summary.json");
     return names;
   }
 
-  void seal(const Json& summary) { directory_.write("summary.json", json_text(summary)); }
+  /// Throws Error{file} where a file that the summary names has gone since files().
+  void seal(const Json& summary) {
+    directory_.require_all(names_);
+    directory_.write("summary.json", json_text(summary));
+  }
 
  private:
   ResultDirectory directory_;
@@ -137,6 +142,7 @@ class Recording {
   CsvSink rows_;
   EventSink events_;
   ContactAdvice advice_;
+  std::vector<std::string> names_;  // of the files that are written
 };
 
 /// Runs to the end and returns it as a record.

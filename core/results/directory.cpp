@@ -96,6 +96,14 @@ void ResultDirectory::write(std::string_view name, std::string_view text) const 
   write_whole_file(path_ / name, text);
 }
 
+void ResultDirectory::require_all(std::span<const std::string> names) const {
+  for (const std::string& name : names) {
+    std::error_code error;
+    if (fs::exists(path_ / name, error)) continue;
+    fail(fmt::format("cannot write '{}': it was removed while the runs went on", (path_ / name).string()));
+  }
+}
+
 std::vector<std::string> ResultDirectory::files() const {
   std::vector<std::string> names;
   std::error_code error;  // it may have been removed in the meantime

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,8 @@ class ResultDirectory {
   /// as "inputs/motor.csv" stands in a folder of the directory.
   /// Throws Error{file}.
   void write(std::string_view name, std::string_view text) const;
+  /// Throws Error{file} for the first of these files that is not there any more.
+  void require_all(std::span<const std::string> names) const;
   /// Sorted names of what is there.
   std::vector<std::string> files() const;
 

@@ -116,6 +116,7 @@ bool Simulation::Impl::adaptive_step() {
     dt = reach;
   }
   StepEvents::Passage hunted = events.expected_within(reach);
+  EventBracket bracket;
   if (hunted.joint >= 0) dt = hunted.fraction * reach;
   std::size_t detours = 0;
   double asked = 0.0;
@@ -168,13 +169,13 @@ bool Simulation::Impl::adaptive_step() {
       continue;
     }
     bool done = false;
-    if (!pursue(hunted, dt, hunts, done)) return false;
+    if (!pursue(hunted, bracket, dt, hunts, done)) return false;
     if (done) break;
     const double whole = trial.t() - accepted.t();
     if (end_inside(hunted, dt, hunts, left)) {
       if (trial.t() - accepted.t() <= whole) break;
       // Beyond its end another event may lie.
-      if (!pursue(hunted, dt, hunts, done)) return false;
+      if (!pursue(hunted, bracket, dt, hunts, done)) return false;
       if (done) break;
     }
     if (outcome.status == RunStatus::failed) return false;

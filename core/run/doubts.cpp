@@ -90,15 +90,16 @@ void Simulation::Impl::explain_dead_point() {
   if (!why) return;
   outcome.reason = std::move(*why);
   for (TrustReason& reason : outcome.doubts) {
-    reason.message = reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
-                     "the mechanism comes to a dead point";
+    reason.message =
+        reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
+        (outcome.reason.ends_with("[locked]") ? "the mechanism is locked" : "the mechanism comes to a dead point");
   }
 }
 
 // A number of the model that no machine has is worth more than any advice about steps.
 void Simulation::Impl::explain_failure() {
   if (outcome.exit_code != 4 || outcome.reason.find(cause_words) != std::string::npos) return;
-  if (outcome.reason.ends_with("[dead-point]")) return;
+  if (outcome.reason.ends_with("[dead-point]") || outcome.reason.ends_with("[locked]")) return;
   const Wreck wreck{accepted.t(), adaptive ? 0.0 : settings.step, failed_joint, first_forces};
   const std::string cause = likely_cause(system, e_accepted, wreck);
   if (cause.empty()) return;

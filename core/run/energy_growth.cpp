@@ -25,15 +25,28 @@ double Simulation::Impl::energy_of(const Evaluation& e) const {
 }
 
 // Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step, and what
-// potential energies are rounded to: of a short step from rest nothing else is left.
+// potential energies of weights and work of loads are rounded to: of a short step from rest, or from links in line with
+// what pushes them, nothing else is left.
 double Simulation::Impl::energy_of_drives() const {
   double squared = 0.0, mass = 0.0, lifted = std::abs(system.gravity_potential(e_accepted->q));
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
-    if (!prescribes(model.drivers[d].kind)) continue;
     const bool rotates = system.joint_layout(model.drivers[d].joint).coordinate == Coordinate::angle;
+    if (!prescribes(model.drivers[d].kind)) {
+      const double effort = std::max(std::abs(e_accepted->motion[d].value), std::abs(e_trial->motion[d].value));
+      lifted += rotates ? effort : effort * system.size();
+      continue;
+    }
     const double rate = std::max(std::abs(e_accepted->motion[d].rate), std::abs(e_trial->motion[d].rate));
     const double speed = rotates ? rate * system.size() : rate;
     squared = std::max(squared, speed * speed);
+  }
+  const auto amount = [](const double* v) { return std::hypot(v[0], v[1], v[2]); };
+  const auto along_size = [&](const double* wrench) { return amount(wrench) * system.size() + amount(wrench + 3); };
+  for (std::size_t f = 0; f < model.forces.size(); ++f) {
+    lifted += std::max(along_size(&e_accepted->applied[6 * f]), along_size(&e_trial->applied[6 * f]));
+  }
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    if (model.joints[j].is_force) lifted += along_size(&e_accepted->wrench[12 * j + 6]);
   }
   for (const Body& body : model.bodies) {
     mass += body.mass;

@@ -41,7 +41,7 @@ double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Pas
 
 // Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
 // is where to try next.
-bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int hunts, bool& done) {
+bool Simulation::Impl::pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, bool& done) {
   const Profile::Timer timer(context.profile, Phase::events);
   Fault fault;
   StepEvents::Passage found;
@@ -69,10 +69,12 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int hunts
     return true;
   }
   if (hunts > most_hunts) {
-    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located; {}", accepted.t(),
+    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located{}", accepted.t(),
                                system.joint_layout(hunted.joint).events[at(hunted.event)].name,
-                               model.joints[at(hunted.joint)].name, event_rule));
+                               model.joints[at(hunted.joint)].name,
+                               all_built_in() ? std::string(advice::other_steps) : fmt::format("; {}", event_rule)));
   }
+  bracket.note(hunted, dt);
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
   const double aim = aim_past(hunted, dt);
   const double newton = dt - (hunted.value - aim) / hunted.rate;
@@ -90,6 +92,7 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, double& dt, int hunts
   const double nudge = std::ldexp(4.0 * rounding, hunts);
   if (std::abs(next - dt) <= nudge * dt) next = past < 0.0 ? dt * (1.0 + nudge) : dt * (1.0 - nudge);
   if (!(next > 0.0)) next = 0.5 * dt;
+  if (hunts > most_hunts / 2) next = bracket.inside(aim).value_or(next);
   dt = std::max(next, least);
   return true;
 }

@@ -9,6 +9,7 @@
 #include "run/drive_kinks.h"
 #include "run/energy_account.h"
 #include "run/error_budget.h"
+#include "run/event_bracket.h"
 #include "run/event_storm.h"
 #include "run/inner_motion.h"
 #include "run/input_activity.h"
@@ -115,7 +116,7 @@ struct Simulation::Impl {
   bool begin_statistics_inside();
   // and their ends at events (event_pursuit.cpp).
   double before_event(double dt, double shorter, StepEvents::Passage& hunted);
-  bool pursue(StepEvents::Passage& hunted, double& dt, int hunts, bool& done);
+  bool pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, bool& done);
   bool end_inside(const StepEvents::Passage& hunted, double dt, int hunts, double longest);
   double defect_inside(double dt);
   bool is_sharp(const StepEvents::Passage& end) const;

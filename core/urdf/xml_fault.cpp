@@ -106,8 +106,15 @@ class StartTag {
       return XmlFault{place, fmt::format("the value of '{}' must stand in quotes", name), {}};
     }
     const std::size_t begin = at_ + 1, end = text_.find(quote, begin);
-    if (end == none || text_.substr(begin, end - begin).find('<') != none) {
+    const std::size_t bracket = text_.substr(0, std::min(end, text_.size())).find('<', begin);
+    // After the quote that closes a value the tag goes on; after one that opens the next value a value does.
+    const char next = end != none && end + 1 < text_.size() ? text_[end + 1] : '>';
+    const bool closes = end != none && (next == '/' || next == '>' || blanks.find(next) != none);
+    if (end == none || (bracket != none && !closes)) {
       return XmlFault{place, fmt::format("the value of '{}' is not closed: {} is missing", name, quote), {}};
+    }
+    if (bracket != none) {
+      return XmlFault{bracket, fmt::format("'<' cannot stand in the value of '{}'", name), "write '&lt;'"};
     }
     if (auto found = fault_of_references(text_, begin, end)) return found;
     at_ = end + 1;

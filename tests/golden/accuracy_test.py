@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import unittest
 
 from program import ProgramTest, mechanism
@@ -16,6 +17,16 @@ class Accuracy(ProgramTest):
         # Balls that just touch begin a contact where the next step starts, closer than the time can tell.
         for accuracy in ("2e-8", "1e-8", "1e-9"):
             self.run_json(mechanism("validation/cradle-5"), "--accuracy", accuracy, "--out", accuracy)
+
+    def test_a_slow_motion_with_play_goes_on(self):
+        # Steps are as long as they may be: where one ends moves with its length.
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            self.write("s.yaml", re.sub("simulation: .*", "simulation: {end: 20 s, output: {interval: 10 ms}}",
+                                        file.read()))
+        for speed, accuracy in (("3 rpm", "10um"), ("6 rpm", "1um"), ("10 rpm", "10um")):
+            with self.subTest(speed):
+                out = self.run_json("s.yaml", "--set", "speed=" + speed, "--accuracy", accuracy, "--out", speed)
+                self.assertEqual(("completed", "good"), (out["status"], out["trust"]["verdict"]))
 
     def test_accuracy_chooses_integrator_and_steps(self):
         settings = self.run_json(mechanism("pendulum"), "--accuracy", "1um", "--end", "0.1 s", "--out", "r")["settings"]

@@ -1,4 +1,5 @@
 """Drivers that ask for a position that the mechanism cannot take: the message names it, and advises nothing in vain."""
+import csv
 import math
 import re
 import unittest
@@ -38,6 +39,27 @@ joints:
 drivers: {push: {joint: guide, kind: position, value: "-0.3 m - 1 m/s*t"}}
 simulation: {end: 1 s, step: 1 ms}
 """
+
+# A slider-crank whose links lie in line with what pushes its slider.
+IN_LINE = """freeplay: 1
+bodies:
+  crank: {mass: 0.3, inertia: 1e-4, com: [25 mm, 0], frames: {tip: [50 mm, 0]}}
+  coupler: {mass: 0.21, inertia: 2.5e-4, com: [60 mm, 0], frames: {tip: [120 mm, 0]}}
+  slider: {mass: 0.14, inertia: 1e-4}
+frames: {ground/wall: [0.3, 0]}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  guide: {type: prismatic, between: [ground, slider]}
+  wrist: {type: revolute, between: [coupler/tip, slider]}
+%s
+initial: {joints: {main: 0 deg}}
+simulation: {end: 20 ms, %s}
+"""
+PUSHES = ["drivers: {gas: {joint: guide, kind: force, value: -100}}",
+          "drivers: {gas: {joint: guide, kind: force, value: \"-100*smooth(t, 0, 10 ms)\"}}",
+          "forces: {gas: {type: force, at: slider, value: [-100, 0]}}",
+          "forces: {gas: {type: spring-damper, between: [ground/wall, slider], stiffness: 1000, free_length: 0.5}}"]
 
 
 class DeadPoint(ProgramTest):
@@ -102,12 +124,32 @@ class DeadPoint(ProgramTest):
         _, err = self.freeplay("validate", self.write("m.yaml", flat.replace("initial: {joints: {rail: 0}}", "initial: {joints: {guide: -0.5}}") % "velocity, value: 0.1"), code=3)
         self.assertRegex(err, r"error: driver 'push' starts joint 'guide' at a dead point, where joints .*\[dead-point\]")
 
+    def test_links_in_line_with_a_load_stay(self):
+        for push in PUSHES:
+            for steps in ("step: 10 us", "accuracy: 1 um"):
+                with self.subTest(push + steps):
+                    out, err = self.freeplay("run", self.write("m.yaml", IN_LINE % (push, steps)), "--out", "r", "--force")
+                    self.assertIn("completed", out)
+                    self.assertNotIn("left-free", err)
+                    with open(self.path("r", "results.csv"), encoding="utf-8") as file:
+                        last = list(csv.DictReader(file))[-1]
+                    self.assertAlmostEqual(0.17, float(last["body.slider.x"]), delta=1e-9)
+
     def test_what_holds_a_driven_joint_is_named(self):
         text = FOUR_BAR % (0.1, "", SPEED, "A: 60 deg", "step: 1 ms")
         text = text.replace("drivers:", "drivers:").replace("between: [ground/D, rocker]}", "between: [ground/D, rocker]}\n  stay: {type: gear, of: [A, D], ratio: 3}")
         _, err = self.freeplay("validate", self.write("m.yaml", text), code=3)
         self.assertRegex(err, "driver 'motor' cannot move its joint from here: joints .*'stay' hold it")
         self.assertNotIn("start speeds", err)
+
+    def test_what_locks_a_loose_mechanism_is_named(self):
+        text = FOUR_BAR % (0.1, PLAY, SPEED, "", "step: 10 us")
+        text = text.replace("coupler/tip, rocker/tip", "coupler/tip, ground/D").replace("tip: [0.2, 0]}, pose: {angle: -10", "tip: [0.35, 0]}, pose: {angle: -10")
+        text = text.replace("  rocker: {mass: 1, inertia: 0.01, frames: {tip: [0.2, 0]}, pose: {angle: 120 deg}}\n", "")
+        text = text.replace("  D: {type: revolute, between: [ground/D, rocker]}\n", "").replace("initial: {joints: {}}\n", "")
+        _, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", code=4)
+        self.assertRegex(err, r"driver 'motor' cannot move joint 'A' beyond the play: joints 'B', 'C' hold it at \S+ deg; .*\[locked\]")
+        self.assertNotIn("dead", err)
 
     def test_two_drivers(self):
         text = FOUR_BAR % (0.2, "", SPEED, "A: 40 deg", "step: 1 ms")

@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -206,6 +207,20 @@ class Repeat(ProgramTest):
         self.assertIn("runs were not finished", out)
         for worker in workers:
             self.assertFalse(os.path.exists("/proc/%d" % worker))
+
+    def test_results_that_are_removed_while_others_run_are_missed(self):
+        self.write("m.yaml", SIX_BAR)
+        process = self.start("m.yaml", "--repeat", "10000")
+        self.wait_for_children(process)
+        while not os.path.exists(self.path("results", "six-bar", "results.csv")):
+            time.sleep(0.01)
+        time.sleep(3.0)
+        shutil.rmtree(self.path("results", "six-bar"))
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(6, process.returncode, err)
+        self.assertRegex(err, r"cannot write 'results/six-bar/\S+': it was removed .*\[cannot-write\]")
+        self.assertFalse(os.path.exists(self.path("results", "six-bar")))
 
 
 class Digits(ProgramTest):

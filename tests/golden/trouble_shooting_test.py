@@ -60,6 +60,23 @@ IN_LINE = SHORT_ROD.replace("drivers: {motor: {joint: pivot, kind: angle, value:
     "frames: {tip: [1 m, 0]}", "frames: {tip: [1 m, 0]}, pose: {angle: 0}")
 with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
     PARALLELOGRAMS = chain.read()
+LOCKED = """freeplay: 1
+bodies:
+  crank: {mass: 0.3, inertia: 1e-4, frames: {tip: [50 mm, 0]}, pose: {angle: 70 deg}}
+  coupler: {mass: 0.21, inertia: 2.5e-4, frames: {tip: [120 mm, 0]}}
+frames: {ground/wrist: [120 mm, 0]}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  wrist:
+    type: revolute
+    bearing: coupler/tip
+    journal: ground/wrist
+    clearance:
+      {bearing_radius: 10 mm, radial_clearance: 0.1 mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: hertz}}
+drivers: {motor: {joint: main, kind: velocity, value: 10 rpm}}
+simulation: {end: 0.1 s, step: 10 us}
+"""
 LIBRARIES = {"TEMPLATE": os.path.join(BUILD, "plugins", "template", "template_integrator.so"),
              "PROBE": os.path.join(BUILD, "plugins", "probes", "probe_throws_in_apply.so"),
              "ENDLESS": os.path.join(BUILD, "plugins", "tests", "endless_events.so")}
@@ -168,6 +185,7 @@ CASES = {
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
     "driver '...' asks for a position that the mechanism cannot take: ... [dead-point]":
         (4, SHORT_ROD, RUN),
+    "driver '...' cannot move joint '...' beyond the play: ... hold it at ...; ... [locked]": (4, LOCKED, RUN),
     "joint '...' at t = ... s: its surfaces are ... m deep in each other, more than ...; likely cause: ...":
         (4, journal("E: 207 GPa", "E: 1 Pa").replace("lankarani-nikravesh, restitution: 0.9", "hertz, K: 1e-3").replace("end: 20 ms", "end: 1 s"), RUN),
     "joint '...' at t = ... s: a force of ... N presses with more than a tenth of the elastic modulus ...":

@@ -1,5 +1,6 @@
 #include "base/growing_file.h"
 
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -34,6 +35,16 @@ TEST(GrowingFile, KeepsTheFirstFailureAndThrowsItAtTheEnd) {
   file.end_line();
   EXPECT_THROW(file.close(), Error);
   EXPECT_FALSE(file.ok());
+}
+
+TEST(GrowingFile, TellsThatItWasRemovedOrReplaced) {
+  const ScratchFolder folder;
+  GrowingFile removed(folder.file("removed")), replaced(folder.file("replaced"));
+  std::filesystem::remove(folder.file("removed"));
+  folder.write("other", "text");
+  std::filesystem::rename(folder.file("other"), folder.file("replaced"));
+  EXPECT_THROW(removed.close(), Error);
+  EXPECT_THROW(replaced.close(), Error);
 }
 
 TEST(GrowingFile, CannotBeMadeInAFolderThatIsNotThere) {

@@ -83,7 +83,7 @@ TEST(ParseXml, RefusesWhatTinyxml2LetsPass) {
   constexpr std::pair<const char*, const char*> cases[] = {
       {"<a/><b/>", "1:5 bad-xml"},           {"<a>&who;</a>", "1:4 bad-xml"},   {"<a>&#0;</a>", "1:4 bad-xml"},
       {"<a>\x01</a>", "1:4 bad-xml"},        {"<a>\xFF</a>", "1:4 bad-xml"},    {"<!DOCTYPE a><a/>", "1:1 bad-xml"},
-      {"<a>x]]>y</a>", "1:5 bad-xml"},       {"<a b='<'/>", "1:4 bad-xml"},     {"<a\u00D7/>", "1:3 bad-xml"},
+      {"<a>x]]>y</a>", "1:5 bad-xml"},       {"<a b='<'/>", "1:7 bad-xml"},     {"<a\u00D7/>", "1:3 bad-xml"},
       {"<a><!-- -- --></a>", "1:9 bad-xml"}, {"<a b='1'c='2'/>", "1:9 bad-xml"}};
   for (const auto& [xml, where] : cases) {
     tinyxml2::XMLDocument document;
@@ -104,7 +104,7 @@ TEST(ParseXml, RefusesWhatIsNotWellFormed) {
   EXPECT_EQ(fault("<a b='1'c='2'/>"), "1:9 bad-xml");
   EXPECT_EQ(fault("<a b/>"), "1:4 bad-xml");
   EXPECT_EQ(fault("<a b=1/>"), "1:4 bad-xml");
-  EXPECT_EQ(fault("<a b='<'/>"), "1:4 bad-xml");
+  EXPECT_EQ(fault("<a b='<'/>"), "1:7 bad-xml");
   EXPECT_EQ(fault("<a>&who;</a>"), "1:4 bad-xml");
   EXPECT_EQ(fault("<a>&</a>"), "1:4 bad-xml");
   EXPECT_EQ(fault("<a>&#0;</a>"), "1:4 bad-xml");
@@ -170,7 +170,10 @@ TEST(ParseXml, SaysWhatIsWrongWhereItIs) {
       {"<a b='1'c='2'/>", "1:9 a blank is missing between two attributes"},
       {"<a\n b/>", "2:2 the attribute 'b' has no value"},
       {"<a b=1/>", "1:4 the value of 'b' must stand in quotes"},
-      {"<a b='<'/>", "1:4 the value of 'b' is not closed: ' is missing"},
+      {"<a b='x<'/>", "1:8 '<' cannot stand in the value of 'b'"},
+      {"<a b='x < y' c='1'/>", "1:9 '<' cannot stand in the value of 'b'"},
+      {"<a b='x>\n<c d='1'/>", "1:4 the value of 'b' is not closed: ' is missing"},
+      {"<a b='x>\n<c/>", "1:4 the value of 'b' is not closed: ' is missing"},
       {"<a b='1' b='2'/>", "1:10 the attribute 'b' is given twice"},
       {"<a\u00E4 \u00D7='1'/>", "1:5 XML does not allow this character in a name"},
       {"<a>x & y</a>", "1:6 '&' begins a reference; write '&amp;'"},
