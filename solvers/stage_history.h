@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "freeplay/integrator.h"
-#include "freeplay/pairs.h"
 
 namespace freeplay {
 
@@ -63,10 +62,10 @@ class StageHistory {
       const Span<double> previous = past_[0].part(first, now.size), older = past_[1].part(first, now.size),
                          oldest = past_[2].part(first, now.size), off = of_stage(stage, off_).part(first, now.size),
                          guess = of_stage(stage, guess_).part(first, now.size);
-      in_pairs(now.size, [&](auto at) {
-        at(guess) = w.now * at(now) + w.previous * at(previous) + w.older * at(older) - w.oldest * at(oldest) + at(off);
-        if (good) at(out) = at(guess);
-      });
+      for (std::size_t i = 0; i < now.size; ++i) {
+        guess[i] = w.now * now[i] + w.previous * previous[i] + w.older * older[i] - w.oldest * oldest[i] + off[i];
+        if (good) out[i] = guess[i];
+      }
     };
     extrapolate(a_, 0, to.a);
     extrapolate(lambda_, a_.size, to.lambda);
@@ -91,7 +90,7 @@ class StageHistory {
   }
   /// After a step whose stages were solved; `to` has the accelerations at its end.
   void finish(const StateView& to) {
-    in_pairs(a_.size, [&](auto at) { at(beside_) -= at(to.a); });
+    for (std::size_t i = 0; i < a_.size; ++i) beside_[i] -= to.a[i];
     pause_ = std::max(0.0, pause_ - 1.0);
     keep_start();
   }
@@ -105,25 +104,25 @@ class StageHistory {
   bool foresees_first_alone() const { return pause_ > 0.0; }
   /// Whether what a guess missed (StageSolver::guess_error, unsolved_error) tells that nothing is as foreseen.
   static bool is_surprise(double error) { return !(error <= 1.0); }
-  /// These guesses of a: calls use(at, first, end) with the numbers at all places.
+  /// These guesses of a: calls use(i, first, end) for every i.
   template <class Use>
   void foresee(double c_first, double c_end, Use&& use) {
     const Weights first = weights(c_first), end = weights(c_end);
     const Span<const double> now = a_;
     const Span<double> previous = past_[0], older = past_[1], oldest = past_[2], off_first = of_stage(0, off_),
                        off_end = of_stage(1, off_), guess = of_stage(1, guess_);
-    in_pairs(now.size, [&](auto at) {
-      const auto x = at(now), x1 = at(previous), x2 = at(older), x3 = at(oldest);
-      const auto at_first = first.now * x + first.previous * x1 + first.older * x2 - first.oldest * x3 + at(off_first),
-                 at_end = end.now * x + end.previous * x1 + end.older * x2 - end.oldest * x3 + at(off_end);
-      at(guess) = at_end;
-      use(at, at_first, at_end);
-    });
+    for (std::size_t i = 0; i < now.size; ++i) {
+      const double x = now[i], x1 = previous[i], x2 = older[i], x3 = oldest[i];
+      const double at_first = first.now * x + first.previous * x1 + first.older * x2 - first.oldest * x3 + off_first[i],
+                   at_end = end.now * x + end.previous * x1 + end.older * x2 - end.oldest * x3 + off_end[i];
+      guess[i] = at_end;
+      use(i, at_first, at_end);
+    }
   }
   /// What the accelerations at the end of such a step, in `to`, came out otherwise.
   void miss(const StateView& to, Span<double> missed) const {
     const Span<double> guess = of_stage(1, guess_);
-    in_pairs(a_.size, [&](auto at) { at(missed) = at(to.a) + at(beside_) - at(guess); });
+    for (std::size_t i = 0; i < a_.size; ++i) missed[i] = to.a[i] + beside_[i] - guess[i];
   }
   /// Whether it stands, with such an error (StageSolver::unsolved_error). If so, it is over.
   bool stands(double error) {
@@ -159,8 +158,8 @@ class StageHistory {
     count_ = std::min(steps_ + 1.0, 3.0);
     last_ = last_ < 2.0 ? last_ + 1.0 : 0.0;
     const Span<double> past = past_[2], past_lambda = past.part(a_.size, lambda_.size);
-    in_pairs(a_.size, [&](auto at) { at(past) = at(a_); });
-    in_pairs(lambda_.size, [&](auto at) { at(past_lambda) = at(lambda_); });
+    std::ranges::copy(a_, past.begin());
+    std::ranges::copy(lambda_, past_lambda.begin());
   }
 
   std::size_t count() const { return a_.size + lambda_.size; }

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 
 #include "base/index.h"
-#include "freeplay/pairs.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -23,7 +22,8 @@ std::array<double, 4> quaternion_of(const spatial::Matrix& rotation) {
 
 void System::retract(std::span<const double> base, std::span<const double> increment, std::span<double> q) const {
   if (model_.space == Space::planar) {
-    return in_pairs(q.size(), [&](auto at) { at(q) = at(base) + at(increment); });
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = base[i] + increment[i];
+    return;
   }
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
     spatial::retract_body(&base[7 * b], &increment[6 * b], &q[7 * b]);
