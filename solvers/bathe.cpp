@@ -17,13 +17,15 @@ namespace {
 ///   q1 = (rho + 1)/(2 s (rho - 1) + 4)    q0 = 1/2 - (1 - s) q1    q2 = 1/2 - s q1 = (1 - s)/(2 + s (rho - 1))
 ///
 /// Internal variables z follow the rule of v. Constraints hold at position level in stages that are solved, and at the
-/// end of those that are left as guessed (StageHistory); then v is projected and a, lambda are solved again at the
+/// end of those that are left as predicted (StageHistory); then v is projected and a, lambda are solved again at the
 /// accepted state, which makes every quantity of order 2, without drift. Bathe and Baig 2005; Bathe 2007; Noh and Bathe
 /// 2018 (rho).
 class Bathe final : public Integrator {
  public:
   explicit Bathe(const Parameters& p)
-      : tolerance_(p.number("newton.tolerance")), iterations_(p.integer("newton.max_iterations")) {
+      : tolerance_(p.number("newton.tolerance")),
+        iterations_(p.integer("newton.max_iterations")),
+        most_unsolved_(p.integer("unsolved_steps")) {
     const double rho = p.number("rho_inf");
     const bool optimal = p.word("split") == 0;
     // s_0 = (2 - sqrt(2 + 2 rho))/(1 - rho), written so that rho = 1 is no exception.
@@ -50,11 +52,11 @@ class Bathe final : public Integrator {
 
   Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const override {
     Start n(to, scratch);
-    StageHistory history(dt, 2, n.a, n.lambda, history_of(to));
+    StageHistory history(dt, 2, n.a, n.lambda, history_of(to), most_unsolved_);
     const Span<double> z_rate = to.memory.part(0, to.z.size);
-    const bool foreseen = n.z.empty() && !solver.estimates() && history.foresees();
-    const bool first_alone = foreseen && history.foresees_first_alone();
-    if (foreseen && !first_alone) {
+    const bool unsolved = n.z.empty() && !solver.estimates() && history.leaves_unsolved();
+    const bool first_alone = unsolved && history.leaves_first_alone();
+    if (unsolved && !first_alone) {
       follow_guesses(dt, n, to, solver, history);
       end_step(to, z_rate, solver);
       history.miss(to, n.increment_known);
@@ -120,7 +122,7 @@ class Bathe final : public Integrator {
   void follow_guesses(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history) const {
     const double q0 = q0_, q1 = q1_, b = q2_ * dt, b_first = 0.5 * split_ * dt;
     *to.t = n.t + dt;
-    history.foresee(split_, 1.0, [&](std::size_t i, double a_first, double a_end) {
+    history.predict_both(split_, 1.0, [&](std::size_t i, double a_first, double a_end) {
       const double v = n.v[i], a = n.a[i], v_first = v + b_first * a + b_first * a_first,
                    v_known = v + dt * (q0 * a + q1 * a_first);
       to.v[i] = v_known + b * a_end;
@@ -184,7 +186,7 @@ class Bathe final : public Integrator {
   }
 
   double tolerance_;
-  int iterations_;
+  int iterations_, most_unsolved_;
   double split_, q0_, q1_, q2_;
 };
 
@@ -201,6 +203,13 @@ constexpr Parameter parameters[] = {
      .minimum = 0.0,
      .maximum = 1.0,
      .summary = "Spectral radius for large steps: 0 damps high frequencies most, 1 not at all."},
+    {.name = "unsolved_steps",
+     .kind = ParameterKind::integer,
+     .default_value = 15,
+     .minimum = 0,
+     .maximum = 1000,
+     .summary = "In steps of one size: how many in a row may leave their stages as predicted, while the error of the "
+                "prediction is below the tolerance of the iteration; 0 solves every stage."},
     newton_tolerance_parameter,
     newton_iterations_parameter,
 };
