@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int most_corrections = 30, most_shortenings = 6;
-constexpr double same_offset = 1e-13;       // of the model's size and of a radian
+constexpr double same_offset = 1e-13;      // of the model's size and of a radian
 constexpr double inside = 0.99;            // of the farthest place, after offsets were shortened
 constexpr double rounding = 1.0 + 1e-9;    // of a distance
 constexpr double without_clearance = 1.0;  // weight of rows of a joint that tells none
@@ -52,7 +52,8 @@ bool converge(ClosedMechanism& mechanism, const std::vector<PlayRank>& ranks, co
     for (int i = 0; i < static_cast<int>(change.size()); ++i) {
       largest = std::max(largest, std::abs(change[i]) / (system.is_turn(i) ? 1.0 : system.size()));
     }
-    if (largest <= same_offset || step + 1 == most_corrections) return open <= mechanism.model().settings.assembly_tolerance;
+    if (largest <= same_offset || step + 1 == most_corrections)
+      return open <= mechanism.model().settings.assembly_tolerance;
     const std::vector<double> before(mechanism.state.q().begin(), mechanism.state.q().end());
     system.retract(before, {change.data(), at(static_cast<int>(change.size()))}, mechanism.state.q());
   }
