@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "freeplay/pairs.h"
 #include "freeplay/plugin.h"
 #include "stage_history.h"
 #include "step_error.h"
@@ -18,13 +17,15 @@ namespace {
 ///   q1 = (rho + 1)/(2 s (rho - 1) + 4)    q0 = 1/2 - (1 - s) q1    q2 = 1/2 - s q1 = (1 - s)/(2 + s (rho - 1))
 ///
 /// Internal variables z follow the rule of v. Constraints hold at position level in stages that are solved, and at the
-/// end of those that are left as guessed (StageHistory); then v is projected and a, lambda are solved again at the
+/// end of those that are left as predicted (StageHistory); then v is projected and a, lambda are solved again at the
 /// accepted state, which makes every quantity of order 2, without drift. Bathe and Baig 2005; Bathe 2007; Noh and Bathe
 /// 2018 (rho).
 class Bathe final : public Integrator {
  public:
   explicit Bathe(const Parameters& p)
-      : tolerance_(p.number("newton.tolerance")), iterations_(p.integer("newton.max_iterations")) {
+      : tolerance_(p.number("newton.tolerance")),
+        iterations_(p.integer("newton.max_iterations")),
+        most_unsolved_(p.integer("unsolved_steps")) {
     const double rho = p.number("rho_inf");
     const bool optimal = p.word("split") == 0;
     // s_0 = (2 - sqrt(2 + 2 rho))/(1 - rho), written so that rho = 1 is no exception.
@@ -51,11 +52,11 @@ class Bathe final : public Integrator {
 
   Attempt attempt(double dt, StateView& to, Span<double> scratch, StageSolver& solver) const override {
     Start n(to, scratch);
-    StageHistory history(dt, 2, n.a, n.lambda, history_of(to));
+    StageHistory history(dt, 2, n.a, n.lambda, history_of(to), most_unsolved_);
     const Span<double> z_rate = to.memory.part(0, to.z.size);
-    const bool foreseen = n.z.empty() && !solver.estimates() && history.foresees();
-    const bool first_alone = foreseen && history.foresees_first_alone();
-    if (foreseen && !first_alone) {
+    const bool unsolved = n.z.empty() && !solver.estimates() && history.leaves_unsolved();
+    const bool first_alone = unsolved && history.leaves_first_alone();
+    if (unsolved && !first_alone) {
       follow_guesses(dt, n, to, solver, history);
       end_step(to, z_rate, solver);
       history.miss(to, n.increment_known);
@@ -100,16 +101,12 @@ class Bathe final : public Integrator {
       increment_known = take(state.v.size);
       z_known = take(state.z.size);
       z_rate = take(state.z.size);
-      in_pairs(q.size, [&](auto at) { at(q) = at(state.q); });
-      in_pairs(v.size, [&](auto at) {
-        at(v) = at(state.v);
-        at(a) = at(state.a);
-      });
-      in_pairs(lambda.size, [&](auto at) { at(lambda) = at(state.lambda); });
-      in_pairs(z.size, [&](auto at) {
-        at(z) = at(state.z);
-        at(z_rate) = at(state.memory);
-      });
+      std::ranges::copy(state.q, q.begin());
+      std::ranges::copy(state.v, v.begin());
+      std::ranges::copy(state.a, a.begin());
+      std::ranges::copy(state.lambda, lambda.begin());
+      std::ranges::copy(state.z, z.begin());
+      std::ranges::copy(state.memory.part(0, z.size), z_rate.begin());
     }
     double t;
     std::size_t used = 0;
@@ -125,11 +122,11 @@ class Bathe final : public Integrator {
   void follow_guesses(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history) const {
     const double q0 = q0_, q1 = q1_, b = q2_ * dt, b_first = 0.5 * split_ * dt;
     *to.t = n.t + dt;
-    history.foresee(split_, 1.0, [&](auto at, auto a_first, auto a_end) {
-      const auto v = at(n.v), a = at(n.a), v_first = v + b_first * a + b_first * a_first,
-                 v_known = v + dt * (q0 * a + q1 * a_first);
-      at(to.v) = v_known + b * a_end;
-      at(n.increment_known) = dt * (q0 * v + q1 * v_first) + b * v_known + b * b * a_end;
+    history.predict_both(split_, 1.0, [&](std::size_t i, double a_first, double a_end) {
+      const double v = n.v[i], a = n.a[i], v_first = v + b_first * a + b_first * a_first,
+                   v_known = v + dt * (q0 * a + q1 * a_first);
+      to.v[i] = v_known + b * a_end;
+      n.increment_known[i] = dt * (q0 * v + q1 * v_first) + b * v_known + b * b * a_end;
     });
     solver.retract(n.q, n.increment_known, to.q);
   }
@@ -140,7 +137,7 @@ class Bathe final : public Integrator {
     history.guess(0, split_, to);
     prepare_trapezoid(dt, n, to);
     if (second_alone) {
-      in_pairs(n.v.size, [&](auto at) { at(to.v) = at(n.v_known) + 0.5 * split_ * dt * at(to.a); });
+      for (std::size_t i = 0; i < n.v.size; ++i) to.v[i] = n.v_known[i] + 0.5 * split_ * dt * to.a[i];
     } else {
       if (!solve(n.t + split_ * dt, 0.5 * split_ * dt, n, to, solver)) return false;
       history.solved(0, to, solver.guess_error());
@@ -152,10 +149,10 @@ class Bathe final : public Integrator {
 
   void prepare_trapezoid(double dt, Start& n, const StateView& to) const {
     const double b = 0.5 * split_ * dt;
-    in_pairs(n.v.size, [&](auto at) {
-      at(n.v_known) = at(n.v) + b * at(n.a);
-      at(n.increment_known) = b * (at(n.v) + at(n.v_known));
-    });
+    for (std::size_t i = 0; i < n.v.size; ++i) {
+      n.v_known[i] = n.v[i] + b * n.a[i];
+      n.increment_known[i] = b * (n.v[i] + n.v_known[i]);
+    }
     for (std::size_t i = 0; i < n.z.size; ++i) n.z_known[i] = n.z[i] + b * to.memory[i];
   }
   static Span<double> history_of(StateView& state) {
@@ -165,10 +162,10 @@ class Bathe final : public Integrator {
   /// The known terms of backward Euler; `to` holds the stage at t + s h.
   void prepare_end(double dt, Start& n, const StateView& to) const {
     const double q0 = q0_, q1 = q1_, b = q2_ * dt, b_first = 0.5 * split_ * dt;
-    in_pairs(n.v.size, [&](auto at) {
-      at(n.v_known) = at(n.v) + dt * (q0 * at(n.a) + q1 * at(to.a));
-      at(n.increment_known) = dt * (q0 * at(n.v) + q1 * at(to.v)) + b * at(n.v_known);
-    });
+    for (std::size_t i = 0; i < n.v.size; ++i) {
+      n.v_known[i] = n.v[i] + dt * (q0 * n.a[i] + q1 * to.a[i]);
+      n.increment_known[i] = dt * (q0 * n.v[i] + q1 * to.v[i]) + b * n.v_known[i];
+    }
     for (std::size_t i = 0; i < n.z.size; ++i) {
       const double rate = (to.z[i] - n.z_known[i]) / b_first;
       n.z_known[i] = n.z[i] + dt * (q0 * to.memory[i] + q1 * rate);
@@ -189,7 +186,7 @@ class Bathe final : public Integrator {
   }
 
   double tolerance_;
-  int iterations_;
+  int iterations_, most_unsolved_;
   double split_, q0_, q1_, q2_;
 };
 
@@ -206,6 +203,13 @@ constexpr Parameter parameters[] = {
      .minimum = 0.0,
      .maximum = 1.0,
      .summary = "Spectral radius for large steps: 0 damps high frequencies most, 1 not at all."},
+    {.name = "unsolved_steps",
+     .kind = ParameterKind::integer,
+     .default_value = 15,
+     .minimum = 0,
+     .maximum = 1000,
+     .summary = "In steps of one size: how many in a row may leave their stages as predicted, while the error of the "
+                "prediction is below the tolerance of the iteration; 0 solves every stage."},
     newton_tolerance_parameter,
     newton_iterations_parameter,
 };

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "freeplay/integrator.h"
-#include "freeplay/pairs.h"
 
 namespace freeplay {
 
@@ -17,23 +16,26 @@ namespace freeplay {
 /// one iteration does. Where such a guess would have been no better than a_n, as after an impact, and in steps of
 /// another length than those before, it is not used. Of a stage that is solved, a guess changes the cost alone.
 ///
-/// Where guesses miss by a small part of what the iteration of a stage may leave, both stages of a step may be left as
-/// they were guessed, for as many steps as this part, growing by itself in each, stays small. What the accelerations at
-/// the end of such a step come out otherwise tells when the motion is no longer that of the steps before: then the step
-/// is made with its stages solved. Where that is so again and again, more and more steps come before the next try, of
-/// which the first stage alone is left as guessed: what the guess for the end misses speaks for both.
+/// While the predictor error stays well below the tolerance of the iteration, both stages of a step may be left as they
+/// were predicted, for as many steps as this error, growing by itself in each, stays small, and no more than
+/// `most_unsolved`. The accelerations that are solved for at the end of such a step judge it: where they differ from
+/// the predicted ones by more than an iteration may leave, the step is made again with its stages solved. Where that
+/// happens again and again, more and more steps come before the next try, of which the first stage alone is left as
+/// predicted: the error at the end of the step judges both.
 class StageHistory {
  public:
   static int size(const Sizes& n, int stages) { return scalars + stages + (3 + 2 * stages) * (n.nv + n.nc) + n.nv; }
   static void forget(Span<double> memory) { std::fill(memory.begin(), memory.end(), 0.0); }
 
   /// At the start of a step of length dt; `a` and `lambda` are those there, and stay where they are.
-  StageHistory(double dt, int stages, Span<const double> a, Span<const double> lambda, Span<double> memory)
+  StageHistory(double dt, int stages, Span<const double> a, Span<const double> lambda, Span<double> memory,
+               double most_unsolved = 0.0)
       : a_(a),
         lambda_(lambda),
+        most_unsolved_(most_unsolved),
         steps_(memory[0]),
         count_(memory.data[0]),
-        foreseen_(memory.data[2]),
+        unsolved_(memory.data[2]),
         last_(memory.data[3]),
         pause_(memory.data[4]),
         next_pause_(memory.data[5]) {
@@ -48,7 +50,7 @@ class StageHistory {
     guess_ = take(static_cast<std::size_t>(stages) * count());
     beside_ = take(a.size);
     if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
-      steps_ = foreseen_ = 0.0;
+      steps_ = unsolved_ = 0.0;
       std::fill(good_.begin(), good_.end(), 0.0);
     }
     memory[1] = dt;
@@ -63,10 +65,10 @@ class StageHistory {
       const Span<double> previous = past_[0].part(first, now.size), older = past_[1].part(first, now.size),
                          oldest = past_[2].part(first, now.size), off = of_stage(stage, off_).part(first, now.size),
                          guess = of_stage(stage, guess_).part(first, now.size);
-      in_pairs(now.size, [&](auto at) {
-        at(guess) = w.now * at(now) + w.previous * at(previous) + w.older * at(older) - w.oldest * at(oldest) + at(off);
-        if (good) at(out) = at(guess);
-      });
+      for (std::size_t i = 0; i < now.size; ++i) {
+        guess[i] = w.now * now[i] + w.previous * previous[i] + w.older * older[i] - w.oldest * oldest[i] + off[i];
+        if (good) out[i] = guess[i];
+      }
     };
     extrapolate(a_, 0, to.a);
     extrapolate(lambda_, a_.size, to.lambda);
@@ -87,53 +89,53 @@ class StageHistory {
     const bool good = steps_ > 1.0 && (!is_surprise(error) || missed <= 0.5 * moved);
     good_[static_cast<std::size_t>(stage)] = good ? 1.0 : 0.0;
     const double steps = good ? steps_of(error) : 0.0;
-    foreseen_ = stage == 0 ? steps : std::min(steps, foreseen_);
+    unsolved_ = stage == 0 ? steps : std::min(steps, unsolved_);
   }
   /// After a step whose stages were solved; `to` has the accelerations at its end.
   void finish(const StateView& to) {
-    in_pairs(a_.size, [&](auto at) { at(beside_) -= at(to.a); });
+    for (std::size_t i = 0; i < a_.size; ++i) beside_[i] -= to.a[i];
     pause_ = std::max(0.0, pause_ - 1.0);
     keep_start();
   }
 
-  /// Whether the stages of a step may be left at their guesses: both, or the first alone. Counts.
-  bool foresees() {
-    if (!(foreseen_ > 0.0)) return false;
-    foreseen_ -= 1.0;
+  /// Whether the stages of a step may be left as predicted: both, or the first alone. Counts.
+  bool leaves_unsolved() {
+    if (!(unsolved_ > 0.0)) return false;
+    unsolved_ -= 1.0;
     return true;
   }
-  bool foresees_first_alone() const { return pause_ > 0.0; }
-  /// Whether what a guess missed (StageSolver::guess_error, unsolved_error) tells that nothing is as foreseen.
+  bool leaves_first_alone() const { return pause_ > 0.0; }
+  /// Whether what a guess missed (StageSolver::guess_error, unsolved_error) exceeds what an iteration may leave.
   static bool is_surprise(double error) { return !(error <= 1.0); }
-  /// These guesses of a: calls use(at, first, end) with the numbers at all places.
+  /// Predicted accelerations of both stages: calls use(i, first, end) for every i.
   template <class Use>
-  void foresee(double c_first, double c_end, Use&& use) {
+  void predict_both(double c_first, double c_end, Use&& use) {
     const Weights first = weights(c_first), end = weights(c_end);
     const Span<const double> now = a_;
     const Span<double> previous = past_[0], older = past_[1], oldest = past_[2], off_first = of_stage(0, off_),
                        off_end = of_stage(1, off_), guess = of_stage(1, guess_);
-    in_pairs(now.size, [&](auto at) {
-      const auto x = at(now), x1 = at(previous), x2 = at(older), x3 = at(oldest);
-      const auto at_first = first.now * x + first.previous * x1 + first.older * x2 - first.oldest * x3 + at(off_first),
-                 at_end = end.now * x + end.previous * x1 + end.older * x2 - end.oldest * x3 + at(off_end);
-      at(guess) = at_end;
-      use(at, at_first, at_end);
-    });
+    for (std::size_t i = 0; i < now.size; ++i) {
+      const double x = now[i], x1 = previous[i], x2 = older[i], x3 = oldest[i];
+      const double at_first = first.now * x + first.previous * x1 + first.older * x2 - first.oldest * x3 + off_first[i],
+                   at_end = end.now * x + end.previous * x1 + end.older * x2 - end.oldest * x3 + off_end[i];
+      guess[i] = at_end;
+      use(i, at_first, at_end);
+    }
   }
   /// What the accelerations at the end of such a step, in `to`, came out otherwise.
   void miss(const StateView& to, Span<double> missed) const {
     const Span<double> guess = of_stage(1, guess_);
-    in_pairs(a_.size, [&](auto at) { at(missed) = at(to.a) + at(beside_) - at(guess); });
+    for (std::size_t i = 0; i < a_.size; ++i) missed[i] = to.a[i] + beside_[i] - guess[i];
   }
   /// Whether it stands, with such an error (StageSolver::unsolved_error). If so, it is over.
   bool stands(double error) {
     if (is_surprise(error)) {
-      foreseen_ = 0.0;
+      unsolved_ = 0.0;
       pause_ = next_pause_;
       next_pause_ = std::min(2.0 * next_pause_ + 1.0, longest_pause);
       return false;
     }
-    foreseen_ = std::min(foreseen_, steps_of(error));
+    unsolved_ = std::min(unsolved_, steps_of(error));
     next_pause_ = std::max(0.0, next_pause_ - worth);
     keep_start();
     return true;
@@ -141,8 +143,7 @@ class StageHistory {
 
  private:
   static constexpr int scalars = 6;
-  static constexpr double small_part = 0.5;      // of what a stage may leave
-  static constexpr double most_foreseen = 15.0;  // steps
+  static constexpr double small_part = 0.5;  // of what a stage may leave
   static constexpr double longest_pause = 1023.0;
   static constexpr double worth = 0.25;  // of a step that stands, in tries that fail
 
@@ -154,13 +155,16 @@ class StageHistory {
                  cube = steps_ > 2.0 ? c * (c + 1.0) * (c + 2.0) / 6.0 : 0.0;
     return {1.0 + linear + square + cube, -linear - 2.0 * square - 3.0 * cube, square + 3.0 * cube, cube};
   }
-  static double steps_of(double error) { return std::floor(small_part / std::max(error, small_part / most_foreseen)); }
+  /// Steps over which an error that grows by itself in each stays a small part of what a stage may leave.
+  double steps_of(double error) const {
+    return error * most_unsolved_ <= small_part ? most_unsolved_ : std::floor(small_part / error);
+  }
   void keep_start() {
     count_ = std::min(steps_ + 1.0, 3.0);
     last_ = last_ < 2.0 ? last_ + 1.0 : 0.0;
     const Span<double> past = past_[2], past_lambda = past.part(a_.size, lambda_.size);
-    in_pairs(a_.size, [&](auto at) { at(past) = at(a_); });
-    in_pairs(lambda_.size, [&](auto at) { at(past_lambda) = at(lambda_); });
+    std::ranges::copy(a_, past.begin());
+    std::ranges::copy(lambda_, past_lambda.begin());
   }
 
   std::size_t count() const { return a_.size + lambda_.size; }
@@ -169,10 +173,11 @@ class StageHistory {
   }
 
   Span<const double> a_, lambda_;
+  double most_unsolved_;
   double steps_;
-  double &count_, &foreseen_;    // foreseen_: steps to come whose stages nobody needs to solve
+  double &count_, &unsolved_;    // unsolved_: steps to come whose stages may be left as predicted
   double& last_;                 // how far the places of past_ have turned
-  double &pause_, &next_pause_;  // steps until both stages may be foreseen, and after the next surprise
+  double &pause_, &next_pause_;  // steps until both stages may be left, and after the next surprise
   Span<double> past_[3];         // (a, lambda) at the starts of the steps before, the last one first
   Span<double> good_, off_, guess_;
   Span<double> beside_;  // a of the last stage less that at the end of the step, where it was solved last

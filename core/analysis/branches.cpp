@@ -16,8 +16,8 @@ constexpr double same = 1e-6;  // of positions relative to the model's size, of 
 double spread(int index, std::size_t dimension) {
   constexpr int primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89};
   const double prime = primes[dimension % std::size(primes)];
-  const double value =
-      (index + 1) * std::sqrt(prime) * (1.0 + 0.1 * static_cast<double>(dimension / std::size(primes)));
+  const std::size_t times_through = dimension / std::size(primes);
+  const double value = (index + 1) * std::sqrt(prime) * (1.0 + 0.1 * static_cast<double>(times_through));
   return value - std::floor(value);
 }
 

@@ -77,7 +77,7 @@ class VelocityMapper {
   void scale_several(const Group& group, Eigen::Ref<Eigen::MatrixXd> rows) const;
   double towards_platform(const Group& group, const Evaluation& e, const Eigen::Vector3d& shift) const;
   double smallest_input(const Group& group, const Eigen::Ref<const Eigen::MatrixXd>& rows) const;
-  void put(Group& group, int row, int body, const double* entries, const Evaluation& e);
+  void put(Group& group, int row, int body, const double* g, const Evaluation& e);
 
   const IdealMechanism& mechanism_;
   const System& system_;

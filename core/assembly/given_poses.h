@@ -22,14 +22,14 @@ class GivenPoses {
   /// Its derivative along increments of q; that of large turns in space to first order.
   Eigen::MatrixXd derivative(std::span<const double> q) const;
   /// Shift [m] and turn [rad] of one body from its given pose; 0 for what the file does not give.
-  double shift(BodyId body, std::span<const double> q) const;
-  double turn(BodyId body, std::span<const double> q) const;
+  double shift(BodyId id, std::span<const double> q) const;
+  double turn(BodyId id, std::span<const double> q) const;
   /// `q` with every body at what the file gives of its pose; what it does not give stays.
   void put_as_given(std::span<double> q) const;
 
  private:
   bool gives_turn(const Body& body) const { return body.angle.has_value() || body.rotation.has_value(); }
-  std::array<double, 3> turn_vector(BodyId body, std::span<const double> q) const;
+  std::array<double, 3> turn_vector(BodyId id, std::span<const double> q) const;
 
   const System& system_;
   const Model& model_;

@@ -449,7 +449,7 @@ class Examination {
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));
     }
-    const std::vector<int> candidates = moving_in(given, idle_spins(given));
+    std::vector<int> candidates = moving_in(given, idle_spins(given));
     if (has_unused_frame(is_moving)) return candidates;
     const auto posed = [&](int b) {
       const Body& body = model_.bodies[at(b)];  // robots start as their file draws them

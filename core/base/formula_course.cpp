@@ -538,7 +538,7 @@ bool FormulaCourse::value_of(std::size_t s, double t, Jet& value) {
       value = stack_[static_cast<std::size_t>(side.which)];
       break;
     default:
-      value = stack_[0] - stack_[static_cast<std::size_t>(1 + side.which)];
+      value = stack_[0] - stack_[1 + static_cast<std::size_t>(side.which)];
   }
   return true;
 }

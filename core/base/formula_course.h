@@ -111,8 +111,8 @@ class FormulaCourse {
   bool look_over(const Span& span, int depth, std::size_t first_open, std::size_t last_open);
   bool look_at_both(const Span& left, const Span& right, const Root* between, int depth, std::size_t first_open);
   void bound(const Side& side, const Span& span, int depth);
-  IntervalJet bound_operation(int i, const IntervalJet* x, const Jet* middle, bool open, const Span& span, int depth);
-  Where decide(std::size_t side, IntervalJet value, const Jet& middle, bool open, const Span& span, int depth);
+  IntervalJet bound_operation(int i, const IntervalJet* x, const Jet* middle, bool hangs, const Span& span, int depth);
+  Where decide(std::size_t side, IntervalJet value, const Jet& middle, bool hangs, const Span& span, int depth);
   Where sought(std::size_t side, const IntervalJet& value, const Span& span);
   Where sought_touch(std::size_t side, const IntervalJet& value, const Span& span);
   bool bends_without_bound(double corner, double by);

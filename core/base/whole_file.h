@@ -6,8 +6,8 @@
 
 namespace freeplay {
 
-/// Writes under a temporary name beside `path` and renames it; a link stays and its file is replaced, a terminal or
+/// Writes under a temporary name beside `given` and renames it; a link stays and its file is replaced, a terminal or
 /// pipe is written to. Makes the folder. Throws Error{file} "cannot-write".
-void write_whole_file(const std::filesystem::path& path, std::string_view text);
+void write_whole_file(const std::filesystem::path& given, std::string_view text);
 
 }  // namespace freeplay

@@ -75,6 +75,7 @@ struct RepeatRuns::Shared {
 };
 
 struct RepeatRuns::Worker {
+  explicit Worker(std::atomic<std::size_t>& at) : current(at) {}
   std::atomic<std::size_t>& current;  ///< the run it is at, 0 between two; seen by both processes
   int report = -1, process = -1;      ///< -1: it has ended
   std::size_t last_reported = 0;

@@ -24,7 +24,7 @@ std::string stdout_failure();
 
 /// Writes messages to stderr, control characters replaced, with colour where it is wanted. A failure there is not
 /// reported, for lack of a place.
-void print_messages(std::string_view text, bool no_color);
+void print_messages(std::string_view messages, bool no_color);
 
 bool stderr_is_terminal();
 

@@ -72,7 +72,7 @@ std::vector<fs::path> plugin_folders() {
 fs::path find_plugin(const std::string& word, const fs::path& base) {
   std::error_code error;
   if (word.find('/') != std::string::npos || ends_in_so(word)) {
-    const fs::path file = fs::path(word).is_absolute() ? fs::path(word) : base / word;
+    fs::path file = fs::path(word).is_absolute() ? fs::path(word) : base / word;
     if (fs::is_regular_file(file, error)) return file;
     throw Error(Error::Category::plugin, "plugin-not-found", "there is no plugin '" + file.string() + "'");
   }

@@ -2,11 +2,12 @@
 // solvers share: units, redundant rows, and why an evaluation failed.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "freeplay/integrator.h"
-#include "freeplay/pairs.h"
 #include "stage/independent_rows.h"
 #include "system/system.h"
 
@@ -37,8 +38,13 @@ class StageEquations {
   std::span<const double> units() const { return unit_; }
   /// Largest part of an increment or of its rates, in units; keeps a NaN.
   double norm(std::span<const double> increment) const {
-    const std::span<const double> per_unit = per_unit_;
-    return largest_in_pairs(unit_.size(), [&](auto at) { return at(increment) * at(per_unit); });
+    double largest = 0.0, not_finite = 0.0;  // not_finite: 0, or NaN where a part is no finite number
+    for (std::size_t i = 0; i < per_unit_.size(); ++i) {
+      const double part = std::abs(increment[i] * per_unit_[i]);
+      not_finite += part - part;
+      largest = std::max(largest, part);
+    }
+    return largest + not_finite;
   }
 
   /// Why the last call of a solver failed: an element's fault, or kind none with `trouble()`.

@@ -6,7 +6,6 @@
 
 #include "base/index.h"
 #include "base/same_bits.h"
-#include "freeplay/pairs.h"
 
 namespace freeplay {
 namespace {
@@ -233,7 +232,7 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   if (!is_factored_here() && !factor()) return false;
   // Nothing of the past enters, so that the same state always has the same accelerations.
   const std::size_t nv = state.a.size, nc = state.lambda.size;
-  in_pairs(nv, [&](auto at) { at(state.a) = at(e_->force); });
+  std::copy_n(e_->force.begin(), nv, state.a.begin());
   for (std::size_t r = 0; r < nc; ++r) state.lambda[r] = dependent_[r] ? 0.0 : e_->gamma[r];
   solve_linear(state.a, state.lambda);
   if (!matrix_.is_well_conditioned()) {
@@ -269,9 +268,8 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   for (int pass = 0; pass < quick_passes; ++pass) {
     solve_rows(right_c_);
     if (!(equations_.norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
-    in_pairs(increment_.size(), [&](auto at) { at(state.v) += at(update_); });
-    in_pairs(multipliers_.size(),
-             [&](auto at) { at(multipliers_) += at(std::span(update_).subspan(increment_.size())); });
+    for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
+    for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += update_[increment_.size() + r];
     // Factors of a regular matrix leave so little of a small change that it is less than v rounds to.
     if (matrix_.is_well_conditioned() || velocities_hold(state.v)) return true;
   }

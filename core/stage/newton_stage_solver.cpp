@@ -5,12 +5,9 @@
 #include <limits>
 
 #include "base/index.h"
-#include "freeplay/pairs.h"
 #include "stage/solver_table.h"
 
 namespace freeplay {
-namespace {}  // namespace
-
 NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters, RunContext* run)
     : system_(system),
       table_(stage_solver_table(*this)),
@@ -71,10 +68,10 @@ StageFactor& NewtonStageSolver::begin_stage(const Stage& stage, StateView& out, 
 }
 
 void NewtonStageSolver::follow_accelerations(const Stage& stage, StateView& out) {
-  in_pairs(increment_.size(), [&](auto at) {
-    at(out.v) = at(stage.v_known) + stage.beta_v * at(out.a);
-    at(increment_) = at(stage.increment_known) + stage.beta_q * at(out.a);
-  });
+  for (std::size_t i = 0; i < increment_.size(); ++i) {
+    out.v[i] = stage.v_known[i] + stage.beta_v * out.a[i];
+    increment_[i] = stage.increment_known[i] + stage.beta_q * out.a[i];
+  }
   system_.coordinates().retract(stage.q_base, increment_, out.q);
   for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
 }
@@ -121,7 +118,8 @@ void NewtonStageSolver::fill_right_side(const Stage& stage, const StateView& out
   if (first) floor_.follow_turns();
   std::fill(right_.begin(), right_.end(), 0.0);
   system_.add_transposed(e, out.lambda, motion);
-  in_pairs(nv, [&](auto at) { at(right_) = at(e.force) - at(system_.mass()) * at(out.a) - at(right_); });
+  const std::span<const double> mass = system_.mass();
+  for (std::size_t i = 0; i < nv; ++i) right_[i] = e.force[i] - mass[i] * out.a[i] - right_[i];
   if (stage.level == ConstraintLevel::position) {
     const bool on_phi = floor_.phi_is_below(1.0);
     if (first) drifted_ = has_drifted(factor, on_phi);
@@ -173,8 +171,8 @@ void NewtonStageSolver::update_unknowns(StateView& out, StageFactor& factor) {
   const std::size_t nv = increment_.size(), nc = update_.size() - nv;
   // Negligible: the evaluated point is kept, so that accelerate() can reuse it.
   if (nc == 0 && factor.matrix.internal().empty() && monitor_.is_negligible()) std::ranges::fill(update_, 0.0);
-  in_pairs(nv, [&](auto at) { at(out.a) += at(update_); });
-  in_pairs(nc, [&](auto at) { at(out.lambda) += at(std::span(update_).subspan(nv)); });
+  for (std::size_t i = 0; i < nv; ++i) out.a[i] += update_[i];
+  for (std::size_t r = 0; r < nc; ++r) out.lambda[r] += update_[nv + r];
 }
 
 bool NewtonStageSolver::has_drifted(StageFactor& factor, bool on_phi) const {
@@ -194,10 +192,10 @@ void NewtonStageSolver::correct_drift(StageFactor& factor, StateView& out) {
   std::fill(right_.begin(), right_.end(), 0.0);
   for (std::size_t r = 0; r < phi.size(); ++r) right_[nv + r] = dependent[r] ? 0.0 : -phi[r] / factor.beta_q;
   solve_linear(factor, work_);
-  in_pairs(nv, [&](auto at) {
-    at(out.a) += part * at(work_);
-    at(drift_) = (1.0 - part) * factor.beta_q * at(work_);
-  });
+  for (std::size_t i = 0; i < nv; ++i) {
+    out.a[i] += part * work_[i];
+    drift_[i] = (1.0 - part) * factor.beta_q * work_[i];
+  }
   for (std::size_t r = 0; r < phi.size(); ++r) out.lambda[r] += part * work_[nv + r];
 }
 

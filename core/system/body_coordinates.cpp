@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "base/index.h"
-#include "freeplay/pairs.h"
 
 namespace freeplay {
 namespace {
@@ -46,7 +45,8 @@ BodyCoordinates::BodyCoordinates(const Model& model) : model_(model) {
 void BodyCoordinates::retract(std::span<const double> base, std::span<const double> increment,
                               std::span<double> q) const {
   if (model_.space == Space::planar) {
-    return in_pairs(q.size(), [&](auto at) { at(q) = at(base) + at(increment); });
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = base[i] + increment[i];
+    return;
   }
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
     spatial::retract_body(&base[7 * b], &increment[6 * b], &q[7 * b]);

@@ -15,6 +15,7 @@ import sys
 import page
 import pareto
 import parts
+import series
 import versus
 from hand_written import HandWritten, source_folder, trajectories
 from problems import PROBLEMS, ROOT
@@ -66,6 +67,8 @@ def parser():
     words.add_argument("--quick", action="store_true", help="fewer runs, nothing large: to see that all of it works")
     words.add_argument("--page", action="store_true", help="write the tables into docs/performance.md, too")
     words.add_argument("--vs", metavar="REV", help="time this tree and the revision REV of git in turn")
+    words.add_argument("--series", action="store_true", help="print tests/bench/series.csv and draw it; measures nothing")
+    words.add_argument("--release", metavar="NAME", help="with --series: first add the ratios of docs/performance.md as NAME")
     words.add_argument("--only-words", action="store_true", help=argparse.SUPPRESS)  # are looked at, before anything is built
     words.add_argument("--program", default=os.path.join(ROOT, "build", "release", "freeplay"), help=argparse.SUPPRESS)
     words.add_argument("--kernels", default=os.path.join(ROOT, "build", "release", "tests", "kernel_bench"), help=argparse.SUPPRESS)
@@ -82,9 +85,13 @@ def parse(arguments):
     reader = parser()
     options, unknown = reader.parse_known_args(arguments)
     for word in unknown:
-        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--page", "--vs", "--help"])))
+        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--page", "--vs", "--series", "--release", "--help"])))
     if options.page and (options.quick or options.vs):
         reader.exit(2, "bench: --page takes neither --quick nor --vs: the page tells what was measured in full\n")
+    if options.series and (options.names or options.quick or options.page or options.vs):
+        reader.exit(2, "bench: --series takes no part and no other option but --release\n")
+    if options.release and not options.series:
+        reader.exit(2, "bench: --release goes with --series\n")
     for name in options.names:
         if name not in PARTS:
             reader.exit(2, "bench: there is no part '%s'%s\n%s\n" % (name, meant(name, PARTS) or ";", help_of_parts()))
@@ -99,11 +106,24 @@ def facts(bench, options):
             "hand_written": bench.hand is not None}
 
 
+def show_series(options):
+    if options.release:
+        series.append(options.release)
+    rows = series.read()
+    os.makedirs(options.build, exist_ok=True)
+    path = os.path.join(options.build, "series.svg")
+    series.draw(rows, path)
+    print(series.text(rows) + "\ndrawn in " + os.path.relpath(path))
+
+
 def main(arguments):
     options = parse(arguments)
     if options.only_words:
         return 0
     try:
+        if options.series:
+            show_series(options)
+            return 0
         bench = Bench(options)
         results = facts(bench, options)
         if options.vs:

@@ -90,6 +90,30 @@ class Bench(ProgramTest):
         self.assertEqual(1, pareto.choose(records, 1e-6, lambda record: again[record["name"]])["name"])
         self.assertIsNone(pareto.choose(records, 1e-12, lambda record: 0.0))
 
+    def test_the_series_is_printed_and_drawn(self):
+        out, _ = self.bench("--series")
+        with open(os.path.join(FOLDER, "series.csv"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        for line in lines[1:]:
+            release, date, revision, machine, *ratios = line.split(",")
+            self.assertRegex(date, r"^\d{4}-\d{2}-\d{2}$")
+            self.assertTrue(machine)
+            for word in (release, revision, *ratios):
+                self.assertIn(word, out)
+            for ratio in ratios:
+                self.assertLess(1.0, float(ratio))
+        self.assertEqual(1 + lines[0].count(","), 4 + len(ratios))
+        self.assertIn("<svg", self.read("bench", "series.svg"))
+        _, err = self.bench("--series", "--quick", code=2)
+        self.assertIn("--series takes no part", err)
+
+    def test_a_release_takes_the_ratios_of_the_page(self):
+        import series
+        with open(os.path.join(ROOT, "docs", "performance.md"), encoding="utf-8") as file:
+            row = series.of_page(file.read(), "9.9", "abc")
+        self.assertEqual(set(series.COLUMNS), set(row))
+        self.assertLess(1.0, float(row["4-rrr bathe"]))
+
     def test_numbers_of_the_tables(self):
         import timing
         self.assertEqual((2.0, 2.5), (timing.median([3.0, 1.0, 2.0]), timing.median([1.0, 2.0, 3.0, 4.0])))

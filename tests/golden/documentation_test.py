@@ -61,6 +61,10 @@ class Tutorial:
             file.write(text)
 
 
+# Words that ./dev does not pass on to the program, and that take long or change the sources.
+OF_DEV = ("test", "fuzz", "build", "format", "lint", "coverage", "docs", "bench", "accuracy", "clean")
+
+
 class Documentation(ProgramTest):
     """In an empty folder that sees the mechanisms; ./dev stands for the program where it only passes on."""
 
@@ -74,7 +78,7 @@ class Documentation(ProgramTest):
         for line in lines:
             words = shlex.split(line)
             self.assertEqual("./dev", words[0], line)
-            if words[1] in ("test", "fuzz", "build", "format", "docs", "bench", "accuracy", "clean"):
+            if words[1] in OF_DEV:
                 continue
             done = subprocess.run([PROGRAM, *words[1:]], cwd=self.folder, capture_output=True, text=True)
             self.assertEqual(0, done.returncode, "%s\n%s" % (line, done.stderr))
@@ -84,6 +88,23 @@ class Documentation(ProgramTest):
 
     def test_getting_started(self):
         self.run_page(os.path.join("docs", "getting-started.md"))
+
+    def test_contributing(self):
+        self.run_page(os.path.join("docs", "contributing.md"))
+
+    def test_every_page_asks_dev_for_words_that_it_has(self):
+        told = subprocess.run([os.path.join(ROOT, "dev")], capture_output=True, text=True, check=True).stdout
+        words = set(re.findall(r"^  ([a-z]+)", told, re.M))
+        self.assertLess({"run", *OF_DEV}, words)
+        commands = set(re.findall(r"^  ([a-z-]+)", self.freeplay("--help")[0], re.M))
+        asked = set()
+        for folder, _, names in [(ROOT, [], ["README.md", "CHANGELOG.md"]), *os.walk(os.path.join(ROOT, "docs"))]:
+            for name in names:
+                if name.endswith(".md"):
+                    with open(os.path.join(folder, name), encoding="utf-8") as file:
+                        asked |= set(re.findall(r"\./dev ([a-z][a-z-]*)", file.read()))
+        self.assertLess(5, len(asked))
+        self.assertEqual(set(), asked - words - commands)
 
     def test_spatial(self):
         self.run_page(os.path.join("docs", "spatial.md"))

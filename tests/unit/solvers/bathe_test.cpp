@@ -104,7 +104,7 @@ TEST(Bathe, StagesHoldPositionsAndThenVelocitiesAreProjected) {
 }
 
 // The accelerations of the first stage are off those of the motion by a third of their change, in every step alike.
-TEST(Bathe, PredictsStagesFromTheStepsBefore) {
+TEST(Bathe, GuessesStagesFromThoseOfTheStepsBefore) {
   Trial run(0.5, 0.0, {}, 1.0, 0.0);
   for (int step = 0; step < 8; ++step) run.step(0.01);
   const double a = run.a[0];
@@ -119,8 +119,8 @@ TEST(Bathe, PredictsStagesFromTheStepsBefore) {
 // What smooth steps may leave of the velocities of their stages: half of what is allowed, in each.
 constexpr double allowed = 1e-8, short_step = 1e-3;
 
-struct Prediction : ::testing::Test {
-  explicit Prediction(Oscillator model = {.zeta = 0.05, .internal = false})
+struct UnsolvedStages : ::testing::Test {
+  explicit UnsolvedStages(Oscillator model = {.zeta = 0.05, .internal = false})
       : told([&] {
           Oscillator telling = model;
           telling.allowed = allowed;
@@ -136,8 +136,8 @@ struct Prediction : ::testing::Test {
     ++steps;
     return run.oscillator.stages.size() - before;
   }
-  /// Goes on to a step whose stages are left as guessed.
-  void foresee() {
+  /// Goes on to a step whose stages are left as predicted.
+  void reach_unsolved_step() {
     int i = 0;
     while (step() != 0 && i < 100) ++i;
     ASSERT_LT(i, 100);
@@ -152,7 +152,7 @@ struct Prediction : ::testing::Test {
   int steps = 0;
 };
 
-TEST_F(Prediction, StagesOfSmoothStepsAreSolvedOnceInSixteen) {
+TEST_F(UnsolvedStages, OfSmoothStepsAreSolvedOnceInSixteen) {
   for (int i = 0; i < 10; ++i) step();
   std::size_t stages = 0;
   for (int i = 0; i < 320; ++i) stages += step();
@@ -161,7 +161,7 @@ TEST_F(Prediction, StagesOfSmoothStepsAreSolvedOnceInSixteen) {
   EXPECT_NE(run.v[0], full.v[0]);
 }
 
-TEST_F(Prediction, EveryStepEndsWithTheAccelerationsOfItsOwnState) {
+TEST_F(UnsolvedStages, EndInAccelerationsOfTheStateOfTheStep) {
   for (int i = 0; i < 40; ++i) {
     step();
     EXPECT_EQ(run.a[0], run.oscillator.acceleration(run.q[0], run.v[0], run.t)) << i;
@@ -169,8 +169,8 @@ TEST_F(Prediction, EveryStepEndsWithTheAccelerationsOfItsOwnState) {
   }
 }
 
-TEST_F(Prediction, AStepWithAWrongPredictionIsMadeAgainWithItsStagesSolved) {
-  foresee();
+TEST_F(UnsolvedStages, AreSolvedInAStepThatIsNotAsPredicted) {
+  reach_unsolved_step();
   for (Trial* both : {&run, &full}) {
     both->oscillator.push = 3.0;
     both->oscillator.push_from = both->t + 0.3 * short_step;
@@ -180,19 +180,19 @@ TEST_F(Prediction, AStepWithAWrongPredictionIsMadeAgainWithItsStagesSolved) {
   EXPECT_NEAR(run.v[0] - v, full.v[0] - v, allowed * steps);
   EXPECT_NEAR(run.q[0] - q, full.q[0] - q, allowed * steps * short_step);
   expect_alike();
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(step(), 2u);  // for a while nothing is foreseen
-  foresee();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(step(), 2u);  // for a while every stage is solved
+  reach_unsolved_step();
   expect_alike();
 }
 
-TEST_F(Prediction, StepsOfAnotherLengthAndRestartsDropThePrediction) {
+TEST_F(UnsolvedStages, AreSolvedAgainAfterOtherStepsAndRestarts) {
   for (int i = 0; i < 40; ++i) step();
-  foresee();
+  reach_unsolved_step();
   std::size_t before = run.oscillator.stages.size();
   run.step(0.9 * short_step);
   EXPECT_EQ(run.oscillator.stages.size(), before + 2);
   for (int i = 0; i < 40; ++i) step();
-  foresee();
+  reach_unsolved_step();
   StateView state = run.state();
   const abi::StageSolverTable table = run.oscillator.table();
   run.integrator.call(&abi::IntegratorTable::restart, &state, &table);
@@ -208,6 +208,14 @@ TEST(Bathe, WhatAccelerationsAtTheEndAlwaysDifferByIsNoSurprise) {
   EXPECT_EQ(run.oscillator.stages.size() - before, 2 * 320u / 16u);
 }
 
+TEST(Bathe, EveryStageIsSolvedWhereNoUnsolvedStepsAreAllowed) {
+  ParameterStub stub = parameters(0.5, 0.0);
+  stub.numbers["unsolved_steps"] = 0;
+  OscillatorRun run("bathe", stub, {.zeta = 0.05, .allowed = allowed, .internal = false}, 1.0, 0.0, 0.0);
+  for (int i = 0; i < 50; ++i) run.step(short_step);
+  EXPECT_EQ(run.oscillator.stages.size(), 100u);
+}
+
 TEST(Bathe, EveryStageIsSolvedWhereInternalVariablesOrErrorsNeedIt) {
   for (const bool errors : {false, true}) {
     Trial run(0.5, 0.0, {.estimates = errors, .allowed = allowed, .internal = !errors}, 1.0, 0.0);
@@ -217,7 +225,7 @@ TEST(Bathe, EveryStageIsSolvedWhereInternalVariablesOrErrorsNeedIt) {
 }
 
 // At rest nothing tells how stiff a motion is, until something disturbs it.
-TEST(Bathe, StiffMotionsStayDampedWherePredictionsAreTaken) {
+TEST(Bathe, StiffMotionsStayDampedWhereStagesAreLeftAsPredicted) {
   Trial run(0.5, 0.0,
             {.omega = 1e4, .zeta = 0.01, .allowed = allowed, .push = 1.0, .push_from = 0.0, .internal = false}, 1e-8,
             0.0);
@@ -242,8 +250,8 @@ TEST(Bathe, StiffMotionsStayDampedWherePredictionsAreTaken) {
   }
 }
 
-// Each try that fails costs a step's end. Between them the first stage alone is left as guessed.
-TEST(Bathe, AMotionThatIsNeverAsPredictedIsSeldomPredicted) {
+// Each try that fails costs a step's end. Between them the first stage alone is left as predicted.
+TEST(Bathe, WhatIsNeverAsPredictedIsSeldomTried) {
   const Oscillator silent{.zeta = 0.05, .stages_to_converge = 10000, .internal = false};
   Oscillator off = silent;
   off.allowed = allowed;

@@ -1,0 +1,100 @@
+"""The checks of ./dev lint find what they are for, and let pass what is right."""
+import contextlib
+import io
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import commits
+import lint
+import sources
+import spelling
+
+
+class Lint(unittest.TestCase):
+    def test_a_suppression_without_check_or_reason_is_found(self):
+        good = ("x();  // NOLINT(bugprone-x): the table is C's", "// NOLINTNEXTLINE(misc-y,misc-z): generated",
+                "// False alarm of GCC 12.\n#pragma GCC diagnostic ignored \"-Wx\"")
+        bad = ("x();  // NOLINT", "x();  // NOLINT(bugprone-x)", "// NOLINTNEXTLINE: no check",
+               "\n#pragma GCC diagnostic ignored \"-Wx\"")
+        for text in good:
+            self.assertEqual([], lint.suppressions_without_reason("a.cpp", text), text)
+        for text in bad:
+            self.assertEqual(1, len(lint.suppressions_without_reason("a.cpp", text)), text)
+
+    def test_a_subject_has_at_most_72_characters(self):
+        found = commits.too_long([("a1", "x" * 72), ("b2", "y" * 73)])
+        self.assertEqual(["b2"], [finding.path for finding in found])
+        self.assertIn("73 characters", str(found[0]))
+
+    def test_code_and_numbers_are_no_prose_and_lines_stay(self):
+        text = "a `colr`\n```sh\nwrng\n```\n<!-- bench x -->[b](c/d.md) ur5 1e-6m https://e.f/g h's"
+        self.assertEqual([["a"], [], [], [], ["[b", "h"]], [line.split() for line in spelling.prose(text).split("\n")])
+
+    @unittest.skipUnless(shutil.which("hunspell"), "without hunspell")
+    def test_words_are_british_or_in_the_list(self):
+        self.assertEqual({"colr", "color"}, spelling.unknown("The colour of a penetration, color, colr, the Lankarani law.\n"))
+
+    def test_words_of_the_list_are_sorted_and_once(self):
+        with open(spelling.WORDS, encoding="utf-8") as file:
+            words = file.read().split()
+        self.assertEqual(sorted(set(words), key=lambda word: (word.lower(), word)), words)
+
+    def test_units_are_those_of_changed_sources_and_of_users_of_changed_headers(self):
+        with tempfile.TemporaryDirectory() as folder:
+            unity = os.path.join(folder, "unity_0_cxx.cxx")
+            with open(unity, "w", encoding="utf-8") as file:
+                file.write('#include "%s/core/base/unit.cpp"\n#include "%s/core/base/expression.cpp"\n' % (lint.ROOT, lint.ROOT))
+            single = os.path.join(lint.ROOT, "joints", "revolute.cpp")
+            of_tests = os.path.join(lint.ROOT, "tests", "bench", "step_bench.cpp")
+            with open(os.path.join(folder, "compile_commands.json"), "w", encoding="utf-8") as file:
+                file.write("[%s]" % ", ".join('{"file": "%s", "command": "c++ -fvect-cost-model=very-cheap -c"}' % path
+                                              for path in (unity, single, of_tests)))
+            units = lint.Units(folder)
+            self.assertEqual(sorted([unity, single]), units.all())
+            self.assertEqual([unity], units.of(["core/base/unit.cpp", "README.md"]))
+            self.assertEqual([unity], units.of(["core/base/expression.h"]))
+            self.assertEqual([single], units.of(["joints/revolute.cpp", "tests/bench/step_bench.cpp"]))
+            with open(os.path.join(units.folder, "compile_commands.json"), encoding="utf-8") as file:
+                self.assertNotIn("vect-cost-model", file.read())
+
+    def test_words_that_are_no_checks_or_revisions_are_refused(self):
+        for words, answer in ((["spell"], "there is no check 'spell'"), (["--since", "no-such"], "no revision 'no-such'")):
+            with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as ended:
+                lint.parse(words)
+            self.assertEqual(2, ended.exception.code)
+            self.assertIn(answer, err.getvalue())
+
+    @unittest.skipUnless(shutil.which("git"), "without git")
+    def test_changed_files_are_those_since_a_revision(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def git(*words):
+                subprocess.run(["git", "-C", folder, "-c", "user.name=a", "-c", "user.email=a@b", *words], check=True,
+                               capture_output=True)
+
+            def write(name, text):
+                with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                    file.write(text)
+            git("init", "-q")
+            for name in ("a.cpp", "b.cpp"):
+                write(name, "")
+                git("add", ".")
+                git("commit", "-qm", name)
+            write("c.cpp", "")
+            root, sources.ROOT = sources.ROOT, folder
+            try:
+                self.assertEqual(["b.cpp", "c.cpp"], sources.changed())
+                write("a.cpp", "1")
+                self.assertEqual(["a.cpp", "c.cpp"], sources.changed("HEAD"))
+                shutil.rmtree(os.path.join(folder, ".git"))
+                self.assertEqual([], sources.changed())
+            finally:
+                sources.ROOT = root
+
+
+if __name__ == "__main__":
+    unittest.main()
