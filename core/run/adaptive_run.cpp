@@ -34,11 +34,13 @@ constexpr double detour_lengths[] = {0.9, 1.1, 0.8, 1.2, 0.7, 1.4, 0.6, 1.7, 0.5
 bool Simulation::Impl::run_adaptive(const RunHooks& hooks) {
   while (accepted.t() < settings.end) {
     const long before = outcome.steps;
-    const bool going = adaptive_step() && check_stop() && check_interrupt(hooks);
+    const bool going = adaptive_step() && check_stop();
     const bool due = accepted.t() >= row_time(next_row);
     if (outcome.steps > before && (due || !going) && !write_row()) return false;
     if (!going) return false;
     while (row_time(next_row) <= accepted.t() && accepted.t() < settings.end) ++next_row;
+    if (hooks.stepped) hooks.stepped();
+    if (!check_interrupt(hooks)) return !due && write_row();
   }
   return true;
 }

@@ -82,6 +82,14 @@ class EnergyAccount final : public Flows {
   /// Of Model::force_elements on the bodies [J].
   std::span<const double> force_work() const { return force_work_; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.dt_, self.initial_, self.row_power_, self.row_work_, self.row_power_before_, self.row_work_before_);
+    archive(self.driver_work_, self.joint_loss_, self.force_work_, self.power_, self.integral_);
+    archive.list(self.stored_start_);
+    archive(self.power_earlier_, self.steps_alike_, self.acting_, self.power_before_, self.integral_before_);
+  }
+
  private:
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
             double row_work);

@@ -46,6 +46,12 @@ class InputActivity {
   /// To be asked of a run that has not begun.
   std::vector<Unresolved> closer_than(double step);
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.formulas_, self.tables_, self.joints_, self.told_from_, self.told_until_, self.told_);
+    archive(self.seen_from_, self.seen_to_);
+  }
+
  private:
   enum class Unit { force, torque, length, angle, other };
   struct Formula {
@@ -57,6 +63,10 @@ class InputActivity {
     Unit unit;
     int bends = 0;            ///< the derivative that moves bodies whose motion is known: no error of a step shows it
     double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.course, self.most);
+    }
   };
   struct Table {
     const std::string* name;
@@ -65,6 +75,10 @@ class InputActivity {
     Unit unit;
     int bends = 0;
     double most = unbounded;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.most);
+    }
   };
   struct TimedJoint {
     int joint;
@@ -72,6 +86,10 @@ class InputActivity {
     std::size_t signals;
     double most = unbounded;
     bool varies = false;  ///< it has been seen to: then the shortest steps are looked at, too
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.most, self.varies);
+    }
   };
 
   void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit,

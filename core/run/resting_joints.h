@@ -23,11 +23,21 @@ class RestingJoints {
   bool stayed();
   bool held(double dt, const Evaluation& e);
 
+  /// Besides what System::rest() holds.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.candidates_, self.all_awake_);
+  }
+
  private:
   struct Candidate {
     int joint, block;  ///< into System::force_blocks()
     int marker_a, marker_b;
     double room = 0.0, speed = 0.0;  ///< of one that rests: distance that is left [m], relative speed [m/s]
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.room, self.speed);
+    }
   };
   void look(Candidate& candidate, const Evaluation& e) const;
 

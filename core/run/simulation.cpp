@@ -523,7 +523,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   if (hooks.profile != nullptr) hooks.profile->start();
   if (hooks.blind_to_inputs) inputs.reset();
   outcome.time = accepted.t();
-  if (begin() && write_row()) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
+  if (resumed || (begin() && write_row())) adaptive ? run_adaptive(hooks) : run_fixed(hooks);
   outcome.wall_seconds = seconds_since(started);
   explain_dead_point();
   if (hooks.profile != nullptr) hooks.profile->stop();
@@ -540,7 +540,13 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
 
 Simulation::Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks)
     : impl_(std::make_unique<Impl>(system, start, channels, sinks)) {}
+Simulation::Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks,
+                       const RunState& state)
+    : Simulation(system, start, channels, sinks) {
+  impl_->restore(state);
+}
 Simulation::~Simulation() = default;
+RunState Simulation::save() const { return impl_->save(); }
 Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->statistics; }
 const RunExtremes& Simulation::extremes() const { return impl_->watch.seen(); }

@@ -10,6 +10,7 @@
 
 #include "assembly/assembly.h"
 #include "model/channel.h"
+#include "run/run_state.h"
 #include "run/sink.h"
 #include "run/statistics.h"
 #include "run/trust.h"
@@ -36,6 +37,8 @@ struct RunHooks {
   const std::atomic<int>* interrupt = nullptr;  ///< nonzero: end after the present step
   /// Called at most ten times a second: time reached, steps so far.
   std::function<void(double, long)> progress;
+  /// Called after every accepted step, when its rows and events are written: the instants at which to save().
+  std::function<void()> stepped;
   Profile* profile = nullptr;  ///< told where the time goes
   /// For tests of what finds wrong runs: steps go over what forces and other inputs do inside them.
   bool blind_to_inputs = false;
@@ -46,8 +49,14 @@ class Simulation {
  public:
   /// `system` and `start` must outlive the simulation.
   Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks);
+  /// Goes on from `state`, which was saved in a run of the same model with the same start and channels; the sinks get
+  /// what comes next. Throws Error{input} "state-mismatch" where it is the state of something else.
+  Simulation(System& system, const Start& start, const Channels& channels, std::span<Sink* const> sinks,
+             const RunState& state);
   ~Simulation();
   Outcome run(const RunHooks& hooks);
+  /// The run as it is while RunHooks::stepped is called.
+  RunState save() const;
   const Statistics& statistics() const;
   const RunExtremes& extremes() const;
   /// The last accepted row, every channel.

@@ -37,6 +37,13 @@ struct Simulation::Impl {
 
   Outcome run(const RunHooks& hooks);
 
+  // A run that goes on (saved_run.cpp).
+  RunState save() const;
+  void restore(const RunState& state);
+  Archive features() const;
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive);
+
   // Each returns false when the run is over, with `outcome` filled.
   bool begin();
   bool step(double dt, bool& converged);
@@ -64,8 +71,20 @@ struct Simulation::Impl {
   bool check_interrupt(const RunHooks& hooks);
 
   // Runs in fixed steps (fixed_run.cpp).
+  /// On the way to the next output instant: steps of one size, the last of which ends there.
+  struct FixedLeg {
+    double from = 0.0, target = -unbounded, goal = -unbounded;  ///< goal: where the present step of full size ends [s]
+    double dt = 0.0;                              ///< of the next attempt [s]
+    long count = 0, step = 0;                     ///< steps of full size: all, and the present one; 0: none has begun
+    long steps_before = 0;                        ///< accepted before this way
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.from, self.target, self.goal, self.dt, self.count, self.step, self.steps_before);
+    }
+  };
   bool run_fixed(const RunHooks& hooks);
-  bool advance_to(double target, const RunHooks& hooks);
+  bool begin_leg();
+  bool fixed_step();
 
   // Corners of inputs (motion_kinks.cpp).
   bool next_corner(double dt, double& corner);
@@ -144,7 +163,7 @@ struct Simulation::Impl {
   std::vector<Sink*> sinks;
   EnergyAccount energy;
   IntegratorLayout integrator_layout;
-  bool adaptive;
+  bool adaptive, resumed = false;
   int flows;  ///< integrals that the integrator carries along
   NewtonStageSolver solver;
   StepControl control;
@@ -177,11 +196,16 @@ struct Simulation::Impl {
     double time = 0.0;
     std::size_t values = 0;  ///< offset into warning_values
   };
-  std::vector<Warning> joint_warnings;  ///< by joint
+  std::vector<Warning> joint_warnings;     ///< by joint
+  std::vector<std::string> warning_texts;  ///< of a run that goes on: those of joint_warnings
   std::vector<double> warning_values;   ///< the joints' own channels when they warned
   struct SpeedJump {
     int count = 0;
     double time = 0.0, from = 0.0, to = 0.0;  ///< of the first
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.count, self.time, self.from, self.to);
+    }
   };
   std::vector<SpeedJump> speed_jumps;  ///< by driver
   std::vector<TimeValue> motion_before, motion_behind;
@@ -202,6 +226,7 @@ struct Simulation::Impl {
   double allowed = 0.0;        // by which positions may err in one step, with error control [m]
   bool row_is_known = false;   // `row` is that of the accepted state
   long next_row = 1;
+  FixedLeg leg;  ///< in fixed steps
   std::chrono::steady_clock::time_point started;
   double last_progress = 0.0;
   static constexpr unsigned of_equations = term_position | term_velocity | term_force;

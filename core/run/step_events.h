@@ -63,9 +63,21 @@ class StepEvents {
     int joint, event;
     std::size_t fields;  ///< offset into field_values()
     std::size_t count;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.time, self.joint, self.event, self.fields, self.count);
+    }
   };
   const std::vector<Happening>& happenings() const { return happenings_; }
   std::span<const double> fields(const Happening& h) const { return {values_.data() + h.fields, h.count}; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.armed_, self.seen_, self.start_, self.start_rate_, self.end_, self.end_rate_);
+    archive(self.earlier_, self.earlier_rate_, self.start_time_, self.earlier_by_);
+    archive.list(self.happenings_);
+    archive.list(self.values_);
+  }
 
  private:
   /// A step and its ends as joints see them: with the history that they have now.

@@ -45,6 +45,11 @@ class StageEquations {
   const char* trouble() const { return trouble_; }
   void note_trouble(const char* text) { trouble_ = text; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.rows_, self.e_);
+  }
+
  private:
   [[gnu::cold]] bool note_fault();  // false
 

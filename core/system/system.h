@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/archive.h"
 #include "component/joint_ref.h"
 #include "linear/sparse_matrix.h"
 #include "system/declared_rows.h"
@@ -109,6 +110,11 @@ struct Rest {
   bool now = false;
   double radius = 0.0, from[3] = {};
   mutable bool left = false;  ///< set by evaluations that found it elsewhere, and asked it
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.now, self.radius, self.from, self.left);
+  }
 
   bool holds(const MarkerKinematics& a, const MarkerKinematics& b) const {
     double squared = 0.0;
@@ -248,6 +254,12 @@ class System {
   /// For the coordinates and velocities of all bodies, as in Evaluation::q and Evaluation::v.
   double kinetic_energy(std::span<const double> v) const;
   double gravity_potential(std::span<const double> q) const;
+
+  /// What a run changes: all else follows from the model and its start.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.rests_);
+  }
 
  private:
   int bodies() const { return static_cast<int>(model_.bodies.size()); }
@@ -435,6 +447,18 @@ struct Evaluation {
   unsigned filled = 0;
   double time = 0.0;
   std::vector<double> z, h;
+
+  /// All that may be read again without being filled before.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive.doubles(self.markers, self.arms, self.spatial_arms, self.turns, self.spatial_turns, self.shifted);
+    archive.doubles(self.coordinate_rows, self.motion, self.other_motion);
+    archive(self.q, self.v, self.driven_a, self.driven_asked, self.phi, self.nu, self.gamma, self.jacobian);
+    archive(self.force, self.force_q, self.force_v, self.gyroscopic_v, self.internal_derivatives);
+    archive(self.coordinate, self.coordinate_rate, self.potential, self.potential_rate, self.wrench);
+    archive(self.internal_rate, self.applied, self.acts, self.acting);
+    archive(self.driven_time, self.motion_time, self.other_motion_time, self.filled, self.time, self.z, self.h);
+  }
 };
 
 /// An Evaluation that changes places with another one by its address.
@@ -445,6 +469,10 @@ class KeptEvaluation {
   operator const Evaluation&() const { return *evaluation_; }
   Evaluation* operator->() { return evaluation_.get(); }
   const Evaluation* operator->() const { return evaluation_.get(); }
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(*self.evaluation_);
+  }
   friend void swap(KeptEvaluation& a, KeptEvaluation& b) noexcept { a.evaluation_.swap(b.evaluation_); }
 
  private:
