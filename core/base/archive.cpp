@@ -5,9 +5,7 @@
 
 namespace freeplay {
 
-bool operator==(const Archive& a, const Archive& b) {
-  return same_bits(a.reals, b.reals) && a.integers == b.integers;
-}
+bool operator==(const Archive& a, const Archive& b) { return same_bits(a.reals, b.reals) && a.integers == b.integers; }
 
 void ArchiveReader::require(bool good) {
   if (good) return;

@@ -28,7 +28,9 @@ struct Archive {
 
 /// Lists their own members, see above.
 template <class T, class A>
-concept Exchanged = requires(T& value, A& archive) { T::exchange(value, archive); };
+concept Exchanged = requires(T& value, A& archive) {
+  T::exchange(value, archive);
+};
 
 class ArchiveWriter {
  public:
@@ -184,7 +186,8 @@ class ArchiveReader {
     expect(static_cast<std::int64_t>(values.size()));
     const std::size_t count = values.size() * (sizeof(T) / sizeof(double));
     require(count <= archive_.reals.size() - real_);
-    if (count > 0) std::memcpy(static_cast<void*>(values.data()), archive_.reals.data() + real_, count * sizeof(double));
+    if (count > 0)
+      std::memcpy(static_cast<void*>(values.data()), archive_.reals.data() + real_, count * sizeof(double));
     real_ += count;
   }
 

@@ -1,82 +1,102 @@
-// Simulation: runs in fixed steps.
+#include "run/fixed_run.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
 constexpr double smallest_step = 1e-3;  // of the step asked for
 }  // namespace
 
+FixedRun::FixedRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
+                   Recorder& recorder, EnergyGrowth& growth, Corners& corners, RunEnd& end)
+    : run_(run),
+      failure_(failure),
+      attempt_(attempt),
+      acceptance_(acceptance),
+      recorder_(recorder),
+      growth_(growth),
+      corners_(corners),
+      end_(end) {}
+
 // The way to the next output instant.
-bool Simulation::Impl::begin_leg() {
-  const double from = accepted.t(), target = row_time(next_row++);
+bool FixedRun::begin_leg() {
+  const double from = run_.accepted.t(), target = recorder_.take_next_row();
   // Beyond this the time itself could not be advanced: t + dt would round to t.
-  if (!((target - from) / settings.step < 1e15)) {
-    return fail(4, fmt::format("t = {:.9g} s: a step of {:.3g} s is too small to advance the time", from,
-                               settings.step));
+  if (!((target - from) / run_.settings.step < 1e15)) {
+    return failure_.fail(
+        4, fmt::format("t = {:.9g} s: a step of {:.3g} s is too small to advance the time", from, run_.settings.step));
   }
-  const long count = std::max(1L, std::lround(std::ceil((target - from) / settings.step - 1e-6)));
-  leg = {.from = from, .target = target, .goal = from, .count = count, .steps_before = outcome.steps};
+  const long count = std::max(1L, std::lround(std::ceil((target - from) / run_.settings.step - 1e-6)));
+  leg_ = {.from = from, .target = target, .goal = from, .count = count, .steps_before = run_.outcome.steps};
   return true;
 }
 
 // One accepted step. An attempt that does not converge is made again in half its length, and the rest of the step of
 // full size follows in steps as short.
-bool Simulation::Impl::fixed_step() {
+bool FixedRun::step() {
   // Output instants may be closer than times can tell apart.
-  if (!(accepted.t() < leg.target)) return true;
-  const double smallest = smallest_step * settings.step;
-  if (!(accepted.t() < leg.goal)) {
-    ++leg.step;
-    leg.goal = leg.step == leg.count ? leg.target : leg.from + static_cast<double>(leg.step) * settings.step;
-    leg.dt = leg.goal - accepted.t();
+  if (!(run_.accepted.t() < leg_.target)) return true;
+  const double smallest = smallest_step * run_.settings.step;
+  if (!(run_.accepted.t() < leg_.goal)) {
+    ++leg_.step;
+    leg_.goal = leg_.step == leg_.count ? leg_.target : leg_.from + static_cast<double>(leg_.step) * run_.settings.step;
+    leg_.dt = leg_.goal - run_.accepted.t();
   }
-  double& dt = leg.dt;
+  double& dt = leg_.dt;
   for (;;) {
-    const bool last = accepted.t() + dt >= leg.goal - 0.5 * smallest;
-    if (last) dt = leg.goal - accepted.t();
+    const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * smallest;
+    if (last) dt = leg_.goal - run_.accepted.t();
     bool converged = false;
-    if (!step(dt, converged)) return false;
+    if (!attempt_.make(dt, converged)) return false;
     if (!converged) {
-      if (!resting.stayed()) continue;
-      ++outcome.rejected;
+      if (!run_.resting.stayed()) continue;
+      ++run_.outcome.rejected;
       dt *= 0.5;
-      if (dt < smallest && plugin_fault.kind == Fault::Kind::plugin) return fail_with(plugin_fault, accepted.t());
-      if (dt < smallest) return fail(4, why_not_converged(dt));
+      if (dt < smallest && run_.plugin_fault.kind == Fault::Kind::plugin)
+        return failure_.fail_with(run_.plugin_fault, run_.accepted.t());
+      if (dt < smallest) return failure_.fail(4, failure_.why_not_converged(dt));
       continue;
     }
-    if (last) trial.t() = leg.goal;
-    if (!evaluate_all(trial, e_trial)) return fail_with(e_trial->fault, trial.t());
-    if (!resting.held(dt, e_trial)) continue;
-    if (gains_energy()) {
-      ++outcome.rejected;
+    if (last) run_.trial.t() = leg_.goal;
+    if (!attempt_.evaluate_all(run_.trial, run_.e_trial))
+      return failure_.fail_with(run_.e_trial->fault, run_.trial.t());
+    if (!run_.resting.held(dt, run_.e_trial)) continue;
+    if (growth_.too_large()) {
+      ++run_.outcome.rejected;
       dt *= 0.5;
-      if (dt < smallest) return fail(4, why_energy_grows(dt));
+      if (dt < smallest) return failure_.fail(4, failure_.why_energy_grows(dt, growth_.gained()));
       continue;
     }
-    for (double kink = kinks.next(accepted.t(), trial.t()); kink <= trial.t(); kink = kinks.next(kink, trial.t())) {
-      if (note_jumps(kink)) book_jump(kink);
-    }
-    return accept({});
+    return accept();
   }
 }
 
-bool Simulation::Impl::run_fixed(const RunHooks& hooks) {
-  while (accepted.t() < settings.end) {
-    if (!(accepted.t() < leg.target) && !begin_leg()) return false;
-    const bool going = fixed_step() && check_stop();
-    const bool arrived = going && !(accepted.t() < leg.target);
-    // A run that was stopped keeps the state it stopped in.
-    if ((arrived || (!going && outcome.steps > leg.steps_before)) && !write_row()) return false;
-    if (!going) return false;
-    if (hooks.stepped) hooks.stepped();
-    if (!check_interrupt(hooks)) return !arrived && write_row();
+// A blow inside the step does work.
+bool FixedRun::accept() {
+  DriveKinks& kinks = run_.kinks;
+  const double from = run_.accepted.t(), to = run_.trial.t();
+  for (double kink = kinks.next(from, to); kink <= to; kink = kinks.next(kink, to)) {
+    if (corners_.note_jumps(kink)) corners_.book_jump(kink);
   }
-  return true;
+  return acceptance_.accept();
+}
+
+void FixedRun::run(const RunHooks& hooks) {
+  while (run_.accepted.t() < run_.settings.end) {
+    if (!(run_.accepted.t() < leg_.target) && !begin_leg()) return;
+    const bool going = step() && end_.check_stop();
+    const bool arrived = going && !(run_.accepted.t() < leg_.target);
+    // A run that was stopped keeps the state it stopped in.
+    if ((arrived || (!going && run_.outcome.steps > leg_.steps_before)) && !recorder_.write_row()) return;
+    if (!going) return;
+    if (hooks.stepped) hooks.stepped();
+    if (end_.check_interrupt(hooks)) continue;
+    if (!arrived) recorder_.write_row();
+    return;
+  }
 }
 
 }  // namespace freeplay

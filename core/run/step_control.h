@@ -46,7 +46,8 @@ class StepControl {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.laws_, self.law_, self.events_, self.next_, self.last_error_, self.rejected_, self.first_, self.broken_);
+    archive(self.laws_, self.law_, self.events_, self.next_, self.last_error_, self.rejected_, self.first_,
+            self.broken_);
   }
 
  private:

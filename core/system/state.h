@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "freeplay/integrator.h"
 #include "base/archive.h"
+#include "freeplay/integrator.h"
 #include "system/guard_marks.h"
 #include "system/layout.h"
 
