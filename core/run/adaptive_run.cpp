@@ -30,7 +30,8 @@ StepLimits step_limits(const Settings& settings) {
 }  // namespace
 
 AdaptiveRun::AdaptiveRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
-                         Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit, RunEnd& end)
+                         Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit,
+                         EndCheck& end)
     : run_(run),
       failure_(failure),
       attempt_(attempt),

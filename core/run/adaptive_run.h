@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
+#include "run/end_check.h"
 #include "run/event_pursuit.h"
-#include "run/run_end.h"
 #include "run/step_acceptance.h"
 #include "run/step_control.h"
 
@@ -13,7 +13,7 @@ namespace freeplay {
 class AdaptiveRun {
  public:
   AdaptiveRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
-              Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit, RunEnd& end);
+              Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit, EndCheck& end);
 
   /// To the end of the run, from the accepted state.
   void run(const RunHooks& hooks);
@@ -55,7 +55,7 @@ class AdaptiveRun {
   EnergyGrowth& growth_;
   Corners& corners_;
   EventPursuit& pursuit_;
-  RunEnd& end_;
+  EndCheck& end_;
   StepControl control_;
 };
 

@@ -1,7 +1,7 @@
 // EnergyGrowth: steps that end with energy that nothing has put in.
 #pragma once
 
-#include "run/run_context.h"
+#include "run/context.h"
 
 namespace freeplay {
 

@@ -11,7 +11,7 @@ constexpr double smallest_step = 1e-3;  // of the step asked for
 }  // namespace
 
 FixedRun::FixedRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
-                   Recorder& recorder, EnergyGrowth& growth, Corners& corners, RunEnd& end)
+                   Recorder& recorder, EnergyGrowth& growth, Corners& corners, EndCheck& end)
     : run_(run),
       failure_(failure),
       attempt_(attempt),

@@ -1,7 +1,7 @@
 // FixedRun: a run in steps of one size.
 #pragma once
 
-#include "run/run_end.h"
+#include "run/end_check.h"
 #include "run/step_acceptance.h"
 
 namespace freeplay {
@@ -9,7 +9,7 @@ namespace freeplay {
 class FixedRun {
  public:
   FixedRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance, Recorder& recorder,
-           EnergyGrowth& growth, Corners& corners, RunEnd& end);
+           EnergyGrowth& growth, Corners& corners, EndCheck& end);
 
   /// To the end of the run, from the accepted state.
   void run(const RunHooks& hooks);
@@ -43,7 +43,7 @@ class FixedRun {
   Recorder& recorder_;
   EnergyGrowth& growth_;
   Corners& corners_;
-  RunEnd& end_;
+  EndCheck& end_;
   Leg leg_;
 };
 

@@ -30,7 +30,7 @@ struct Simulation::Impl {
   Corners corners{context, failure, attempt};
   StepAcceptance acceptance{context, failure, attempt, recorder, doubts, growth, corners};
   EventPursuit pursuit{context, failure, attempt, inside};
-  RunEnd end{context, recorder};
+  EndCheck end{context, recorder};
   FixedRun fixed{context, failure, attempt, acceptance, recorder, growth, corners, end};
   AdaptiveRun adaptive{context, failure, attempt, acceptance, recorder, growth, corners, pursuit, end};
 };

@@ -8,10 +8,10 @@
 
 #include "assembly/assembly.h"
 #include "model/channel.h"
+#include "run/hooks.h"
 #include "run/outcome.h"
 #include "run/requirements.h"
-#include "run/run_hooks.h"
-#include "run/run_state.h"
+#include "run/saved_state.h"
 #include "run/sink.h"
 #include "run/statistics.h"
 #include "run/watch.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "run/run_failure.h"
+#include "run/failure.h"
 
 namespace freeplay {
 

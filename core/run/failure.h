@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "run/context.h"
 #include "run/event_storm.h"
-#include "run/run_context.h"
 
 namespace freeplay {
 

@@ -1,4 +1,4 @@
-#include "run/run_end.h"
+#include "run/end_check.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 
 namespace freeplay {
 
-RunEnd::RunEnd(RunContext& run, Recorder& recorder) : run_(run), recorder_(recorder) {
+EndCheck::EndCheck(RunContext& run, Recorder& recorder) : run_(run), recorder_(recorder) {
   for (const StopCondition& stop : run.settings.stop) stop_columns_.push_back(run.channels.find(stop.channel));
 }
 
-bool RunEnd::check_stop() {
+bool EndCheck::check_stop() {
   for (std::size_t i = 0; i < run_.settings.stop.size(); ++i) {
     const StopCondition& stop = run_.settings.stop[i];
     if (stop_columns_[i] < 0 || run_.accepted.t() < stop.after) continue;
@@ -25,7 +25,7 @@ bool RunEnd::check_stop() {
   return true;
 }
 
-bool RunEnd::check_interrupt(const RunHooks& hooks) {
+bool EndCheck::check_interrupt(const RunHooks& hooks) {
   if (hooks.interrupt && hooks.interrupt->load(std::memory_order_relaxed) != 0) {
     run_.outcome.status = RunStatus::interrupted;
     run_.outcome.exit_code = 130;

@@ -1,4 +1,4 @@
-#include "run/run_failure.h"
+#include "run/failure.h"
 
 #include <algorithm>
 #include <cmath>

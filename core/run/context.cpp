@@ -1,4 +1,4 @@
-#include "run/run_context.h"
+#include "run/context.h"
 
 #include <algorithm>
 

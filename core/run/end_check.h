@@ -1,17 +1,17 @@
-// RunEnd: what ends a run after a step that was accepted: a stop condition, or the user.
+// EndCheck: what ends a run after a step that was accepted: a stop condition, or the user.
 #pragma once
 
 #include <chrono>
 #include <vector>
 
+#include "run/hooks.h"
 #include "run/recorder.h"
-#include "run/run_hooks.h"
 
 namespace freeplay {
 
-class RunEnd {
+class EndCheck {
  public:
-  RunEnd(RunContext& run, Recorder& recorder);
+  EndCheck(RunContext& run, Recorder& recorder);
 
   void start_clock() { started_ = Clock::now(); }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
