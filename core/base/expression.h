@@ -52,6 +52,10 @@ struct EvaluationFailure {
 struct Corner {
   double time = 0.0;    ///< [s]
   bool smooth = false;  ///< value, rate and acceleration do not jump there
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.time, self.smooth);
+  }
 };
 
 /// The course of a formula over a span of time.

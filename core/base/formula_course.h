@@ -61,11 +61,23 @@ class FormulaCourse {
     double rate;  ///< [1/s]
     int degree;   ///< of a polynomial in it
     bool singular_at_begin = false, singular_at_end = false;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.from, self.to, self.rate, self.degree, self.singular_at_begin, self.singular_at_end);
+    }
   };
   /// Of the windows that are known.
   const std::vector<Corner>& corners() const { return corners_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
   double known_until() const { return known_to_; }
+
+  /// What is known so far: all else follows from the formula, or is of one window.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.known_to_, self.work_);
+    archive.list(self.corners_);
+    archive.list(self.pieces_);
+  }
 
  private:
   using Operation = Expression::Operation;

@@ -95,6 +95,8 @@ struct KktMatrix::Impl {
   klu_common common;
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;
+  std::vector<double> pivoted;  // values by which the pivots of `numeric` were chosen
+  bool has_new_pivots = false;  // the last factors chose them
 
   Impl() {
     klu_defaults(&common);
@@ -111,6 +113,7 @@ struct KktMatrix::Impl {
   }
 
   bool reuse_pivots() {
+    has_new_pivots = false;
     return numeric != nullptr &&
            klu_refactor(starts.data(), rows.data(), values.data(), symbolic, numeric, &common) != 0 &&
            common.status == KLU_OK &&
@@ -124,7 +127,10 @@ struct KktMatrix::Impl {
   bool choose_pivots() {
     klu_free_numeric(&numeric, &common);
     numeric = klu_factor(starts.data(), rows.data(), values.data(), symbolic, &common);
-    if (numeric != nullptr && common.status == KLU_OK) return true;
+    if (numeric != nullptr && common.status == KLU_OK) {
+      std::ranges::copy(values, pivoted.begin());
+      return has_new_pivots = true;
+    }
     klu_free_numeric(&numeric, &common);
     return false;
   }
@@ -178,6 +184,7 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
   std::partial_sum(m.starts.begin(), m.starts.end(), m.starts.begin());
   m.values.assign(m.rows.size(), 0.0);
   m.factored.assign(m.is_dense() ? m.rows.size() : 0, 0.0);
+  m.pivoted.assign(m.is_dense() ? 0 : m.rows.size(), 0.0);
   m.has_factors = false;
   if (m.is_dense()) {
     m.inverse.assign(at(size * size), 0.0);
@@ -209,6 +216,27 @@ double KktMatrix::factor() {
   if (!m.symbolic || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
   m.pivots = klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
   return m.pivots;
+}
+
+void KktMatrix::save(ArchiveWriter& archive) const {
+  const Impl& m = *impl_;
+  archive(m.values, m.has_factors, m.numeric != nullptr, m.has_new_pivots, m.pivoted);
+}
+
+// Factors by old pivots depend on two matrices: the present one, and that by which the pivots were chosen.
+void KktMatrix::restore(ArchiveReader& archive) {
+  Impl& m = *impl_;
+  bool has_inverse = false, has_pivots = false;
+  archive(m.values, has_inverse, has_pivots, m.has_new_pivots, m.pivoted);
+  if (has_inverse) factor();
+  if (!has_pivots) return;
+  const std::vector<double> present = m.values;
+  const bool new_pivots = m.has_new_pivots;
+  std::ranges::copy(m.pivoted, m.values.begin());
+  if (!m.symbolic) m.symbolic = klu_analyze(m.size, m.starts.data(), m.rows.data(), &m.common);
+  ArchiveReader::require(m.symbolic != nullptr && m.choose_pivots());
+  m.values = present;
+  if (!new_pivots) ArchiveReader::require(m.reuse_pivots());
 }
 
 void KktMatrix::solve(std::span<const double> b, std::span<double> x) const {

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
+
 namespace freeplay {
 
 /// Place of one value in the matrix.
@@ -33,6 +35,10 @@ class KktMatrix {
   double factor();
   /// x with A x = b for the last factored A; `x` and `b` have size numbers and may not overlap.
   void solve(std::span<const double> b, std::span<double> x) const;
+
+  /// The matrices from which factors and pivots follow. restore() expects the pattern, and makes both anew.
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
 
  private:
   struct Impl;

@@ -1,16 +1,15 @@
-// Simulation: what a run holds against its own numbers while it goes on.
+#include "run/doubts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "assembly/drive_range.h"
 #include "base/index.h"
 #include "run/likely_cause.h"
-#include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
@@ -31,89 +30,91 @@ bool in_a_loop(const Model& model, int without) {
   }
   return root(model.joints[at(without)].marker_a) == root(model.joints[at(without)].marker_b);
 }
-
-constexpr std::string_view cause_words = "; likely cause: ";
 }  // namespace
 
+RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
+    : run_(run), failure_(failure), recorder_(recorder), joint_warnings_(run.model.joints.size()) {
+  std::size_t values = 0;
+  for (int j = 0; j < static_cast<int>(run.model.joints.size()); ++j) {
+    joint_warnings_[at(j)].values = values;
+    values += run.system.joint_layout(j).channels.size;
+  }
+  warning_values_.resize(values);
+}
+
+void RunDoubts::save(ArchiveWriter& archive) const {
+  archive(warning_values_, torn_from_);
+  for (const Warning& warning : joint_warnings_) {
+    archive(warning.text != nullptr, std::string(warning.text != nullptr ? warning.text : ""), warning.time);
+  }
+}
+
+void RunDoubts::restore(ArchiveReader& archive) {
+  archive(warning_values_, torn_from_);
+  warning_texts_.resize(joint_warnings_.size());
+  for (std::size_t j = 0; j < joint_warnings_.size(); ++j) {
+    bool warned = false;
+    archive(warned, warning_texts_[j], joint_warnings_[j].time);
+    joint_warnings_[j].text = warned ? warning_texts_[j].c_str() : nullptr;
+  }
+}
+
 // False where the row shows that going on makes no sense.
-bool Simulation::Impl::watch_row(double dt) {
-  watch.add_regularity(solver.regularity(), accepted.t());
-  if (torn_from && accepted.t() >= *torn_from) return fail(4, "the mechanism is torn apart");
-  if (!row_is_known && !watch.is_due(e_accepted)) return true;
-  if (!know_row()) return false;
-  const int joint = watch.add(row, e_accepted);
+bool RunDoubts::watch_row(double dt) {
+  run_.watch.add_regularity(run_.solver.regularity(), run_.accepted.t());
+  if (torn_from_ && run_.accepted.t() >= *torn_from_) return failure_.fail(4, "the mechanism is torn apart");
+  if (!recorder_.row_is_known() && !run_.watch.is_due(run_.e_accepted)) return true;
+  if (!recorder_.know_row()) return false;
+  const int joint = run_.watch.add(recorder_.row(), run_.e_accepted);
   // A look at the drivers takes longer than many steps, so it waits until something is wrong.
-  if (!torn_from && watch.deeper_than_play())
-    torn_from = out_of_reach_from(equations->whole(), equations->start().state);
+  if (!torn_from_ && run_.watch.deeper_than_play())
+    torn_from_ = out_of_reach_from(run_.equations->whole(), run_.equations->start().state);
   if (joint < 0) return true;
-  TrustReason reason = watch.why(joint, row);
-  const std::string cause = likely_cause(system, e_accepted, {accepted.t(), adaptive ? 0.0 : dt, joint, first_forces});
+  TrustReason reason = run_.watch.why(joint, recorder_.row());
+  const std::string cause = likely_cause(run_.system, run_.e_accepted,
+                                         {run_.accepted.t(), run_.adaptive ? 0.0 : dt, joint, run_.first_forces});
   if (!cause.empty()) reason.message += std::string(cause_words) + cause;
-  fail(4, reason.message);
-  outcome.doubts.push_back(std::move(reason));
+  failure_.fail(4, reason.message);
+  run_.outcome.doubts.push_back(std::move(reason));
   return false;
 }
 
 // Once for each joint; the text is made when the run is over.
-bool Simulation::Impl::note_warnings() {
-  for (const ForceBlock& block : system.force_blocks()) {
-    Warning& warning = joint_warnings[at(block.joint)];
-    if (warning.text != nullptr || context.rests_now(block.joint)) continue;
-    const Point here = point(accepted);
+bool RunDoubts::note_warnings() {
+  for (const ForceBlock& block : run_.system.force_blocks()) {
+    Warning& warning = joint_warnings_[at(block.joint)];
+    if (warning.text != nullptr || run_.evaluations.rests_now(block.joint)) continue;
+    const Point here = point(run_.accepted);
     Fault fault;
-    if (!system.joint(block.joint).warning(system.input(block.joint, here, e_accepted), warning.text, fault.message)) {
+    if (!run_.system.joint(block.joint)
+             .warning(run_.system.input(block.joint, here, run_.e_accepted), warning.text, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = block.joint;
-      return fail_with(fault, accepted.t());
+      return failure_.fail_with(fault, run_.accepted.t());
     }
     if (warning.text == nullptr) continue;
-    if (!know_row()) return false;
-    warning.time = accepted.t();
-    std::copy_n(row.begin() + channels.joints[at(block.joint)].own, system.joint_layout(block.joint).channels.size,
-                warning_values.begin() + static_cast<std::ptrdiff_t>(warning.values));
+    if (!recorder_.know_row()) return false;
+    warning.time = run_.accepted.t();
+    std::copy_n(recorder_.row().begin() + run_.channels.joints[at(block.joint)].own,
+                run_.system.joint_layout(block.joint).channels.size,
+                warning_values_.begin() + static_cast<std::ptrdiff_t>(warning.values));
   }
   return true;
 }
 
-void Simulation::Impl::note_first_forces() {
-  first_forces.assign(model.joints.size(), 0.0);
-  for (const ForceBlock& block : system.force_blocks()) {
-    const double* force = &e_accepted->wrench[12 * at(block.joint) + 6];
-    first_forces[at(block.joint)] = std::hypot(force[0], force[1], force[2]);
+void RunDoubts::note_first_forces() {
+  run_.first_forces.assign(run_.model.joints.size(), 0.0);
+  for (const ForceBlock& block : run_.system.force_blocks()) {
+    const double* force = &run_.e_accepted->wrench[12 * at(block.joint) + 6];
+    run_.first_forces[at(block.joint)] = std::hypot(force[0], force[1], force[2]);
   }
 }
 
-// Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.
-void Simulation::Impl::explain_dead_point() {
-  if (outcome.status != RunStatus::failed || outcome.exit_code != 4) return;
-  auto why = why_out_of_reach(equations->whole(), equations->start().state, outcome.time);
-  if (!why) return;
-  outcome.reason = std::move(*why);
-  for (TrustReason& reason : outcome.doubts) {
-    reason.message =
-        reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
-        (outcome.reason.ends_with("[locked]") ? "the mechanism is locked" : "the mechanism comes to a dead point");
-  }
-}
-
-// A number of the model that no machine has is worth more than any advice about steps.
-void Simulation::Impl::explain_failure() {
-  if (outcome.exit_code != 4 || outcome.reason.find(cause_words) != std::string::npos) return;
-  if (outcome.reason.ends_with("[dead-point]") || outcome.reason.ends_with("[locked]")) return;
-  const Wreck wreck{accepted.t(), adaptive ? 0.0 : settings.step, failed_joint, first_forces};
-  const std::string cause = likely_cause(system, e_accepted, wreck);
-  if (cause.empty()) return;
-  for (const std::string_view advice : {advice::smaller_step, advice::accuracy, advice::other_steps, advice::error}) {
-    if (outcome.reason.ends_with(advice)) outcome.reason.resize(outcome.reason.size() - advice.size());
-  }
-  outcome.reason += std::string(cause_words) + cause;
-}
-
-void Simulation::Impl::note_unused_play() {
-  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    if (outcome.steps == 0 || !watch.never_moved(j) || !in_a_loop(model, j)) continue;
-    const std::string joint = fmt::format("joint '{}'", model.joints[at(j)].name);
-    outcome.doubts.push_back(
+void RunDoubts::note_unused_play() {
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    if (run_.outcome.steps == 0 || !run_.watch.never_moved(j) || !in_a_loop(run_.model, j)) continue;
+    const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+    run_.outcome.doubts.push_back(
         {.id = "play-bypassed",
          .level = Trust::doubtful,
          .message = joint + ": its journal never moved in its bearing: nothing loads it, or other joints hold it",
@@ -121,25 +122,25 @@ void Simulation::Impl::note_unused_play() {
   }
 }
 
-void Simulation::Impl::format_warnings() {
-  for (std::size_t j = 0; j < joint_warnings.size(); ++j) {
-    const Warning& warning = joint_warnings[j];
+void RunDoubts::format_warnings() {
+  for (std::size_t j = 0; j < joint_warnings_.size(); ++j) {
+    const Warning& warning = joint_warnings_[j];
     if (warning.text == nullptr) continue;
     std::string_view sentence = warning.text;
     if (sentence.ends_with('.')) sentence.remove_suffix(1);
-    const std::string joint = fmt::format("joint '{}'", model.joints[j].name);
+    const std::string joint = fmt::format("joint '{}'", run_.model.joints[j].name);
     std::string text = fmt::format("{} at t = {:.9g} s: {}", joint, warning.time, sentence);
-    outcome.doubts.push_back({.id = "law-range",
-                              .level = Trust::doubtful,
-                              .message = fmt::format("{}: {}", joint, sentence),
-                              .element = joint});
-    const Span<const Channel> own = system.joint_layout(static_cast<int>(j)).channels;
+    run_.outcome.doubts.push_back({.id = "law-range",
+                                   .level = Trust::doubtful,
+                                   .message = fmt::format("{}: {}", joint, sentence),
+                                   .element = joint});
+    const Span<const Channel> own = run_.system.joint_layout(static_cast<int>(j)).channels;
     for (std::size_t i = 0; i < own.size; ++i) {
       const bool plain = std::string_view(own[i].unit) == "1";
-      text += fmt::format("{} {} = {:.4g}{}{}", i == 0 ? ":" : ",", own[i].name, warning_values[warning.values + i],
+      text += fmt::format("{} {} = {:.4g}{}{}", i == 0 ? ":" : ",", own[i].name, warning_values_[warning.values + i],
                           plain ? "" : " ", plain ? "" : own[i].unit);
     }
-    warnings.push_back(text);
+    run_.warnings.push_back(text);
   }
 }
 

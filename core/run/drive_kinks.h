@@ -18,6 +18,11 @@ class DriveKinks {
   /// The first kink after t, if it is `until` or earlier; else a later time, or infinity. Times grow from step to step.
   double next(double t, double until);
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.formulas_);
+  }
+
  private:
   void add(const Expression& expression, const Settings& settings);
 

@@ -43,8 +43,8 @@ class EnergyAccount final : public Flows {
   bool add_smooth(double dt, const Evaluation& e, std::span<const double> lambda);
   /// The same of any step, with the powers in its middle.
   void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
-  /// The same of a step in which powers may jump, part by part, with those at the begin, in the middle and at the end of
-  /// each; then the whole step.
+  /// The same of a step in which powers may jump, part by part, with those at the begin, in the middle and at the end
+  /// of each; then the whole step.
   void begin_parts() { std::copy(integral_.begin(), integral_.end(), integral_inside_.begin()); }
   void add_part(double dt, std::span<const double> begin, std::span<const double> half_way,
                 std::span<const double> end);
@@ -97,6 +97,15 @@ class EnergyAccount final : public Flows {
   std::span<const double> joint_loss() const { return joint_loss_; }    ///< [J]
   /// Of Model::force_elements on the bodies [J].
   std::span<const double> force_work() const { return force_work_; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.dt_, self.initial_, self.exchanged_, self.row_power_, self.row_work_, self.row_power_before_,
+            self.row_work_before_);
+    archive(self.driver_work_, self.joint_loss_, self.force_work_, self.power_, self.integral_);
+    archive.list(self.stored_start_);
+    archive(self.power_earlier_, self.steps_alike_, self.acting_, self.power_before_, self.integral_before_);
+  }
 
  private:
   void fill(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,

@@ -7,10 +7,10 @@
 namespace freeplay {
 
 /// Errors of steps on smooth motion have either sign; beside the corners of a load that comes again and again they have
-/// the same one, and an error of velocity grows into one of position until the run ends. So the errors of such steps are
-/// counted, as what they make of the position at the end of the run, and each may be a part of what is left: the sum
-/// stays below what was there at first, 32 steps' worth, and what each second adds. Numbers are in units of what a step
-/// on smooth motion may err by.
+/// the same one, and an error of velocity grows into one of position until the run ends. So the errors of such steps
+/// are counted, as what they make of the position at the end of the run, and each may be a part of what is left: the
+/// sum stays below what was there at first, 32 steps' worth, and what each second adds. Numbers are in units of what a
+/// step on smooth motion may err by.
 ///
 /// The run goes on with the better of two results. Its error falls by a power of the step more than the estimate does,
 /// that is with the power (p + 1)/p of the estimate: what is spent is that, but for `rough` steps, beside infinite
@@ -29,6 +29,11 @@ class ErrorBudget {
   void pass(double dt) { left_ = std::min(full, left_ + gain_ * dt); }
   /// A step was made, with such a part of its share as its estimate.
   void spend(double part, bool rough) { left_ -= std::pow(std::min(part, 1.0), rough ? 1.0 : power_) * left_ / full; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.left_);
+  }
 
  private:
   static constexpr double full = 32.0, rough_counts = 4.0;

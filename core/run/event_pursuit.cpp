@@ -1,4 +1,5 @@
-// Where an adaptive step meets an event: it ends there.
+#include "run/event_pursuit.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +8,6 @@
 
 #include "base/index.h"
 #include "run/dense_step.h"
-#include "run/simulation_impl.h"
 
 namespace freeplay {
 namespace {
@@ -22,16 +22,17 @@ constexpr double little_beyond = 1.01;   // of a step: its motion is continued s
 
 }  // namespace
 
-// The length of the step to try in place of one of the length dt that erred too much: `shorter`, or to an event that it
-// met before, whose change of forces may be what it erred by.
-double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Passage& hunted) {
-  if (!(error <= largest_error) || solver.regularity() < near_singular) return shorter;
-  const Profile::Timer timer(context.profile, Phase::events);
+EventPursuit::EventPursuit(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepInside& inside)
+    : run_(run), failure_(failure), attempt_(attempt), inside_(inside), defect_(at(run.system.layout().nv())) {}
+
+double EventPursuit::before_event(double dt, double shorter, StepEvents::Passage& hunted) {
+  if (!(run_.error <= largest_error) || run_.solver.regularity() < near_singular) return shorter;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   // What no joint can be asked about tells nothing; nor does it matter, as the step does not stand.
   Fault fault;
   StepEvents::Passage found;
-  if (!evaluate_all(trial, e_trial) ||
-      !events.first_crossing(accepted, e_accepted, trial, e_trial, false, found, fault)) {
+  if (!attempt_.evaluate_all(run_.trial, run_.e_trial) ||
+      !run_.events.first_crossing(run_.accepted, run_.e_accepted, run_.trial, run_.e_trial, false, found, fault)) {
     return shorter;
   }
   if (found.joint < 0 || !(found.fraction * dt < shorter)) return shorter;
@@ -39,16 +40,15 @@ double Simulation::Impl::before_event(double dt, double shorter, StepEvents::Pas
   return found.fraction * dt;
 }
 
-// Whether the step that was just made may stand: no located event lies inside, or `hunted` lies at its end. Else `dt`
-// is where to try next.
-bool Simulation::Impl::pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, bool& done) {
-  const Profile::Timer timer(context.profile, Phase::events);
+bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, bool& done) {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   Fault fault;
   StepEvents::Passage found;
-  if (hunted.joint >= 0 && !events.at_end(trial, e_trial, hunted, fault)) return fail_with(fault, trial.t());
+  if (hunted.joint >= 0 && !run_.events.at_end(run_.trial, run_.e_trial, hunted, fault))
+    return failure_.fail_with(fault, run_.trial.t());
   const bool early = hunts < early_hunts;
-  if (!events.first_crossing(accepted, e_accepted, trial, e_trial, early, found, fault)) {
-    return fail_with(fault, trial.t());
+  if (!run_.events.first_crossing(run_.accepted, run_.e_accepted, run_.trial, run_.e_trial, early, found, fault)) {
+    return failure_.fail_with(fault, run_.trial.t());
   }
   const bool same = found.joint == hunted.joint && found.event == hunted.event;
   if (found.joint < 0 && hunted.joint < 0) {
@@ -63,16 +63,17 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, EventBracket& bracket
   const bool sharp = is_sharp(hunted) || hunts > most_hunts / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
   // An event may lie so close to the start of the step that the time cannot tell them apart.
-  const double least = std::nextafter(accepted.t(), unbounded) - accepted.t();
+  const double least = std::nextafter(run_.accepted.t(), unbounded) - run_.accepted.t();
   if (ends_there && past >= 0.0 && ((past <= tolerance && sharp) || dt <= least)) {
     done = true;
     return true;
   }
   if (hunts > most_hunts) {
-    return fail(4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located{}", accepted.t(),
-                               system.joint_layout(hunted.joint).events[at(hunted.event)].name,
-                               model.joints[at(hunted.joint)].name,
-                               all_built_in() ? std::string(advice::other_steps) : fmt::format("; {}", event_rule)));
+    return failure_.fail(
+        4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located{}", run_.accepted.t(),
+                       run_.system.joint_layout(hunted.joint).events[at(hunted.event)].name,
+                       run_.model.joints[at(hunted.joint)].name,
+                       failure_.all_built_in() ? std::string(advice::other_steps) : fmt::format("; {}", event_rule)));
   }
   bracket.note(hunted, dt);
   // Newton's step from close by, the root of the cubic from afar, and half of the step where neither helps.
@@ -97,15 +98,14 @@ bool Simulation::Impl::pursue(StepEvents::Passage& hunted, EventBracket& bracket
   return true;
 }
 
-// How far past its zero an event function may be at the end of the step that ends there, whatever its rate.
-double Simulation::Impl::event_lateness() const { return event_share * allowed; }
+double EventPursuit::event_lateness() const { return event_share * run_.allowed; }
 
-bool Simulation::Impl::is_sharp(const StepEvents::Passage& end) const {
+bool EventPursuit::is_sharp(const StepEvents::Passage& end) const {
   return end.value <= event_rounding || end.value <= std::max(event_time * end.rate, event_lateness());
 }
 
 // How far past its zero a step of the length dt should end.
-double Simulation::Impl::aim_past(const StepEvents::Passage& end, double dt) const {
+double EventPursuit::aim_past(const StepEvents::Passage& end, double dt) const {
   const double wanted = std::max(0.1 * event_time * end.rate, 0.5 * event_lateness());
   // No farther than a small part of the step: from there Newton's step is still one from close by.
   return std::min({wanted, 0.5 * std::max(StepEvents::tolerance, event_lateness()), 0.05 * dt * std::abs(end.rate)});
@@ -113,44 +113,49 @@ double Simulation::Impl::aim_past(const StepEvents::Passage& end, double dt) con
 
 // By how much the interpolated motion misses the equations of motion, as a part of what a step may err: the speed that
 // the missing acceleration would make.
-double Simulation::Impl::defect_inside(double dt) {
-  for (std::size_t i = 0; i < defect.size(); ++i) defect[i] = dt * (defect[i] - between.a()[i]);
-  return solver.local_error().velocity_norm(defect);
+double EventPursuit::defect_inside(double dt) {
+  for (std::size_t i = 0; i < defect_.size(); ++i) defect_[i] = dt * (defect_[i] - run_.between.a()[i]);
+  return run_.solver.local_error().velocity_norm(defect_);
 }
 
-// Ends the step that was just made at the event inside it or a little behind, about `dt` after its start and before
-// `longest`, and not by another step up to there: the interpolated motion errs by less than the step may, and its
-// constraints are made to hold. Not where joints have variables of their own, which are known less well inside. False
-// where the event must be hunted by steps.
-bool Simulation::Impl::end_inside(const StepEvents::Passage& hunted, double dt, int hunts, double longest) {
-  const double whole = trial.t() - accepted.t(), last = std::min(longest, little_beyond * whole);
-  if (hunted.joint < 0 || hunts >= early_hunts || !(dt < last) || system.layout().nz() > 0) return false;
-  if (solver.regularity() < near_singular) return false;
-  const Profile::Timer timer(context.profile, Phase::events);
-  const DenseStep motion(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate);
+// The state in `between`, at the fraction s of the step of the length `whole`, becomes its end.
+bool EventPursuit::cut_at(double s, double whole) {
+  if (run_.flows > 0) {
+    const std::span<const double> at_end = std::span<const double>(run_.trial.z()).last(at(run_.flows));
+    if (!run_.energy.integrate_to(s, whole, run_.e_between, run_.between.lambda(), run_.e_trial, run_.trial.lambda(),
+                                  at_end, std::span(run_.between.z()).last(at(run_.flows)))) {
+      return false;
+    }
+  }
+  std::swap(run_.trial, run_.between);
+  swap(run_.e_trial, run_.e_between);
+  run_.inner.forget();
+  return run_.ended_inside = true;
+}
+
+// The interpolated motion errs by less than the step may, and its constraints are made to hold. Not where joints have
+// variables of their own, which are known less well inside.
+bool EventPursuit::end_inside(const StepEvents::Passage& hunted, double dt, int hunts, double longest) {
+  const double whole = run_.trial.t() - run_.accepted.t(), last = std::min(longest, little_beyond * whole);
+  if (hunted.joint < 0 || hunts >= early_hunts || !(dt < last) || run_.system.layout().nz() > 0) return false;
+  if (run_.solver.regularity() < near_singular) return false;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::events);
+  const DenseStep motion(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial,
+                         run_.e_trial->internal_rate);
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   StepEvents::Passage end = hunted;
   double at_event = dt;
   for (int look = 0; look < early_hunts; ++look) {
-    motion.at(at_event / whole, between);
-    std::ranges::copy(between.a(), defect.begin());
-    if (!begin_steps(at_event, between) || !settle_between()) return false;
+    motion.at(at_event / whole, run_.between);
+    std::ranges::copy(run_.between.a(), defect_.begin());
+    if (!attempt_.begin_steps(at_event, run_.between) || !inside_.settle_between()) return false;
     if (!(defect_inside(at_event) <= largest_defect)) return false;
     Fault fault;
-    if (!evaluate_all(between, e_between) || !events.at_end(between, e_between, end, fault)) {
+    if (!attempt_.evaluate_all(run_.between, run_.e_between) ||
+        !run_.events.at_end(run_.between, run_.e_between, end, fault)) {
       return false;
     }
-    if (end.value >= 0.0 && end.value <= tolerance && is_sharp(end)) {
-      if (flows > 0 && !energy.integrate_to(at_event / whole, whole, e_between, between.lambda(), e_trial,
-                                            trial.lambda(), std::span<const double>(trial.z()).last(at(flows)),
-                                            std::span(between.z()).last(at(flows)))) {
-        return false;
-      }
-      std::swap(trial, between);
-      swap(e_trial, e_between);
-      inner.forget();
-      return ended_inside = true;
-    }
+    if (end.value >= 0.0 && end.value <= tolerance && is_sharp(end)) return cut_at(at_event / whole, whole);
     const double change = (end.value - aim_past(end, at_event)) / end.rate;
     if (!(end.rate > 0.0) || !(std::abs(change) < 0.1 * at_event) || !(at_event - change < last)) return false;
     if (at_event - change == at_event) return false;

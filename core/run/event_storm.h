@@ -31,17 +31,30 @@ class EventStorm {
   /// An event of a joint in the step of this number; times do not fall.
   Finding note(int joint, double time, long step);
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.counts_);
+  }
+
  private:
   struct Window {
     double from = 0.0;
     long events = 0;
     /// The number of events since `from`, which moves on when it lies more than `length` back.
     long count(double time, double length);
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.from, self.events);
+    }
   };
   struct Count {
     Window instant, step_size;
     long step = -1, in_step = 0, full_steps = 0;
     double full_from = 0.0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.instant, self.step_size, self.step, self.in_step, self.full_steps, self.full_from);
+    }
   };
   Limits limits_;
   std::vector<Count> counts_;

@@ -22,9 +22,9 @@ constexpr double coarsest = 0.5;            // of the shortest change: no step u
 constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
 constexpr long enough_work = 20'000'000;    // instructions, to see whether steps of one size go over a change
 constexpr double hidden_behind = 64.0, hidden_before = 8.0;
-constexpr int seen_degree = 4;  // of polynomials that integrators take as they are
+constexpr int seen_degree = 4;                           // of polynomials that integrators take as they are
 constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
-constexpr double longer = 4.0;              // the next step to look at, of one that had to be shortened
+constexpr double longer = 4.0;                           // the next step to look at, of one that had to be shortened
 
 /// Steps up to there need not be looked at; behind one that had to be shortened a change goes on.
 double unwatched(double shortest, double most) { return (most < unbounded ? finest : coarsest) * shortest; }
@@ -133,8 +133,8 @@ void InputActivity::add(const char* section, const std::string& name, const Expr
   formulas_.push_back({section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, bends});
 }
 
-// In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for the run, or a
-// second.
+// In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for the run, or
+// a second.
 double InputActivity::negligible(Unit unit, double dt) const {
   const double lasting = std::max({dt, 1.0, end_ - start_});
   switch (unit) {

@@ -57,10 +57,20 @@ class InputActivity {
   /// To be asked of a run that has not begun.
   std::vector<Unresolved> closer_than(double step);
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.formulas_, self.tables_, self.telling_, self.joints_, self.told_from_, self.told_until_, self.told_);
+    archive(self.seen_from_, self.seen_to_);
+  }
+
  private:
   struct Stretch {
     double from = -unbounded, to = -unbounded;
     double length() const { return to - from; }
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.from, self.to);
+    }
   };
   enum class Unit { force, torque, length, angle, other };
   struct Formula {
@@ -73,6 +83,10 @@ class InputActivity {
     int bends = 0;            ///< the derivative that moves bodies whose motion is known: no error of a step shows it
     double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
     double quick_until = -unbounded;  ///< there the change lies that had it shortened
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.course, self.most, self.quick_until);
+    }
   };
   struct Table {
     const std::string* name;
@@ -83,10 +97,18 @@ class InputActivity {
     double most = unbounded;
     double quick_until = -unbounded;
     Stretch between{};  ///< two points
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.most, self.quick_until, self.between);
+    }
   };
   struct TellingJoint {
     int joint;
     Stretch between{};  ///< two corners
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.between);
+    }
   };
   struct TimedJoint {
     int joint;
@@ -95,6 +117,10 @@ class InputActivity {
     double most = unbounded;
     double quick_until = -unbounded;
     bool varies = false;  ///< it has been seen to: then the shortest steps are looked at, too
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.most, self.quick_until, self.varies);
+    }
   };
 
   void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit,

@@ -42,6 +42,11 @@ class PeakNoise {
   /// Impacts that let differences grow, in the joint that has most.
   int growing_impacts() const { return impacts_; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.part_end_, self.parts_over_, self.impacts_, self.peaks_, self.contacts_);
+  }
+
  private:
   static constexpr std::size_t parts = 32, kept = 9;
   struct Peak {
@@ -49,10 +54,18 @@ class PeakNoise {
     double present = 0.0;                // of the present part
     double all = 0.0;                    // of all
     int impacts = 0;                     // so far, at that time
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.largest, self.present, self.all, self.impacts);
+    }
   };
   struct Contact {
     double separation = -1.0;  // speed after the last one [m/s]; negative: there was none
     int growing = 0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.separation, self.growing);
+    }
   };
   struct EventKind {
     bool begins = false, ends = false;

@@ -23,10 +23,19 @@ class PeakSearch {
   /// What stands there.
   void seen(double s, std::span<const double> values);
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.before_, self.start_, self.end_, self.inner_, self.ends_, self.looks_, self.credit_);
+  }
+
  private:
   struct Point {
     double x = 0.0;  ///< time [s], of `inner_` the fraction of the step
     std::vector<double> values;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.x, self.values);
+    }
   };
   struct Candidate {
     double s = 0.0, gain = 0.0;  ///< gain: as a part of the largest value

@@ -13,7 +13,7 @@ constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
 }  // namespace
 
-RestingJoints::RestingJoints(const System& system, RunContext& context) : system_(system), context_(context) {
+RestingJoints::RestingJoints(const System& system, EvaluationContext& context) : system_(system), context_(context) {
   context.rests.resize(system.model().joints.size());
   const std::span<const ForceBlock> blocks = system.force_blocks();
   for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {

@@ -14,26 +14,36 @@ namespace freeplay {
 class RestingJoints {
  public:
   /// Decides on the joints of `context`, which must outlive it.
-  RestingJoints(const System& system, RunContext& context);
+  RestingJoints(const System& system, EvaluationContext& context);
 
-  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (RunContext::rests). False,
-  /// with `fault`, when a joint fails.
+  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (EvaluationContext::rests).
+  /// False, with `fault`, when a joint fails.
   bool begin(double dt, const Point& start, const Evaluation& e, Fault& fault);
   /// After an attempt, and at the end of a step, evaluated in `e`: whether they could. If not, all are awake in the
   /// next attempt.
   bool stayed();
   bool held(double dt, const Evaluation& e);
 
+  /// Besides what System::rest() holds.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.candidates_, self.all_awake_);
+  }
+
  private:
   struct Candidate {
     int joint, block;  ///< into System::force_blocks()
     int marker_a, marker_b;
     double room = 0.0, speed = 0.0;  ///< of one that rests: distance that is left [m], relative speed [m/s]
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.room, self.speed);
+    }
   };
   void look(Candidate& candidate, const Evaluation& e) const;
 
   const System& system_;
-  RunContext& context_;
+  EvaluationContext& context_;
   std::vector<Candidate> candidates_;
   bool all_awake_ = false;
 };

@@ -84,6 +84,13 @@ class Statistics {
   double velocity_residual() const { return velocity_; }
   double energy_residual() const { return energy_; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.noise_, self.values_, self.largest_, self.before_, self.written_, self.last_time_, self.duration_);
+    archive(self.seen_, self.instants_, self.joints_, self.forces_, self.drivers_, self.paths_, self.contacts_);
+    archive(self.contacts_total_, self.position_, self.velocity_, self.energy_);
+  }
+
  private:
   struct Mean {  // of a square over time
     double integral = 0.0, last = 0.0;
@@ -93,22 +100,42 @@ class Statistics {
     void add(double value, double dt, bool first, bool by_parabolas);
     void begin_anew();
     double rms(double duration) const;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.integral, self.last, self.before, self.length, self.pending, self.known);
+    }
   };
   struct JointSums {
     Mean force;
     double contact_time = 0.0, last_contact = 0.0;
     double loss = 0.0, loss_start = 0.0;
     long contacts = 0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.force, self.contact_time, self.last_contact, self.loss, self.loss_start, self.contacts);
+    }
   };
   struct ForceSums {
     double work = 0.0, work_start = 0.0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.work, self.work_start);
+    }
   };
   struct DriverSums {
     Mean effort;
     double work = 0.0, work_start = 0.0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.effort, self.work, self.work_start);
+    }
   };
   struct PathSums {
     Mean position, angle;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.position, self.angle);
+    }
   };
   void take_largest(double t);
   void add_means(std::span<const double> row, double dt, bool first);

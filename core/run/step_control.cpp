@@ -13,13 +13,14 @@ constexpr double broken_power = 3.0;  // behind an event forces grow as broken p
 
 void StepControl::cut(std::uint64_t law) {
   last_error_ = 1.0, rejected_ = false, first_ = broken_ = true;
-  law_ = &*std::ranges::find(laws_, law, &Law::name);
-  if (law_ == laws_.end()) {
-    law_ = &*std::ranges::min_element(laws_, {}, &Law::used);
-    *law_ = {.name = law};
+  auto known = std::ranges::find(laws_, law, &Law::name);
+  if (known == laws_.end()) {
+    known = std::ranges::min_element(laws_, {}, &Law::used);
+    *known = {.name = law};
   }
-  law_->used = ++events_;
-  if (law_->first_step > 0.0) next_ = law_->first_step;
+  known->used = ++events_;
+  if (known->first_step > 0.0) next_ = known->first_step;
+  law_ = static_cast<std::size_t>(known - laws_.begin());
 }
 
 void StepControl::accept(double dt, double error) {
@@ -33,8 +34,8 @@ void StepControl::accept(double dt, double error) {
   next_ = std::min({dt * factor, limits_.largest, error > smallest_error ? limits_.largest : limits_.uninformed});
   last_error_ = e;
   rejected_ = false;
-  if (law_ != nullptr) law_->first_step = next_;
-  law_ = nullptr;
+  if (law_) laws_[*law_].first_step = next_;
+  law_.reset();
 }
 
 void StepControl::reject(double dt, double error, double most_power) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace freeplay {
 
@@ -45,17 +47,27 @@ class StepControl {
   /// The step did not converge.
   void halve(double dt);
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.laws_, self.law_, self.events_, self.next_, self.last_error_, self.rejected_, self.first_,
+            self.broken_);
+  }
+
  private:
   /// A law of motion that began at an event.
   struct Law {
     std::uint64_t name = 0;
     double first_step = 0.0;  ///< that its first error told to be right; 0: not known
     long used = 0;            ///< events before it began last
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.name, self.first_step, self.used);
+    }
   };
 
   StepLimits limits_;
   std::array<Law, 8> laws_{};
-  Law* law_ = nullptr;  ///< that began at the end of the last step
+  std::optional<std::size_t> law_;  ///< that began at the end of the last step
   long events_ = 0;
   double power_, proportional_, damping_, next_, last_error_ = 1.0;
   bool rejected_ = false, first_ = true, broken_ = false;

@@ -26,7 +26,7 @@ bool fields_make_sense(const Event& event, Span<const double> fields, Message& m
 }
 }  // namespace
 
-StepEvents::StepEvents(const System& system, const RunContext& context, bool located, State& between,
+StepEvents::StepEvents(const System& system, const EvaluationContext& context, bool located, State& between,
                        KeptEvaluation& e_between)
     : system_(system),
       context_(context),

@@ -22,7 +22,8 @@ class StepEvents {
 
   /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `between` and `e_between`
   /// are lent for each call: what they hold does not matter, and is lost.
-  StepEvents(const System& system, const RunContext& context, bool located, State& between, KeptEvaluation& e_between);
+  StepEvents(const System& system, const EvaluationContext& context, bool located, State& between,
+             KeptEvaluation& e_between);
 
   /// A crossing that a step passes or ends at.
   struct Passage {
@@ -63,9 +64,21 @@ class StepEvents {
     int joint, event;
     std::size_t fields;  ///< offset into field_values()
     std::size_t count;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.time, self.joint, self.event, self.fields, self.count);
+    }
   };
   const std::vector<Happening>& happenings() const { return happenings_; }
   std::span<const double> fields(const Happening& h) const { return {values_.data() + h.fields, h.count}; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.armed_, self.seen_, self.start_, self.start_rate_, self.end_, self.end_rate_);
+    archive(self.earlier_, self.earlier_rate_, self.start_time_, self.earlier_by_);
+    archive.list(self.happenings_);
+    archive.list(self.values_);
+  }
 
  private:
   /// A step and its ends as joints see them: with the history that they have now.
@@ -90,7 +103,7 @@ class StepEvents {
             const double* mobility = nullptr);
 
   const System& system_;
-  const RunContext& context_;
+  const EvaluationContext& context_;
   bool located_;
   State& between_;
   KeptEvaluation& e_between_;

@@ -31,6 +31,10 @@ struct RunExtremes {
       if (x > most) most = x;
     }
     double span() const { return most >= least ? most - least : 0.0; }
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.least, self.most);
+    }
   };
   Range kinetic, potential, work, dissipated;  ///< [J]
   double exchanged = 0.0;                      ///< work put in and taken out, both positive, by element and step [J]
@@ -53,6 +57,15 @@ struct RunExtremes {
   double least_regularity = 1.0, singular_time = 0.0;  ///< nearest to a singular position, and when [s]
   double passed_at = unbounded;                        ///< the first singular position that was passed, if any [s]
   double open = 0.0;                                   ///< largest residual of a constraint's position [m or rad]
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.kinetic, self.potential, self.work, self.dissipated, self.residual, self.residual_time);
+    archive(self.part_kinetic, self.part_force, self.row_force, self.row_force_time, self.row_force_joint);
+    archive(self.force_near, self.force_near_time, self.force_near_joint, self.force_beside, self.applied_force);
+    archive(self.drive_motion, self.drive_effort, self.beyond_reach, self.farthest_body, self.size);
+    archive(self.least_regularity, self.singular_time, self.passed_at, self.open);
+  }
 };
 
 /// Finds out whether a motion went through a singular position. The root of the regularity is as the distance from it:
@@ -65,6 +78,11 @@ class SingularPassage {
   /// Where the step that was added last ended.
   bool is_near() const { return last_ < near; }
   bool is_beside() const { return last_ >= near && last_ < beside; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.last_, self.last_t_, self.second_last_, self.second_last_t_);
+  }
 
  private:
   static constexpr double near = 0.03;       // the root, where its course counts
@@ -109,6 +127,11 @@ class RunWatch {
   bool never_moved(int joint) const;
   const RunExtremes& seen() const { return seen_; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.passage_, self.contacts_, self.seen_);
+  }
+
  private:
   SingularPassage passage_;
   struct Contact {
@@ -118,6 +141,10 @@ class RunWatch {
     double strongest = 0.0;  // force that no material carries [N]
     RunExtremes::Range depth{};
     double due = 0.0;  // square of the force from which on the row is looked at again [N^2]
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.depth, self.due);
+    }
   };
   static double force_squared(const Evaluation& e, int joint) {
     const double* f = &e.wrench[12 * static_cast<std::size_t>(joint) + 6];

@@ -146,18 +146,38 @@ double AccelerationMatrix::factor(Evaluation& e) {
   return smallest_ = std::min(normal, planar ? invert_blocks<3>() : invert_blocks<6>());
 }
 
+void AccelerationMatrix::make_whole() {
+  whole_ = std::make_unique<StageMatrix>(system_, false);
+  whole_->set_pattern(dependent_);
+}
+
 // Towards a singular position the pivots of both fall alike, with the square of the distance.
 double AccelerationMatrix::factor_whole(Evaluation& e, double normal) {
-  if (whole_ == nullptr) {
-    whole_ = std::make_unique<StageMatrix>(system_, false);
-    whole_->set_pattern(dependent_);
-  }
+  if (whole_ == nullptr) make_whole();
   const double whole = whole_->factor(e, 0.0, 0.0, 0.0);
   if (normal > measurable) {
     unit_ = whole / normal;
     return whole > 0.0 ? normal : 0.0;
   }
   return unit_ > 0.0 ? whole / unit_ : whole;
+}
+
+void AccelerationMatrix::save(ArchiveWriter& archive) const {
+  archive(numbers_, by_normal_, smallest_, unit_, whole_ != nullptr);
+  if (whole_ != nullptr) archive(*whole_);
+}
+
+// The whole matrix keeps its pivots while the other one serves.
+void AccelerationMatrix::restore(ArchiveReader& archive) {
+  bool has_whole = false;
+  archive(numbers_, by_normal_, smallest_, unit_, has_whole);
+  if (has_whole) {
+    make_whole();
+    archive(*whole_);
+  }
+  if (!by_normal_) return;
+  normal_.factor(numbers_);
+  system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>();
 }
 
 template <int width>

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "linear/normal_matrix.h"
 #include "stage/matrix.h"
 #include "stage/prescribed_bodies.h"
@@ -35,6 +36,10 @@ class AccelerationMatrix {
   bool is_well_conditioned() const { return by_normal_ && smallest_ > well_conditioned; }
   /// After factor(): the rows are far from depending on each other. False says nothing.
   bool has_independent_rows() const { return by_normal_; }
+
+  /// Phi_q from which the factors follow. restore() expects the pattern.
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
 
  private:
   /// A piece that couples a row with a prescribed body, other than its own rows.
@@ -65,6 +70,7 @@ class AccelerationMatrix {
   std::vector<NormalMatrix::Piece> place_pieces(const Owners& owners);
   std::vector<Source> sorted_sources(const Owners& owners) const;
   void sort_couplings(const Owners& owners);
+  void make_whole();
   double factor_whole(Evaluation& e, double normal);
   template <int width>
   void gather(std::span<const double> jacobian);

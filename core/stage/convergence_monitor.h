@@ -25,6 +25,10 @@ struct JacobianRecord {
     noise = 0.0;
     noisy_updates = 0;
   }
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.usable, self.rate, self.rate_age, self.noise, self.noise_age, self.noisy_updates, self.acting);
+  }
 };
 
 /// What an update says of its iteration.
@@ -81,6 +85,12 @@ class ConvergenceMonitor {
   double predictor_error() const { return predictor_error_; }
   double velocity_tolerance() const { return velocity_tolerance_; }  ///< tau_v [model sizes/s]
   double largest_beta() const { return std::max(beta_q_, beta_v_); }
+
+  /// All else is of one stage.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.velocity_tolerance_, self.predictor_error_);
+  }
 
  private:
   void measure_predictor(double size);

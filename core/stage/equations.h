@@ -15,7 +15,7 @@ namespace freeplay {
 
 class StageEquations {
  public:
-  explicit StageEquations(const System& system, RunContext* run = nullptr);
+  explicit StageEquations(const System& system, EvaluationContext* run = nullptr);
 
   const System& system() const { return system_; }
   Profile* profile() const { return e_->profile(); }
@@ -51,6 +51,11 @@ class StageEquations {
   const Fault& fault() const { return e_->fault; }
   const char* trouble() const { return trouble_; }
   void note_trouble(const char* text) { trouble_ = text; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.rows_, self.e_);
+  }
 
  private:
   [[gnu::cold]] bool note_fault();  // false

@@ -52,6 +52,25 @@ void FactorCache::set_pattern(StageFactor& factor) {
   }
 }
 
+void FactorCache::save(ArchiveWriter& archive) const {
+  archive(choice_, clock_, factorizations_);
+  for (const StageFactor& factor : factors_) {
+    archive(factor);
+    if (factor.has_pattern && choice_ == equations_.rows().choice()) archive(factor.matrix);
+  }
+}
+
+// Matrices of other rows than the present ones are not used again.
+void FactorCache::restore(ArchiveReader& archive) {
+  archive(choice_, clock_, factorizations_);
+  for (StageFactor& factor : factors_) {
+    archive(factor);
+    if (!factor.has_pattern || choice_ != equations_.rows().choice()) continue;
+    factor.matrix.set_pattern(equations_.dependent());
+    archive(factor.matrix);
+  }
+}
+
 void FactorCache::follow_choice_of_rows() {
   if (choice_ == equations_.rows().choice()) return;
   choice_ = equations_.rows().choice();

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/archive.h"
 #include "stage/convergence_monitor.h"
 #include "stage/equations.h"
 #include "stage/matrix.h"
@@ -16,6 +17,12 @@ struct StageFactor {
   bool has_pattern = false;
   long used = -1;        // FactorCache's time
   int on_phi_since = 0;  ///< stages since a predictor was off the constraint equations by drift
+
+  /// Without the matrix.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.beta_q, self.beta_v, self.beta_z, self.record, self.has_pattern, self.used, self.on_phi_since);
+  }
 };
 
 class FactorCache {
@@ -31,6 +38,10 @@ class FactorCache {
   /// Factors with other rows than those that are kept at present become unusable.
   void follow_choice_of_rows();
   long factorizations() const { return factorizations_; }
+
+  /// restore() expects the choice of rows.
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
 
  private:
   void set_pattern(StageFactor& factor);

@@ -50,6 +50,13 @@ class IndependentRows {
   /// The same in the present attempt alone: 1 where it had no pivot.
   double attempt_regularity() const { return regularity_; }
 
+  /// Multipliers of least norm are only asked for where find_more() was called before.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.dependent_, self.any_dependent_, self.rank_, self.choice_);
+    archive(self.largest_pivot_, self.regularity_, self.last_regularity_);
+  }
+
  private:
   bool adopt();
 

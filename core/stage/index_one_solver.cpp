@@ -68,6 +68,19 @@ void IndexOneSolver::set_pattern() {
   valid_ = false;
 }
 
+void IndexOneSolver::save(ArchiveWriter& archive) const {
+  archive(valid_, pattern_choice_, factored_time_, factored_at_, multipliers_, drifts_, factorizations_);
+  if (pattern_choice_ == equations_.rows().choice()) archive(matrix_);
+}
+
+// The pattern of other rows than the present ones is not used again.
+void IndexOneSolver::restore(ArchiveReader& archive) {
+  archive(valid_, pattern_choice_, factored_time_, factored_at_, multipliers_, drifts_, factorizations_);
+  if (pattern_choice_ != equations_.rows().choice()) return;
+  matrix_.set_pattern(dependent_);
+  archive(matrix_);
+}
+
 double IndexOneSolver::factor_once() {
   if (pattern_choice_ != equations_.rows().choice()) set_pattern();
   ++factorizations_;

@@ -45,6 +45,10 @@ class IndexOneSolver {
 
   long factorizations() const { return factorizations_; }
 
+  /// restore() expects the choice of rows.
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
+
  private:
   void set_pattern();
   bool factor();

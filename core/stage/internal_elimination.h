@@ -40,6 +40,11 @@ class InternalElimination {
   double advance(std::span<const double> change, double beta_z, std::span<const double> z,
                  std::span<double> z_rate) const;
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.numbers_);
+  }
+
  private:
   struct Block {
     std::size_t force_block = 0;

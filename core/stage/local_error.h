@@ -33,6 +33,11 @@ class LocalError {
   /// Index into v of the largest part of the last norm.
   int worst_component() const { return worst_component_; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.position_, self.velocity_, self.relative_, self.velocity_now_, self.worst_component_);
+  }
+
  private:
   static constexpr double velocity_rounding = 2e-14;  // relative
 

@@ -239,6 +239,11 @@ double StageMatrix::invert_blocks() {
   return smallest;
 }
 
+void StageMatrix::restore(ArchiveReader& archive) {
+  archive(values_, internal_, rest_);
+  system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>();
+}
+
 void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const double> update,
                            std::span<double> right) const {
   const double* value = values_.data() + first_coupling_;

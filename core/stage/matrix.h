@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "linear/kkt_matrix.h"
 #include "stage/internal_elimination.h"
 #include "stage/prescribed_bodies.h"
@@ -32,6 +33,10 @@ class StageMatrix {
   /// The update (da, dlambda) for a right side, which is used up.
   void solve(std::span<double> right, std::span<double> update);
   InternalElimination& internal() { return internal_; }
+
+  /// The matrix from which the factors follow. restore() expects the pattern.
+  void save(ArchiveWriter& archive) const { archive(values_, internal_, rest_); }
+  void restore(ArchiveReader& archive);
 
  private:
   /// An entry outside of the matrix that is factored: `right[row] -= value * update[column]`.

@@ -27,7 +27,7 @@ namespace freeplay {
 class NewtonStageSolver {
  public:
   /// `run`: of the run that it solves for, or null; must outlive it.
-  NewtonStageSolver(const System& system, const ConvergenceParameters& parameters, RunContext* run = nullptr);
+  NewtonStageSolver(const System& system, const ConvergenceParameters& parameters, EvaluationContext* run = nullptr);
 
   const System& system() const { return system_; }
   const abi::StageSolverTable& table() const { return table_; }
@@ -80,6 +80,13 @@ class NewtonStageSolver {
   double regularity() const { return equations_.rows().regularity(); }
   /// Row that comes closest to depending on the others where the equations were evaluated last, or -1. Slow.
   int weakest_row() { return equations_.rows().weakest(equations_.evaluation()); }
+
+  /// All else is of one stage, or follows from the model.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.equations_, self.index_one_, self.factors_, self.floor_, self.monitor_, self.local_error_);
+    archive(self.iterations_, self.worst_row_);
+  }
 
  private:
   StageFactor& begin_stage(const Stage& stage, StateView& out, StageResult& result);

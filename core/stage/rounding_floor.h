@@ -36,6 +36,11 @@ class RoundingFloor {
   /// The same for the |Phi| of a position close to a singular one.
   bool phi_is_below_at_singular() const;
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.phi_, self.coordinate_size_, self.coordinate_);
+  }
+
  private:
   struct CoordinateTerm {
     std::size_t row, joint;

@@ -68,8 +68,8 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
     const JointRecord& record = records_[at(j)];
-    if (e.run != nullptr && e.run->rests_now(j)) {
-      Rest& rest = e.run->rests[at(j)];
+    if (e.context != nullptr && e.context->rests_now(j)) {
+      Rest& rest = e.context->rests[at(j)];
       if (!rest.holds(e.markers[at(record.marker_a)], e.markers[at(record.marker_b)])) {
         rest.left = true;
       } else if (!derivatives && e.acts[f] == 0) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/archive.h"
 #include "freeplay/integrator.h"
 #include "system/guard_marks.h"
 #include "system/layout.h"
@@ -64,6 +65,10 @@ class State {
   std::span<const double> before_history() const { return part(0, 1 + nq_ + 2 * nv_ + rows_ + nz_); }
   /// For checkpoints and hashes.
   std::span<const double> block() const { return std::span(block_).first(block_.size() - guard::marks); }
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.block_);
+  }
   /// False when something was written past the end of the block.
   bool intact() const { return guard::intact(block_.data() + block().size()); }
   StateView view() {

@@ -238,7 +238,7 @@ InternalDerivatives::InternalDerivatives(const ForceBlock& block, int body_veloc
   rate_z = take(nz * nz);
 }
 
-Evaluation::Evaluation(const System& system, RunContext* run_context) : run(run_context) {
+Evaluation::Evaluation(const System& system, EvaluationContext* own_context) : context(own_context) {
   const Model& model = system.model_;
   const Layout& layout = system.layout_;
   const std::size_t joints = model.joints.size();

@@ -20,10 +20,10 @@
 #include "linear/sparse_matrix.h"
 #include "system/body_coordinates.h"
 #include "system/declared_rows.h"
+#include "system/evaluation_context.h"
 #include "system/layout.h"
 #include "system/motion.h"
 #include "system/planar_kinematics.h"
-#include "system/run_context.h"
 #include "system/spatial_kinematics.h"
 #include "system/state.h"
 
@@ -329,13 +329,13 @@ class System {
   friend struct Evaluation;
 };
 
-/// Results and work space of System::evaluate. Sized once. `run` must outlive it; null: outside of a run, where every
-/// joint is awake.
+/// Results and work space of System::evaluate. Sized once. `context` must outlive it; null: outside of a run, where
+/// every joint is awake.
 struct Evaluation {
-  explicit Evaluation(const System& system, RunContext* run = nullptr);
+  explicit Evaluation(const System& system, EvaluationContext* context = nullptr);
 
-  RunContext* run = nullptr;
-  Profile* profile() const { return run == nullptr ? nullptr : run->profile; }
+  EvaluationContext* context = nullptr;
+  Profile* profile() const { return context == nullptr ? nullptr : context->profile; }
   std::vector<MarkerKinematics> markers;
   std::vector<planar::Arm> arms;           ///< by marker, in the plane
   std::vector<spatial::Arm> spatial_arms;  ///< by marker, in space
@@ -397,17 +397,33 @@ struct Evaluation {
   unsigned filled = 0;
   double time = 0.0;
   std::vector<double> z, h;
+
+  /// All that may be read again without being filled before.
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive.doubles(self.markers, self.arms, self.spatial_arms, self.turns, self.spatial_turns, self.shifted);
+    archive.doubles(self.coordinate_rows, self.motion, self.other_motion);
+    archive(self.q, self.v, self.driven_a, self.driven_asked, self.phi, self.nu, self.gamma, self.jacobian);
+    archive(self.force, self.force_q, self.force_v, self.gyroscopic_v, self.internal_derivatives);
+    archive(self.coordinate, self.coordinate_rate, self.potential, self.potential_rate, self.wrench);
+    archive(self.internal_rate, self.applied, self.acts, self.acting);
+    archive(self.driven_time, self.motion_time, self.other_motion_time, self.filled, self.time, self.z, self.h);
+  }
 };
 
 /// An Evaluation that changes places with another one by its address.
 class KeptEvaluation {
  public:
-  explicit KeptEvaluation(const System& system, RunContext* run = nullptr)
-      : evaluation_(std::make_unique<Evaluation>(system, run)) {}
+  explicit KeptEvaluation(const System& system, EvaluationContext* context = nullptr)
+      : evaluation_(std::make_unique<Evaluation>(system, context)) {}
   operator Evaluation&() { return *evaluation_; }
   operator const Evaluation&() const { return *evaluation_; }
   Evaluation* operator->() { return evaluation_.get(); }
   const Evaluation* operator->() const { return evaluation_.get(); }
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(*self.evaluation_);
+  }
   friend void swap(KeptEvaluation& a, KeptEvaluation& b) noexcept { a.evaluation_.swap(b.evaluation_); }
 
  private:
@@ -429,7 +445,7 @@ inline JointInput System::input(const JointRecord& record, const Point& point, c
           e.coordinate_rate[at(record.index)],
           {point.z.data() + record.internal.offset, at(record.internal.size)},
           {point.h.data() + record.history.offset, at(record.history.size)},
-          e.run == nullptr ? 0.0 : e.run->per_contact};
+          e.context == nullptr ? 0.0 : e.context->per_contact};
 }
 
 inline JointInput System::input(int index, const Point& point, const Evaluation& e) const {

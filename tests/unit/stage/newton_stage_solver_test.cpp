@@ -55,7 +55,7 @@ struct Swinging : ::testing::Test {
   std::shared_ptr<const Model> model;
   System system;
   Profile profile;
-  RunContext context;
+  EvaluationContext context;
   NewtonStageSolver solver{system, {}, &context};
   State state, before;
 };

@@ -1,4 +1,5 @@
-// RunContext: what one run alone has, so that the equations of motion can be shared by many.
+// EvaluationContext: what evaluations of one run share and others do not, so that runs can share the equations of
+// motion.
 #pragma once
 
 #include <vector>
@@ -15,6 +16,11 @@ struct Rest {
   double radius = 0.0, from[3] = {};
   bool left = false;  ///< set by evaluations that found it elsewhere, and asked it
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.now, self.radius, self.from, self.left);
+  }
+
   bool holds(const MarkerKinematics& a, const MarkerKinematics& b) const {
     double squared = 0.0;
     for (int i = 0; i < 3; ++i) {
@@ -25,11 +31,16 @@ struct Rest {
   }
 };
 
-/// Evaluations of a run refer to its context. Not for several threads.
-struct RunContext {
+/// Not for several threads.
+struct EvaluationContext {
   double per_contact = 0.0;    ///< JointInput::per_contact
   Profile* profile = nullptr;  ///< where the time of the run is counted, or null
   std::vector<Rest> rests{};   ///< by joint; a run decides which joints sleep (run/resting_joints.h)
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.rests);
+  }
 
   bool rests_now(int joint) const {
     const auto j = static_cast<std::size_t>(joint);

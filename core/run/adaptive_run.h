@@ -1,0 +1,72 @@
+// AdaptiveRun: a run with error control: every located event ends a step, output rows are taken from inside the steps.
+#pragma once
+
+#include <cstddef>
+
+#include "run/end_check.h"
+#include "run/error_budget.h"
+#include "run/event_bracket.h"
+#include "run/event_pursuit.h"
+#include "run/step_acceptance.h"
+#include "run/step_control.h"
+
+namespace freeplay {
+
+class AdaptiveRun {
+ public:
+  AdaptiveRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
+              Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit, EndCheck& end);
+
+  /// To the end of the run, from the accepted state.
+  void run(const RunHooks& hooks);
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.control_, self.budget_, self.velocity_allowed_);
+  }
+
+ private:
+  /// The step that is being sought.
+  struct Search {
+    double dt = 0.0;               ///< of the next attempt [s]
+    double goal = 0.0;             ///< beyond which it does not go [s]
+    double kink = unbounded;       ///< the corner after the goal, unless that is the end of the run [s]
+    int limiting = -1;             ///< joint that asked for a short step
+    StepEvents::Passage hunted{};  ///< event at which it is to end
+    EventBracket bracket{};        ///< lengths of attempts around it
+    int hunts = 0;                 ///< attempts to end there
+    std::size_t detours = 0;
+    double asked = 0.0;            ///< length before detours [s]
+    bool quick = false;            ///< an input acts for a short time
+    bool unbounded_slope = false;  ///< of it, at a corner beside the step
+    double hidden = 1.0;           ///< errors of the last attempt are so many times what it shows
+  };
+  enum class Found { no, yes, failed };  ///< a step that may stand; failed: the run is over
+
+  bool step();
+  bool begin_search(Search& search);
+  Found attempt(Search& search);
+  Found shorten(Search& search, bool converged);
+  Found judge(Search& search);
+  Found end_at_event(Search& search);
+  void allow_error(Search& search);
+  bool in_contact(const Evaluation& e) const;
+  bool bounded_step(double& dt, int& limiting_joint);
+  bool take_detour(bool passed, Search& search);
+  bool accept(const Search& search);
+
+  RunContext& run_;
+  RunFailure& failure_;
+  StepAttempt& attempt_;
+  StepAcceptance& acceptance_;
+  Recorder& recorder_;
+  EnergyGrowth& growth_;
+  Corners& corners_;
+  EventPursuit& pursuit_;
+  EndCheck& end_;
+  StepControl control_;
+  ErrorBudget budget_;       // of steps over short loads
+  double velocity_allowed_;  // by which velocities may err in the step to come [m/s]
+};
+
+}  // namespace freeplay

@@ -1,0 +1,266 @@
+#include "run/corners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double smallest_jump = 1e-9;   // of a speed, in parts of the larger one
+constexpr double most_lengthened = 4.0;  // steps that go round a singular position are longer than asked for
+
+// Around a kink at t the side is one of rounding.
+double margin(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
+constexpr double shortest_part = 1e-6;  // of the run, see shortest_change()
+
+// What depends on time in a way that cannot be analysed is looked at so closely that no change this long is missed [s].
+double shortest_change(const Settings& settings) {
+  return std::max(shortest_part * (settings.end - settings.start), settings.interval);
+}
+
+}  // namespace
+
+Corners::Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt)
+    : run_(run),
+      failure_(failure),
+      attempt_(attempt),
+      speed_jumps_(run.model.drivers.size()),
+      motion_before_(run.model.drivers.size()),
+      motion_after_(run.model.drivers.size()),
+      q_before_(run.e_accepted->q.size()),
+      v_before_(run.e_accepted->v.size()),
+      driven_change_(run.e_accepted->driven_a.size()),
+      impulses_(at(run.system.layout().all_rows())) {
+  if (run.adaptive) inputs_.emplace(run.system, shortest_change(run.settings), run.allowed);
+}
+
+void Corners::save(ArchiveWriter& archive) const {
+  archive(speed_jumps_, corner_kind_, inputs_.has_value());
+  if (inputs_) archive(*inputs_);
+}
+
+void Corners::restore(ArchiveReader& archive) {
+  bool has_inputs = false;
+  archive(speed_jumps_, corner_kind_, has_inputs);
+  if (!has_inputs) inputs_.reset();
+  ArchiveReader::require(has_inputs == inputs_.has_value());
+  if (inputs_) archive(*inputs_);
+}
+
+CornerKind Corners::end_step(std::optional<double> corner) {
+  if (!inputs_) return corner_kind_ = CornerKind::motion;
+  if (!corner) return corner_kind_ = CornerKind::smooth;
+  return corner_kind_ = inputs_->kind_of(*corner, *corner - run_.trial.t());
+}
+
+bool Corners::next_corner(double dt, double& corner) {
+  Fault fault;
+  const double until = run_.accepted.t() + most_lengthened * dt;
+  const auto next = [&](double t) {
+    if (inputs_) return inputs_->next_corner(t, until, corner, fault);
+    corner = run_.kinks.next(t, until);
+    return true;
+  };
+  bool good = next(run_.accepted.t());
+  while (good && std::isfinite(corner) && corner - margin(corner) <= run_.accepted.t()) good = next(corner);
+  return good || failure_.fail_with(fault, run_.accepted.t());
+}
+
+bool Corners::resolve_inputs(double& dt) {
+  if (!inputs_) return true;
+  dt = inputs_->resolved(run_.accepted.t(), dt);
+  if (!inputs_->watches_joints()) return true;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
+  Fault fault;
+  return inputs_->resolved_by_joints(point(run_.accepted), run_.e_accepted, run_.accepted.t(), dt, fault) ||
+         failure_.fail_with(fault, run_.accepted.t());
+}
+
+bool Corners::resolves_joints(double& dt) {
+  if (!inputs_ || !inputs_->watches_joints()) return true;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
+  Fault fault;
+  return inputs_->resolved_by_joints(point(run_.trial), run_.e_trial, run_.accepted.t(), dt, fault) ||
+         failure_.fail_with(fault, run_.trial.t());
+}
+
+// Whether an effort or a force is another one behind the corner.
+bool Corners::loads_jump(double corner) {
+  const double before = corner - margin(corner), after = corner + margin(corner);
+  const auto jumps = [&](double from, double to, double rates) {
+    return std::abs(to - from) > smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(corner) * rates;
+  };
+  MotionFault fault;
+  if (!run_.system.motions().evaluate(before, {motion_before_.data(), motion_before_.size()}, run_.motion_work,
+                                      fault) ||
+      !run_.system.motions().evaluate(after, {motion_after_.data(), motion_after_.size()}, run_.motion_work, fault)) {
+    return true;  // the run will meet it
+  }
+  for (std::size_t d = 0; d < run_.model.drivers.size(); ++d) {
+    if (prescribes(run_.model.drivers[d].kind)) continue;
+    const TimeValue &from = motion_before_[d], &to = motion_after_[d];
+    if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
+  }
+  for (const AppliedForce& force : run_.model.forces) {
+    for (const Expression& component : force.value) {
+      Jet from, to;
+      EvaluationFailure failure;
+      if (!component.evaluate(before, from, failure) || !component.evaluate(after, to, failure)) return true;
+      if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
+    }
+  }
+  return false;
+}
+
+double Corners::before(double kink) { return kink - margin(kink); }
+
+// To just after others as well that rounding cannot tell from it. Positions stay, the
+// velocities follow the drivers by the least impulse.
+bool Corners::pass_kink(double kink) {
+  if (corner_kind_ == CornerKind::smooth || (corner_kind_ == CornerKind::load && !loads_jump(kink))) {
+    run_.accepted.t() = kink;
+    return true;
+  }
+  note_jumps(kink);
+  for (double next = kink; next - kink <= margin(kink); next = run_.kinks.next(next, kink + margin(kink))) {
+    run_.accepted.t() = next + margin(next);
+  }
+  note_driven(run_.e_accepted);
+  StateView view = run_.accepted.view();
+  run_.solver.use_history(run_.accepted.h());
+  const bool good = run_.solver.project_velocity(view);
+  if (!good || !attempt_.evaluate_all(run_.accepted, run_.e_accepted)) {
+    const Fault& fault = good ? run_.e_accepted->fault : run_.solver.fault();
+    if (fault.kind != Fault::Kind::none) return failure_.fail_with(fault, kink);
+    return failure_.fail(4, fmt::format("t = {:.9g} s: {}", kink, run_.solver.trouble()));
+  }
+  if (const int jumping = row_that_jumps(); jumping >= 0) {
+    return failure_.fail(4, fmt::format("t = {:.9g} s: {}: the prescribed position jumps; no motion follows it", kink,
+                                        failure_.row_name(jumping)));
+  }
+  std::ranges::copy(run_.solver.impulse(), impulses_.begin());
+  book_impulses(run_.e_accepted);
+  if (!attempt_.restart()) return false;
+  run_.accepted.t() = kink;
+  return true;
+}
+
+// Where drivers and driven bodies are, to be compared with how they go on.
+void Corners::note_driven(const Evaluation& e) {
+  std::ranges::copy(e.motion, motion_before_.begin());
+  std::ranges::copy(e.q, q_before_.begin());
+  std::ranges::copy(e.v, v_before_.begin());
+}
+
+// A row that holds a driven body which is elsewhere behind a kink, or that does not hold any more; -1: none.
+int Corners::row_that_jumps() const {
+  const double allowed_gap = 1e-9 * run_.system.size();
+  for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
+    const std::size_t driven = (i - run_.accepted.q().size()) / 3;
+    if (std::abs(run_.e_accepted->q[i] - q_before_[i]) > allowed_gap) return run_.system.row_of_driven(driven);
+  }
+  for (std::size_t r = 0; r < run_.e_accepted->phi.size(); ++r) {
+    if (std::abs(run_.e_accepted->phi[r]) > allowed_gap) return static_cast<int>(r);
+  }
+  return -1;
+}
+
+// The work of `impulses` in rows of unknowns, and of those that changed the velocities of driven bodies to those in
+// `behind`. At rows that do not move by themselves an impulse does no work.
+void Corners::book_impulses(Evaluation& behind) {
+  const std::size_t first = run_.accepted.v().size();
+  for (std::size_t i = 0; i < driven_change_.size(); ++i)
+    driven_change_[i] = behind.v[first + i] - v_before_[first + i];
+  run_.system.recover_impulses(behind, driven_change_, impulses_);
+  for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
+    const int r = run_.system.layout().driver_row(d);
+    if (r < 0) continue;
+    const double work = -impulses_[at(r)] * 0.5 * (motion_before_[at(d)].rate + behind.motion[at(d)].rate);
+    run_.energy.add_driver_work(d, work);
+    if (run_.flows > 0) run_.accepted.z().last(at(run_.flows))[at(d)] += work;
+  }
+}
+
+// Of a step of fixed size that went over a kink: the work of the blow on driven bodies. That on others is part of the
+// step.
+void Corners::book_jump(double kink) {
+  Point here = point(run_.accepted);
+  const auto look = [&](double t) {
+    here.t = t;
+    return run_.system.evaluate(here, term_position | only_asked, run_.e_between);
+  };
+  if (!look(kink - margin(kink))) return;
+  note_driven(run_.e_between);
+  if (!look(kink + margin(kink))) return;
+  std::ranges::fill(impulses_, 0.0);
+  book_impulses(run_.e_between);
+}
+
+// Whether the speed of a driver jumps.
+bool Corners::note_jumps(double kink) {
+  MotionFault fault;
+  if (!run_.system.motions().evaluate(kink - margin(kink), {motion_before_.data(), motion_before_.size()},
+                                      run_.motion_work, fault) ||
+      !run_.system.motions().evaluate(kink + margin(kink), {motion_after_.data(), motion_after_.size()},
+                                      run_.motion_work, fault)) {
+    return false;  // the run will meet it
+  }
+  bool any = false;
+  for (std::size_t d = 0; d < speed_jumps_.size(); ++d) {
+    if (run_.system.layout().driver_row(static_cast<int>(d)) < 0) continue;
+    const double from = motion_before_[d].rate, to = motion_after_[d].rate;
+    const double steady = std::abs(motion_before_[d].acceleration) + std::abs(motion_after_[d].acceleration);
+    if (std::abs(to - from) <= smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(kink) * steady) {
+      continue;
+    }
+    any = true;
+    if (speed_jumps_[d].count++ == 0) speed_jumps_[d] = {1, kink, from, to};
+  }
+  return any;
+}
+
+// Of runs in steps of one size: inputs that do more inside a step than it can see.
+void Corners::format_unresolved() {
+  if (run_.adaptive) return;
+  const double step = std::min(run_.settings.step, run_.settings.interval);
+  for (const InputActivity::Unresolved& input :
+       InputActivity(run_.system, run_.settings.interval, 0.0).closer_than(step)) {
+    run_.warnings.push_back(fmt::format(
+        "{} '{}': it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over what it "
+        "does between them; ask for an accuracy instead, or for steps of {:.2g} s",
+        input.section, *input.name, input.from, input.to, step, 0.1 * (input.to - input.from)));
+    const std::string element = fmt::format("{} '{}'", input.section, *input.name);
+    run_.outcome.doubts.push_back(
+        {.id = "unresolved-input",
+         .level = Trust::doubtful,
+         .message = fmt::format("{} has corners {:.3g} s apart, closer than the step of {:.3g} s", element,
+                                input.to - input.from, step),
+         .element = element,
+         .value = input.to - input.from,
+         .limit = step});
+  }
+}
+
+void Corners::format_jumps() {
+  for (std::size_t d = 0; d < speed_jumps_.size(); ++d) {
+    const SpeedJump& jump = speed_jumps_[d];
+    if (jump.count == 0) continue;
+    const Driver& driver = run_.model.drivers[d];
+    const bool angle = run_.system.joint_layout(driver.joint).coordinate == Coordinate::angle;
+    std::string text =
+        fmt::format("driver '{}' at t = {:.9g} s: the speed that it prescribes jumps from {:.4g} to {:.4g} {}",
+                    driver.name, jump.time, jump.from, jump.to, angle ? "rad/s" : "m/s");
+    if (jump.count > 1) text += fmt::format(", the first of {} jumps", jump.count);
+    run_.warnings.push_back(
+        text + (run_.adaptive
+                    ? ": taken as a blow, whose work is booked and whose force is not in the results"
+                    : ": a blow, of which a step of this size makes a large force; ask for an accuracy instead"));
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,45 @@
+// RunDoubts: what a run holds against its own numbers while it goes on.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run/recorder.h"
+
+namespace freeplay {
+
+class RunDoubts {
+ public:
+  RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder);
+
+  /// Forces at the start, to which later ones are compared.
+  void note_first_forces();
+  /// After an accepted step of the length dt: false, with the outcome, where going on makes no sense.
+  bool watch_row(double dt);
+  bool note_warnings();
+  /// Once the run is over: warnings of joints, and play that was never used.
+  void format_warnings();
+  void note_unused_play();
+
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
+
+ private:
+  struct Warning {
+    const char* text = nullptr;
+    double time = 0.0;
+    std::size_t values = 0;  ///< offset into warning_values_
+  };
+
+  RunContext& run_;
+  RunFailure& failure_;
+  Recorder& recorder_;
+  std::vector<Warning> joint_warnings_;     // by joint
+  std::vector<std::string> warning_texts_;  // of a run that goes on, by joint: the joints' own are those of another run
+  std::vector<double> warning_values_;      // the joints' own channels when they warned
+  /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
+  std::optional<double> torn_from_;
+};
+
+}  // namespace freeplay

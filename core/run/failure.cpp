@@ -1,0 +1,215 @@
+#include "run/failure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "assembly/drive_range.h"
+#include "base/index.h"
+#include "component/own_types.h"
+#include "run/likely_cause.h"
+
+namespace freeplay {
+namespace {
+constexpr double singular = 1e-4;  // regularity
+}  // namespace
+
+bool RunFailure::fail(int exit_code, std::string reason) {
+  run_.outcome.status = RunStatus::failed;
+  run_.outcome.exit_code = exit_code;
+  run_.outcome.reason = std::move(reason);
+  return false;
+}
+
+bool RunFailure::fail_with(const Fault& fault, double t) {
+  if (fault.kind == Fault::Kind::motion) {
+    const MotionFault& motion = fault.motion;
+    std::string who;
+    if (motion.driver >= 0) who = fmt::format("driver '{}': ", run_.model.drivers[at(motion.driver)].name);
+    if (motion.force >= 0) who = fmt::format("force '{}': ", run_.model.forces[at(motion.force)].name);
+    if (motion.kinematics >= 0) who = fmt::format("driver '{}': ", run_.model.kinematics[at(motion.kinematics)].name);
+    return fail(4, fmt::format("t = {:.9g} s: {}{} [{}]", t, who, motion.text, motion.id));
+  }
+  const JointElement& joint = run_.model.joints[at(fault.joint)];
+  if (fault.of_expression()) {
+    return fail(4,
+                fmt::format("t = {:.9g} s: joint '{}': {} [{}]", t, joint.name, fault.message.text, fault.message.id));
+  }
+  if (std::string_view(fault.message.text).ends_with("not a finite number") && all_built_in()) {
+    return fail(4, why_beyond_bounds(t, fault.joint));
+  }
+  // A law of the program has an end: numbers of the model have led there, and no plugin is at fault.
+  if (is_built_in(run_.model.instances, *joint.component, joint.parameters.get())) {
+    failed_joint_ = fault.joint;
+    return fail(4, fmt::format("t = {:.9g} s: joint '{}': {} [law-range]", t, joint.name, fault.message.text));
+  }
+  return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
+                             run_.model.instances.words_of(*joint.component), fault.message.text));
+}
+
+bool RunFailure::fail_beside(int joint) {
+  Fault fault;
+  fault.kind = Fault::Kind::plugin;
+  fault.joint = joint;
+  abi::copy_text(fault.message.text, sizeof fault.message.text, "it wrote beside its history");
+  return fail_with(fault, run_.accepted.t());
+}
+
+std::string RunFailure::row_name(int row_index) const {
+  for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
+    if (run_.system.layout().driver_row(d) == row_index)
+      return fmt::format("driver '{}'", run_.model.drivers[at(d)].name);
+  }
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    const Slice rows = run_.system.layout().rows(j);
+    if (row_index >= rows.offset && row_index < rows.offset + rows.size) {
+      return fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+    }
+  }
+  return {};
+}
+
+// Of the joints at a body, or of all (ground), the one that pulls hardest; -1 when none has a force.
+int RunFailure::hardest_joint(BodyId body) const {
+  double largest = 0.0;
+  int hardest = -1;
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    const JointElement& joint = run_.model.joints[at(j)];
+    if (joint.gear >= 0) continue;
+    if (body != ground && run_.model.markers[at(joint.marker_a)].body != body &&
+        run_.model.markers[at(joint.marker_b)].body != body) {
+      continue;
+    }
+    double wrench[6];
+    run_.system.reaction(j, run_.e_accepted, run_.accepted.lambda(), wrench);
+    const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
+    if (force > largest) largest = force, hardest = j;
+  }
+  return hardest;
+}
+
+std::string RunFailure::why_not_converged(double dt) const {
+  if (run_.left_bounds) return why_beyond_bounds(run_.accepted.t(), -1);
+  std::string text = fmt::format("t = {:.9g} s: no step of {:.3g} s or longer could be made: {}", run_.accepted.t(), dt,
+                                 *run_.solver.trouble() ? run_.solver.trouble() : "the integrator gave up");
+  if (const std::string worst = row_name(run_.solver.worst_row()); !worst.empty()) text += "; worst is " + worst;
+  // A force law that pulls hardest is the usual suspect where no constraint is.
+  double largest = 0.0;
+  int suspect = -1;
+  for (const ForceBlock& block : run_.system.force_blocks()) {
+    const double* wrench = &run_.e_accepted->wrench[12 * at(block.joint) + 6];
+    const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
+    if (force > largest) largest = force, suspect = block.joint;
+  }
+  if (suspect >= 0) {
+    text += fmt::format("; the largest force is {:.4g} N in joint '{}'", largest, run_.model.joints[at(suspect)].name);
+  }
+  return text + std::string(advice::smaller_step);
+}
+
+// Roundings of coordinates that have grown without bound, as behind a dead point, can pass for rows that hold.
+std::string RunFailure::why_open(double position) const {
+  int worst = 0;
+  for (int r = 0; r < run_.system.layout().nc(); ++r) {
+    if (!(std::abs(run_.e_accepted->phi[at(r)]) <= std::abs(run_.e_accepted->phi[at(worst)]))) worst = r;
+  }
+  return fmt::format("t = {:.9g} s: the mechanism has come apart: {} stays open by {:.4g} m", run_.accepted.t(),
+                     row_name(worst), position);
+}
+
+std::string RunFailure::why_singular() {
+  std::string text = fmt::format(
+      "t = {:.9g} s: the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding "
+      "hides how",
+      run_.accepted.t());
+  if (const std::string worst = row_name(run_.solver.weakest_row()); !worst.empty()) {
+    text += "; first to depend on the other constraints is " + worst;
+  }
+  return text + std::string(advice::other_steps);
+}
+
+std::string RunFailure::why_so_small(double dt, double smallest, int limiting_joint) const {
+  std::string text = fmt::format("t = {:.9g} s: a step of {:.3g} s is needed, the smallest allowed is {:.3g} s",
+                                 run_.accepted.t(), dt, smallest);
+  if (limiting_joint >= 0)
+    return text + fmt::format("; joint '{}' asks for it", run_.model.joints[at(limiting_joint)].name);
+  const int worst = run_.solver.local_error().worst_component();
+  if (worst < 0) return text;
+  const int width = run_.system.body_velocities(), part = worst % width;
+  const BodyId body = run_.system.layout().body_at(worst / width);
+  constexpr const char* planar[] = {"x", "y", "angle"};
+  constexpr const char* spatial[] = {"x", "y", "z", "rotation", "rotation", "rotation"};
+  text += fmt::format("; the error is largest in body '{}' ({})", run_.model.bodies[at(body)].name,
+                      width == 3 ? planar[part] : spatial[part]);
+  if (const int joint = hardest_joint(body); joint >= 0) {
+    text += fmt::format(", on which joint '{}' pulls hardest", run_.model.joints[at(joint)].name);
+  }
+  return text + std::string(advice::error);
+}
+
+// Contacts are overshot by steps; constraints alone come to this where the mechanism cannot go on.
+std::string RunFailure::why_energy_grows(double dt, double gained) {
+  if (run_.model.clearance_joints() == 0) {
+    return run_.adaptive && run_.solver.regularity() < singular ? why_singular() : why_not_converged(dt);
+  }
+  std::string text = fmt::format(
+      "t = {:.9g} s: energy would grow by {:.3g} J in a step of {:.3g} s, more than everything that acts could put in",
+      run_.accepted.t(), gained, dt);
+  const int joint = hardest_joint(ground);
+  if (joint >= 0)
+    text += fmt::format("; joint '{}' pulls hardest", run_.model.joints[static_cast<std::size_t>(joint)].name);
+  const std::string cause = likely_cause(run_.system, run_.e_accepted,
+                                         {run_.accepted.t(), run_.adaptive ? 0.0 : dt, joint, run_.first_forces});
+  return text + (cause.empty() ? std::string(advice::accuracy) : std::string(cause_words) + cause);
+}
+
+/// Numbers of the program's own types that are not finite any more come of the model or of the step.
+std::string RunFailure::why_beyond_bounds(double t, int joint) const {
+  std::string text = fmt::format("t = {:.9g} s: forces and speeds grow beyond all bounds", t);
+  const int hardest = joint >= 0 ? joint : hardest_joint(ground);
+  if (hardest >= 0)
+    text += fmt::format(", first in joint '{}'", run_.model.joints[static_cast<std::size_t>(hardest)].name);
+  const std::string cause = likely_cause(run_.system, run_.e_accepted,
+                                         {t, run_.adaptive ? 0.0 : run_.settings.step, hardest, run_.first_forces});
+  return text + (cause.empty() ? std::string(advice::accuracy) : std::string(cause_words) + cause);
+}
+
+bool RunFailure::all_built_in() const {
+  return std::ranges::all_of(run_.model.instances.libraries(),
+                             [](const RegisteredLibrary& library) { return library.path == "built-in"; });
+}
+
+bool RunFailure::fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found) {
+  return fail(4, fmt::format("t = {:.9g} s: the events of joint '{}' do not end: {} within {:.2g} s, the last '{}'; {}",
+                             last.time, run_.model.joints[at(last.joint)].name, found.events, found.within,
+                             run_.system.joint_layout(last.joint).events[at(last.event)].name, event_rule));
+}
+
+// Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.
+void RunFailure::explain_dead_point() {
+  if (run_.outcome.status != RunStatus::failed || run_.outcome.exit_code != 4) return;
+  auto why = why_out_of_reach(run_.equations->whole(), run_.equations->start().state, run_.outcome.time);
+  if (!why) return;
+  run_.outcome.reason = std::move(*why);
+  for (TrustReason& reason : run_.outcome.doubts) {
+    const bool locked = run_.outcome.reason.ends_with("[locked]");
+    reason.message = reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
+                     (locked ? "the mechanism is locked" : "the mechanism comes to a dead point");
+  }
+}
+
+// A number of the model that no machine has is worth more than any advice about steps.
+void RunFailure::explain_failure() {
+  if (run_.outcome.exit_code != 4 || run_.outcome.reason.find(cause_words) != std::string::npos) return;
+  if (run_.outcome.reason.ends_with("[dead-point]") || run_.outcome.reason.ends_with("[locked]")) return;
+  const Wreck wreck{run_.accepted.t(), run_.adaptive ? 0.0 : run_.settings.step, failed_joint_, run_.first_forces};
+  const std::string cause = likely_cause(run_.system, run_.e_accepted, wreck);
+  if (cause.empty()) return;
+  for (const std::string_view advice : {advice::smaller_step, advice::accuracy, advice::other_steps, advice::error}) {
+    if (run_.outcome.reason.ends_with(advice)) run_.outcome.reason.resize(run_.outcome.reason.size() - advice.size());
+  }
+  run_.outcome.reason += std::string(cause_words) + cause;
+}
+
+}  // namespace freeplay

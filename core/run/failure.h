@@ -1,0 +1,54 @@
+// RunFailure: why a run cannot go on, in words.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "run/context.h"
+#include "run/event_storm.h"
+
+namespace freeplay {
+
+/// Ends of messages, which a likely cause takes the place of.
+namespace advice {
+inline constexpr std::string_view smaller_step = "; try a smaller step";
+inline constexpr std::string_view accuracy = "; ask for an accuracy in place of a step";
+inline constexpr std::string_view other_steps = "; ask for less accuracy, or for steps of one size";
+inline constexpr std::string_view error = "; allow smaller steps or a larger error";
+}  // namespace advice
+inline constexpr std::string_view cause_words = "; likely cause: ";
+
+class RunFailure {
+ public:
+  explicit RunFailure(RunContext& run) : run_(run) {}
+
+  /// Each ends the run with its outcome; returns false.
+  [[gnu::cold]] bool fail(int exit_code, std::string reason);
+  [[gnu::cold]] bool fail_with(const Fault& fault, double t);
+  /// A joint has written past the end of the state's history.
+  [[gnu::cold]] bool fail_beside(int joint);
+  [[gnu::cold]] bool fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found);
+
+  std::string why_not_converged(double dt) const;
+  std::string why_open(double position) const;
+  std::string why_singular();
+  /// `limiting_joint`: that asks for a step so short, or -1.
+  std::string why_so_small(double dt, double smallest, int limiting_joint) const;
+  /// `gained`: energy without work in a step of length dt [J].
+  std::string why_energy_grows(double dt, double gained);
+  std::string row_name(int row_index) const;
+  bool all_built_in() const;
+
+  /// Once the run is over: better reasons than the loop could give.
+  void explain_dead_point();
+  void explain_failure();
+
+ private:
+  std::string why_beyond_bounds(double t, int joint) const;
+  int hardest_joint(BodyId body) const;
+
+  RunContext& run_;
+  int failed_joint_ = -1;  // whose law the run came to the end of
+};
+
+}  // namespace freeplay

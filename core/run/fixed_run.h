@@ -1,0 +1,51 @@
+// FixedRun: a run in steps of one size.
+#pragma once
+
+#include "run/end_check.h"
+#include "run/step_acceptance.h"
+
+namespace freeplay {
+
+class FixedRun {
+ public:
+  FixedRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance, Recorder& recorder,
+           EnergyGrowth& growth, Corners& corners, StepCorners& step_corners, EndCheck& end);
+
+  /// To the end of the run, from the accepted state.
+  void run(const RunHooks& hooks);
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.leg_);
+  }
+
+ private:
+  /// On the way to the next output instant: steps of one size, the last of which ends there.
+  struct Leg {
+    double from = 0.0, target = -unbounded;
+    double goal = -unbounded;  ///< where the present step of full size ends [s]
+    double dt = 0.0;           ///< of the next attempt [s]
+    long count = 0, step = 0;  ///< steps of full size: all, and the present one; 0: none has begun
+    long steps_before = 0;     ///< accepted before this way
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.from, self.target, self.goal, self.dt, self.count, self.step, self.steps_before);
+    }
+  };
+  bool begin_leg();
+  bool step();
+  bool accept(double corner);
+
+  RunContext& run_;
+  RunFailure& failure_;
+  StepAttempt& attempt_;
+  StepAcceptance& acceptance_;
+  Recorder& recorder_;
+  EnergyGrowth& growth_;
+  Corners& corners_;
+  StepCorners& step_corners_;
+  EndCheck& end_;
+  Leg leg_;
+};
+
+}  // namespace freeplay

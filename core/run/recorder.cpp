@@ -1,0 +1,211 @@
+#include "run/recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "base/index.h"
+#include "run/dense_step.h"
+
+namespace freeplay {
+namespace {
+constexpr double open_rows = 1e-3;  // of the size of the model: constraints that are off by more do not hold
+
+EventStorm::Limits storm_limits(const Settings& settings, bool adaptive) {
+  const double latest = std::max(std::abs(settings.start), std::abs(settings.end));
+  const double instant = std::max(2048.0 * rounding * latest, adaptive ? settings.smallest_step : 0.0);
+  return {instant, adaptive ? settings.step : 0.0, StepEvents::most_per_step};
+}
+
+}  // namespace
+
+Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepInside& inside,
+                   std::span<Sink* const> sinks)
+    : run_(run),
+      failure_(failure),
+      attempt_(attempt),
+      inside_(inside),
+      sinks_(sinks.begin(), sinks.end()),
+      observer_(run.system, run.channels),
+      statistics_(run.model, run.channels, run.adaptive),
+      peaks_(statistics_.peak_values().size()),
+      storm_(run.model.joints.size(), storm_limits(run.settings, run.adaptive)),
+      row_(run.channels.all().size(), 0.0),
+      row_between_(row_.size(), 0.0),
+      residual_(at(run.system.layout().nc())) {}
+
+bool Recorder::observe_start() {
+  Fault fault;
+  if (!observer_.observe(point(run_.accepted), run_.e_accepted, run_.accepted.lambda(), row_, fault)) {
+    return failure_.fail_with(fault, run_.accepted.t());
+  }
+  run_.energy.start(run_.e_accepted, run_.accepted.lambda(), run_.channels, row_);
+  return row_is_known_ = true;
+}
+
+// The channels of the accepted state: asked for by rows, statistics, stop conditions and warnings, and seldom by all
+// steps.
+bool Recorder::know_row() {
+  if (row_is_known_) return true;
+  Fault fault;
+  if (!run_.adaptive && !run_.system.complete(point(run_.accepted), run_.e_accepted))
+    return failure_.fail_with(run_.e_accepted->fault, run_.accepted.t());
+  if (!observer_.observe(point(run_.accepted), run_.e_accepted, run_.accepted.lambda(), row_, fault)) {
+    return failure_.fail_with(fault, run_.accepted.t());
+  }
+  run_.energy.fill(run_.e_accepted, run_.channels, row_);
+  return row_is_known_ = true;
+}
+
+bool Recorder::record_step() {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
+  double position = 0.0, velocity = 0.0;
+  for (std::size_t r = 0; r < residual_.size(); ++r) position = std::max(position, std::abs(run_.e_accepted->phi[r]));
+  run_.watch.add_open(position);
+  if (!(position <= open_rows * run_.system.size())) return failure_.fail(4, failure_.why_open(position));
+  const bool counts = statistics_.counts(run_.accepted.t());
+  if (!counts && !statistics_.noise().active()) return true;
+  if (!know_row()) return false;
+  if (!counts) {
+    statistics_.note(row_);
+    if (run_.adaptive)
+      run_.ended_abruptly ? peaks_.restart(run_.accepted.t(), statistics_.values())
+                          : seek_peaks({run_.trial, run_.e_trial, run_.accepted, run_.e_accepted});
+    return true;
+  }
+  run_.system.multiply(run_.e_accepted, run_.accepted.v(), residual_);
+  for (std::size_t r = 0; r < residual_.size(); ++r) {
+    velocity = std::max(velocity, std::abs(residual_[r] - run_.e_accepted->nu[r]));
+  }
+  statistics_.add(row_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), position,
+                  velocity);
+  if (run_.adaptive && run_.ended_abruptly) {
+    statistics_.begin_stretch();
+    peaks_.restart(run_.accepted.t(), statistics_.values());
+  }
+  if (run_.adaptive && !run_.ended_abruptly) seek_peaks({run_.trial, run_.e_trial, run_.accepted, run_.e_accepted});
+  return true;
+}
+
+bool Recorder::write_row() {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::output);
+  if (!know_row()) return false;
+  ++run_.outcome.rows;
+  statistics_.note_written(row_);
+  for (Sink* sink : sinks_) sink->row(row_);
+  return sinks_are_well();
+}
+
+bool Recorder::write_events() {
+  run_.outcome.events += static_cast<long>(run_.events.happenings().size());
+  const Profile::Timer timer(run_.evaluations.profile, Phase::events);
+  for (const StepEvents::Happening& happening : run_.events.happenings()) {
+    const char* name = run_.system.joint_layout(happening.joint).events[at(happening.event)].name;
+    if (std::string_view(name).ends_with("contact_begin")) statistics_.add_contact(happening.joint, happening.time);
+    statistics_.note_event(happening.joint, happening.event, run_.events.fields(happening));
+    for (Sink* sink : sinks_) {
+      sink->event({happening.time, happening.joint, happening.event, run_.events.fields(happening)});
+    }
+    const EventStorm::Finding found = storm_.note(happening.joint, happening.time, run_.outcome.steps);
+    if (found.events > 0) return failure_.fail_in_storm(happening, found);
+  }
+  return run_.events.happenings().empty() || sinks_are_well();
+}
+
+// What a sink was given may fail later, beside the run: a row or an event to come finds it.
+bool Recorder::sinks_are_well() {
+  for (const Sink* sink : sinks_) {
+    if (!sink->ok()) return failure_.fail(6, "a result file could not be written");
+  }
+  return true;
+}
+
+double Recorder::row_time(long index) const {
+  const double t = run_.settings.start + static_cast<double>(index) * run_.settings.interval;
+  return t > run_.settings.end - 1e-9 * run_.settings.interval ? run_.settings.end : t;
+}
+
+void Recorder::pass_rows() {
+  while (next_row_time() <= run_.accepted.t() && run_.accepted.t() < run_.settings.end) ++next_row_;
+}
+
+bool Recorder::write_rows_inside() {
+  while (row_time(next_row_) < run_.trial.t()) {
+    if (!write_row_at(row_time(next_row_))) return false;
+    ++next_row_;
+  }
+  return true;
+}
+
+bool Recorder::write_row_at(double t) {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::output);
+  if (!inside_.look_inside(t)) return false;
+  Fault fault;
+  if (!observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row_between_, fault))
+    return failure_.fail_with(fault, t);
+  const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
+  if (run_.flows > 0 && run_.inner.known()) {
+    const std::span<const double> integrals = std::span<const double>(run_.between.z()).last(at(run_.flows));
+    run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), integrals, run_.channels, row_between_);
+  } else {
+    run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
+  }
+  ++run_.outcome.rows;
+  statistics_.note_written(row_between_);
+  for (Sink* sink : sinks_) sink->row(row_between_);
+  return sinks_are_well();
+}
+
+// The row at t of the interpolated motion, in `row_between`, but for its energies. What cannot be seen there is no
+// failure of the run.
+bool Recorder::observe_inside(double t, const Ends& step) {
+  if (run_.solver.regularity() < near_singular) return false;
+  const double s = (t - step.start.t()) / (step.end.t() - step.start.t());
+  DenseStep(run_.system, step.start, step.e_start.internal_rate, step.end, step.e_end.internal_rate)
+      .at(s, run_.between);
+  run_.between.t() = t;
+  Fault ignored;
+  return inside_.settle_between() && attempt_.evaluate_all(run_.between, run_.e_between) &&
+         observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row_between_, ignored);
+}
+
+// The step ends with the values that statistics saw last.
+void Recorder::seek_peaks(const Ends& step) {
+  const bool counts = statistics_.counts(step.end.t());
+  if (statistics_.counts(step.start.t()) != counts) return peaks_.restart(step.end.t(), statistics_.values());
+  peaks_.end_step(step.end.t(), statistics_.values());
+  const double dt = step.end.t() - step.start.t();
+  const auto largest = counts ? statistics_.largest() : statistics_.largest_before();
+  for (double s = peaks_.next(largest); s > 0.0; s = peaks_.next(largest)) {
+    if (!observe_inside(step.start.t() + s * dt, step)) return;
+    statistics_.note(row_between_);
+    peaks_.seen(s, statistics_.values());
+  }
+}
+
+// An event or a kink changes what acts at the end of the step that was just made: until there it goes on smoothly.
+bool Recorder::note_abrupt_end() {
+  if (!statistics_.counts(run_.trial.t()) && !statistics_.noise().active()) return true;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
+  Fault fault;
+  if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
+    return failure_.fail_with(fault, run_.trial.t());
+  statistics_.end_stretch(row_between_);
+  seek_peaks({run_.accepted, run_.e_accepted, run_.trial, run_.e_trial});
+  return true;
+}
+
+// Statistics begin at the very instant that `discard` names.
+bool Recorder::begin_statistics_inside() {
+  const double t = statistics_.first_instant();
+  if (!statistics_.begins_inside(run_.accepted.t(), run_.trial.t())) return true;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
+  if (!observe_inside(t, {run_.accepted, run_.e_accepted, run_.trial, run_.e_trial})) return true;
+  run_.energy.fill_inside((t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t()), run_.e_between,
+                          run_.between.lambda(), run_.channels, row_between_);
+  statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,
+                  0.0);
+  return true;
+}
+
+}  // namespace freeplay

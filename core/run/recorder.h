@@ -1,0 +1,81 @@
+// Recorder: rows, events and statistics of a run, and largest values inside the steps that an accuracy chooses.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "run/event_storm.h"
+#include "run/observer.h"
+#include "run/peak_search.h"
+#include "run/sink.h"
+#include "run/statistics.h"
+#include "run/step_inside.h"
+
+namespace freeplay {
+
+/// Where a function returns false the run is over, with its outcome filled.
+class Recorder {
+ public:
+  Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepInside& inside,
+           std::span<Sink* const> sinks);
+
+  /// The row of the start, with which the account of energy begins.
+  bool observe_start();
+  /// Makes the row of the accepted state, unless it is known.
+  bool know_row();
+  bool row_is_known() const { return row_is_known_; }
+  void forget_row() { row_is_known_ = false; }
+  /// The last that was made, every channel.
+  std::span<const double> row() const { return row_; }
+
+  /// Statistics at the end of a step that was just accepted; of one that ends abruptly before it is; and where
+  /// statistics begin inside.
+  bool record_step();
+  bool note_abrupt_end();
+  bool begin_statistics_inside();
+  /// Events of that step.
+  bool write_events();
+
+  /// When the next row is due, and it is written elsewhere.
+  double next_row_time() const { return row_time(next_row_); }
+  double take_next_row() { return row_time(next_row_++); }
+  /// Rows up to the accepted state are written.
+  void pass_rows();
+  bool write_row();
+  bool write_rows_inside();
+
+  const Statistics& statistics() const { return statistics_; }
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.statistics_, self.peaks_, self.storm_, self.row_, self.row_is_known_, self.next_row_);
+  }
+
+ private:
+  struct Ends {  // of a step
+    const State& start;
+    const Evaluation& e_start;
+    const State& end;
+    const Evaluation& e_end;
+  };
+  bool write_row_at(double t);
+  bool sinks_are_well();
+  bool observe_inside(double t, const Ends& step);
+  void seek_peaks(const Ends& step);
+  double row_time(long index) const;
+
+  RunContext& run_;
+  RunFailure& failure_;
+  StepAttempt& attempt_;
+  StepInside& inside_;
+  std::vector<Sink*> sinks_;
+  Observer observer_;
+  Statistics statistics_;
+  PeakSearch peaks_;  // with error control
+  EventStorm storm_;
+  std::vector<double> row_, row_between_, residual_;
+  bool row_is_known_ = false;  // row_ is that of the accepted state
+  long next_row_ = 1;
+};
+
+}  // namespace freeplay

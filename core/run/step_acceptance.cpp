@@ -1,0 +1,104 @@
+#include "run/step_acceptance.h"
+
+#include <algorithm>
+
+#include "base/index.h"
+#include "run/dense_step.h"
+
+namespace freeplay {
+
+StepAcceptance::StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt& attempt, Recorder& recorder,
+                               RunDoubts& doubts, EnergyGrowth& growth, Corners& corners, StepCorners& step_corners)
+    : run_(run),
+      failure_(failure),
+      attempt_(attempt),
+      recorder_(recorder),
+      doubts_(doubts),
+      growth_(growth),
+      corners_(corners),
+      step_corners_(step_corners),
+      flow_half_way_(at(run.energy.flows())) {}
+
+bool StepAcceptance::begin() {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::start);
+  run_.e_accepted->forget_motions();
+  if (!run_.system.evaluate(point(run_.accepted), all_terms, run_.e_accepted)) {
+    return failure_.fail_with(run_.e_accepted->fault, run_.accepted.t());
+  }
+  run_.system.fill_driven_jacobian(run_.e_accepted);
+  run_.system.recover_loads(run_.e_accepted, run_.accepted.lambda());
+  if (!attempt_.start()) return false;
+  Fault fault;
+  if (!run_.events.at_start(run_.accepted, run_.e_accepted, fault)) return failure_.fail_with(fault, run_.accepted.t());
+  if (!recorder_.observe_start()) return false;
+  growth_.start();
+  doubts_.note_first_forces();
+  return recorder_.record_step() && doubts_.watch_row(0.0) && recorder_.write_events();
+}
+
+// Where neither the integrator carries the flows nor the steps before tell how they go, forces are looked at once more
+// in the middle of the step.
+void StepAcceptance::add_energy() {
+  const double dt = run_.trial.t() - run_.accepted.t();
+  if (run_.flows > 0 || run_.energy.flows() == 0) {
+    return run_.energy.take(dt, run_.e_trial, run_.trial.lambda(),
+                            std::span<const double>(run_.trial.z()).last(at(run_.flows)));
+  }
+  if (run_.energy.add_smooth(dt, run_.e_trial, run_.trial.lambda())) return;
+  DenseStep(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+      .at(0.5, run_.between);
+  std::ranges::copy(run_.trial.h(), run_.between.h().begin());  // as the attempt had it
+  // A state that no joint can be asked at is left out of the sum: the ends speak for it.
+  const bool seen = run_.system.evaluate(point(run_.between), term_force | only_asked, run_.e_between);
+  run_.energy.flow(seen ? run_.e_between : run_.e_trial, run_.between.lambda(), flow_half_way_);
+  run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
+}
+
+bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
+  const auto mobility = [](void* self, int joint, double* out) {
+    auto& run = *static_cast<RunContext*>(self);
+    return run.solver.mobility(run.trial, joint, {out, 9});
+  };
+  const Profile::Timer timer(run_.evaluations.profile, Phase::events);
+  Fault fault;
+  if (run_.events.apply(run_.accepted, run_.e_accepted, run_.trial, run_.e_trial, fault) &&
+      run_.events.tell_at_end(located, late, run_.trial, run_.e_trial, mobility, &run_, fault)) {
+    return true;
+  }
+  return failure_.fail_with(fault, run_.trial.t());
+}
+
+bool StepAcceptance::go_on_from(bool changed, const End& end) {
+  if ((!changed || attempt_.restart()) && (!(end.corner < unbounded) || step_corners_.pass(end.corner)) &&
+      (!(end.kink < unbounded) || corners_.pass_kink(end.kink))) {
+    return true;
+  }
+  // The row of the last state from which the run could go on may still be asked for.
+  std::swap(run_.accepted, run_.trial);
+  swap(run_.e_accepted, run_.e_trial);
+  return false;
+}
+
+bool StepAcceptance::accept(const End& end) {
+  const double dt = run_.trial.t() - run_.accepted.t();
+  if (!end.has_energy) add_energy();
+  if (run_.adaptive && (!recorder_.write_rows_inside() || !recorder_.begin_statistics_inside())) return false;
+  const bool expected = run_.adaptive && (end.located.joint >= 0 || end.kink < unbounded);
+  if (expected && !recorder_.note_abrupt_end()) return false;
+  if (!apply_events(end.located, end.late) || !attempt_.commit_history()) return false;
+  std::swap(run_.accepted, run_.trial);
+  swap(run_.e_accepted, run_.e_trial);
+  run_.outcome.time = run_.accepted.t();
+  const bool changed = !run_.events.happenings().empty() || run_.ended_inside;
+  run_.ended_inside = false;
+  run_.ended_abruptly = changed || expected;
+  if (!go_on_from(changed, end)) return false;
+  recorder_.forget_row();
+  if (!recorder_.record_step()) return false;
+  run_.outcome.smallest_step = run_.outcome.steps == 0 ? dt : std::min(run_.outcome.smallest_step, dt);
+  run_.outcome.largest_step = std::max(run_.outcome.largest_step, dt);
+  ++run_.outcome.steps;  // from now on its row may be written
+  return doubts_.watch_row(dt) && doubts_.note_warnings() && recorder_.write_events();
+}
+
+}  // namespace freeplay

@@ -1,0 +1,130 @@
+#include "run/step_inside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/index.h"
+#include "run/dense_step.h"
+
+namespace freeplay {
+namespace {
+constexpr int order_by_ends = 5;           // of a method whose steps are known as well inside by their ends
+constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
+constexpr double astray_inside = 1.0;      // and by which its ends may mislead: no more than a step may err by
+constexpr int most_sweeps = 3;
+constexpr double most_growth = 2.0;  // of changes from sweep to sweep: more is a stiff force, less may be rounding
+}  // namespace
+
+StepInside::StepInside(RunContext& run, RunFailure& failure, StepAttempt& attempt)
+    : run_(run),
+      failure_(failure),
+      attempt_(attempt),
+      inner_before_(at(run.system.layout().nv())),
+      defect_(inner_before_.size()),
+      rate_defect_(inner_before_.size()),
+      start_rate_(run.z_rate.size()),
+      end_rate_(run.z_rate.size()) {}
+
+bool StepInside::settle_between() {
+  StateView view = run_.between.view();
+  run_.solver.use_history(run_.between.h());
+  run_.solver.move_away();
+  return run_.solver.project_position(view) && run_.solver.project_velocity(view) &&
+         run_.solver.accelerate(view, {run_.z_rate.data(), run_.z_rate.size()});
+}
+
+// Between its ends a step is known to the sixth order from these alone. Where that is not enough the equations of
+// motion are solved at places inside, over and over, until nothing changes that would matter. Where a joint cannot be
+// asked there, or changes grow as where forces are stiff against the step, the ends have to do.
+void StepInside::know_inside() {
+  if (run_.inner.known()) return;
+  const std::size_t joints = run_.e_accepted->internal_rate.size();
+  std::ranges::copy(run_.e_accepted->internal_rate, start_rate_.begin());
+  std::ranges::copy(run_.e_trial->internal_rate, end_rate_.begin());
+  if (run_.flows > 0) {
+    run_.energy.flow(run_.e_accepted, run_.accepted.lambda(), std::span(start_rate_).subspan(joints));
+    run_.energy.flow(run_.e_trial, run_.trial.lambda(), std::span(end_rate_).subspan(joints));
+  }
+  const DenseStep by_ends(run_.system, run_.accepted, start_rate_, run_.trial, end_rate_);
+  const auto look = [&](std::size_t place) {
+    const double s = InnerMotion::places[place];
+    DenseStep(run_.system, run_.accepted, start_rate_, run_.trial, end_rate_, &run_.inner).at(s, run_.between);
+    StateView view = run_.between.view();
+    run_.solver.use_history(run_.between.h());
+    if (!run_.solver.accelerate(view, {run_.z_rate.data(), run_.z_rate.size()})) return false;
+    by_ends.missing(s, run_.between, run_.z_rate, run_.inner.missing(place), run_.inner.missing_rate(place));
+    return true;
+  };
+  const auto change = [&](std::size_t place) {
+    const std::span<const double> now = run_.inner.missing(place);
+    for (std::size_t i = 0; i < now.size(); ++i) defect_[i] = now[i] - std::exchange(inner_before_[i], now[i]);
+    return error_by_missing(0.5);
+  };
+  std::ranges::fill(inner_before_, 0.0);
+  if (!look(InnerMotion::middle)) return;
+  run_.inner.fit_middle();
+  if (change(InnerMotion::middle) <= unnoticed_inside) return;
+  std::ranges::fill(inner_before_, 0.0);
+  double last_change = unbounded;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    bool seen = look(InnerMotion::middle);
+    if (seen && sweep == 0) run_.inner.fit_middle();
+    seen = seen && look(0) && look(2);
+    if (!seen) return run_.inner.forget();
+    run_.inner.fit();
+    const double now = change(0);
+    if (now <= unnoticed_inside) return;
+    if (!(now < most_growth * last_change)) return run_.inner.forget();
+    last_change = now;
+  }
+}
+
+// Largest error of an interpolation by the ends, in units of what a step may err by, that misses `defect` of the second
+// derivative by s of increments at the fraction s: as u^3 with u = s (1 - s), of which no more than 1/64 and, by s,
+// 0.054 come together. `defect` is lost.
+double StepInside::error_by_missing(double s) {
+  const double dt = run_.trial.t() - run_.accepted.t();
+  const double bend = std::max(std::abs(InnerMotion::Weights(s).acceleration[0]), 0.05);
+  for (std::size_t i = 0; i < defect_.size(); ++i) {
+    rate_defect_[i] = 0.054 / (bend * dt) * defect_[i];
+    defect_[i] *= 1.0 / (64.0 * bend);
+  }
+  return run_.solver.error_norm(defect_, rate_defect_);
+}
+
+// A consistent state inside the step that was just made, in `between`.
+bool StepInside::settle_inside(double t) {
+  const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
+  if (run_.inner.known()) {
+    DenseStep(run_.system, run_.accepted, start_rate_, run_.trial, end_rate_, &run_.inner).at(s, run_.between);
+  } else {
+    DenseStep(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+        .at(s, run_.between);
+  }
+  run_.between.t() = t;
+  if (settle_between()) return true;
+  if (run_.solver.fault().kind != Fault::Kind::none) return failure_.fail_with(run_.solver.fault(), t);
+  return failure_.fail(4, fmt::format("t = {:.9g} s: {}", t, run_.solver.trouble()));
+}
+
+bool StepInside::look_inside(double t) {
+  if (run_.integrator_layout.order > order_by_ends) know_inside();
+  if (!settle_inside(t)) return false;
+  if (!run_.inner.known()) {
+    const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
+    // How far the ends alone lead astray, their own accelerations say.
+    DenseStep(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+        .missing(s, run_.between, {}, defect_, {});
+    if (!(error_by_missing(s) <= astray_inside)) {
+      know_inside();
+      if (!settle_inside(t)) return false;
+    }
+  }
+  if (!attempt_.evaluate_all(run_.between, run_.e_between)) return failure_.fail_with(run_.e_between->fault, t);
+  return true;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,222 @@
+// A run that goes on from a saved state ends bit for bit where the uninterrupted one ends.
+#include <atomic>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <set>
+
+#include "run_model.h"
+
+namespace freeplay::test {
+namespace {
+
+/// One kind of run of one model.
+struct Case {
+  std::string model;       ///< below mechanisms/, without its ending
+  std::string integrator;  ///< empty: that of the model
+  enum Steps { own, fixed, adaptive } steps = own;
+  long most_steps = 1500;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+  constexpr const char* kinds[] = {"", " fixed", " adaptive"};
+  *out << c.model << ' ' << c.integrator << kinds[c.steps];
+}
+
+bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+/// A model that is assembled, each time from its text.
+struct Prepared {
+  explicit Prepared(const Case& what) : model(load(mechanism(what.model), options(what))), system(*model) {
+    start = assemble(system);
+  }
+  static BuildOptions options(const Case& what) {
+    BuildOptions out;
+    if (!what.integrator.empty()) out.integrator = what.integrator;
+    if (what.steps == Case::own) return out;
+    const std::unique_ptr<Model> model = load(mechanism(what.model), out);
+    const Settings& own = model->settings;
+    const bool is_adaptive = own.adaptive || own.accuracy > 0.0;
+    if (what.steps == Case::fixed && is_adaptive) out.step = 2.5e-4 * (own.end - own.start);
+    if (what.steps == Case::adaptive && !is_adaptive) out.accuracy = 1e-6;
+    return out;
+  }
+
+  std::unique_ptr<Model> model;
+  System system;
+  Start start;
+};
+
+/// What a run of so many steps, from its start or from a state, wrote, and what it was at its end.
+struct Result {
+  std::vector<double> numbers;
+  std::vector<Event> events;
+  Outcome outcome;
+  std::vector<std::string> warnings;
+  std::vector<double> last_row;
+  RunState end;  ///< the last that could be saved
+};
+
+/// Saves a state and how many events were written before it.
+struct Saved {
+  RunState state;
+  std::size_t events = 0;
+};
+
+Result run_on(Prepared& prepared, long most_steps, const RunState* from,
+              const std::function<void(const Simulation&, const RowKeeper&, long)>& each_step) {
+  const Channels channels(*prepared.model);
+  RowKeeper keeper(*prepared.model, channels, {});
+  Sink* const sinks[] = {&keeper};
+  std::unique_ptr<Simulation> simulation =
+      from == nullptr ? std::make_unique<Simulation>(prepared.system, prepared.start, channels, sinks)
+                      : std::make_unique<Simulation>(prepared.system, prepared.start, channels, sinks, *from);
+  Result out;
+  std::atomic<int> interrupt{0};
+  RunHooks hooks;
+  hooks.interrupt = &interrupt;
+  long steps = from == nullptr ? 0 : static_cast<long>(from->steps);
+  hooks.stepped = [&] {
+    ++steps;
+    if (each_step) each_step(*simulation, keeper, steps);
+    if (steps < most_steps) return;
+    out.end = simulation->save();
+    interrupt = 1;
+  };
+  out.outcome = simulation->run(hooks);
+  out.numbers = keeper.numbers();
+  out.events = keeper.events();
+  out.warnings.assign(simulation->warnings().begin(), simulation->warnings().end());
+  out.last_row.assign(simulation->last_row().begin(), simulation->last_row().end());
+  if (steps < most_steps) out.end = simulation->save();
+  return out;
+}
+
+/// States at seeded random steps, early and late ones, and two where a contact acts or is just over.
+std::vector<Saved> save_on_the_way(Prepared& prepared, const Case& what, Result& whole) {
+  std::seed_seq seed(what.model.begin(), what.model.end());
+  std::mt19937 random(seed);
+  const auto between = [&](long low, long high) { return std::uniform_int_distribution<long>(low, high)(random); };
+  std::set<long> at{between(1, 5), between(6, 40), between(41, what.most_steps / 2),
+                    between(what.most_steps / 2, what.most_steps - 1)};
+  const long after_event = between(1, 12);
+  std::vector<Saved> saved;
+  bool met = false;
+  whole = run_on(prepared, what.most_steps, nullptr, [&](const Simulation& run, const RowKeeper& keeper, long step) {
+    if (!met && !keeper.events().empty()) {
+      met = true;
+      at.insert({step, step + after_event});
+    }
+    if (at.contains(step)) saved.push_back({run.save(), keeper.events().size()});
+  });
+  return saved;
+}
+
+void expect_same_end(const Result& whole, const Saved& from, const Result& rest, std::size_t columns) {
+  const std::size_t before = static_cast<std::size_t>(from.state.rows) * columns;
+  ASSERT_LE(before, whole.numbers.size());
+  EXPECT_TRUE(same_bits(std::span(whole.numbers).subspan(before), rest.numbers)) << "rows";
+  ASSERT_EQ(whole.events.size() - from.events, rest.events.size());
+  for (std::size_t i = 0; i < rest.events.size(); ++i) {
+    const Event &a = whole.events[from.events + i], &b = rest.events[i];
+    EXPECT_TRUE(a.time == b.time && a.joint == b.joint && a.kind == b.kind && same_bits(a.fields, b.fields));
+  }
+  EXPECT_EQ(whole.outcome.status, rest.outcome.status);
+  EXPECT_EQ(whole.outcome.reason, rest.outcome.reason);
+  EXPECT_EQ(whole.outcome.time, rest.outcome.time);
+  EXPECT_EQ(whole.outcome.steps, rest.outcome.steps);
+  EXPECT_EQ(whole.outcome.rejected, rest.outcome.rejected);
+  EXPECT_EQ(whole.outcome.iterations, rest.outcome.iterations);
+  EXPECT_EQ(whole.outcome.factorizations, rest.outcome.factorizations);
+  EXPECT_EQ(whole.outcome.rows, rest.outcome.rows);
+  EXPECT_EQ(whole.outcome.events, rest.outcome.events);
+  EXPECT_EQ(whole.outcome.doubts.size(), rest.outcome.doubts.size());
+  EXPECT_EQ(whole.warnings, rest.warnings);
+  EXPECT_TRUE(same_bits(whole.last_row, rest.last_row)) << "last row";
+  // Statistics and all that later steps would depend on.
+  EXPECT_TRUE(whole.end == rest.end) << "state at the end";
+}
+
+void resume_everywhere(const Case& what) {
+  Prepared prepared(what), fresh(what);
+  Result whole;
+  const std::vector<Saved> saved = save_on_the_way(prepared, what, whole);
+  const std::size_t columns = Channels(*prepared.model).all().size();
+  for (const Saved& from : saved) {
+    SCOPED_TRACE("from step " + std::to_string(from.state.steps));
+    expect_same_end(whole, from, run_on(fresh, what.most_steps, &from.state, {}), columns);
+  }
+  EXPECT_TRUE(!saved.empty() || whole.outcome.status == RunStatus::failed);
+}
+
+class ResumedRun : public ::testing::TestWithParam<Case> {};
+TEST_P(ResumedRun, EndsBitForBitWhereTheWholeRunEnds) { resume_everywhere(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(
+    Models, ResumedRun,
+    ::testing::Values(Case{"3-rrr", "", Case::own, 4000}, Case{"slider-crank", "bathe", Case::adaptive},
+                      Case{"slider-crank", "dopri5", Case::adaptive}, Case{"3-rpr", "generalized-alpha", Case::fixed},
+                      Case{"spatial/bricard", "", Case::own}, Case{"spatial/stewart", "", Case::own},
+                      Case{"spatial/slider-crank", "bathe", Case::fixed}, Case{"validation/cradle-5", "", Case::own}));
+
+std::vector<std::string> shipped_models() {
+  const std::filesystem::path folder = std::string(source_folder()) + "/mechanisms";
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::filesystem::path name = std::filesystem::relative(entry.path(), folder);
+    if (name.extension() != ".yaml" || *name.begin() == "studies") continue;
+    out.push_back((name.parent_path() / name.stem()).string());
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+class ResumedModel : public ::testing::TestWithParam<std::string> {};
+TEST_P(ResumedModel, EndsBitForBitWithEveryIntegratorLong) {
+  std::vector<std::string> integrators{""};
+  for (const RegisteredComponent& type : builtin_types().components()) {
+    if (type.component->kind == ComponentKind::integrator) integrators.push_back(type.component->description.name);
+  }
+  ASSERT_GT(integrators.size(), 7u);
+  for (const std::string& integrator : integrators) {
+    for (const Case::Steps steps : {Case::own, Case::fixed, Case::adaptive}) {
+      if (integrator.empty() != (steps == Case::own)) continue;
+      const Case what{GetParam(), integrator, steps};
+      SCOPED_TRACE(::testing::PrintToString(what));
+      try {
+        resume_everywhere(what);
+      } catch (const Error& error) {  // as of steps that an integrator does not take
+        EXPECT_EQ(error.category(), Error::Category::input) << error.what();
+      }
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Shipped, ResumedModel, ::testing::ValuesIn(shipped_models()));
+
+TEST(SavedState, IsRefusedByAnotherModel) {
+  const Case one{"pendulum", "", Case::own, 5}, other{"four-bar", "", Case::own, 5};
+  Prepared pendulum(one), four_bar(other);
+  const RunState state = run_on(pendulum, 5, nullptr, {}).end;
+  const Channels channels(*four_bar.model);
+  try {
+    Simulation(four_bar.system, four_bar.start, channels, {}, state);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.id(), "state-mismatch");
+  }
+}
+
+TEST(SavedState, IsRefusedWhereNumbersAreMissing) {
+  const Case what{"slider-crank", "", Case::own, 50};
+  Prepared prepared(what);
+  const RunState state = run_on(prepared, 50, nullptr, {}).end;
+  const Channels channels(*prepared.model);
+  for (const bool of_reals : {true, false}) {
+    RunState shorter = state;
+    of_reals ? shorter.numbers.reals.pop_back() : shorter.numbers.integers.pop_back();
+    EXPECT_THROW(Simulation(prepared.system, prepared.start, channels, {}, shorter), Error);
+  }
+}
+
+}  // namespace
+}  // namespace freeplay::test
