@@ -20,7 +20,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to tell than to find
+constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to list than to find
 constexpr double of_racing = 0.1;                // of velocities: less by this is worth what blocks then do not keep
 constexpr double share_in_play = 1e-2;           // share of a journal's motion that constraints must leave to it
 constexpr double kept_part = 1e-9;               // of the largest velocity: a given one that differs by less is kept

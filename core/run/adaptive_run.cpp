@@ -206,7 +206,7 @@ bool AdaptiveRun::accept(const Search& search) {
   if (!acceptance_.accept(
           {.located = search.hunted, .late = pursuit_.event_lateness(), .kink = at_kink ? search.kink : unbounded}))
     return false;
-  // Forces that begin or end at an event do so once the joint is told.
+  // Forces that begin or end at an event do so once the joint has handled it.
   if (search.hunted.joint >= 0 && !at_kink) control_.cut(run_.e_accepted->acting);
   return true;
 }

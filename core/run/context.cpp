@@ -72,7 +72,7 @@ RunContext::RunContext(std::shared_ptr<const RunEquations> all_equations, const 
       own_between(adaptive ? std::optional<KeptEvaluation>(std::in_place, system, &evaluations) : std::nullopt),
       e_between(own_between ? *own_between : solver.evaluation()),
       events(system, evaluations, adaptive, between, e_between),
-      resting(system, evaluations),
+      sleeping(system, evaluations),
       kinks(model),
       watch(system, all_channels),
       inner(at(system.layout().nv()), at(system.layout().nz() + flows)),

@@ -14,7 +14,7 @@
 #include "run/equations.h"
 #include "run/inner_motion.h"
 #include "run/outcome.h"
-#include "run/resting_joints.h"
+#include "run/sleeping_joints.h"
 #include "run/step_events.h"
 #include "run/watch.h"
 #include "stage/newton_stage_solver.h"
@@ -39,7 +39,7 @@ struct RunContext {
   static void exchange(Self& self, Archive& archive) {
     archive(self.accepted, self.between, self.evaluations, self.e_accepted, self.e_trial);
     if (self.own_between) archive(*self.own_between);
-    archive(self.solver, self.energy, self.events, self.kinks, self.resting, self.watch);
+    archive(self.solver, self.energy, self.events, self.kinks, self.sleeping, self.watch);
     archive(self.ended_inside, self.ended_abruptly);
     archive.list(self.first_forces);
     auto& counts = self.outcome;
@@ -64,7 +64,7 @@ struct RunContext {
   std::optional<KeptEvaluation> own_between;  // with error control
   KeptEvaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
   StepEvents events;
-  RestingJoints resting;
+  SleepingJoints sleeping;
   DriveKinks kinks;  ///< of prescribed motions
   RunWatch watch;
   InnerMotion inner;  ///< of the step that was made last, where a row or a peak was sought inside

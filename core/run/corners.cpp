@@ -89,7 +89,7 @@ bool Corners::resolves_joints(double& dt) {
          failure_.fail_with(fault, run_.trial.t());
 }
 
-// Whether an effort or a force is another one behind the corner.
+// Whether an effort or a force is another one after the corner.
 bool Corners::loads_jump(double corner) {
   const double before = corner - margin(corner), after = corner + margin(corner);
   const auto jumps = [&](double from, double to, double rates) {
@@ -119,7 +119,7 @@ bool Corners::loads_jump(double corner) {
 
 double Corners::before(double kink) { return kink - margin(kink); }
 
-// To just after others as well that rounding cannot tell from it. Positions stay, the
+// To just after others as well that rounding cannot separate from it. Positions stay, the
 // velocities follow the drivers by the least impulse.
 bool Corners::pass_kink(double kink) {
   if (corner_kind_ == CornerKind::smooth || (corner_kind_ == CornerKind::load && !loads_jump(kink))) {
@@ -157,7 +157,7 @@ void Corners::note_driven(const Evaluation& e) {
   std::ranges::copy(e.v, v_before_.begin());
 }
 
-// A row that holds a driven body which is elsewhere behind a kink, or that does not hold any more; -1: none.
+// A row that holds a driven body which is elsewhere after a kink, or that does not hold any more; -1: none.
 int Corners::row_that_jumps() const {
   const double allowed_gap = 1e-9 * run_.system.size();
   for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
@@ -171,16 +171,16 @@ int Corners::row_that_jumps() const {
 }
 
 // The work of `impulses` in rows of unknowns, and of those that changed the velocities of driven bodies to those in
-// `behind`. At rows that do not move by themselves an impulse does no work.
-void Corners::book_impulses(Evaluation& behind) {
+// `after`. At rows that do not move by themselves an impulse does no work.
+void Corners::book_impulses(Evaluation& after) {
   const std::size_t first = run_.accepted.v().size();
   for (std::size_t i = 0; i < driven_change_.size(); ++i)
-    driven_change_[i] = behind.v[first + i] - v_before_[first + i];
-  run_.system.recover_impulses(behind, driven_change_, impulses_);
+    driven_change_[i] = after.v[first + i] - v_before_[first + i];
+  run_.system.recover_impulses(after, driven_change_, impulses_);
   for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
     const int r = run_.system.layout().driver_row(d);
     if (r < 0) continue;
-    const double work = -impulses_[at(r)] * 0.5 * (motion_before_[at(d)].rate + behind.motion[at(d)].rate);
+    const double work = -impulses_[at(r)] * 0.5 * (motion_before_[at(d)].rate + after.motion[at(d)].rate);
     run_.energy.add_driver_work(d, work);
     if (run_.flows > 0) run_.accepted.z().last(at(run_.flows))[at(d)] += work;
   }

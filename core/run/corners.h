@@ -36,7 +36,7 @@ class Corners {
   bool act_quickly() { return inputs_ && inputs_->acts_quickly(run_.accepted.t()); }
   bool hide_errors() const { return inputs_ && inputs_->hides_errors(run_.accepted.t()); }
   double hidden_error(double dt) const { return inputs_ ? inputs_->hidden_error(run_.accepted.t(), dt) : 1.0; }
-  /// From just before `kink`, at which end_step() was told that the step ends, to just after it.
+  /// From just before `kink`, at which end_step() knows that the step ends, to just after it.
   bool pass_kink(double kink);
 
   /// Of a step of fixed size that went over a kink: whether the speed of a driver jumps there; and the work of the

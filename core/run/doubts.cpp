@@ -83,7 +83,7 @@ bool RunDoubts::watch_row(double dt) {
 bool RunDoubts::note_warnings() {
   for (const ForceBlock& block : run_.system.force_blocks()) {
     Warning& warning = joint_warnings_[at(block.joint)];
-    if (warning.text != nullptr || run_.evaluations.rests_now(block.joint)) continue;
+    if (warning.text != nullptr || run_.evaluations.is_asleep(block.joint)) continue;
     const Point here = point(run_.accepted);
     Fault fault;
     if (!run_.system.joint(block.joint)

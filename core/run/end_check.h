@@ -15,7 +15,7 @@ class EndCheck {
 
   void start_clock() { started_ = Clock::now(); }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
-  /// Each returns false when the run is over, with its outcome filled. The second also tells how far the run is.
+  /// Each returns false when the run is over, with its outcome filled. The second also reports how far the run is.
   bool check_stop();
   bool check_interrupt(const RunHooks& hooks);
 

@@ -18,7 +18,7 @@ double power(const double* wrench, const MarkerKinematics& k);
 
 /// Booked are work of drivers, applied forces and rows of joints that depend on time, and the loss of joints: minus the
 /// power of their wrenches and the rate of what they store. That is what a damper or a friction law dissipates at this
-/// instant, and nothing for an elastic force, whatever the step; joints that do not tell the rate are booked by
+/// instant, and nothing for an elastic force, whatever the step; joints that do not give the rate are booked by
 /// differences of what they store, which takes errors of the method for losses. What an integrator or a projection
 /// loses is never booked; it is the residual. The powers ("flows": drivers, applied forces, joints with forces, in this
 /// order) are integrated over accepted steps by the cubic through their values at the ends of the last steps, by

@@ -28,7 +28,7 @@ EventPursuit::EventPursuit(RunContext& run, RunFailure& failure, StepAttempt& at
 double EventPursuit::before_event(double dt, double shorter, StepEvents::Passage& hunted) {
   if (!(run_.error <= largest_error) || run_.solver.regularity() < near_singular) return shorter;
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
-  // What no joint can be asked about tells nothing; nor does it matter, as the step does not stand.
+  // What no joint can be asked about says nothing; nor does it matter, as the step does not stand.
   Fault fault;
   StepEvents::Passage found;
   if (!attempt_.evaluate_all(run_.trial, run_.e_trial) ||
@@ -62,7 +62,7 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   const bool sharp = is_sharp(hunted) || hunts > most_hunts / 2;
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
-  // An event may lie so close to the start of the step that the time cannot tell them apart.
+  // An event may lie so close to the start of the step that the time cannot separate them.
   const double least = std::nextafter(run_.accepted.t(), unbounded) - run_.accepted.t();
   if (ends_there && past >= 0.0 && ((past <= tolerance && sharp) || dt <= least)) {
     done = true;

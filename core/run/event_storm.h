@@ -6,9 +6,9 @@
 
 namespace freeplay {
 
-/// What authors of joints are told where their events cannot be located or do not end.
+/// What authors of joints read where their events cannot be located or do not end.
 inline constexpr const char* event_rule =
-    "where an event is told its function must leave zero in the declared direction (rising or falling), or become NaN "
+    "where an event is handled its function must leave zero in the declared direction (rising or falling), or become NaN "
     "until it can happen again [event-storm]";
 
 /// Counts the events of each joint. A joint is in a storm when more than 1000 events lie within an instant, a few
@@ -20,7 +20,7 @@ class EventStorm {
   struct Limits {
     double instant;    ///< [s]
     double step_size;  ///< 0 where steps are not shortened for events [s]
-    int most_in_step;  ///< events of one joint that one step tells
+    int most_in_step;  ///< events of one joint that one step passes on
   };
   EventStorm(std::size_t joints, const Limits& limits) : limits_(limits), counts_(joints) {}
 

@@ -38,7 +38,7 @@ bool FixedRun::begin_leg() {
 // One accepted step. An attempt that does not converge is made again in half its length, and the rest of the step of
 // full size follows in steps as short.
 bool FixedRun::step() {
-  // Output instants may be closer than times can tell apart.
+  // Output instants may be closer than times can separate.
   if (!(run_.accepted.t() < leg_.target)) return true;
   const double smallest = smallest_step * run_.settings.step;
   if (!(run_.accepted.t() < leg_.goal)) {
@@ -57,7 +57,7 @@ bool FixedRun::step() {
     bool converged = false;
     if (!attempt_.make(to_corner ? step_corners_.before(corner) - run_.accepted.t() : dt, converged)) return false;
     if (!converged) {
-      if (!run_.resting.stayed()) continue;
+      if (!run_.sleeping.stayed()) continue;
       ++run_.outcome.rejected;
       dt *= 0.5;
       if (dt < smallest && run_.plugin_fault.kind == Fault::Kind::plugin)
@@ -68,7 +68,7 @@ bool FixedRun::step() {
     if (last || to_corner) run_.trial.t() = end;
     if (!attempt_.evaluate_all(run_.trial, run_.e_trial))
       return failure_.fail_with(run_.e_trial->fault, run_.trial.t());
-    if (!run_.resting.held(dt, run_.e_trial)) continue;
+    if (!run_.sleeping.held(dt, run_.e_trial)) continue;
     if (growth_.too_large()) {
       ++run_.outcome.rejected;
       dt *= 0.5;

@@ -14,7 +14,7 @@ struct RunHooks {
   std::function<void(double, long)> progress;
   /// Called after every accepted step, when its rows and events are written: the instants at which to save().
   std::function<void()> stepped;
-  Profile* profile = nullptr;  ///< told where the time goes
+  Profile* profile = nullptr;  ///< counts where the time goes
   /// For tests of what finds wrong runs: steps go over what forces and other inputs do inside them.
   bool blind_to_inputs = false;
 };

@@ -36,15 +36,15 @@ void InnerMotion::fit_middle() {
 // and -9/392. First derivatives there: of u^2 0 and -+6/7 offset, of x u^2 1/16 and 3/196, of x^3 u^2 0 and 3/784.
 void InnerMotion::fit() {
   for (std::size_t i = 0; i < bends_[0].size(); ++i) {
-    const double before = missing_[0][i], half_way = missing_[middle][i], behind = missing_[2][i];
-    const double even = 0.5 * (behind + before), odd = 0.5 * (behind - before);
+    const double before = missing_[0][i], half_way = missing_[middle][i], after = missing_[2][i];
+    const double even = 0.5 * (after + before), odd = 0.5 * (after - before);
     bends_[0][i] = -2.0 * half_way - 49.0 / 18.0 * even;
     bends_[1][i] = -14.0 / (9.0 * offset) * odd;
     bends_[2][i] = 8.0 * half_way - 98.0 / 3.0 * even;
   }
   for (std::size_t i = 0; i < rates_[0].size(); ++i) {
-    const double before = missing_rate_[0][i], half_way = missing_rate_[middle][i], behind = missing_rate_[2][i];
-    const double even = 0.5 * (behind + before), odd = 0.5 * (behind - before);
+    const double before = missing_rate_[0][i], half_way = missing_rate_[middle][i], after = missing_rate_[2][i];
+    const double even = 0.5 * (after + before), odd = 0.5 * (after - before);
     rates_[0][i] = -7.0 / (6.0 * offset) * odd;
     rates_[1][i] = 16.0 * half_way;
     rates_[2][i] = 784.0 / 3.0 * even - 64.0 * half_way;

@@ -26,7 +26,7 @@ constexpr int seen_degree = 4;                           // of polynomials that 
 constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
 constexpr double longer = 4.0;                           // the next step to look at, of one that had to be shortened
 
-/// Steps up to there need not be looked at; behind one that had to be shortened a change goes on.
+/// Steps up to there need not be looked at; after one that had to be shortened a change goes on.
 double unwatched(double shortest, double most) { return (most < unbounded ? finest : coarsest) * shortest; }
 
 /// Instants in the middle of equal parts.

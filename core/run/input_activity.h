@@ -1,4 +1,4 @@
-// InputActivity: when the inputs of a model change, told before a step goes there. Inputs are the motions, forces,
+// InputActivity: when the inputs of a model change, found before a step goes there. Inputs are the motions, forces,
 // torques and efforts that the model file gives as functions of time, and what joints of plugins make of the time.
 #pragma once
 
@@ -25,7 +25,7 @@ class InputActivity {
   InputActivity(const System& system, double shortest, double allowed);
 
   /// The first corner after t, if it is `until` or earlier; else a later time, or infinity. False, with `fault`, when a
-  /// joint does not tell. Times grow from step to step.
+  /// joint fails. Times grow from step to step.
   bool next_corner(double t, double until, double& corner, Fault& fault);
   /// The kind of the corners that lie within `margin` of a time.
   CornerKind kind_of(double corner, double margin) const;
@@ -38,7 +38,7 @@ class InputActivity {
   bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
   bool watches_joints() const { return !joints_.empty(); }
 
-  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or told by a
+  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or declared by a
   /// joint, or where a step had to be shortened. Short is a tenth of the run, of a prescribed motion a hundredth.
   bool acts_quickly(double t);
 
@@ -143,7 +143,7 @@ class InputActivity {
   double light_force_, light_torque_, short_length_, small_angle_;  ///< over a second; see negligible()
   std::vector<Formula> formulas_;
   std::vector<Table> tables_;
-  std::vector<TellingJoint> telling_;  ///< joints that may tell corners
+  std::vector<TellingJoint> telling_;  ///< joints that may declare corners
   std::vector<TimedJoint> joints_;
   StepResolution resolution_;
   std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;  // of a joint that is asked

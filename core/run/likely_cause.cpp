@@ -144,7 +144,7 @@ Pace pace_of(const System& system, std::size_t driver, const Wreck& wreck) {
 
 void suspect_motion(const System& system, const Wreck& wreck, Suspects& suspects) {
   const Model& model = system.model();
-  // Of a link that a driver turns: one that is too long tells nothing of speeds.
+  // Of a link that a driver turns: one that is too long says nothing of speeds.
   const std::vector<double> sizes = sizes_of(model);
   const double arm = sizes.empty() ? system.size() : sizes[(sizes.size() - 1) / 2];
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {

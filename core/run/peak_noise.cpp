@@ -48,7 +48,7 @@ void PeakNoise::event(int joint, int event, std::span<const double> fields) {
     contact.separation = speed;
     return;
   }
-  // The first contact only says where the motion begins; an end that is not told counts as one at rest.
+  // The first contact only says where the motion begins; an end without a speed counts as one at rest.
   const bool grows = contact.separation >= 0.0 && speed >= same_speed * contact.separation;
   contact.separation = 0.0;
   if (grows) impacts_ = std::max(impacts_, ++contact.growing);

@@ -7,14 +7,14 @@
 namespace freeplay {
 
 /// Steps that an accuracy chooses may be long against the bend of forces: the largest value then lies inside one and at
-/// neither end. The parabola through the last three ends, and behind a look that through both ends and the look, says
+/// neither end. The parabola through the last three ends, and after a look that through both ends and the look, says
 /// where and how much. Looks cost about as much as a stage of an integrator: a step gets three at most, and all
 /// together one in twenty-four steps and eight more, beyond which only gains of more than a hundredth are pursued.
 class PeakSearch {
  public:
   explicit PeakSearch(std::size_t values);
 
-  /// Behind an event or a kink values may go on otherwise.
+  /// After an event or a kink values may go on otherwise.
   void restart(double t, std::span<const double> values);
   /// A smooth step ends at t.
   void end_step(double t, std::span<const double> values);

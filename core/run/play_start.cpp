@@ -27,7 +27,7 @@ Vector3 unit_ball(const RandomWords& words, Space space) {
   return {flat * std::cos(turn), flat * std::sin(turn), radius * height};
 }
 
-/// By joint, whether it begins in contact; one that tells no penetration does not.
+/// By joint, whether it begins in contact; one without a channel of penetration does not.
 std::vector<bool> touching(const System& system, const Start& start) {
   const Model& model = system.model();
   const Channels channels(model);

@@ -5,7 +5,7 @@
 
 namespace freeplay {
 
-/// Throws Error{plugin} "plugin-failed" when the integrator cannot tell what it needs.
+/// Throws Error{plugin} "plugin-failed" when the integrator cannot declare what it needs.
 void require_sound_integrator(const System& system);
 
 /// Throws Error{input} "out-of-range", in the file where it says so, when the error allowed in a step is below the

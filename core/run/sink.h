@@ -9,7 +9,7 @@
 
 namespace freeplay {
 
-/// One event of a joint. Fields that were not told are NaN.
+/// One event of a joint. Fields that were not given are NaN.
 struct EventRecord {
   double time = 0.0;
   int joint = 0;

@@ -53,7 +53,7 @@ class Statistics {
   /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
   /// instant, is on the other side.
   void end_stretch(std::span<const double> row);
-  /// Behind the row that was added last values go on otherwise than before.
+  /// After the row that was added last values go on otherwise than before.
   void begin_stretch();
   /// A row that is written.
   void note_written(std::span<const double> row);

@@ -36,7 +36,7 @@ bool StepAcceptance::begin() {
   return recorder_.record_step() && doubts_.watch_row(0.0) && recorder_.write_events();
 }
 
-// Where neither the integrator carries the flows nor the steps before tell how they go, forces are looked at once more
+// Where neither the integrator carries the flows nor the steps before show how they go, forces are looked at once more
 // in the middle of the step.
 void StepAcceptance::add_energy() {
   const double dt = run_.trial.t() - run_.accepted.t();

@@ -30,7 +30,7 @@ bool StepAttempt::commit_history() {
   const Span<double> all_history(run_.trial.h());
   const double* const lambda = run_.trial.lambda().data();
   for (const int j : with_history_) {
-    if (run_.evaluations.rests_now(j)) continue;
+    if (run_.evaluations.is_asleep(j)) continue;
     const Slice h = run_.system.layout().history(j), rows = run_.system.layout().rows(j);
     const Span<double> history = all_history.part(at(h.offset), at(h.size));
     if (!run_.system.joint(j).commit(run_.system.input(j, end, run_.e_trial), {lambda + rows.offset, at(rows.size)},
@@ -62,11 +62,11 @@ bool StepAttempt::begin_steps(double dt, State& state) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
   std::ranges::copy(run_.accepted.h(), state.h().begin());
   const Point here{run_.accepted.t(), run_.accepted.q(), run_.accepted.v(), run_.accepted.z(), run_.accepted.h()};
-  if (!run_.adaptive && !run_.resting.begin(dt, here, run_.e_accepted, run_.e_trial->fault)) {
+  if (!run_.adaptive && !run_.sleeping.begin(dt, here, run_.e_accepted, run_.e_trial->fault)) {
     return failure_.fail_with(run_.e_trial->fault, run_.accepted.t());
   }
   for (const int j : with_history_) {
-    if (run_.evaluations.rests_now(j)) continue;
+    if (run_.evaluations.is_asleep(j)) continue;
     const Slice h = run_.system.layout().history(j);
     MarkerAccelerations accelerations;
     run_.system.marker_accelerations(j, run_.e_accepted, run_.accepted.a(), accelerations);

@@ -7,8 +7,8 @@ namespace freeplay {
 namespace {
 constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway, and little is learned
 constexpr double largest_growth = 5.0;
-constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step, which nobody chose well
-constexpr double broken_power = 3.0;  // behind an event forces grow as broken powers: errors fall no faster
+constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step, whose length is arbitrary
+constexpr double broken_power = 3.0;  // after an event forces grow as broken powers: errors fall no faster
 }  // namespace
 
 void StepControl::cut(std::uint64_t law) {

@@ -11,7 +11,7 @@ namespace freeplay {
 
 struct StepLimits {
   double first, smallest, largest;  ///< [s]
-  /// Largest behind a step that hardly erred, as of a body at rest: it says nothing of forces to come [s].
+  /// Largest after a step that hardly erred, as of a body at rest: it says nothing of forces to come [s].
   double uninformed = std::numeric_limits<double>::infinity();
 };
 
@@ -34,11 +34,11 @@ class StepControl {
   const StepLimits& limits() const { return limits_; }
   void accept(double dt, double error);
   /// The step was made shorter, to end at an event, and the law of motion may be a new one, of which the last errors
-  /// say nothing. `law` tells laws apart: where it held before, the proposal is what the first step of it would have
-  /// been; else the proposal stands. The next step may be far too short (then the one behind it grows as after the
+  /// say nothing. `law` identifies a law: where it held before, the proposal is what the first step of it would have
+  /// been; else the proposal stands. The next step may be far too short (then the one after it grows as after the
   /// first of the run) or far too long (then its error is taken to fall with h^3).
   void cut(std::uint64_t law);
-  /// Behind a kink of what is prescribed the motion is a new one: its steps begin as those of the run did.
+  /// After a kink of what is prescribed the motion is a new one: its steps begin as those of the run did.
   void restart() { next_ = limits_.first, last_error_ = 1.0, rejected_ = false, first_ = true; }
   /// `most_power`: with which its error falls at most.
   void reject(double dt, double error, double most_power = std::numeric_limits<double>::infinity());
@@ -57,7 +57,7 @@ class StepControl {
   /// A law of motion that began at an event.
   struct Law {
     std::uint64_t name = 0;
-    double first_step = 0.0;  ///< that its first error told to be right; 0: not known
+    double first_step = 0.0;  ///< that its first error showed to be right; 0: not known
     long used = 0;            ///< events before it began last
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {

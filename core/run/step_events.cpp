@@ -14,7 +14,7 @@ namespace {
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
 constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little
-constexpr double faster_inside = 2.0;   // than at both ends no event function moves inside a step, or its error tells
+constexpr double faster_inside = 2.0;   // than at both ends no event function moves inside a step, or its error shows it
 
 // A field may be left NaN, which is recorded as empty.
 bool fields_make_sense(const Event& event, Span<const double> fields, Message& message) {
@@ -86,7 +86,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
-    if (inside_[at(watched_[w])] == 0 || context_.rests_now(watched_[w])) continue;
+    if (inside_[at(watched_[w])] == 0 || context_.is_asleep(watched_[w])) continue;
     // A joint's present history decides what can happen next.
     const Step step{before,      e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
                     point(after)};
@@ -174,7 +174,7 @@ bool StepEvents::functions_of_all(const Point& point, const Evaluation& e, std::
 bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault& fault) {
   std::swap(start_, earlier_);
   std::swap(start_rate_, earlier_rate_);
-  // Behind an event functions go on otherwise.
+  // After an event functions go on otherwise.
   earlier_by_ = happenings_.empty() ? start.t() - start_time_ : 0.0;
   start_time_ = start.t();
   if (!functions_of_all(point(start), e_start, start_, start_rate_, fault)) return false;
@@ -182,7 +182,7 @@ bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault&
   return true;
 }
 
-// An event that was told at its very zero lies behind, and not at the start of the step to come.
+// An event that was passed on at its very zero lies before the state, and not at the start of the step to come.
 void StepEvents::leave_zero(int joint, int event) {
   const Event& told = system_.joint_layout(joint).events[at(event)];
   if (told.locate == 0) return;

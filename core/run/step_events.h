@@ -1,4 +1,4 @@
-// StepEvents: finds the zero crossings of joints inside a step and tells the joints.
+// StepEvents: finds the zero crossings of joints inside a step and passes them on to the joints.
 #pragma once
 
 #include <vector>
@@ -35,16 +35,16 @@ class StepEvents {
   /// Looks at the events in an accepted state, from which the next steps start.
   bool look_from(const State& start, const Evaluation& e_start, Fault& fault);
   /// The first located event that is to be expected within `dt` from the start, as the functions went in the step
-  /// before; joint -1 without one. A step up to there errs less than one across it, behind which other forces act.
+  /// before; joint -1 without one. A step up to there errs less than one across it, after which other forces act.
   Passage expected_within(double dt) const;
   /// The earliest crossing of a located event within the step from there; joint -1 without one. Looks at both ends and,
   /// where one could be reached, at the middle, and between them at the cubics of (g, g'), then, if `sharp`, along the
-  /// interpolated motion. Events that were told when the step begins count as passed.
+  /// interpolated motion. Events that were passed on when the step begins count as passed.
   bool first_crossing(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                       bool sharp, Passage& found, Fault& fault);
   /// Value and rate of one event at the end of a step, growing through zero.
   bool at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault);
-  /// After apply(): tells `hunted` and every other located event that grows at the end of the step, within `tolerance`
+  /// After apply(): passes on `hunted` and every other located event that grows at the end of the step, within `tolerance`
   /// of its zero or past it by no more than `late`, by which the step may have gone past `hunted`. Nothing when
   /// hunted.joint is -1.
   bool tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
@@ -55,7 +55,7 @@ class StepEvents {
   /// Advances z and h of `after` over the events between `before` and `after`; `e_before` and `e_after` are evaluated
   /// there (markers and coordinates of all joints). False, with `fault`, when a joint fails.
   bool apply(const State& before, const Evaluation& e_before, State& after, const Evaluation& e_after, Fault& fault);
-  /// Tells rising events whose function is past zero already when the run starts.
+  /// Passes on rising events whose function is past zero already when the run starts.
   bool at_start(State& start, const Evaluation& e, Fault& fault);
 
   /// Events of the last call in order of time, then of declaration.
@@ -114,7 +114,7 @@ class StepEvents {
   std::vector<double> start_, start_rate_, end_, end_rate_, earlier_, earlier_rate_;
   double start_time_ = 0.0, earlier_by_ = 0.0;  // 0: what was before says nothing
   std::vector<char> happening_;                 // by event of one joint
-  std::vector<char> inside_;                    // by joint: some of its events are told inside a step
+  std::vector<char> inside_;                    // by joint: some of its events are passed on inside a step
   std::vector<double> g0_, r0_, gm_, rm_, g1_, r1_, values_;
   std::vector<Happening> happenings_;
 };

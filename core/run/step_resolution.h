@@ -23,7 +23,7 @@ class StepResolution {
 
   /// The length, dt or less, of a step from t that resolves `count` signals; one of `least` always does.
   /// `look(t, double*)` fills the signals; where it returns false the search ends, as the step will meet that.
-  /// `instants(t, dt)` makes what gives one time behind the other at which to look; the last is t + dt or later.
+  /// `instants(t, dt)` makes what gives one time after the other at which to look; the last is t + dt or later.
   /// Steps shorter than `strict_below` are judged strictly: a change that they are a small part of is smooth in them,
   /// unless it begins there.
   /// `negligible(c, dt)` is a range of signal c that does not matter in such a step.

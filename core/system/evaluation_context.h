@@ -11,7 +11,7 @@ namespace freeplay {
 
 /// A sleeping joint: it is not asked for forces while the origin of its second marker stays within `radius` of `from`,
 /// both seen from the origin of the first in world axes [m] (Joint::free_distance).
-struct Rest {
+struct Sleep {
   bool now = false;
   double radius = 0.0, from[3] = {};
   bool left = false;  ///< set by evaluations that found it elsewhere, and asked it
@@ -35,16 +35,16 @@ struct Rest {
 struct EvaluationContext {
   double per_contact = 0.0;    ///< JointInput::per_contact
   Profile* profile = nullptr;  ///< where the time of the run is counted, or null
-  std::vector<Rest> rests{};   ///< by joint; a run decides which joints sleep (run/resting_joints.h)
+  std::vector<Sleep> sleeps{};   ///< by joint; a run decides which joints sleep (run/sleeping_joints.h)
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.rests);
+    archive(self.sleeps);
   }
 
-  bool rests_now(int joint) const {
+  bool is_asleep(int joint) const {
     const auto j = static_cast<std::size_t>(joint);
-    return j < rests.size() && rests[j].now;
+    return j < sleeps.size() && sleeps[j].now;
   }
 };
 

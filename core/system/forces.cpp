@@ -68,10 +68,10 @@ bool System::evaluate_forces(const Point& point, bool derivatives, Evaluation& e
     const ForceBlock& block = force_blocks_[f];
     const int j = block.joint;
     const JointRecord& record = records_[at(j)];
-    if (e.context != nullptr && e.context->rests_now(j)) {
-      Rest& rest = e.context->rests[at(j)];
-      if (!rest.holds(e.markers[at(record.marker_a)], e.markers[at(record.marker_b)])) {
-        rest.left = true;
+    if (e.context != nullptr && e.context->is_asleep(j)) {
+      Sleep& sleep = e.context->sleeps[at(j)];
+      if (!sleep.holds(e.markers[at(record.marker_a)], e.markers[at(record.marker_b)])) {
+        sleep.left = true;
       } else if (!derivatives && e.acts[f] == 0) {
         e.acting = 31 * e.acting;
         e.potential[at(j)] = e.potential_rate[at(j)] = 0.0;

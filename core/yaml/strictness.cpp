@@ -28,8 +28,8 @@ constexpr int none_open = -1;
 bool opens_block_scalar(std::string_view line) {
   for (std::size_t at = line.find_first_of("|>"); at != none; at = line.find_first_of("|>", at + 1)) {
     const std::size_t end = line.find_first_not_of("+-0123456789", at + 1);
-    const std::size_t behind = line.find_first_not_of(" \t\r", end);
-    if (end == none || behind == none || (behind > end && line[behind] == '#')) return true;
+    const std::size_t next = line.find_first_not_of(" \t\r", end);
+    if (end == none || next == none || (next > end && line[next] == '#')) return true;
   }
   return false;
 }
@@ -226,8 +226,8 @@ std::optional<YamlFault> find_quoted_fault(std::string_view text, std::size_t be
 std::optional<YamlFault> find_block_scalar_fault(std::string_view text, std::size_t begin, int indent) {
   const std::size_t header_end = line_end(text, begin);
   const std::string_view header = text.substr(begin, header_end - begin);
-  const std::size_t behind = header.find_first_not_of("+-0123456789", 1);
-  if (behind != none && header[behind] == '#') return YamlFault{begin + behind, comment_without_blank};
+  const std::size_t next = header.find_first_not_of("+-0123456789", 1);
+  if (next != none && header[next] == '#') return YamlFault{begin + next, comment_without_blank};
   if (header.substr(0, header.find('#')).find_first_of("123456789") != none) return std::nullopt;
   int widest = 0;
   std::size_t widest_begin = header_end;

@@ -1,4 +1,4 @@
-#include "run/resting_joints.h"
+#include "run/sleeping_joints.h"
 
 #include <cmath>
 
@@ -125,7 +125,7 @@ joints: {cage: {type: cage, between: [ground, ball], radius: 20 mm, promise: tol
 simulation: {end: 0.4 s, step: 20 us, integrator: bathe, output: {interval: 1 ms}}
 )";
 
-TEST(RestingJoints, AreAskedSeldomAndNothingElseChanges) {
+TEST(SleepingJoints, AreAskedSeldomAndNothingElseChanges) {
   const Asked told = ask(ball), silent = ask(replaced(ball, "told", "silent"));
   expect_same(told.run, silent.run);
   EXPECT_GT(told.run.events().size(), 2u);
@@ -133,7 +133,7 @@ TEST(RestingJoints, AreAskedSeldomAndNothingElseChanges) {
   EXPECT_LT(told.times, silent.times / 2);
 }
 
-TEST(RestingJoints, GiveTheSameNumbersWithEveryIntegrator) {
+TEST(SleepingJoints, GiveTheSameNumbersWithEveryIntegrator) {
   for (const char* integrator : {"newmark", "generalized-alpha", "hht", "dopri5", "verner6"}) {
     const std::string text = replaced(ball, "bathe", integrator);
     SCOPED_TRACE(integrator);
@@ -142,7 +142,7 @@ TEST(RestingJoints, GiveTheSameNumbersWithEveryIntegrator) {
 }
 
 // A blow moves the ball through all of its room within one step.
-TEST(RestingJoints, AStepInWhichOneMovesTooFarIsTakenAgain) {
+TEST(SleepingJoints, AStepInWhichOneMovesTooFarIsTakenAgain) {
   const std::string text =
       replaced(replaced(ball, "velocity: {linear: [0.3, 0.1], angular: 3}", "frames: {middle: [0, 0]}"),
                "simulation: {end: 0.4 s, step: 20 us",
@@ -156,7 +156,7 @@ TEST(RestingJoints, AStepInWhichOneMovesTooFarIsTakenAgain) {
 }
 
 // The cage goes through all of the ball's room and back within every step: at its end nothing shows.
-TEST(RestingJoints, AStepIsTakenAgainWhereAStageWasTooFar) {
+TEST(SleepingJoints, AStepIsTakenAgainWhereAStageWasTooFar) {
   const std::string text = R"(
 freeplay: 1
 name: shaken

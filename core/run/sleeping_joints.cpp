@@ -1,4 +1,4 @@
-#include "run/resting_joints.h"
+#include "run/sleeping_joints.h"
 
 #include <cmath>
 
@@ -13,8 +13,8 @@ constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
 }  // namespace
 
-RestingJoints::RestingJoints(const System& system, EvaluationContext& context) : system_(system), context_(context) {
-  context.rests.resize(system.model().joints.size());
+SleepingJoints::SleepingJoints(const System& system, EvaluationContext& context) : system_(system), context_(context) {
+  context.sleeps.resize(system.model().joints.size());
   const std::span<const ForceBlock> blocks = system.force_blocks();
   for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {
     const int j = blocks[at(f)].joint;
@@ -24,25 +24,25 @@ RestingJoints::RestingJoints(const System& system, EvaluationContext& context) :
 }
 
 // Lengths are never more than the sums of their parts.
-void RestingJoints::look(Candidate& candidate, const Evaluation& e) const {
-  const Rest& rest = context_.rests[at(candidate.joint)];
+void SleepingJoints::look(Candidate& candidate, const Evaluation& e) const {
+  const Sleep& sleep = context_.sleeps[at(candidate.joint)];
   const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
   double moved = 0.0, speed = 0.0;
   for (int i = 0; i < 3; ++i) {
-    moved += std::abs(b.position[i] - a.position[i] - rest.from[i]);
+    moved += std::abs(b.position[i] - a.position[i] - sleep.from[i]);
     speed += std::abs(b.velocity[i] - a.velocity[i]);
   }
-  candidate.room = rest.radius - moved;
+  candidate.room = sleep.radius - moved;
   candidate.speed = speed;
 }
 
-bool RestingJoints::begin(double dt, const Point& start, const Evaluation& e, Fault& fault) {
+bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, Fault& fault) {
   for (Candidate& candidate : candidates_) {
-    Rest& rest = context_.rests[at(candidate.joint)];
-    rest.left = false;
+    Sleep& sleep = context_.sleeps[at(candidate.joint)];
+    sleep.left = false;
     const double way = steps_to_begin * dt;
-    if (rest.now && !all_awake_ && candidate.room > way * candidate.speed) continue;
-    rest.now = false;
+    if (sleep.now && !all_awake_ && candidate.room > way * candidate.speed) continue;
+    sleep.now = false;
     if (all_awake_ || e.acts[at(candidate.block)] != 0) continue;
     double distance = 0.0;
     if (!system_.joint(candidate.joint)
@@ -52,30 +52,30 @@ bool RestingJoints::begin(double dt, const Point& start, const Evaluation& e, Fa
       return false;
     }
     if (!(distance > 0.0)) continue;
-    rest.radius = (1.0 - rounding_off) * distance;
+    sleep.radius = (1.0 - rounding_off) * distance;
     const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
-    for (int i = 0; i < 3; ++i) rest.from[i] = b.position[i] - a.position[i];
+    for (int i = 0; i < 3; ++i) sleep.from[i] = b.position[i] - a.position[i];
     look(candidate, e);
-    rest.now = candidate.room > way * candidate.speed;
+    sleep.now = candidate.room > way * candidate.speed;
   }
   all_awake_ = false;
   return true;
 }
 
-bool RestingJoints::stayed() {
+bool SleepingJoints::stayed() {
   for (const Candidate& candidate : candidates_) {
-    const Rest& rest = context_.rests[at(candidate.joint)];
-    if (rest.now && rest.left) all_awake_ = true;
+    const Sleep& sleep = context_.sleeps[at(candidate.joint)];
+    if (sleep.now && sleep.left) all_awake_ = true;
   }
   return !all_awake_;
 }
 
-bool RestingJoints::held(double dt, const Evaluation& e) {
+bool SleepingJoints::held(double dt, const Evaluation& e) {
   for (Candidate& candidate : candidates_) {
-    const Rest& rest = context_.rests[at(candidate.joint)];
-    if (!rest.now) continue;
+    const Sleep& sleep = context_.sleeps[at(candidate.joint)];
+    if (!sleep.now) continue;
     look(candidate, e);
-    if (rest.left || !(candidate.room > steps_left * dt * candidate.speed)) all_awake_ = true;
+    if (sleep.left || !(candidate.room > steps_left * dt * candidate.speed)) all_awake_ = true;
   }
   return !all_awake_;
 }

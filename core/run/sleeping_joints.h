@@ -1,4 +1,4 @@
-// RestingJoints: whom a run in steps of fixed size leaves alone, because nothing can come of asking.
+// SleepingJoints: joints that a run in steps of fixed size need not ask for forces.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace freeplay {
 
-/// Most joints with play fly most of the time, far from what they could touch. Such a joint tells once how far it may
+/// Most joints with play fly most of the time, far from what they could touch. Such a joint says once how far it may
 /// move (Joint::free_distance); until it has used that up, a step neither begins it nor asks it for forces, events,
 /// warnings and commits. All numbers come out as if it had been asked. A step in which one moved too far is thrown
 /// away and taken again with all of them awake.
-class RestingJoints {
+class SleepingJoints {
  public:
   /// Decides on the joints of `context`, which must outlive it.
-  RestingJoints(const System& system, EvaluationContext& context);
+  SleepingJoints(const System& system, EvaluationContext& context);
 
-  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (EvaluationContext::rests).
+  /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (EvaluationContext::sleeps).
   /// False, with `fault`, when a joint fails.
   bool begin(double dt, const Point& start, const Evaluation& e, Fault& fault);
   /// After an attempt, and at the end of a step, evaluated in `e`: whether they could. If not, all are awake in the
