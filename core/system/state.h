@@ -1,4 +1,4 @@
-// State: everything that the next step depends on, in one block of numbers.
+// State: the mechanism at one instant and what integrators and joints remember of it, in one block of numbers.
 #pragma once
 
 #include <algorithm>
