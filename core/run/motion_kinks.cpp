@@ -155,7 +155,7 @@ void Simulation::Impl::book_jump(double kink) {
   Point here = point(accepted);
   const auto look = [&](double t) {
     here.t = t;
-    return system.evaluate(here, term_position | only_asked, e_between);
+    return system.evaluate(here, term_position, e_between);
   };
   if (!look(kink - margin(kink))) return;
   note_driven(e_between);

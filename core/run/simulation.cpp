@@ -310,7 +310,7 @@ bool Simulation::Impl::begin_steps(double dt, State& state) {
 // step only what joints ask for: the rest is completed for a row.
 bool Simulation::Impl::evaluate_all(State& state, KeptEvaluation& e) {
   turns_are_due = adaptive || have_turned(solver.evaluation());
-  const unsigned in_step = of_equations | term_event | (turns_are_due ? term_turn : 0u) | only_asked;
+  const unsigned in_step = of_equations | term_event | (turns_are_due ? term_turn : 0u);
   const unsigned terms = adaptive ? all_terms : in_step;
   if (!system.evaluate(point(state), terms, solver.evaluation(), e)) return false;
   system.fill_driven_jacobian(e);
@@ -401,7 +401,7 @@ void Simulation::Impl::add_energy() {
   DenseStep(system, accepted, e_accepted->internal_rate, trial, e_trial->internal_rate).at(0.5, between);
   std::ranges::copy(trial.h(), between.h().begin());  // as the attempt had it
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.
-  const bool seen = system.evaluate(point(between), term_force | only_asked, e_between);
+  const bool seen = system.evaluate(point(between), term_force, e_between);
   energy.flow(seen ? e_between : e_trial, between.lambda(), flow_half_way);
   energy.add(dt, flow_half_way, e_trial, trial.lambda());
 }

@@ -150,7 +150,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   }
   std::ranges::copy(after.z(), between_.z().begin());
   std::ranges::copy(after.h(), between_.h().begin());
-  if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+  if (!system_.evaluate(point(between_), term_event, e_between_)) {
     fault = e_between_->fault;
     return false;
   }
@@ -239,7 +239,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       if (seen_[event] == 0 || !could_cross(event, sign, dt)) continue;
       if (!looked) {
         DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
-        if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+        if (!system_.evaluate(point(between_), term_event, e_between_)) {
           fault = e_between_->fault;
           return false;
         }
@@ -281,7 +281,7 @@ bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const 
   const double dt = after.t() - before.t();
   for (int step = 0; step < 2; ++step) {
     DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
-    if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+    if (!system_.evaluate(point(between_), term_event, e_between_)) {
       fault = e_between_->fault;
       return false;
     }
