@@ -174,8 +174,7 @@ int Corners::row_that_jumps() const {
 // `after`. At rows that do not move by themselves an impulse does no work.
 void Corners::book_impulses(Evaluation& after) {
   const std::size_t first = run_.accepted.v().size();
-  for (std::size_t i = 0; i < driven_change_.size(); ++i)
-    driven_change_[i] = after.v[first + i] - v_before_[first + i];
+  for (std::size_t i = 0; i < driven_change_.size(); ++i) driven_change_[i] = after.v[first + i] - v_before_[first + i];
   run_.system.recover_impulses(after, driven_change_, impulses_);
   for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
     const int r = run_.system.layout().driver_row(d);
@@ -192,7 +191,7 @@ void Corners::book_jump(double kink) {
   Point here = point(run_.accepted);
   const auto look = [&](double t) {
     here.t = t;
-    return run_.system.evaluate(here, term_position | only_asked, run_.e_between);
+    return run_.system.evaluate(here, term_position, run_.e_between);
   };
   if (!look(kink - margin(kink))) return;
   note_driven(run_.e_between);

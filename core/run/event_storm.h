@@ -8,7 +8,8 @@ namespace freeplay {
 
 /// What authors of joints read where their events cannot be located or do not end.
 inline constexpr const char* event_rule =
-    "where an event is handled its function must leave zero in the declared direction (rising or falling), or become NaN "
+    "where an event is handled its function must leave zero in the declared direction (rising or falling), or become "
+    "NaN "
     "until it can happen again [event-storm]";
 
 /// Counts the events of each joint. A joint is in a storm when more than 1000 events lie within an instant, a few

@@ -38,8 +38,8 @@ class InputActivity {
   bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
   bool watches_joints() const { return !joints_.empty(); }
 
-  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or declared by a
-  /// joint, or where a step had to be shortened. Short is a tenth of the run, of a prescribed motion a hundredth.
+  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or declared by
+  /// a joint, or where a step had to be shortened. Short is a tenth of the run, of a prescribed motion a hundredth.
   bool acts_quickly(double t);
 
   /// How many times more than it shows a step from t of the length dt may err beside a corner of a load towards which

@@ -49,7 +49,7 @@ void StepAcceptance::add_energy() {
       .at(0.5, run_.between);
   std::ranges::copy(run_.trial.h(), run_.between.h().begin());  // as the attempt had it
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.
-  const bool seen = run_.system.evaluate(point(run_.between), term_force | only_asked, run_.e_between);
+  const bool seen = run_.system.evaluate(point(run_.between), term_force, run_.e_between);
   run_.energy.flow(seen ? run_.e_between : run_.e_trial, run_.between.lambda(), flow_half_way_);
   run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
 }

@@ -86,7 +86,7 @@ bool StepAttempt::begin_steps(double dt, State& state) {
 // What is left out in fixed steps is completed for a row.
 bool StepAttempt::evaluate_all(State& state, KeptEvaluation& e) {
   turns_are_due_ = run_.adaptive || have_turned(run_.solver.evaluation());
-  const unsigned in_step = terms_of_equations | term_event | (turns_are_due_ ? term_turn : 0u) | only_asked;
+  const unsigned in_step = terms_of_equations | term_event | (turns_are_due_ ? term_turn : 0u);
   const unsigned terms = run_.adaptive ? all_terms : in_step;
   if (!run_.system.evaluate(point(state), terms, run_.solver.evaluation(), e)) return false;
   run_.system.fill_driven_jacobian(e);

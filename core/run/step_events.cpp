@@ -14,7 +14,7 @@ namespace {
 constexpr double same_instant = 1e-12;  // part of a step
 constexpr double at_once = 1e-3;        // part of a step: what lies before it is left to the step across
 constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little
-constexpr double faster_inside = 2.0;   // than at both ends no event function moves inside a step, or its error shows it
+constexpr double faster_inside = 2.0;  // than at both ends no event function moves inside a step, or its error shows it
 
 // A field may be left NaN, which is recorded as empty.
 bool fields_make_sense(const Event& event, Span<const double> fields, Message& message) {
@@ -152,7 +152,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
   }
   std::ranges::copy(after.z(), between_.z().begin());
   std::ranges::copy(after.h(), between_.h().begin());
-  if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+  if (!system_.evaluate(point(between_), term_event, e_between_)) {
     fault = e_between_->fault;
     return false;
   }
@@ -241,7 +241,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       if (seen_[event] == 0 || !could_cross(event, sign, dt)) continue;
       if (!looked) {
         DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
-        if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+        if (!system_.evaluate(point(between_), term_event, e_between_)) {
           fault = e_between_->fault;
           return false;
         }
@@ -283,7 +283,7 @@ bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const 
   const double dt = after.t() - before.t();
   for (int step = 0; step < 2; ++step) {
     DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
-    if (!system_.evaluate(point(between_), term_event | only_asked, e_between_)) {
+    if (!system_.evaluate(point(between_), term_event, e_between_)) {
       fault = e_between_->fault;
       return false;
     }

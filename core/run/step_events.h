@@ -44,9 +44,9 @@ class StepEvents {
                       bool sharp, Passage& found, Fault& fault);
   /// Value and rate of one event at the end of a step, growing through zero.
   bool at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault);
-  /// After apply(): passes on `hunted` and every other located event that grows at the end of the step, within `tolerance`
-  /// of its zero or past it by no more than `late`, by which the step may have gone past `hunted`. Nothing when
-  /// hunted.joint is -1.
+  /// After apply(): passes on `hunted` and every other located event that grows at the end of the step, within
+  /// `tolerance` of its zero or past it by no more than `late`, by which the step may have gone past `hunted`. Nothing
+  /// when hunted.joint is -1.
   bool tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
                    void* self, Fault& fault);
   static constexpr double tolerance = 1e-12;  ///< of a located event function, in its unit

@@ -24,7 +24,7 @@ class StageEquations {
   Point point_of(const StateView& s) const { return {*s.t, s.q, s.v, s.z, h_}; }
   /// Fills these terms at a state; false with fault() and trouble() where an element fails.
   bool evaluate(const StateView& at, unsigned terms) {
-    return system_.evaluate(point_of(at), terms | only_asked, e_) || note_fault();
+    return system_.evaluate(point_of(at), terms, e_) || note_fault();
   }
   /// The equations where they were evaluated last.
   KeptEvaluation& evaluation() { return e_; }

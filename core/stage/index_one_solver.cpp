@@ -336,7 +336,7 @@ bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<
 }
 
 bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> out) {
-  if (!system_.evaluate(point(state), term_position | only_asked, e_)) return false;
+  if (!system_.evaluate(point(state), term_position, e_)) return false;
   if (!is_factored_here() && !factor()) return false;
   const JointElement& element = system_.model().joints[at(joint)];
   const int markers[2] = {element.marker_a, element.marker_b};

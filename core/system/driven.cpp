@@ -76,7 +76,7 @@ void System::begin_at(const System& whole, const State& start, State& own) {
   if (!motions_->evaluate(own.t(), {e.motion.data(), e.motion.size()}, fault)) return;  // the run will meet it
   for (Driven& d : driven_) {
     e.driven_time = std::numeric_limits<double>::quiet_NaN();
-    place_driven(point(own), true, e);
+    place_driven(point(own), e);
     const double apart = start.q()[3 * at(layout_.body_at(d.place)) + 2] - e.q[3 * at(d.place) + 2];
     d.angle += whole_turn * std::round(apart / whole_turn);
   }
@@ -84,11 +84,8 @@ void System::begin_at(const System& whole, const State& start, State& own) {
 
 // With P the marker of the parent, s the own marker's arm and h the axis of a slide, which carries the body by x h = d:
 //   theta = theta_parent + angle + value,  r = P + d - s,  r' = P' + d' - E s w,  r'' = P'' + d'' - E s w' + s w^2
-void System::place_driven(const Point& point, bool only_asked, Evaluation& e) const {
-  if (e.driven_time == point.t) {
-    if (!only_asked && e.driven_asked) turn_driven_markers(e);
-    return;
-  }
+void System::place_driven(const Point& point, Evaluation& e) const {
+  if (e.driven_time == point.t) return;
   for (std::size_t i = 0; i < driven_.size(); ++i) {
     const Driven& d = driven_[i];
     const TimeValue value = d.driver < 0 ? TimeValue{} : e.motion[at(d.driver)];
@@ -144,24 +141,10 @@ void System::place_driven(const Point& point, bool only_asked, Evaluation& e) co
     for (int k = markers.first; k < markers.end; ++k) {
       const std::size_t m = at(moving_markers_[at(k)]);
       planar::marker_arm(mounts_[m], q, v, turned, e.arms[m]);
-      if (k < markers.end_asked) planar::marker_kinematics(mounts_[m], v, turned, e.arms[m], e.markers[m]);
+      planar::marker_kinematics(mounts_[m], v, turned, e.arms[m], e.markers[m]);
     }
   }
   e.driven_time = point.t;
-  e.driven_asked = true;
-  if (!only_asked) turn_driven_markers(e);
-}
-
-// Those that are not asked in every step.
-void System::turn_driven_markers(Evaluation& e) const {
-  for (const Driven& d : driven_) {
-    const MarkersOfBody markers = markers_of_body_[at(d.place)];
-    for (int k = markers.end_asked; k < markers.end; ++k) {
-      const std::size_t m = at(moving_markers_[at(k)]);
-      planar::marker_kinematics(mounts_[m], &e.v[at(width * d.place)], e.turns[at(d.place)], e.arms[m], e.markers[m]);
-    }
-  }
-  e.driven_asked = false;
 }
 
 // What a driven body moves in a row of unknowns goes to the right side.

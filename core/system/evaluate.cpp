@@ -54,35 +54,21 @@ void System::fill_rates(unsigned terms, Evaluation& e) const {
 
 bool System::evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const {
   constexpr unsigned of_joints = term_coordinate | term_event | term_turn;
-  if (!known->is_at(point, terms & ~(of_joints | only_asked))) {
+  if (!known->is_at(point, terms & ~of_joints)) {
     return evaluate(point, terms, static_cast<Evaluation&>(out));
   }
   swap(out, known);
-  if ((terms & only_asked) == 0) complete_markers(out);
   return (terms & of_joints) == 0 || evaluate_coordinates(point, terms & of_joints, out);
 }
 
 bool System::complete(const Point& point, Evaluation& e) const {
-  complete_markers(e);
   return evaluate_coordinates(point, term_coordinate, e);
-}
-
-void System::complete_markers(Evaluation& e) const {
-  if ((e.filled & only_asked) == 0) return;
-  if (e.driven_asked) turn_driven_markers(e);
-  for (std::size_t b = 0; b < at(layout_.free_bodies()) && !e.turns.empty(); ++b) {  // planar
-    for (int i = markers_of_body_[b].end_asked; i < markers_of_body_[b].end; ++i) {
-      const std::size_t m = at(moving_markers_[at(i)]);
-      planar::marker_kinematics(mounts_[m], &e.v[3 * b], e.turns[b], e.arms[m], e.markers[m]);
-    }
-  }
-  e.filled &= ~unsigned{only_asked};
 }
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   const Profile::Timer timer(e.profile(), Phase::assembly);
   // At the end of a step velocities are projected where everything else stays.
-  const bool all_placed = (e.filled & ~terms & only_asked) == 0 && (driven_.empty() || e.driven_time == point.t);
+  const bool all_placed = driven_.empty() || e.driven_time == point.t;
   // nu depends on time and coordinates alone; rows that are made one by one are made anew.
   const bool all_declared = with_rows_.empty() && model_.gears.empty() && driver_rows_.empty();
   const unsigned placed = term_position | (all_declared ? term_velocity : 0u);
@@ -101,7 +87,7 @@ bool System::fill(const Point& point, unsigned terms, unsigned kept, Evaluation&
 }
 
 template <>
-void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, bool still, Evaluation& e) const {
+void System::place_markers<planar::Bodies>(const Point& point, bool still, Evaluation& e) const {
   const planar::Mount* const mounts = mounts_.data();
   planar::Arm* const arms = e.arms.data();
   MarkerKinematics* const markers = e.markers.data();
@@ -113,7 +99,7 @@ void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, 
       for (int i = own.first; i < own.end; ++i) {
         const int m = moving_markers_[at(i)];
         arms[m].w = v[2];
-        if (i < own.end_asked || !only_asked) planar::marker_velocity(v, arms[m], markers[m]);
+        planar::marker_velocity(v, arms[m], markers[m]);
       }
     }
     return;
@@ -131,13 +117,13 @@ void System::place_markers<planar::Bodies>(const Point& point, bool only_asked, 
       planar::Arm arm;
       planar::marker_arm(mounts[m], q, v, turned, arm);
       arms[m] = arm;
-      if (i < own.end_asked || !only_asked) planar::marker_kinematics(mounts[m], v, turned, arm, markers[m]);
+      planar::marker_kinematics(mounts[m], v, turned, arm, markers[m]);
     }
   }
 }
 
 template <>
-void System::place_markers<spatial::Bodies>(const Point& point, bool, bool, Evaluation& e) const {
+void System::place_markers<spatial::Bodies>(const Point& point, bool, Evaluation& e) const {
   const auto q = [&](std::size_t body) { return &point.q[7 * body]; };
   const auto v = [&](std::size_t body) { return &point.v[6 * body]; };
   std::ranges::copy(point.q, e.q.begin());
@@ -154,7 +140,7 @@ template <class Bodies>
 bool System::fill_in(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const {
   e.fault.kind = Fault::Kind::none;
   const bool still = kept != 0;
-  place_markers<Bodies>(point, (terms & only_asked) != 0, still, e);
+  place_markers<Bodies>(point, still, e);
   if (variant_ == Variant::closed) {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
       if (!model_.joints[j].has_play) continue;
@@ -178,7 +164,7 @@ bool System::fill_in(const Point& point, unsigned terms, unsigned kept, Evaluati
       e.motion_time = point.t;
     }
   }
-  if (!driven_.empty()) place_driven(point, (terms & only_asked) != 0, e);
+  if (!driven_.empty()) place_driven(point, e);
   if (!evaluate_coordinates(point, terms, e)) return false;
   if ((terms & term_position) != 0) {
     if (!still) declared_.fill_rows(mounts_, e);

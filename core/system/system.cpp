@@ -187,31 +187,16 @@ void System::sort_rows() {
   }
 }
 
-// By who reads them.
 void System::sort_markers() {
-  std::vector<char> asked(model_.markers.size(),
-                          model_.space == Space::planar && variant_ == Variant::released ? 0 : 1);
-  const auto ask = [&](int joint) {
-    const JointRecord& r = records_[at(joint)];
-    asked[at(r.marker_a)] = asked[at(r.marker_b)] = 1;
-  };
-  for (const int j : with_rows_) ask(j);
-  for (const int j : with_coordinate_) ask(j);
-  for (const JointRecord& r : records_) {
-    if (r.layout->forces != 0 || r.layout->history > 0 || !r.layout->events.empty()) ask(r.index);
-  }
-  for (const AppliedForce& force : model_.forces) asked[at(force.marker)] = 1;
   for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
     if (marker_places_[at(m)] != ground) moving_markers_.push_back(m);
   }
-  const auto order = [&](int m) { return 2 * marker_places_[at(m)] + (asked[at(m)] != 0 ? 0 : 1); };
-  std::ranges::sort(moving_markers_, {}, [&](int m) { return std::pair(order(m), m); });
-  const auto first_of = [&](int rank) {
-    return static_cast<int>(std::ranges::lower_bound(moving_markers_, rank, {}, order) - moving_markers_.begin());
+  const auto place = [&](int m) { return marker_places_[at(m)]; };
+  std::ranges::stable_sort(moving_markers_, {}, place);
+  const auto first_of = [&](int body) {
+    return static_cast<int>(std::ranges::lower_bound(moving_markers_, body, {}, place) - moving_markers_.begin());
   };
-  for (int b = 0; b < bodies(); ++b) {
-    markers_of_body_.push_back({first_of(2 * b), first_of(2 * b + 1), first_of(2 * b + 2)});
-  }
+  for (int b = 0; b < bodies(); ++b) markers_of_body_.push_back({first_of(b), first_of(b + 1)});
 }
 
 double System::marker_angle(int marker, std::span<const double> q) const {

@@ -45,7 +45,6 @@ enum Term : unsigned {
   term_derivative = 16,   ///< derivatives of f (with f)
   term_coordinate = 32,   ///< coordinates of all joints
   term_event = 64,        ///< what JointRef::events() and on_event() read
-  only_asked = 128,       ///< of Evaluation::markers only those of joints and forces that are asked in every step
   term_turn = 256,        ///< coordinates of joints whose turns are counted
 };
 
@@ -154,7 +153,7 @@ class System {
   /// then change places.
   bool evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const;
 
-  /// Of an evaluation at a point the markers that Term::only_asked left out, and the coordinates of all joints.
+  /// Of an evaluation at a point the coordinates of all joints.
   bool complete(const Point& point, Evaluation& e) const;
   /// Whether rows of joints may have a nu of their own, besides what driven bodies move in them.
   bool rows_move() const { return !with_rows_.empty(); }
@@ -213,9 +212,7 @@ class System {
   int bodies() const { return static_cast<int>(model_.bodies.size()); }
   BodyId unknown(BodyId place) const { return place < layout_.free_bodies() ? place : ground; }
   void add_driven(const planar::DrivenBody& body);
-  void place_driven(const Point& point, bool only_asked, Evaluation& e) const;
-  void turn_driven_markers(Evaluation& e) const;
-  void complete_markers(Evaluation& e) const;
+  void place_driven(const Point& point, Evaluation& e) const;
   /// `moved`: rates that end with those of driven bodies.
   void move_rows_with_driven(std::span<const double> moved, std::span<double> right, const Evaluation& e) const;
   void fill_rates(unsigned terms, Evaluation& e) const;
@@ -227,7 +224,7 @@ class System {
   template <class Bodies>
   bool fill_in(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const;
   template <class Bodies>
-  void place_markers(const Point& point, bool only_asked, bool still, Evaluation& e) const;
+  void place_markers(const Point& point, bool still, Evaluation& e) const;
   bool evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
   static constexpr const char* beside = "it wrote beside the numbers that it was given to fill";
   [[gnu::cold]] static bool refuse(int joint, const char* why, Evaluation& e);
@@ -281,9 +278,9 @@ class System {
   std::vector<JointRecord> records_;              // by joint
   std::vector<int> with_coordinate_, with_rows_;  // joints that are asked; gears have no rows of their own here
   planar::DeclaredRows declared_;                 // of joints that are not
-  std::vector<int> moving_markers_;  // not on ground: body after body, of each first those of Term::only_asked
+  std::vector<int> moving_markers_;               // not on ground: body after body
   struct MarkersOfBody {
-    int first = 0, end_asked = 0, end = 0;
+    int first = 0, end = 0;
   };
   std::vector<MarkersOfBody> markers_of_body_;  // in moving_markers_
   std::vector<JacobianBlock> blocks_;
@@ -342,7 +339,6 @@ struct Evaluation {
   std::vector<double> q, v;                ///< of all bodies, those of the unknowns first
   std::vector<double> driven_a;            ///< accelerations of driven bodies
   std::vector<double> driven_load;         ///< work space: on driven bodies
-  bool driven_asked = false;               ///< of their markers only those of Term::only_asked are placed
   std::vector<double> phi, nu, gamma, jacobian;
   std::vector<double> force;                        ///< on all bodies
   std::vector<double> force_q, force_v;             ///< of force blocks
@@ -403,7 +399,7 @@ struct Evaluation {
   static void exchange(Self& self, Archive& archive) {
     archive.doubles(self.markers, self.arms, self.spatial_arms, self.turns, self.spatial_turns, self.shifted);
     archive.doubles(self.coordinate_rows, self.motion, self.other_motion);
-    archive(self.q, self.v, self.driven_a, self.driven_asked, self.phi, self.nu, self.gamma, self.jacobian);
+    archive(self.q, self.v, self.driven_a, self.phi, self.nu, self.gamma, self.jacobian);
     archive(self.force, self.force_q, self.force_v, self.gyroscopic_v, self.internal_derivatives);
     archive(self.coordinate, self.coordinate_rate, self.potential, self.potential_rate, self.wrench);
     archive(self.internal_rate, self.applied, self.acts, self.acting);

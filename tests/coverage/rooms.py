@@ -38,12 +38,13 @@ def by_room(files):
     for file in files:
         counts = rooms[room(file["file"])]
         for line in file["lines"]:
-            if line.get("gcovr/noncode"):
+            if line.get("gcovr/noncode") or line.get("gcovr/excluded"):
                 continue
+            branches = [branch["count"] for branch in line["branches"] if not branch.get("throw")]
             counts[0] += 1
             counts[1] += line["count"] > 0
-            counts[2] += len(line["branches"])
-            counts[3] += sum(branch["count"] > 0 for branch in line["branches"])
+            counts[2] += len(branches)
+            counts[3] += sum(count > 0 for count in branches)
     return dict(sorted(rooms.items()))
 
 
