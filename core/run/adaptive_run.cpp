@@ -192,7 +192,7 @@ bool AdaptiveRun::accept(const Search& search) {
     control_.accept(run_.trial.t() - run_.accepted.t(), run_.error);
   }
   if (!acceptance_.accept(search.hunted, pursuit_.event_lateness(), at_kink ? search.kink : unbounded)) return false;
-  // Forces that begin or end at an event do so once the joint is told.
+  // Forces that begin or end at an event do so once the joint has had it.
   if (search.hunted.joint >= 0 && !at_kink) control_.cut(run_.e_accepted->acting);
   return true;
 }

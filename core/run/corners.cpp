@@ -31,7 +31,7 @@ Corners::Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt)
       attempt_(attempt),
       speed_jumps_(run.model.drivers.size()),
       motion_before_(run.model.drivers.size()),
-      motion_behind_(run.model.drivers.size()),
+      motion_after_(run.model.drivers.size()),
       q_before_(run.e_accepted->q.size()),
       v_before_(run.e_accepted->v.size()),
       driven_change_(run.e_accepted->driven_a.size()),
@@ -89,27 +89,27 @@ bool Corners::resolves_joints(double& dt) {
          failure_.fail_with(fault, run_.trial.t());
 }
 
-// Whether an effort or a force is another one behind the corner.
+// Whether an effort or a force is another one after the corner.
 bool Corners::loads_jump(double corner) {
-  const double before = corner - margin(corner), behind = corner + margin(corner);
+  const double before = corner - margin(corner), after = corner + margin(corner);
   const auto jumps = [&](double from, double to, double rates) {
     return std::abs(to - from) > smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(corner) * rates;
   };
   MotionFault fault;
   if (!run_.system.motions().evaluate(before, {motion_before_.data(), motion_before_.size()}, fault) ||
-      !run_.system.motions().evaluate(behind, {motion_behind_.data(), motion_behind_.size()}, fault)) {
+      !run_.system.motions().evaluate(after, {motion_after_.data(), motion_after_.size()}, fault)) {
     return true;  // the run will meet it
   }
   for (std::size_t d = 0; d < run_.model.drivers.size(); ++d) {
     if (prescribes(run_.model.drivers[d].kind)) continue;
-    const TimeValue &from = motion_before_[d], &to = motion_behind_[d];
+    const TimeValue &from = motion_before_[d], &to = motion_after_[d];
     if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
   }
   for (const AppliedForce& force : run_.model.forces) {
     for (const Expression& component : force.value) {
       Jet from, to;
       EvaluationFailure failure;
-      if (!component.evaluate(before, from, failure) || !component.evaluate(behind, to, failure)) return true;
+      if (!component.evaluate(before, from, failure) || !component.evaluate(after, to, failure)) return true;
       if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
     }
   }
@@ -156,7 +156,7 @@ void Corners::note_driven(const Evaluation& e) {
   std::ranges::copy(e.v, v_before_.begin());
 }
 
-// A row that holds a driven body which is elsewhere behind a kink, or that does not hold any more; -1: none.
+// A row that holds a driven body which is elsewhere after a kink, or that does not hold any more; -1: none.
 int Corners::row_that_jumps() const {
   const double allowed_gap = 1e-9 * run_.system.size();
   for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
@@ -170,16 +170,15 @@ int Corners::row_that_jumps() const {
 }
 
 // The work of `impulses` in rows of unknowns, and of those that changed the velocities of driven bodies to those in
-// `behind`. At rows that do not move by themselves an impulse does no work.
-void Corners::book_impulses(Evaluation& behind) {
+// `after`. At rows that do not move by themselves an impulse does no work.
+void Corners::book_impulses(Evaluation& after) {
   const std::size_t first = run_.accepted.v().size();
-  for (std::size_t i = 0; i < driven_change_.size(); ++i)
-    driven_change_[i] = behind.v[first + i] - v_before_[first + i];
-  run_.system.recover_impulses(behind, driven_change_, impulses_);
+  for (std::size_t i = 0; i < driven_change_.size(); ++i) driven_change_[i] = after.v[first + i] - v_before_[first + i];
+  run_.system.recover_impulses(after, driven_change_, impulses_);
   for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
     const int r = run_.system.layout().driver_row(d);
     if (r < 0) continue;
-    const double work = -impulses_[at(r)] * 0.5 * (motion_before_[at(d)].rate + behind.motion[at(d)].rate);
+    const double work = -impulses_[at(r)] * 0.5 * (motion_before_[at(d)].rate + after.motion[at(d)].rate);
     run_.energy.add_driver_work(d, work);
     if (run_.flows > 0) run_.accepted.z().last(at(run_.flows))[at(d)] += work;
   }
@@ -204,14 +203,14 @@ void Corners::book_jump(double kink) {
 bool Corners::note_jumps(double kink) {
   MotionFault fault;
   if (!run_.system.motions().evaluate(kink - margin(kink), {motion_before_.data(), motion_before_.size()}, fault) ||
-      !run_.system.motions().evaluate(kink + margin(kink), {motion_behind_.data(), motion_behind_.size()}, fault)) {
+      !run_.system.motions().evaluate(kink + margin(kink), {motion_after_.data(), motion_after_.size()}, fault)) {
     return false;  // the run will meet it
   }
   bool any = false;
   for (std::size_t d = 0; d < speed_jumps_.size(); ++d) {
     if (run_.system.layout().driver_row(static_cast<int>(d)) < 0) continue;
-    const double from = motion_before_[d].rate, to = motion_behind_[d].rate;
-    const double steady = std::abs(motion_before_[d].acceleration) + std::abs(motion_behind_[d].acceleration);
+    const double from = motion_before_[d].rate, to = motion_after_[d].rate;
+    const double steady = std::abs(motion_before_[d].acceleration) + std::abs(motion_after_[d].acceleration);
     if (std::abs(to - from) <= smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(kink) * steady) {
       continue;
     }

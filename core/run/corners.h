@@ -31,7 +31,7 @@ class Corners {
   bool resolves_joints(double& dt);
   /// The step that was just made ends before `corner`, or at none. Returns what may jump there.
   CornerKind end_step(std::optional<double> corner);
-  /// From just before `kink`, at which end_step() was told that the step ends, to just after it.
+  /// From just before `kink`, at which the step ends by end_step(), to just after it.
   bool pass_kink(double kink);
 
   /// Of a step of fixed size that went over a kink: whether the speed of a driver jumps there; and the work of the
@@ -66,7 +66,7 @@ class Corners {
     }
   };
   std::vector<SpeedJump> speed_jumps_;  // by driver
-  std::vector<TimeValue> motion_before_, motion_behind_;
+  std::vector<TimeValue> motion_before_, motion_after_;
   std::vector<double> q_before_, v_before_, driven_change_, impulses_;
 };
 

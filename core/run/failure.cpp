@@ -108,7 +108,7 @@ std::string RunFailure::why_not_converged(double dt) const {
   return text + std::string(advice::smaller_step);
 }
 
-// Roundings of coordinates that have grown without bound, as behind a dead point, can pass for rows that hold.
+// Roundings of coordinates that have grown without bound, as after a dead point, can pass for rows that hold.
 std::string RunFailure::why_open(double position) const {
   int worst = 0;
   for (int r = 0; r < run_.system.layout().nc(); ++r) {
