@@ -196,7 +196,7 @@ class Assembler {
     std::vector<double> best_turns = turns;
     double least = found ? given.misses(best).norm() : std::numeric_limits<double>::infinity();
     int kind = 0;
-    for (const int other : {1, 2}) {
+    for (const int other : {1, 2, 3}) {
       std::ranges::copy(turns, state_.h().begin());
       count_turns(other);
       std::ranges::copy(guess, state_.q().begin());
@@ -215,21 +215,29 @@ class Assembler {
     return kind != 0;
   }
 
-  // Angles of gears are counted from (-pi, pi] (0), from given poses (1) or from slides (2).
+  // Angles of gears are counted from (-pi, pi] (0), from given poses (1), from slides (2) or from that turn of the
+  // joint that leads a train with which it comes nearest to given poses (3).
   void count_turns(int kind) {
-    if (kind != 1) return count_gears(kind == 2);
+    if (kind == 0 || kind == 2) return count_gears(kind == 2);
     std::vector<bool> counted;
     for (const double held : held_) counted.push_back(!std::isnan(held));
+    std::vector<double> given(model_.joints.size(), nan);
     for (const Gear& gear : model_.gears) {
       for (const int j : {gear.first, gear.second}) {
         const JointElement& joint = model_.joints[at(j)];
-        const int turn = closed_.layout().turn(j);
-        if (turn < 0 || counted[at(j)] || model_.space != Space::planar) continue;
+        if (closed_.layout().turn(j) < 0 || model_.space != Space::planar) continue;
         const auto a = given_angle(joint.marker_a), b = given_angle(joint.marker_b);
-        if (!a || !b) continue;
-        state_.h()[at(turn)] = *b - *a;
-        counted[at(j)] = true;
+        if (a && b) given[at(j)] = *b - *a;
       }
+    }
+    if (kind == 3) {
+      mechanism_.count_gears(std::move(counted), false);
+      return mechanism_.turn_gears(given);
+    }
+    for (std::size_t j = 0; j < given.size(); ++j) {
+      if (counted[j] || std::isnan(given[j])) continue;
+      state_.h()[at(closed_.layout().turn(static_cast<int>(j)))] = given[j];
+      counted[j] = true;
     }
     mechanism_.count_gears(std::move(counted), false);
   }
@@ -300,7 +308,7 @@ class Assembler {
       centred = take_nearest(guess, centred, chosen_by_turn);
     }
     const auto given = [&](const JointElement& joint) { return !change_ && gives_eccentricity(joint); };
-    const bool found = centred && yield_in_play(mechanism_, offsets_, play_ranks(closed_, given));
+    const bool found = centred && yield_in_play(mechanism_, offsets_, play_ranks(mechanism_, given));
     for (int j = 0; j < static_cast<int>(offsets_.size()); ++j) {
       if (model_.joints[at(j)].has_play) closed_.set_offset(j, offsets_[at(j)]);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,6 +48,8 @@ class ClosedMechanism {
 
   /// Counts angles of gears from the joints that are `counted` already (assembly/gear_turns.h).
   void count_gears(std::vector<bool> counted, bool from_slides);
+  /// After that: with as many turns of trains as come nearest to the angles given by joint; NaN where there is none.
+  void turn_gears(std::span<const double> given) { gear_turns_->turn_leads(given, state.h()); }
   /// Throws throw_fault() when an element fails.
   void evaluate(unsigned terms);
 

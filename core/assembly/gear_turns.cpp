@@ -1,5 +1,6 @@
 #include "assembly/gear_turns.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -7,6 +8,12 @@
 #include "model/model.h"
 
 namespace freeplay {
+namespace {
+
+constexpr int most_turns = 100;         // of a joint that leads; ratios of few digits repeat themselves before
+constexpr double clearly_less = 1e-12;  // [rad^2]
+
+}  // namespace
 
 GearTurns::GearTurns(const Model& model, const Layout& layout, std::vector<bool> counted, bool from_slides)
     : counted_as_(model.joints.size()) {
@@ -36,6 +43,7 @@ GearTurns::GearTurns(const Model& model, const Layout& layout, std::vector<bool>
       for (const int joint : {gear.first, gear.second}) {
         if (!gear.offset || known(joint) || slides(joint) != choose_slides) continue;
         know(joint);
+        if (!slides(joint)) leads_.push_back({joint, layout.turn(joint), links_.size()});
         follow();
       }
     }
@@ -55,6 +63,42 @@ bool GearTurns::recount(std::span<const double> coordinate, std::span<double> h)
     h[static_cast<std::size_t>(link.turn)] = near;
   }
   return changed;
+}
+
+void GearTurns::turn_leads(std::span<const double> given, std::span<double> h) const {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  std::vector<double> value(given.size()), gain(given.size());  // of coordinates, and by that of the lead
+  for (std::size_t i = 0; i < leads_.size(); ++i) {
+    const Lead& lead = leads_[i];
+    const std::size_t last = i + 1 < leads_.size() ? leads_[i + 1].first : links_.size();
+    const auto joint = static_cast<std::size_t>(lead.joint);
+    const double start = std::isnan(given[joint]) ? 0.0 : given[joint];
+    const auto misses = [&](double from) {
+      std::ranges::fill(value, std::nan(""));
+      value[joint] = from, gain[joint] = 1.0;
+      double squares = 0.0, along = 0.0, gains = 0.0;
+      const auto count = [&](std::size_t j) {
+        if (std::isnan(value[j]) || std::isnan(given[j])) return;
+        const double miss = std::remainder(given[j] - value[j], turn);
+        squares += miss * miss, along += gain[j] * miss, gains += gain[j] * gain[j];
+      };
+      count(joint);
+      for (std::size_t l = lead.first; l < last; ++l) {
+        const auto to = static_cast<std::size_t>(links_[l].to), by = static_cast<std::size_t>(links_[l].from);
+        value[to] = links_[l].ratio * value[by] + links_[l].offset;
+        gain[to] = links_[l].ratio * gain[by];
+        count(to);
+      }
+      return gains > 0.0 ? squares - along * along / gains : 0.0;
+    };
+    double best = start, least = misses(start);
+    for (int turns = 1; turns <= most_turns; ++turns) {
+      for (const double other : {start + turns * turn, start - turns * turn}) {
+        if (const double now = misses(other); now < least - clearly_less) least = now, best = other;
+      }
+    }
+    h[static_cast<std::size_t>(lead.turn)] = best;
+  }
 }
 
 }  // namespace freeplay

@@ -21,12 +21,21 @@ class GearTurns {
   /// a coordinate changes by that.
   bool recount(std::span<const double> coordinate, std::span<double> h);
 
+  /// Sets the turns in `h` of the joints that lead a train, as many as bring its angles nearest to those `given` by
+  /// joint up to whole turns (NaN: none), by the sum of squares after the best turn of the whole train.
+  void turn_leads(std::span<const double> given, std::span<double> h) const;
+
  private:
   struct Link {
     int from, to, turn;  ///< joints, and where `h` keeps the turns of `to`
     double ratio, offset;
   };
+  struct Lead {
+    int joint, turn;
+    std::size_t first;  ///< of its links
+  };
   std::vector<Link> links_;
+  std::vector<Lead> leads_;
   std::vector<double> counted_as_;  ///< by joint, while links are followed
 };
 

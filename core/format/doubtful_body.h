@@ -28,7 +28,7 @@ inline constexpr double thinnest = 1e-5, thin_reach = 5.0, thin_mass = 1e-4, thr
 /// Distance of the centre of mass from the box around the frames, in lengths of that box and in radii of gyration (a
 /// homogenous rod held at its end has 1.7), if the radius of gyration is that of a body of this box, in lengths of it.
 /// Farther than `lump` radii of gyration it is a lump on an arm, unless farther than `far` boxes.
-inline constexpr double com_outside = 0.5, com_outside_gyration = 2.0, lump = 4.0, far = 10.0;
+inline constexpr double com_outside = 0.5, com_outside_gyration = 2.0, lump = 4.0, far = 3.0;
 inline constexpr double least_of_box = 0.15, most_of_box = 0.6;
 /// How many times smaller the moment across the line of the frames is than that about it, in space.
 inline constexpr double axis_ratio = 12.0;

@@ -17,6 +17,12 @@ constexpr int samples = 128;                // of a motion over the run
 constexpr std::size_t most_drivers = 2000;  // that are looked at
 constexpr double table_beyond = 50.0;       // the end of a table, in runs
 constexpr double largest_turn = 0.5;        // in a fixed step [rad]
+constexpr int halvings = 40;                // towards the fastest place of a motion
+// Speeds that no drive has, whatever their unit: a rifle's bullet, a million turns a minute.
+constexpr double fastest_slide = 1e3;  // [m/s]
+constexpr double fastest_turn = 1e5;   // [rad/s]
+constexpr int places_in_piece = 8;     // of a cubic table
+constexpr double overshoot = 0.25;     // by the range of its points: eight points a turn follow a sine to a fifth
 
 /// What a prescribed motion does during the run.
 struct Course {
@@ -45,6 +51,38 @@ Course course_of(const Expression& motion, const Settings& settings, double span
   course.returns = (forward > noise && back > noise) || last_rate <= noise;
   course.known = std::isfinite(course.fastest) && std::isfinite(course.high - course.low);
   return course;
+}
+
+/// Largest speed of a motion: a short move lies between samples, towards the half of a span with the larger change.
+double peak_speed(const Expression& motion, const Settings& settings) {
+  const auto look = [&](double t, Jet& jet) {
+    EvaluationFailure failure;
+    return motion.evaluate(t, jet, failure);
+  };
+  const double span = (settings.end - settings.start) / samples;
+  double fastest = 0.0, most = -1.0, to = settings.start, before = 0.0;
+  for (int i = 0; i <= samples; ++i) {
+    const double t = settings.start + span * i;
+    Jet jet;
+    if (!look(t, jet)) return 0.0;
+    fastest = std::max(fastest, std::abs(jet.rate));
+    const double change = i > 0 ? std::abs(jet.value - before) : 0.0;
+    if (change > most) most = change, to = t;
+    before = jet.value;
+  }
+  double from = to - span;
+  Jet first, last;
+  if (!look(from, first) || !look(to, last)) return fastest;
+  for (int halving = 0; halving < halvings && to > from; ++halving) {
+    const double middle = 0.5 * (from + to);
+    Jet jet;
+    if (!look(middle, jet)) return fastest;
+    fastest = std::max(fastest, std::abs(jet.rate));
+    const bool first_half = std::abs(jet.value - first.value) > std::abs(last.value - jet.value);
+    (first_half ? to : from) = middle;
+    (first_half ? last : first) = jet;
+  }
+  return fastest;
 }
 
 /// Numbers that are written in the text, and those of its parameters that have no dimension.
@@ -81,6 +119,10 @@ class MotionDoubts {
     if (!course.known) return;
     const auto written = key_of(driver, "value");
     if (!written) return;
+    const bool speeds = driver.kind == DriverKind::velocity;
+    const double peak =
+        speeds ? std::max(std::abs(course.low), std::abs(course.high)) : peak_speed(driver.value, settings_);
+    if (doubt_peak(driver, peak, *written)) return;
     if (coordinate == Coordinate::angle) {
       judge_turns(driver, course, *written);
     } else {
@@ -100,10 +142,12 @@ class MotionDoubts {
                                                  "'time_unit: ms' if milliseconds are meant",
                                                  written->path(), last, span));
     }
+    judge_overshoot(table, *written);
     if (!prescribes(driver.kind)) return;
     const auto [low, high] = std::ranges::minmax(table.values());
     const bool speeds = driver.kind == DriverKind::velocity, bare = !says && source.unit.empty();
     const double fastest = speeds ? std::max(std::abs(low), std::abs(high)) : steepest(table);
+    if (!bare && doubt_peak(driver, fastest, *written)) return;
     if (coordinate(driver) != Coordinate::angle) return judge_table_of_slide(driver, high - low, fastest, bare);
     const bool begins_far = settings_.start == 0.0 && std::abs(table.values()[0]) > bare_limit::angle;
     if (bare && !speeds && (begins_far || looks_like_degrees(table.values()))) {
@@ -129,6 +173,40 @@ class MotionDoubts {
 
   Coordinate coordinate(const Driver& driver) const {
     return draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout.coordinate;
+  }
+
+  /// A speed that no machine has, be its unit written or not. True after a message.
+  bool doubt_peak(const Driver& driver, double speed, const CheckedValue& written) const {
+    const bool turns = coordinate(driver) == Coordinate::angle;
+    if (!(speed > (turns ? fastest_turn : fastest_slide))) return false;
+    written.warn("doubtful-speed",
+                 fmt::format("'{}' comes to {:.3g} {}, faster than any machine: check its numbers, its "
+                             "times and their units",
+                             written.path(), speed, turns ? "rad/s" : "m/s"));
+    return true;
+  }
+
+  /// A cubic that leaves its points far on one side, as behind a short pulse.
+  void judge_overshoot(const TimeTable& table, const CheckedValue& written) const {
+    if (table.is_straight()) return;
+    const std::span<const double> times = table.times(), values = table.values();
+    const auto [low, high] = std::ranges::minmax(values);
+    double most = overshoot * (high - low), reached = 0.0, when = 0.0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      for (int k = 1; k < places_in_piece; ++k) {
+        const double t = times[i - 1] + (times[i] - times[i - 1]) * k / places_in_piece;
+        Jet jet;
+        EvaluationFailure failure;
+        if (!table.evaluate(t, jet, failure)) return;
+        const double beyond = std::max(jet.value - high, low - jet.value);
+        if (beyond > most) most = beyond, reached = jet.value, when = t;
+      }
+    }
+    if (!(most > overshoot * (high - low))) return;
+    written.warn("doubtful-value",
+                 fmt::format("the cubic through the points of '{}' comes to {:.4g} at t = {:.4g} s, but its points lie "
+                             "between {:.4g} and {:.4g}: write 'interpolation: linear', or give more points",
+                             written.path(), reached, when, low, high));
   }
 
   /// Largest slope between two points.

@@ -250,6 +250,13 @@ MISTAKES = [
     (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 1 ns}", "doubtful-time", "1 ns", "rows would be written"),
     (TRAIN, "drivers:", "  again: {type: gear, of: [b, a], ratio: 0.5}\ndrivers:", "duplicate-joint", "again", "'pair'"),
     (ROD, "  held:", "  again: {type: spherical, between: [ground, rod]}\n  held:", "duplicate-joint", "again", "'hung'"),
+    (CART, "value: 0.1*sin(3*t)", "value: '10 m*smooth(t, 0.5, 0.501)'", "doubtful-speed", "'10 m", "faster than any machine"),
+    (CRANK, DRIVEN, "kind: angle, value: '90 deg*smooth(t, 0.01, 0.01001)'}}", "doubtful-speed", "'90", "faster than any machine"),
+    (CART, "value: 0.1*sin(3*t)", "table: {unit: mm, points: [[0, 0], [0.5, 2e4], [0.501, 2.5e6], [1, 3e6]], interpolation: linear}",
+     "doubtful-speed", "{unit", "faster than any machine"),
+    (CRANK, "com: [0.06, 0]", "com: [600 mm, 0]", "doubtful-com", "[600", "away from its frames"),
+    (CART, "kind: position, value: 0.1*sin(3*t)", "kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, 1000], [0.502, 0], [2, 0]]}",
+     VALUE, "{points", "linear"),
     (ROD, "bob: {", "bob: {pose: {rpy: [0, 0, 90]}, ", ANGLE, "90", "deg"),
 ]
 
@@ -308,6 +315,10 @@ SOUND = [
     (CRANK, "step: 1e-5", "step: 1e-4"),
     (CRANK, DRIVEN, "kind: angle, table: {points: [[0, 0], [0.01, 5], [0.02, 10]]}}}"),
     (CRANK, DRIVEN, "kind: angle, table: {unit: deg, points: [[0, 0], [0.01, 90], [0.02, 0]]}}}"),
+    (CART, "value: 0.1*sin(3*t)", "value: '0.1 m*smooth(t, 0.5, 0.501)'"),
+    (CART, "value: 0.1*sin(3*t)", "table: {unit: mm, points: [[0, 0], [0.125, 70.7], [0.375, 70.7], [0.625, -70.7], [0.875, -70.7], [1, 0]]}"),
+    (CART, "kind: position, value: 0.1*sin(3*t)",
+     "kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, 1000], [0.502, 0], [2, 0]], interpolation: linear}"),
 ]
 
 

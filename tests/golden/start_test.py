@@ -248,6 +248,16 @@ class Start(ProgramTest):
             start, _ = self.start(WHEELS % (turned, -0.4 * turned))
             self.assertEqual([], self.changes["moved"], turned)
 
+    def test_a_train_finds_the_turn_in_which_given_poses_fit(self):
+        # The poses hold up to whole turns: the large wheel turns by 144 deg less each turn of the small one.
+        for turned in (9, 14, 40, -14):
+            given = [math.remainder(angle, 2 * math.pi) for angle in (turned, -0.4 * turned)]
+            start, messages = self.start(WHEELS % tuple(given))
+            self.assertEqual([], self.changes["moved"], turned)
+            self.assertEqual([], [m for m in messages if m["id"] == "ambiguous-start"])
+            for body, angle in zip(("small", "large"), given):
+                self.assertAlmostEqual(0, math.remainder(start[body]["angle"] - angle, 2 * math.pi), places=9)
+
     def test_a_rack_takes_the_turn_that_is_nearest_to_what_is_given(self):
         # 0.5 rad on are 15 mm, and 188 mm more with each turn.
         start, _ = self.start(RACK % (0.5, 0.39))
