@@ -17,11 +17,11 @@ constexpr int order_by_ends = 5;           // of a method whose steps are known 
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
 constexpr double astray_inside = 1.0;      // and by which its ends may mislead: no more than a step may err by
 constexpr int most_sweeps = 3;
-constexpr double most_growth = 2.0;    // of changes from sweep to sweep: more is a stiff force, less may be rounding
-constexpr double beside_a_root = 1.5;  // power of the step with which errors fall there
+constexpr double most_growth = 2.0;     // of changes from sweep to sweep: more is a stiff force, less may be rounding
+constexpr double beside_a_root = 1.5;   // power of the step with which errors fall there
 constexpr double least_allowed = 64.0;  // roundings of positions and, per second, of velocities
-constexpr double largest_turn = 1.0;   // of a joint in one step [rad]: angles are continued over turns
-constexpr double barely = 1.0 - 1e-6;  // of a step: what is shorter by the rounding of times alone is as long
+constexpr double largest_turn = 1.0;    // of a joint in one step [rad]: angles are continued over turns
+constexpr double barely = 1.0 - 1e-6;   // of a step: what is shorter by the rounding of times alone is as long
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
 // too slowly with the step: shorter and shorter steps would lead into the very position. The motion itself is smooth

@@ -43,8 +43,8 @@ class EnergyAccount final : public Flows {
   bool add_smooth(double dt, const Evaluation& e, std::span<const double> lambda);
   /// The same of any step, with the powers in its middle.
   void add(double dt, std::span<const double> half_way, const Evaluation& e, std::span<const double> lambda);
-  /// The same of a step in which powers may jump, part by part, with those at the begin, in the middle and at the end of
-  /// each; then the whole step.
+  /// The same of a step in which powers may jump, part by part, with those at the begin, in the middle and at the end
+  /// of each; then the whole step.
   void begin_parts() { std::copy(integral_.begin(), integral_.end(), integral_inside_.begin()); }
   void add_part(double dt, std::span<const double> begin, std::span<const double> half_way,
                 std::span<const double> end);

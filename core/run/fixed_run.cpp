@@ -39,8 +39,8 @@ double Simulation::Impl::corner_at(double t) const {
   return found;
 }
 
-// Forces may be others behind a corner at the end of the step that was just made.
-bool Simulation::Impl::begin_behind(double corner) {
+// Forces may be others after a corner at the end of the step that was just made.
+bool Simulation::Impl::begin_after(double corner) {
   const double t = accepted.t();
   accepted.t() = std::max(t, corner + corners_near);
   const bool good = refresh();
@@ -64,8 +64,8 @@ bool Simulation::Impl::flow_inside(double t, std::span<double> powers) {
   return true;
 }
 
-// Of a step with corners of inputs in it or at its end, where forces may jump: each part between two of them has its own
-// powers. False, and nothing is done, where there is none.
+// Of a step with corners of inputs in it or at its end, where forces may jump: each part between two of them has its
+// own powers. False, and nothing is done, where there is none.
 bool Simulation::Impl::add_energy_by_parts() {
   const double from = accepted.t(), to = trial.t(), near = corners_near;
   const auto inside = [&](const StepCorner& corner) { return corner.time > from + near && corner.time <= to + near; };

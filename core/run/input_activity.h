@@ -38,7 +38,7 @@ class InputActivity {
   bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
   bool watches_joints() const { return !joints_.empty(); }
 
-  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or told by a
+  /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or of a
   /// joint, or where a step had to be shortened. Short is a tenth of the run, of a prescribed motion a hundredth.
   bool acts_quickly(double t);
 

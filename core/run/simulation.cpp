@@ -19,11 +19,11 @@ namespace freeplay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double unnoticed_turn = 1e-3;     // of a body [rad]
-constexpr double largest_uninformed = 0.2;  // of the largest step, with an accuracy: see StepLimits
-constexpr double shortest_part = 1e-6;      // of the run, see shortest_change()
+constexpr double unnoticed_turn = 1e-3;           // of a body [rad]
+constexpr double largest_uninformed = 0.2;        // of the largest step, with an accuracy: see StepLimits
+constexpr double shortest_part = 1e-6;            // of the run, see shortest_change()
 constexpr std::size_t most_corners_in_step = 64;  // that a step of fixed size tells apart
-constexpr double accuracy_per_step = 0.15;  // part of the accuracy per second that one step may cost
+constexpr double accuracy_per_step = 0.15;        // part of the accuracy per second that one step may cost
 
 std::string integrator_words(const Model& model) {
   return "the integrator of " + model.instances.words_of(*model.settings.integrator_parameters.component);
@@ -53,9 +53,9 @@ int error_power(const IntegratorLayout& layout) {
   return layout.error_order > 0 ? layout.error_order : layout.order + 1;
 }
 
-// Accuracies per second that steps over short loads may show. They err by a tenth of that or less; those of implicit
-// methods, whose estimate is of their order 2, by still less.
-double load_errors(int error_power) { return error_power < 5 ? 64.0 : 4.0; }
+// Accuracies per second that steps over short loads may show. They mostly err by a small part of it; those of implicit
+// methods, whose estimate is of their order 2, by a thousandth.
+double load_errors(int error_power) { return error_power < 5 ? 64.0 : 2.0; }
 
 // Length by which positions may err in one step [m].
 double local_tolerance(const System& system) {
@@ -466,7 +466,8 @@ bool Simulation::Impl::accept(const StepEvents::Passage& located, double kink) {
   ended_inside = false;
   ended_abruptly = changed || expected;
   const double corner = std::exchange(ends_at_corner, unbounded);
-  if ((changed && !refresh()) || (corner < unbounded && !begin_behind(corner)) || (kink < unbounded && !pass_kink(kink))) {
+  if ((changed && !refresh()) || (corner < unbounded && !begin_after(corner)) ||
+      (kink < unbounded && !pass_kink(kink))) {
     // The row of the last state from which the run could go on may still be asked for.
     std::swap(accepted, trial);
     swap(e_accepted, e_trial);

@@ -52,7 +52,7 @@ struct Simulation::Impl {
   bool flow_inside(double t, std::span<double> powers);
   void list_corners(double until);
   double corner_at(double t) const;
-  bool begin_behind(double corner);
+  bool begin_after(double corner);
   // Steps that end with too much energy (energy_growth.cpp).
   double energy_of(const Evaluation& e) const;
   double energy_of_drives() const;
@@ -171,7 +171,7 @@ struct Simulation::Impl {
   };
   std::vector<StepCorner> corners;  ///< of inputs, of a step of fixed size
   double corners_from = unbounded, corners_near = 0.0;
-  double ends_at_corner = unbounded;  ///< the step that is being accepted
+  double ends_at_corner = unbounded;            ///< the step that is being accepted
   std::optional<InputActivity> inputs;          ///< with error control, unless a test blinds it
   ErrorBudget budget;                           ///< of steps over short loads
   bool acts_quickly = false;                    // one, in the step to come
