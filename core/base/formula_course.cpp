@@ -14,8 +14,8 @@ constexpr long cost_of_a_bound = 4;           // instructions: one on intervals
 constexpr std::size_t corners_at_once = 128;  // then the window ends early
 constexpr std::size_t many_corners = 8;       // or a part of the window: worth the work that was allowed
 constexpr double good_part = 1.0 / 16.0;
-constexpr int deepest = 200;        // nested spans
-constexpr int highest_degree = 10;  // of a polynomial that counts as smooth
+constexpr int deepest = 200;               // nested spans
+constexpr int highest_degree = 10;         // of a polynomial that counts as smooth
 constexpr double short_turn = 1.0 / 64.0;  // of the run
 constexpr int false_positions = 12, bisections = 130;
 constexpr std::size_t most_corners = 1 << 18;  // in an outline

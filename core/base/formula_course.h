@@ -12,11 +12,11 @@ namespace freeplay {
 
 /// The forms that a formula takes over a run: an abs, min or max takes the other side, a ramp of smooth() begins or
 /// ends, atan2 goes through its jump, what stands under a root or a broken power touches zero, or what asin and acos
-/// are of touches 1 or -1, as in sqrt(x^2) and asin(sin(x)). What decides is bounded over spans of time, with its derivatives, by interval
-/// arithmetic (Moore, Kearfott and Cloud 2009): a span in which it cannot be zero, or in which it is monotone or bends
-/// one way, is known; any other is halved. So no change is missed, however short its form lasts and however often it
-/// comes again, but for those that rounding of the run's times cannot separate. The work in a window is bounded;
-/// where it does not suffice the rest of the window is unknown.
+/// are of touches 1 or -1, as in sqrt(x^2) and asin(sin(x)). What decides is bounded over spans of time, with its
+/// derivatives, by interval arithmetic (Moore, Kearfott and Cloud 2009): a span in which it cannot be zero, or in which
+/// it is monotone or bends one way, is known; any other is halved. So no change is missed, however short its form lasts
+/// and however often it comes again, but for those that rounding of the run's times cannot separate. The work in a
+/// window is bounded; where it does not suffice the rest of the window is unknown.
 ///
 /// A window is looked at once, when it is first asked for; times that are asked for grow. Allocates when it is made,
 /// and once more only where spans are nested deeper than ever before.
@@ -40,7 +40,8 @@ class FormulaCourse {
   /// where it is one, where one of both corners is not known, or the rate is not.
   double length_of_form(double t, int degree) const;
   /// The time between the corners (or the ends of the run) around t, where the formula is no polynomial of `degree`
-  /// between them; infinite where it is one, or where they are farther than `longest` apart or not known. Looks as far ahead.
+  /// between them; infinite where it is one, or where they are farther than `longest` apart or not known. Looks as far
+  /// ahead.
   double length_of_change(double t, int degree, double longest);
   /// The time from t to the corner (or end of the run) before and after it if the second derivative grows without bound
   /// towards that, as beside the end of a root or of a power below two; infinite if not.

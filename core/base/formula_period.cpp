@@ -13,8 +13,7 @@ namespace freeplay {
 /// What an expression shows of its period, operation by operation.
 class FormulaCourse::PeriodFinder {
  public:
-  PeriodFinder(const Expression& expression, double from, double to)
-      : expression_(expression), from_(from), to_(to) {}
+  PeriodFinder(const Expression& expression, double from, double to) : expression_(expression), from_(from), to_(to) {}
 
   std::optional<Recurrence> find() const;
 

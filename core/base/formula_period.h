@@ -16,10 +16,10 @@ struct Recurrence {
   double slope = 0.0;   ///< what it grows by each second besides
   double period = 0.0;  ///< [s]; 0 where nothing but that is left
 };
-/// Sines of straight lines of t come again, and with them whatever is made of them alone, however short it lasts; a side
-/// of min, max, abs and smooth() that is the same from `from` to `to` counts as what it is there. None where t enters in
-/// another way. Of several periods that it may have the formula is looked at to find the least: in 256 instants and in
-/// eight between any two of its corners.
+/// Sines of straight lines of t come again, and with them whatever is made of them alone, however short it lasts; a
+/// side of min, max, abs and smooth() that is the same from `from` to `to` counts as what it is there. None where t
+/// enters in another way. Of several periods that it may have the formula is looked at to find the least: in 256
+/// instants and in eight between any two of its corners.
 std::optional<Recurrence> recurrence(const Expression& expression, double from, double to);
 
 }  // namespace freeplay

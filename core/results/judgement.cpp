@@ -86,7 +86,7 @@ void judge_energy(const RunRecord& record, Verdict& verdict) {
   const double range = seen.kinetic.span() + seen.potential.span() +
                        std::max(std::abs(seen.work.least), std::abs(seen.work.most)) +
                        std::max(0.0, seen.dissipated.most) + part_of_kinetic * seen.kinetic.most;
-  if (!std::isfinite(range)) return;  // no row was seen
+  if (!std::isfinite(range)) return;                     // no row was seen
   const double moved = std::max(range, seen.exchanged);  // what comes and goes may leave no net work
   const double part = seen.residual / std::max(moved, least);
   std::string text = fmt::format("the energy residual of {:.2g} J is {:.3g} % of the {:.3g} J that were moved",

@@ -29,9 +29,9 @@ StepLimits step_limits(const Settings& settings) {
           settings.accuracy > 0.0 ? largest_uninformed * settings.largest_step : settings.largest_step};
 }
 
-// Accuracies per second that steps over short loads may show. They err by a tenth of that or less; those of implicit
-// methods, whose estimate is of their order 2, by still less.
-double load_errors(int error_power) { return error_power < 5 ? 64.0 : 4.0; }
+// Accuracies per second that steps over short loads may show. They mostly err by a small part of it; those of implicit
+// methods, whose estimate is of their order 2, by a thousandth.
+double load_errors(int error_power) { return error_power < 5 ? 64.0 : 2.0; }
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace freeplay {
 /// Errors of steps on smooth motion have either sign; beside the corners of a load that comes again and again they have
 /// the same one, and an error of velocity grows into one of position until the run ends. So the errors of such steps
 /// are counted, as what they make of the position at the end of the run, and each may be a part of what is left: the
-/// sum stays below what was there at first, 32 steps' worth, and what each second adds. Numbers are in units of what a
+/// sum stays below what was there at first, 16 steps' worth, and what each second adds. Numbers are in units of what a
 /// step on smooth motion may err by.
 ///
 /// The run goes on with the better of two results. Its error falls by a power of the step more than the estimate does,
@@ -36,7 +36,7 @@ class ErrorBudget {
   }
 
  private:
-  static constexpr double full = 32.0, rough_counts = 4.0;
+  static constexpr double full = 16.0, rough_counts = 4.0;
   double gain_, power_, left_ = full;
 };
 

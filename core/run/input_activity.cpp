@@ -17,11 +17,12 @@ constexpr double fewest_samples = 8.0;      // in a step, besides its ends, its 
 constexpr double part_of_form = 0.25;       // as long as a step may be where such a motion has one form for a while
 constexpr double little = 0.01;             // of what positions may err by in a step
 constexpr double slow = 2.0;                // rate times step that every integrator sees
+constexpr double slow_load = 0.5;           // of a short load
 constexpr double slow_bend = 0.4;           // of a motion whose powers are integrated and whose forces have their peaks
 constexpr double coarsest = 0.5;            // of the shortest change: no step up to there goes over one
 constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
 constexpr long enough_work = 20'000'000;    // instructions, to see whether steps of one size go over a change
-constexpr double hidden_behind = 64.0, hidden_before = 8.0;
+constexpr double hidden_after = 64.0, hidden_before = 8.0;
 constexpr int seen_degree = 4;                           // of polynomials that integrators take as they are
 constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
 constexpr double longer = 4.0;                           // the next step to look at, of one that had to be shortened
@@ -293,7 +294,7 @@ double InputActivity::hidden_error(double t, double dt) const {
   for (const Formula& formula : formulas_) {
     if (formula.sharp == CornerKind::motion || !formula.course.has_sides()) continue;
     const FormulaCourse::Beside beside = formula.course.singular(t);
-    if (beside.before < unbounded) times = std::max(times, hidden_behind / (1.0 + 25.0 * beside.before / dt));
+    if (beside.before < unbounded) times = std::max(times, hidden_after / (1.0 + 25.0 * beside.before / dt));
     if (beside.after < unbounded) {
       times = std::max(times, hidden_before / (1.0 + 16.0 * std::max(0.0, beside.after / dt - 1.0)));
     }
@@ -315,7 +316,9 @@ double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
     dt = std::min(dt, part_of_form * formula.course.length_of_form(t, formula.bends));
   } else if (formula.sharp == CornerKind::load) {
     // In a single step over a ramp errors may cancel that a pair compares.
-    dt = std::min(dt, part_of_form * formula.course.length_of_change(t, seen_degree, quick(formula.sharp)));
+    const double length = formula.course.length_of_change(t, seen_degree, quick(formula.sharp));
+    if (length < unbounded) dt = std::min(dt, part_of_form * length);
+    if (length < unbounded && std::isfinite(rate)) dt = std::min(dt, slow_load / rate);
   }
   if (rate * dt <= slow) return dt;
   if (dt <= (formula.bends > 0 ? finest * shortest_ : unwatched(shortest_, formula.most))) return dt;

@@ -171,9 +171,9 @@ TEST(FormulaCourse, CornersDoNotDependOnWhoAsksHowFar) {
 TEST(FormulaCourse, WhatTouchesTheEndOfARootOrAnArcHasItsCornerThere) {
   for (const double frequency : {1.0, 10.0, 77.7}) {
     const double w = 2.0 * M_PI * frequency;
-    for (const char* text : {"sqrt(sin({0:.17g}*t)^2)", "(sin({0:.17g}*t)^2)^0.5", "sqrt(1 - cos({0:.17g}*t)^2)",
-                             "acos(cos({0:.17g}*t))", "asin(cos({0:.17g}*t))", "acos(1 - sin({0:.17g}*t)^2)",
-                             "max(-1, sqrt(sin({0:.17g}*t)^2 + 1e-26))"}) {
+    for (const char* text :
+         {"sqrt(sin({0:.17g}*t)^2)", "(sin({0:.17g}*t)^2)^0.5", "sqrt(1 - cos({0:.17g}*t)^2)", "acos(cos({0:.17g}*t))",
+          "asin(cos({0:.17g}*t))", "acos(1 - sin({0:.17g}*t)^2)", "max(-1, sqrt(sin({0:.17g}*t)^2 + 1e-26))"}) {
       const Walk found = walk(fmt::format(fmt::runtime(text), w), 0.0, 4.0, 0.11);
       std::vector<double> wanted;
       for (int k = 1; k * M_PI < w * 4.0 - 1e-9; ++k) wanted.push_back(k * M_PI / w);
@@ -185,7 +185,8 @@ TEST(FormulaCourse, WhatTouchesTheEndOfARootOrAnArcHasItsCornerThere) {
 }
 
 TEST(FormulaCourse, ARootThatStaysAwayFromItsEndHasNoCorner) {
-  EXPECT_TRUE(walk("sqrt(0.2 - 0.1*sin(7*t)^2) + asin(0.5*sin(5*t)) + (2 + cos(t))^1.5", 0.0, 10.0, 0.3).corners.empty());
+  EXPECT_TRUE(
+      walk("sqrt(0.2 - 0.1*sin(7*t)^2) + asin(0.5*sin(5*t)) + (2 + cos(t))^1.5", 0.0, 10.0, 0.3).corners.empty());
 }
 
 TEST(FormulaCourse, InfiniteSlopesAreKnownOnTheirSideOfACorner) {

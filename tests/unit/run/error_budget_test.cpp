@@ -22,7 +22,7 @@ TEST(ErrorBudget, NeverSpendsMoreThanItHadAndWasGiven) {
     budget.spend(1.0, false);
     budget.pass(1e-3);
   }
-  EXPECT_LT(spent, 32.0 + 10.0 * 1e-3 * steps);
+  EXPECT_LT(spent, 16.0 + 10.0 * 1e-3 * steps);
   EXPECT_GT(spent, 0.9 * 10.0 * 1e-3 * steps);
 }
 

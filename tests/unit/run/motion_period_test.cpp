@@ -33,7 +33,8 @@ TEST(MotionPeriod, OfAFormulaIsTheLeastAfterWhichItComesAgain) {
 // Neither is to be seen at 4096 instants of 200 s.
 TEST(MotionPeriod, OfShortPulsesIsThatOfWhatTheyAreMadeOf) {
   EXPECT_NEAR(period_of("kind: velocity, value: 'max(0, sin(2*pi*50*t) - 0.999)'", 200.0).value(), 0.02, 1e-9);
-  EXPECT_NEAR(period_of("kind: velocity, value: 'max(0, sin(2*pi*97*t)*sin(2*pi*t) - 0.995)'", 200.0).value(), 0.5, 1e-9);
+  EXPECT_NEAR(period_of("kind: velocity, value: 'max(0, sin(2*pi*97*t)*sin(2*pi*t) - 0.995)'", 200.0).value(), 0.5,
+              1e-9);
   EXPECT_NEAR(period_of("kind: velocity, value: 'abs(sin(2*pi*50*t)) + 0.01*sin(2*pi*0.05*t)'", 200.0).value(), 20.0,
               1e-6);
 }
