@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int most_corrections = 30, most_shortenings = 6;
-constexpr double same_offset = 1e-13;       // of the model's size and of a radian
+constexpr double same_offset = 1e-13;      // of the model's size and of a radian
 constexpr double inside = 0.99;            // of the farthest place, after offsets were shortened
 constexpr double rounding = 1.0 + 1e-9;    // of a distance
 constexpr double without_clearance = 1.0;  // weight of rows of a joint that tells none
@@ -52,7 +52,8 @@ bool converge(ClosedMechanism& mechanism, const std::vector<PlayRank>& ranks, co
     for (int i = 0; i < static_cast<int>(change.size()); ++i) {
       largest = std::max(largest, std::abs(change[i]) / (system.is_turn(i) ? 1.0 : system.size()));
     }
-    if (largest <= same_offset || step + 1 == most_corrections) return open <= mechanism.model().settings.assembly_tolerance;
+    if (largest <= same_offset || step + 1 == most_corrections)
+      return open <= mechanism.model().settings.assembly_tolerance;
     const std::vector<double> before(mechanism.state.q().begin(), mechanism.state.q().end());
     system.retract(before, {change.data(), at(static_cast<int>(change.size()))}, mechanism.state.q());
   }
@@ -82,14 +83,35 @@ double share_inside(ClosedMechanism& mechanism, const std::vector<InitialOffset>
 bool gives_eccentricity(const JointElement& joint) { return gives(joint, "initial.eccentricity"); }
 bool gives_velocity(const JointElement& joint) { return gives(joint, "initial.velocity"); }
 
-std::vector<PlayRank> play_ranks(const System& closed, const std::function<bool(const JointElement&)>& gives_start) {
-  const Model& model = closed.model();
+std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
+                                 const std::function<bool(const JointElement&)>& gives_start) {
+  const System& closed = mechanism.system;
+  const Model& model = mechanism.model();
   std::vector<PlayRank> ranks(at(closed.layout().nc()), PlayRank::constraint);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const JointElement& joint = model.joints[at(j)];
-    if (!joint.has_play) continue;
+    if (!model.joints[at(j)].has_play) continue;
     const Slice slice = closed.layout().rows(j);
-    std::fill_n(ranks.begin() + slice.offset, slice.size, gives_start(joint) ? PlayRank::given : PlayRank::implied);
+    std::fill_n(ranks.begin() + slice.offset, slice.size, PlayRank::implied);
+  }
+  if (std::ranges::none_of(model.joints, [&](const JointElement& one) { return one.has_play && gives_start(one); })) {
+    return ranks;
+  }
+  // A block gives where a journal is and how fast it moves, but no tilt: those are rows on shifts.
+  const ClosedMechanism::Rows rows = mechanism.position_rows();
+  std::vector<char> shifts(ranks.size(), 0);
+  for (Eigen::Index outer = 0; outer < rows.matrix.outerSize(); ++outer) {
+    for (SparseMatrix::InnerIterator entry(rows.matrix, outer); entry; ++entry) {
+      const int row = rows.row[static_cast<std::size_t>(entry.row())];
+      if (row >= 0 && !closed.is_turn(static_cast<int>(entry.col())) && entry.value() != 0.0) shifts[at(row)] = 1;
+    }
+  }
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    if (!joint.has_play || !gives_start(joint)) continue;
+    const Slice slice = closed.layout().rows(j);
+    for (int r = slice.offset; r < slice.offset + slice.size; ++r) {
+      if (shifts[at(r)]) ranks[at(r)] = PlayRank::given;
+    }
   }
   return ranks;
 }
