@@ -318,6 +318,7 @@ class Assembler {
 
   // Of journals whose block says where or how fast they start.
   void report_moved_journals() {
+    const std::vector<PlayRank> ranks = play_ranks(mechanism_, [](const JointElement&) { return true; });
     const ClosedMechanism::Rows speeds = mechanism_.speed_rows({});
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& joint = model_.joints[at(j)];
@@ -325,6 +326,7 @@ class Assembler {
       const Slice slice = closed_.layout().rows(j);
       double apart = 0.0, rate = 0.0;
       for (int r = slice.offset; r < slice.offset + slice.size; ++r) {
+        if (ranks[at(r)] != PlayRank::given) continue;
         apart = std::hypot(apart, e_.phi[at(r)]);
         rate = std::hypot(rate, speeds.residual[r]);
       }

@@ -83,14 +83,35 @@ double share_inside(ClosedMechanism& mechanism, const std::vector<InitialOffset>
 bool gives_eccentricity(const JointElement& joint) { return gives(joint, "initial.eccentricity"); }
 bool gives_velocity(const JointElement& joint) { return gives(joint, "initial.velocity"); }
 
-std::vector<PlayRank> play_ranks(const System& closed, const std::function<bool(const JointElement&)>& gives_start) {
-  const Model& model = closed.model();
+std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
+                                 const std::function<bool(const JointElement&)>& gives_start) {
+  const System& closed = mechanism.system;
+  const Model& model = mechanism.model();
   std::vector<PlayRank> ranks(at(closed.layout().nc()), PlayRank::constraint);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const JointElement& joint = model.joints[at(j)];
-    if (!joint.has_play) continue;
+    if (!model.joints[at(j)].has_play) continue;
     const Slice slice = closed.layout().rows(j);
-    std::fill_n(ranks.begin() + slice.offset, slice.size, gives_start(joint) ? PlayRank::given : PlayRank::implied);
+    std::fill_n(ranks.begin() + slice.offset, slice.size, PlayRank::implied);
+  }
+  if (std::ranges::none_of(model.joints, [&](const JointElement& one) { return one.has_play && gives_start(one); })) {
+    return ranks;
+  }
+  // A block gives where a journal is and how fast it moves, but no tilt: those are rows on shifts.
+  const ClosedMechanism::Rows rows = mechanism.position_rows();
+  std::vector<char> shifts(ranks.size(), 0);
+  for (Eigen::Index outer = 0; outer < rows.matrix.outerSize(); ++outer) {
+    for (SparseMatrix::InnerIterator entry(rows.matrix, outer); entry; ++entry) {
+      const int row = rows.row[static_cast<std::size_t>(entry.row())];
+      if (row >= 0 && !closed.is_turn(static_cast<int>(entry.col())) && entry.value() != 0.0) shifts[at(row)] = 1;
+    }
+  }
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    if (!joint.has_play || !gives_start(joint)) continue;
+    const Slice slice = closed.layout().rows(j);
+    for (int r = slice.offset; r < slice.offset + slice.size; ++r) {
+      if (shifts[at(r)]) ranks[at(r)] = PlayRank::given;
+    }
   }
   return ranks;
 }

@@ -16,9 +16,10 @@ enum class PlayRank { constraint, given, implied };
 bool gives_eccentricity(const JointElement& joint);
 bool gives_velocity(const JointElement& joint);
 
-/// By row of the closed mechanism: rows of joints with play are `given` where gives(joint), else `implied`; all others
-/// are constraints.
-std::vector<PlayRank> play_ranks(const System& closed, const std::function<bool(const JointElement&)>& gives);
+/// By row of the closed mechanism: rows of joints with play that hold shifts are `given` where gives(joint); those that
+/// hold turns alone, as of the tilts of a journal, and all others of these joints are `implied`; the rest are
+/// constraints.
+std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism, const std::function<bool(const JointElement&)>& gives);
 
 /// Moves the mechanism, which stands with all journals centred, to where constraints hold and journals are as near to
 /// their offsets as these allow, in parts of their clearances; those that are `given` first. Offsets that leave the

@@ -304,7 +304,7 @@ class Velocities {
   const System& system_;
   const Model& model_;
   const VectorXd mass_;
-  const std::vector<PlayRank> ranks_ = play_ranks(system_, gives_velocity);
+  const std::vector<PlayRank> ranks_ = play_ranks(mechanism_, gives_velocity);
   double least_in_play_ = StackedRows::rounding;
   bool play_yields_ = false;                    // velocities that blocks give cannot hold as constraints do
   std::vector<ClosedMechanism::Lead> leading_;  // joints with a start speed

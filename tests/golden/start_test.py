@@ -104,6 +104,18 @@ initial: {joints: {foot1_pin: 40 deg}}
 simulation: {end: 1 ms, step: 10 us}
 """
 
+TILTED = """freeplay: 1
+space: spatial
+bodies:
+  rotor: {mass: 1, inertia: [0.01, 0.01, 0.02], velocity: {angular: [0.5, 0, 3]}}
+joints:
+  pin:
+    type: revolute
+    bearing: ground
+    journal: rotor
+    clearance: {bearing_radius: 10 mm, radial_clearance: 0.1 mm, length: 20 mm, %scontact: {law: hertz, K: 1e9}}
+""" + RUN
+
 CARDAN = """freeplay: 1
 space: spatial
 bodies:
@@ -172,6 +184,13 @@ class Start(ProgramTest):
         row, out, _ = self.first_row(BALL % ", initial: {velocity: [0.2, 0]}")
         self.assertAlmostEqual(0.2, row["body.ball.vx"], places=12)
         self.assertIn("body 'ball' starts 0.141 m/s from the velocity that its `velocity` gives", out)
+
+    def test_the_block_of_a_spatial_pin_leaves_its_tilt_to_the_bodies(self):
+        start = TILTED % ("initial: {velocity: [0, 0.01, 0]}, ")
+        row, out, _ = self.first_row(start)
+        self.assertAlmostEqual(0.5, row["body.rotor.wx"], places=9)
+        self.assertAlmostEqual(0.01, row["body.rotor.vy"], places=9)
+        self.assertNotIn("starts", out)
 
     def test_a_block_that_gives_zero_gives_a_velocity(self):
         row, out, _ = self.first_row(BALL % ", initial: {velocity: [0, 0]}")
