@@ -102,7 +102,8 @@ std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
   for (Eigen::Index outer = 0; outer < rows.matrix.outerSize(); ++outer) {
     for (SparseMatrix::InnerIterator entry(rows.matrix, outer); entry; ++entry) {
       const int row = rows.row[static_cast<std::size_t>(entry.row())];
-      if (row >= 0 && !closed.is_turn(static_cast<int>(entry.col())) && entry.value() != 0.0) shifts[at(row)] = 1;
+      if (row >= 0 && !closed.coordinates().is_turn(static_cast<int>(entry.col())) && entry.value() != 0.0)
+        shifts[at(row)] = 1;
     }
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
