@@ -9,7 +9,7 @@
 namespace freeplay {
 namespace {
 
-const double nothing = std::nan("");
+const double no_value = std::nan("");
 
 /// Rows of 10 s, ten in each second.
 ResultTable moving(const std::function<double(double)>& x) {
@@ -84,7 +84,7 @@ TEST(Verification, ASmoothMotionWithALargerErrorErrs) {
 TEST(Verification, PeaksDecideWherePositionsDoNot) {
   const ResultTable rows = moving(smooth_motion);
   const auto force = [&](double value, double other) {
-    return RunResult{&rows, {{"joint B max |F|", value}, {"joint C max |F|", other}, {"path P max error", nothing}}};
+    return RunResult{&rows, {{"joint B max |F|", value}, {"joint C max |F|", other}, {"path P max error", no_value}}};
   };
   const auto judged_peaks = [&](double first, double second, double third) {
     const RunResult a = force(first, 1e-9), b = force(second, 2e-9), c = force(third, 1e-9);
