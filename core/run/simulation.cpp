@@ -275,6 +275,7 @@ bool Simulation::Impl::begin() {
   }
   energy.start(e_accepted, accepted.lambda(), channels, row);
   explained_energy = energy_of(e_accepted);
+  note_event_directions();
   note_first_forces();
   row_is_known = true;
   return record_step() && watch_row(0.0) && tell_sinks();

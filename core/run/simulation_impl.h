@@ -132,6 +132,7 @@ struct Simulation::Impl {
   int hardest_joint(BodyId body) const;
   void format_warnings();
   void note_unused_play();
+  void note_event_directions();
   void note_first_forces();
   void explain_dead_point();
   void explain_failure();
