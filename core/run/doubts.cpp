@@ -102,6 +102,33 @@ bool RunDoubts::note_warnings() {
   return true;
 }
 
+// A contact begins where its function leaves zero in the declared direction. One that is past it from the start, and is
+// declared to fall, only has its event when the bodies part: with error control the contact then never begins.
+void RunDoubts::note_event_directions() {
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    const Span<const Event> declared = run_.system.joint_layout(j).events;
+    std::vector<double> value(declared.size), rate(declared.size);
+    Message message;
+    const JointInput in = run_.system.input(j, point(run_.accepted), run_.e_accepted);
+    if (declared.empty() || !run_.system.joint(j).events(in, {value.data(), value.size()}, {rate.data(), rate.size()},
+                                                         message)) {
+      continue;
+    }
+    for (std::size_t i = 0; i < declared.size; ++i) {
+      if (!std::string_view(declared[i].name).ends_with("contact_begin")) continue;
+      if (declared[i].crossing == Crossing::rising || !(value[i] < -StepEvents::tolerance)) continue;
+      const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+      run_.outcome.doubts.push_back(
+          {.id = "event-direction",
+           .level = run_.adaptive ? Trust::bad : Trust::doubtful,
+           .message = fmt::format("{}: its event '{}' is declared to fall through zero, but is {:.3g} at the start and "
+                                  "did not happen: contacts are missed if it rises when they begin",
+                                  joint, declared[i].name, value[i]),
+           .element = joint});
+    }
+  }
+}
+
 void RunDoubts::note_first_forces() {
   run_.first_forces.assign(run_.model.joints.size(), 0.0);
   for (const ForceBlock& block : run_.system.force_blocks()) {

@@ -32,6 +32,7 @@ bool StepAcceptance::begin() {
   if (!run_.events.at_start(run_.accepted, run_.e_accepted, fault)) return failure_.fail_with(fault, run_.accepted.t());
   if (!recorder_.observe_start()) return false;
   growth_.start();
+  doubts_.note_event_directions();
   doubts_.note_first_forces();
   return recorder_.record_step() && doubts_.watch_row(0.0) && recorder_.write_events();
 }

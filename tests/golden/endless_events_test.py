@@ -29,6 +29,12 @@ class EndlessEvents(ProgramTest):
         _, err = self.freeplay("run", "m.yaml", "--plugin", LIBRARY, "--out", "r", "--accuracy", "1um", code=4)
         self.assertRegex(err, r"event 'stop_end' of joint 'buffer' could not be located; where .*\[event-storm\]")
 
+    def test_a_contact_that_begins_in_the_wrong_direction_is_told(self):
+        self.write("m.yaml", MODEL.replace("endless-stop", "backward-stop"))
+        for step, verdict in (("--accuracy=1um", "bad"), ("--step=0.1 ms", "doubtful")):
+            out, _ = self.freeplay("run", "m.yaml", "--plugin", LIBRARY, "--out", "r", "--force", step)
+            self.assertRegex(out, r"trust: %s .*joint 'buffer': its event 'contact_begin' is declared to fall" % verdict)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -17,7 +17,7 @@ constexpr Parameter parameters[] = {
 constexpr Event events_of_stop[] = {{"stop_begin", Crossing::rising, 1, {}}, {"stop_end", Crossing::rising, 1, {}}};
 
 /// At x = gap of the ground; history[0] says whether it is touched.
-class EndlessStop final : public Joint {
+class EndlessStop : public Joint {
  public:
   explicit EndlessStop(const Parameters& p) : gap_(p.number("gap")), step_(p.number("step")) {}
   void declare(JointLayout& layout) const override {
@@ -49,12 +49,29 @@ class EndlessStop final : public Joint {
   double gap_, step_;
 };
 
+constexpr Event backward_events[] = {{"contact_begin", Crossing::falling, 1, {}},
+                                     {"contact_end", Crossing::falling, 1, {}}};
+
+/// The same with a first event of the wrong direction.
+class BackwardStop final : public EndlessStop {
+ public:
+  using EndlessStop::EndlessStop;
+  void declare(JointLayout& layout) const override {
+    EndlessStop::declare(layout);
+    layout.events = backward_events;
+  }
+};
+
 }  // namespace
 
 FREEPLAY_PLUGIN(endless_events) {
   static const Component components[] = {joint<EndlessStop>({.name = "endless-stop",
                                                              .space = Space::planar,
                                                              .summary = "Stop whose events do not end.",
-                                                             .parameters = parameters})};
+                                                             .parameters = parameters}),
+                                         joint<BackwardStop>({.name = "backward-stop",
+                                                              .space = Space::planar,
+                                                              .summary = "Stop whose contact begins backwards.",
+                                                              .parameters = parameters})};
   return publish(*host, *manifest, "endless_events", "1", components);
 }
