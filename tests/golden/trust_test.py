@@ -42,6 +42,15 @@ simulation: {end: 0.1 s, accuracy: 1 um, output: {interval: 1 ms%s}}
 """
 
 
+# A mass on a guide, driven.
+DRIVEN = """freeplay: 1
+bodies: {m: {mass: 2, inertia: 1e-3}}
+joints: {g: {type: prismatic, between: [ground, m]}}
+drivers: {d: {joint: g, kind: %s}}
+simulation: {end: %s, %s}
+"""
+
+
 def slider_crank(*changes):
     text = SLIDER_CRANK
     for old, new in changes:
@@ -59,6 +68,19 @@ class Trust(ProgramTest):
         line = re.search(r"^  trust: (\w+)", out, re.M)
         self.assertEqual(self.trust["verdict"], line[1])
         return out, err
+
+    def test_residual_is_judged_by_the_work_exchanged(self):
+        for driver, end in (("velocity, value: 'max(0,sin(2*pi*100*t)-0.99)^2'", "20 s"),
+                            ("velocity, table: {points: [[0,0],[0.001,1],[0.002,0],[0.1,0]], interpolation: cubic, "
+                             "outside: repeat}", "10 s")):
+            self.run_model(DRIVEN % (driver, end, "accuracy: 1 um"))
+            self.assertEqual("good", self.trust["verdict"], (driver, self.trust))
+
+    def test_jumps_of_forces_are_no_residual_in_fixed_steps(self):
+        self.run_model(DRIVEN % ("velocity, table: {points: [[0,0],[1,0],[1.01,1],[2,1],[2.01,0],[3,0]], "
+                                 "interpolation: linear}", "3 s", "step: 1 ms"))
+        self.assertEqual("good", self.trust["verdict"], self.trust)
+        self.assertLess(self.summary["residuals"]["energy_max"], 1e-6)
 
     def ids(self):
         return [reason["id"] for reason in self.trust["reasons"]]
