@@ -110,8 +110,8 @@ void RunDoubts::note_event_directions() {
     std::vector<double> value(declared.size), rate(declared.size);
     Message message;
     const JointInput in = run_.system.input(j, point(run_.accepted), run_.e_accepted);
-    if (declared.empty() || !run_.system.joint(j).events(in, {value.data(), value.size()}, {rate.data(), rate.size()},
-                                                         message)) {
+    if (declared.empty() ||
+        !run_.system.joint(j).events(in, {value.data(), value.size()}, {rate.data(), rate.size()}, message)) {
       continue;
     }
     for (std::size_t i = 0; i < declared.size; ++i) {

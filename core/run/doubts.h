@@ -13,9 +13,9 @@ class RunDoubts {
  public:
   RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder);
 
-  /// Forces at the start, to which later ones are compared.
   /// At the start: events of contacts that are declared in the wrong direction.
   void note_event_directions();
+  /// Forces at the start, to which later ones are compared.
   void note_first_forces();
   /// After an accepted step of the length dt: false, with the outcome, where going on makes no sense.
   bool watch_row(double dt);

@@ -288,7 +288,8 @@ bool InputActivity::acts_quickly(double t) {
   return std::ranges::any_of(joints_, [t](const TimedJoint& timed) { return t < timed.quick_until; });
 }
 
-// For powers of 0.1 to 1.8 that begin or end so far from a step these are bounds of what a pair of orders 5 and 4 hides.
+// For powers of 0.1 to 1.8 that begin or end so far from a step these are bounds of what a pair of orders 5 and 4
+// hides.
 double InputActivity::hidden_error(double t, double dt) const {
   double times = 1.0;
   for (const Formula& formula : formulas_) {
