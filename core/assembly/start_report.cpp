@@ -138,6 +138,12 @@ std::string sentence(const TwinStart& twin) {
 }
 
 std::string sentence(const Model& model, const ChosenSpeed& chosen) {
+  if (chosen.body >= 0) {
+    return fmt::format(
+        "body '{}' starts at {:.4g} m/s and {:.4g} rad/s by least kinetic energy: the file leaves its "
+        "velocity open",
+        model.bodies[at(chosen.body)].name, chosen.speed, chosen.angular_speed);
+  }
   const JointElement& joint = model.joints[at(chosen.joint)];
   const bool turns = joint.ideal_layout.coordinate == Coordinate::angle;
   return fmt::format("joint '{}' starts at {:.4g} {} by least kinetic energy: the file leaves its speed open",

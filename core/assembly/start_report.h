@@ -31,7 +31,7 @@ struct TwinStart {
 
 struct StartReport {
   std::vector<MovedStart> moved;    ///< in the order of bodies
-  std::vector<ChosenSpeed> chosen;  ///< in the order of joints
+  std::vector<ChosenSpeed> chosen;  ///< in the order of joints, then of bodies
   std::vector<TwinStart> twins;
 };
 

@@ -23,6 +23,7 @@ using Eigen::VectorXd;
 constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to list than to find
 constexpr double of_racing = 0.1;                // of velocities: less by this is worth what blocks then do not keep
 constexpr double share_in_play = 1e-2;           // share of a journal's motion that constraints must leave to it
+constexpr double part_free = 1e-6;               // of a direction of unit length: less is rounding
 constexpr double kept_part = 1e-9;               // of the largest velocity: a given one that differs by less is kept
 
 class Velocities {
@@ -208,7 +209,7 @@ class Velocities {
     if (!(exact_residual(mechanism_.speed_rows(leading_)).norm() <= allowed())) set(least);
   }
 
-  // Speeds of joints that nothing determines but the least kinetic energy.
+  // Speeds of joints that nothing determines but the least kinetic energy, and of bodies that these say nothing of.
   std::vector<ChosenSpeed> chosen() {
     const MatrixXd free = ranked(velocities()).free();
     if (free.cols() == 0) return {};
@@ -221,13 +222,40 @@ class Velocities {
     const ClosedMechanism::Rows rows = mechanism_.speed_rows(joints);
     const MatrixXd all = rows.matrix;
     std::vector<ChosenSpeed> out;
+    std::vector<Eigen::Index> of_joints;
     for (std::size_t i = 0; i < rows.lead.size(); ++i) {
       const auto index = static_cast<Eigen::Index>(i);
-      if (rows.lead[i] < 0 || (all.row(index) * free).norm() <= kept_part * all.row(index).norm()) continue;
+      if (rows.lead[i] < 0) continue;
+      of_joints.push_back(index);
+      if ((all.row(index) * free).norm() <= kept_part * all.row(index).norm()) continue;
       if (std::abs(rows.residual[index]) <= kept_part * velocities().lpNorm<Eigen::Infinity>()) continue;
-      out.push_back({rows.lead[i], rows.residual[index]});
+      out.push_back({.joint = rows.lead[i], .speed = rows.residual[index]});
     }
+    add_bodies(free - free_by(all(of_joints, Eigen::all), free), out);
     return out;
+  }
+
+  // The part of the columns of `free` that speeds of `rows` determine.
+  static MatrixXd free_by(const MatrixXd& rows, const MatrixXd& free) {
+    if (rows.rows() == 0) return MatrixXd::Zero(free.rows(), free.cols());
+    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> seen(rows * free);
+    return free * seen.solve(rows * free);
+  }
+
+  // Bodies that move though the file leaves their velocity open along `free`.
+  void add_bodies(const MatrixXd& free, std::vector<ChosenSpeed>& out) const {
+    const VectorXd v = velocities();
+    const int width = system_.body_velocities(), lengths = width == 3 ? 2 : 3;
+    const double least = kept_part * v.lpNorm<Eigen::Infinity>();
+    // Zero where the file gives it, or where it is zero.
+    const auto open = [&](int first, int count) {
+      const double speed = v.segment(first, count).norm();
+      return speed > least && free.middleRows(first, count).norm() > part_free ? speed : 0.0;
+    };
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const double speed = open(width * b, lengths), turn = open(width * b + lengths, width - lengths);
+      if (speed > 0.0 || turn > 0.0) out.push_back({.body = b, .speed = speed, .angular_speed = turn});
+    }
   }
 
   // --- contradictions ----------------------------------------------------------------------------------------------

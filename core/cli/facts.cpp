@@ -129,6 +129,12 @@ Json start_changes_json(const Model& model, const StartReport& report) {
                      {"far", one.far}});
   }
   for (const ChosenSpeed& one : report.chosen) {
+    if (one.body >= 0) {
+      chosen.push_back({{"body", model.bodies[static_cast<std::size_t>(one.body)].name},
+                        {"speed", one.speed},
+                        {"angular_speed", one.angular_speed}});
+      continue;
+    }
     chosen.push_back({{"joint", model.joints[static_cast<std::size_t>(one.joint)].name}, {"speed", one.speed}});
   }
   return {{"moved", std::move(moved)}, {"chosen", std::move(chosen)}};

@@ -150,6 +150,23 @@ class Start(ProgramTest):
         self.assertIn("joint 'pivot' starts at %.4g rad/s by least kinetic energy" % arm, out)
         self.assertIn("joint 'pivot' starts at", self.freeplay("validate", "m.yaml")[0])
 
+    # The end of the arm moves at 0.9 m/s, and least energy shares that as the centre of percussion says.
+    def test_velocities_of_bodies_between_joints_without_a_coordinate_are_listed(self):
+        self.write("ball.yaml", """freeplay: 1
+space: spatial
+bodies:
+  arm: {mass: 1, inertia: [0.01, 0.01, 0.01], frames: {tip: [0.3, 0, 0]}}
+  ball: {mass: 1, inertia: [0.01, 0.02, 0.03], frames: {eye: [-0.1, 0, 0]}}
+joints:
+  main: {type: revolute, between: [ground, arm]}
+  tip: {type: spherical, between: [arm/tip, ball/eye]}
+drivers: {motor: {joint: main, kind: velocity, value: 3 rad/s}}
+simulation: {end: 0.1 s, step: 1 ms}
+""")
+        out, _ = self.freeplay("validate", "ball.yaml")
+        self.assertIn("body 'ball' starts at 0.675 m/s and 2.25 rad/s by least kinetic energy", out)
+        self.assertNotIn("body 'arm'", out)
+
     def test_speeds_that_are_all_given_are_kept_without_a_word(self):
         row, out, _ = self.first_row(ARM % ("", "", "initial: {speeds: {spin: 10, pivot: 0}}\n"))
         self.assertAlmostEqual(10, row["joint.spin.speed"], places=12)
