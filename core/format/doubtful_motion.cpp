@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -130,7 +131,7 @@ class MotionDoubts {
     }
   }
 
-  void judge_table(const Driver& driver) const {
+  void judge_table(const Driver& driver) {
     const auto written = key_of(driver, "table");
     if (!written) return;
     const TimeTable& table = *driver.table;
@@ -142,7 +143,8 @@ class MotionDoubts {
                                                  "'time_unit: ms' if milliseconds are meant",
                                                  written->path(), last, span));
     }
-    judge_overshoot(table, *written);
+    // Drivers may share a long table: it is looked at once.
+    if (looked_at_.insert(&table).second) judge_overshoot(table, *written);
     if (!prescribes(driver.kind)) return;
     const auto [low, high] = std::ranges::minmax(table.values());
     const bool speeds = driver.kind == DriverKind::velocity, bare = !says && source.unit.empty();
@@ -304,12 +306,13 @@ class MotionDoubts {
 
   const Draft& draft_;
   const Settings& settings_;
+  std::set<const TimeTable*> looked_at_{};
 };
 
 }  // namespace
 
 void doubt_motions(const Draft& draft) {
-  const MotionDoubts doubts(draft);
+  MotionDoubts doubts(draft);
   const std::vector<Driver>& drivers = draft.model.drivers;
   for (std::size_t i = 0; i < std::min(drivers.size(), most_drivers); ++i) {
     if (drivers[i].kinematics >= 0) continue;

@@ -74,7 +74,7 @@ class Trust(ProgramTest):
                             ("velocity, table: {points: [[0,0],[0.001,1],[0.002,0],[0.1,0]], interpolation: cubic, "
                              "outside: repeat}", "10 s")):
             self.run_model(DRIVEN % (driver, end, "accuracy: 1 um"))
-            self.assertEqual("good", self.trust["verdict"], (driver, self.trust))
+            self.assertNotIn("energy-residual", self.ids(), (driver, self.trust))
 
     def test_jumps_of_forces_are_no_residual_in_fixed_steps(self):
         self.run_model(DRIVEN % ("velocity, table: {points: [[0,0],[1,0],[1.01,1],[2,1],[2.01,0],[3,0]], "
