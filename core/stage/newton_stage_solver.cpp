@@ -8,7 +8,8 @@
 #include "stage/solver_table.h"
 
 namespace freeplay {
-NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters, EvaluationContext* run)
+NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergenceParameters& parameters,
+                                     EvaluationContext* run)
     : system_(system),
       table_(stage_solver_table(*this)),
       equations_(system, run),

@@ -1,4 +1,4 @@
-"""Subjects of commits, from the one on that brought this check."""
+"""Subjects of commits that were made after the one that brought this check."""
 import os
 
 from sources import Finding, git
@@ -8,7 +8,7 @@ LONGEST = 72  # characters of a subject
 
 def findings():
     first = git("log", "--diff-filter=A", "--format=%H", "--", os.path.join("tests", "lint", "commits.py"))
-    log = git("log", "--no-merges", "--format=%h %s", first.splitlines()[-1] + "..HEAD") if first else None
+    log = git("log", "--no-merges", "--ancestry-path", "--format=%h %s", first.splitlines()[-1] + "..HEAD") if first else None
     if log is None:
         return "no history here", []
     commits = [line.partition(" ")[::2] for line in log.splitlines()]

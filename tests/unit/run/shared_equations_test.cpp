@@ -56,14 +56,14 @@ void expect_eight_equal_runs(const std::string& text) {
 }
 
 TEST(SharedEquations, EightThreadsStepALoosePinInFixedSteps) {
-  expect_eight_equal_runs(replaced(replaced(mechanism("slider-crank"), "end: 24 ms", "end: 3 ms"), "discard: 12 ms",
-                                   "discard: 0 ms"));
+  expect_eight_equal_runs(
+      replaced(replaced(mechanism("slider-crank"), "end: 24 ms", "end: 3 ms"), "discard: 12 ms", "discard: 0 ms"));
 }
 
 TEST(SharedEquations, EightThreadsStepALoosePinUnderAnAccuracy) {
-  expect_eight_equal_runs(replaced(replaced(mechanism("slider-crank"), "end: 24 ms, step: 1 us",
-                                            "end: 3 ms, accuracy: 1 um"),
-                                   "discard: 12 ms", "discard: 0 ms"));
+  expect_eight_equal_runs(
+      replaced(replaced(mechanism("slider-crank"), "end: 24 ms, step: 1 us", "end: 3 ms, accuracy: 1 um"),
+               "discard: 12 ms", "discard: 0 ms"));
 }
 
 // Their drivers solve the ideal mechanism for the path, in work space of each thread.
