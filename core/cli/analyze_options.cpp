@@ -14,12 +14,6 @@ namespace {
 
 constexpr long largest_count = 1'000'000;
 
-[[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
-                            const std::string& hint = {}) {
-  throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
-              hint);
-}
-
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string::npos) return {};
@@ -152,14 +146,6 @@ PlayLaw play_law_of(const std::string& text) {
               "the standard deviation is a share of the clearance, greater than 0 and at most 1000");
   }
   return law;
-}
-
-long whole_number(const std::string& option, const std::string& text, long least) {
-  const double value = signed_quantity(option, text, dimension::none);
-  if (value != std::floor(value) || value < static_cast<double>(least) || value > 1e9) {
-    bad_value(option, text, fmt::format("a whole number from {} to 10^9 is needed", least));
-  }
-  return static_cast<long>(value);
 }
 
 }  // namespace freeplay

@@ -31,7 +31,5 @@ std::vector<int> elbow_of(const std::string& text);
 std::vector<Jet> inputs_of(const std::string& text, const Model& model, const std::vector<int>& inputs);
 /// "uniform", "rim", "normal" or "normal:SIGMA". Throws Error{usage} "bad-value", "unknown-name".
 PlayLaw play_law_of(const std::string& text);
-/// A whole number from `least` to 10^9. Throws Error{usage} "bad-value".
-long whole_number(const std::string& option, const std::string& text, long least);
 
 }  // namespace freeplay

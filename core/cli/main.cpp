@@ -10,22 +10,11 @@
 #include <fmt/format.h>
 
 #include "base/version.h"
-#include "cli/analyze_command.h"
-#include "cli/check_plugin_command.h"
-#include "cli/compare_command.h"
-#include "cli/convert_command.h"
-#include "cli/describe_command.h"
-#include "cli/doctor_command.h"
+#include "cli/commands.h"
 #include "cli/failure.h"
-#include "cli/init_command.h"
 #include "cli/interrupt.h"
-#include "cli/list_command.h"
-#include "cli/run_command.h"
-#include "cli/schema_command.h"
-#include "cli/show_command.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
-#include "cli/validate_command.h"
 #include "freeplay/plugin.h"
 
 namespace freeplay {
@@ -49,30 +38,11 @@ int execute(int argc, char** argv, CommonOptions& common) {
   bool version = false;
   program.add_flag("--version", version, "Print the version");
   add_common_options(program, common);
-  constexpr struct {
-    std::string_view name;
-    Command (*add)(CLI::App&, CommonOptions&);
-  } all[] = {
-      // clang-format off
-      {"run", add_run_command},
-      {"validate", add_validate_command},
-      {"analyze", add_analyze_command},
-      {"compare", add_compare_command},
-      {"show", add_show_command},
-      {"convert", add_convert_command},
-      {"doctor", add_doctor_command},
-      {"list", add_list_command},
-      {"describe", add_describe_command},
-      {"schema", add_schema_command},
-      {"init", add_init_command},
-      {"check-plugin", add_check_plugin_command},
-      // clang-format on
-  };
   // Options of one command take a tenth of a millisecond: those of the others are left out where the first word is one.
   const std::string_view first = argc > 1 ? argv[1] : "";
-  const bool named = std::ranges::any_of(all, [&](const auto& word) { return word.name == first; });
+  const bool named = std::ranges::any_of(all_commands(), [&](const auto& word) { return word.name == first; });
   std::vector<Command> commands;
-  for (const auto& [name, add] : all) {
+  for (const auto& [name, add] : all_commands()) {
     if (!named || name == first) commands.push_back(add(program, common));
   }
   // Words that the parser does not know are left to unknown_word(), which suggests what was meant.

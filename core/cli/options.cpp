@@ -1,6 +1,7 @@
 #include "cli/options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -16,12 +17,6 @@ constexpr const char* common_group = "Options of every command";
 constexpr const char* hidden_group = "";
 constexpr const char* model_group = "Options of every command that reads a model";
 
-[[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
-                            const std::string& hint = {}) {
-  throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
-              hint);
-}
-
 /// Options are read before any model, so they know no parameters.
 class NoParameters : public Scope {
  public:
@@ -36,6 +31,11 @@ CLI::Option* repeatable(CLI::App& app, const std::string& name, std::vector<std:
 }
 
 }  // namespace
+
+void bad_value(const std::string& option, const std::string& text, const std::string& why, const std::string& hint) {
+  throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
+              hint);
+}
 
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help) {
   return program.add_subcommand(name, help);
@@ -143,6 +143,14 @@ void require_word(const std::string& what, const std::string& word, const std::v
 
 void not_in_this_release(const std::string& what) {
   throw Error(Error::Category::usage, "not-in-this-release", fmt::format("{}: not in this release", what));
+}
+
+long whole_number(const std::string& option, const std::string& text, long least) {
+  const double value = signed_quantity(option, text, dimension::none);
+  if (value != std::floor(value) || value < static_cast<double>(least) || value > 1e9) {
+    bad_value(option, text, fmt::format("a whole number from {} to 10^9 is needed", least));
+  }
+  return static_cast<long>(value);
 }
 
 }  // namespace freeplay

@@ -61,6 +61,11 @@ void add_flag(CLI::App& app, const std::string& name, bool& value, const std::st
 /// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
 BuildOptions build_options(const ModelOptions& options);
 
+/// Throws Error{usage} "bad-value": "bad value 'TEXT' of OPTION: WHY".
+[[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
+                            const std::string& hint = {});
+/// A whole number from `least` to 10^9. Throws Error{usage} "bad-value".
+long whole_number(const std::string& option, const std::string& text, long least);
 /// A positive quantity such as "0.5 s". Throws Error{usage} "bad-value".
 double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
 /// A quantity of either sign. Throws Error{usage} "bad-value".

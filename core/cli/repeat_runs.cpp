@@ -21,8 +21,8 @@
 #include <unistd.h>
 
 #include "base/error.h"
-#include "cli/analyze_options.h"
 #include "cli/interrupt.h"
+#include "cli/options.h"
 #include "cli/whole_text.h"
 #include "results/summary.h"
 #include "run/play_start.h"
