@@ -100,6 +100,8 @@ class Expression {
  private:
   friend class ExpressionCompiler;
   friend class FormulaCourse;
+  friend class FormulaForms;
+  friend class FormulaSides;
 
   enum class Operation {
     push_constant,

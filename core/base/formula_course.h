@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "base/expression.h"
-#include "base/interval_jet.h"
+#include "base/formula_forms.h"
+#include "base/formula_sides.h"
 
 namespace freeplay {
 
@@ -50,9 +51,9 @@ class FormulaCourse {
   };
   Beside singular(double t) const;
   /// Whether it can have corners at all.
-  bool has_sides() const { return !sides_.empty(); }
+  bool has_sides() const { return sides_.size() > 0; }
   /// Instructions that were executed so far.
-  long work() const { return work_; }
+  long work() const { return sides_.work(); }
 
   class PeriodFinder;  ///< formula_period.cpp
 
@@ -75,91 +76,38 @@ class FormulaCourse {
   /// What is known so far: all else follows from the formula, or is of one window.
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.known_to_, self.work_);
+    archive(self.known_to_, self.sides_);
     archive.list(self.corners_);
     archive.list(self.pieces_);
   }
 
  private:
-  using Operation = Expression::Operation;
-
-  /// What a value is on a piece where nothing changes sides: a polynomial times what changes at a rate [1/s].
-  struct Form {
-    int degree = 0;
-    double rate = 0.0;
-    bool constant() const { return degree == 0 && rate == 0.0; }
-    bool polynomial(int most) const { return degree <= most && rate == 0.0; }
-  };
-  static Form bounded(const Form& form);
-  static Form sum(const Form& a, const Form& b);
-  static Form product(const Form& a, const Form& b);
+  using Span = FormulaSides::Span;
+  using Root = FormulaSides::Root;
   static constexpr double unknown = std::numeric_limits<double>::infinity();
-  static constexpr Form no_form{0, unknown};
 
-  /// What decides in an instruction: above or below zero. It depends on the instructions from `first` on alone.
-  struct Side {
-    int instruction, first;
-    int which;  ///< of smooth(): 0 for the begin of the ramp, 1 for its end
-    bool smooth;
-    bool touches = false;  ///< zero is where it ends: it comes there and turns back
-  };
-  enum class Where : unsigned char { open, below, above };
-  struct Decision {
-    Where where = Where::open;
-    int depth = 0;  ///< of the span that it was made for; those of spans beside it do not count
-  };
-  struct Span {
-    double low, high;
-    double half() const { return 0.5 * (high - low); }
-    double middle() const { return 0.5 * (low + high); }
-  };
-  struct Root {
-    double time;
-    bool smooth;
-  };
-
-  void list_sides();
   void forget_before(double t);
   void look_further(double until);
   bool look_over(const Span& span, int depth, std::size_t first_open, std::size_t last_open);
   bool look_at_both(const Span& left, const Span& right, const Root* between, int depth, std::size_t first_open);
-  void bound(const Side& side, const Span& span, int depth);
-  IntervalJet bound_operation(int i, const IntervalJet* x, const Jet* middle, bool hangs, const Span& span, int depth);
-  Where decide(std::size_t side, IntervalJet value, const Jet& middle, bool hangs, const Span& span, int depth);
-  Where sought(std::size_t side, const IntervalJet& value, const Span& span);
-  Where sought_touch(std::size_t side, const IntervalJet& value, const Span& span);
-  bool bends_without_bound(double corner, double by);
-  bool passes_within(std::size_t side, const Span& span, bool above, double& instant);
-  void refine(std::size_t side, double a, double b, bool at_b);
-  bool value_of(std::size_t side, double t, Jet& value);
   void note_corners();
   void note_corner(const Root& root);
   void note_pieces(double from, double to, std::size_t first_corner);
-  bool look(double t, Form& form);
-  Form form_between(double low, double high);
-  Form note(const Expression::Instruction& instruction, const Jet* x, const Form* form, std::size_t count) const;
+  FormulaForms::Form form_between(double low, double high);
+  bool bends_without_bound(double corner, double by);
 
   const Expression& expression_;
   double from_, to_;
   double rounding_;  ///< times that are closer are one
   double known_to_;
-  std::vector<Side> sides_;
-  std::vector<int> first_of_;       ///< by instruction: where what it depends on begins
-  std::vector<int> first_side_of_;  ///< by instruction: its first side, or -1
-  std::vector<Decision> decisions_;
+  FormulaSides sides_;
+  FormulaForms forms_;
   std::vector<std::size_t> open_;  ///< sides that are not decided, by nested spans
-  std::vector<Root> roots_;        ///< of the span that is looked over
-  std::size_t located_ = 0;        ///< sides of it that pass zero in these and nowhere else
-  bool hidden_ = false;            ///< a side of it hangs on another one that is not decided
   std::vector<Corner> corners_;
   std::vector<Piece> pieces_;
-  long work_ = 0, allowed_ = 0;
+  long allowed_ = 0;
   double stopped_at_ = 0.0;
   std::size_t most_corners_ = 0;  ///< of the present window
-  std::vector<Jet> stack_, middle_;
-  std::vector<IntervalJet> ranges_;
-  std::vector<char> hangs_;  ///< along with ranges_: on a side that is not decided
-  std::vector<Form> forms_;
 };
 
 }  // namespace freeplay
