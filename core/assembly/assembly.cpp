@@ -9,11 +9,12 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/assembly_failure.h"
 #include "assembly/closed_mechanism.h"
-#include "assembly/drive_range.h"
+#include "assembly/dead_point.h"
 #include "assembly/force_turns.h"
+#include "assembly/gear_turn_choice.h"
 #include "assembly/leg_modes.h"
-#include "assembly/loop_gap.h"
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
 #include "assembly/start_branches.h"
@@ -107,17 +108,11 @@ class Assembler {
 
   // Angles are counted from the value that a joint leads or is driven to, else as a gear says, else from (-pi, pi].
   void remember_turns() {
-    count_gears(false);
+    gear_turns_.count(false);
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const int turn = closed_.layout().turn(j);
       if (turn >= 0) state_.h()[at(turn)] = std::isnan(held_[at(j)]) ? 0.0 : held_[at(j)];
     }
-  }
-
-  void count_gears(bool from_slides) {
-    std::vector<bool> counted;
-    for (const double held : held_) counted.push_back(!std::isnan(held));
-    mechanism_.count_gears(std::move(counted), from_slides);
   }
 
   // Driven joints without a closed form: the ideal mechanism stands on the paths, which gives where the joints are now
@@ -173,82 +168,6 @@ class Assembler {
     return moved;
   }
 
-  // A rack that other joints put far away has turned its pinion more than half a turn.
-  bool converge_from_slides(const std::vector<double>& guess) {
-    const auto fixed = [](const Gear& gear) { return gear.offset.has_value(); };
-    if (std::ranges::none_of(model_.gears, fixed)) return false;
-    count_gears(true);
-    std::ranges::copy(guess, state_.q().begin());
-    if (mechanism_.holds(mechanism_.converge())) return true;
-    count_gears(false);
-    return false;
-  }
-
-  // Gears with offsets of their own hold with whole turns: those that given poses have, or that given slides ask for,
-  // may keep more of what is given.
-  bool converge_from_other_turns(const std::vector<double>& guess, bool found) {
-    const auto fixed = [](const Gear& gear) { return gear.offset.has_value(); };
-    const GivenPoses given(closed_);
-    if (std::ranges::none_of(model_.gears, fixed) || !given.any()) return false;
-    if (found && StartBranches::keeps(given, state_.q())) return false;
-    std::vector<double> best(state_.q().begin(), state_.q().end());
-    const std::vector<double> turns(state_.h().begin(), state_.h().end());
-    std::vector<double> best_turns = turns;
-    double least = found ? given.misses(best).norm() : std::numeric_limits<double>::infinity();
-    int kind = 0;
-    for (const int other : {1, 2, 3}) {
-      std::ranges::copy(turns, state_.h().begin());
-      count_turns(other);
-      std::ranges::copy(guess, state_.q().begin());
-      if (!mechanism_.holds(mechanism_.converge())) continue;
-      const double misses = given.misses(state_.q()).norm();
-      if (!(misses < (1.0 - 1e-6) * least)) continue;
-      least = misses, kind = other;
-      best.assign(state_.q().begin(), state_.q().end());
-      best_turns.assign(state_.h().begin(), state_.h().end());
-    }
-    std::ranges::copy(turns, state_.h().begin());
-    count_turns(kind);
-    if (kind != 0) std::ranges::copy(best_turns, state_.h().begin());
-    std::ranges::copy(best, state_.q().begin());
-    evaluate(term_position | term_velocity);
-    return kind != 0;
-  }
-
-  // Angles of gears are counted from (-pi, pi] (0), from given poses (1), from slides (2) or from that turn of the
-  // joint that leads a train with which it comes nearest to given poses (3).
-  void count_turns(int kind) {
-    if (kind == 0 || kind == 2) return count_gears(kind == 2);
-    std::vector<bool> counted;
-    for (const double held : held_) counted.push_back(!std::isnan(held));
-    std::vector<double> given(model_.joints.size(), nan);
-    for (const Gear& gear : model_.gears) {
-      for (const int j : {gear.first, gear.second}) {
-        const JointElement& joint = model_.joints[at(j)];
-        if (closed_.layout().turn(j) < 0 || model_.space != Space::planar) continue;
-        const auto a = given_angle(joint.marker_a), b = given_angle(joint.marker_b);
-        if (a && b) given[at(j)] = *b - *a;
-      }
-    }
-    if (kind == 3) {
-      mechanism_.count_gears(std::move(counted), false);
-      return mechanism_.turn_gears(given);
-    }
-    for (std::size_t j = 0; j < given.size(); ++j) {
-      if (counted[j] || std::isnan(given[j])) continue;
-      state_.h()[at(closed_.layout().turn(static_cast<int>(j)))] = given[j];
-      counted[j] = true;
-    }
-    mechanism_.count_gears(std::move(counted), false);
-  }
-
-  std::optional<double> given_angle(int marker) const {
-    const Marker& m = model_.markers[at(marker)];
-    if (m.body == ground) return m.angle;
-    const auto& own = model_.bodies[at(m.body)].angle;
-    return own ? std::optional<double>(*own + m.angle) : std::nullopt;
-  }
-
   // Newton cannot leave a guess with all links in one line, where no small turn changes the gap at first order: files
   // that give no pose begin so. Then the bodies are turned a little, each by another fixed angle.
   bool converge_from_turned(const std::vector<double>& guess) {
@@ -272,14 +191,14 @@ class Assembler {
     const bool first = !nearest_is_known_;
     bool found = mechanism_.holds(mechanism_.converge()), chosen_by_turn = false;
     const std::vector<double> nearest(state_.q().begin(), state_.q().end());
-    if (!found) found = converge_from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
-    if (first && converge_from_other_turns(guess, found)) found = true, chosen_by_turn = false;
+    if (!found) found = gear_turns_.from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
+    if (first && gear_turns_.from_other_turns(guess, found)) found = true, chosen_by_turn = false;
     if (!std::exchange(nearest_is_known_, true)) found = take_nearest(guess, found, chosen_by_turn);
     if (!found) found = yield(guess, first);
     if (!found) {
       std::ranges::copy(nearest, state_.q().begin());
       if (!mechanism_.paths.empty()) check_paths();
-      report_gap(mechanism_.position_rows());
+      throw_open(mechanism_, mechanism_.position_rows());
     }
     keep_gear_offsets();
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
@@ -304,7 +223,7 @@ class Assembler {
     bool centred = mechanism_.holds(mechanism_.converge());
     if (first) {
       bool chosen_by_turn = false;
-      if (!centred) centred = converge_from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
+      if (!centred) centred = gear_turns_.from_slides(guess) || (chosen_by_turn = converge_from_turned(guess));
       centred = take_nearest(guess, centred, chosen_by_turn);
     }
     const auto given = [&](const JointElement& joint) { return !change_ && gives_eccentricity(joint); };
@@ -355,55 +274,6 @@ class Assembler {
       closed_.set_gear_offset(g, offset);
       system_.set_gear_offset(g, offset);
     }
-  }
-
-  double worst_allowed() const { return model_.settings.assembly_tolerance; }
-
-  [[noreturn]] void report_gap(const ClosedMechanism::Rows& rows) {
-    double worst = -1.0;
-    std::string text;
-    Location location;
-    const auto consider = [&](double gap, const std::string& words, const Location& place) {
-      if (!(gap <= worst)) worst = gap, text = words, location = place;
-    };
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      const Slice slice = closed_.layout().rows(j);
-      if (slice.size > 0 && !mechanism_.held_row[at(slice.offset)]) continue;
-      double gap = 0.0;
-      for (int r = 0; r < slice.size; ++r) gap = std::hypot(gap, e_.phi[at(slice.offset + r)]);
-      consider(gap, fmt::format("joint '{}' stays open by {:.6g} m", model_.joints[at(j)].name, gap),
-               model_.joints[at(j)].location);
-    }
-    for (std::size_t i = 0; i < rows.row.size(); ++i) {
-      if (rows.path[i] < 0 || std::abs(rows.residual[static_cast<Eigen::Index>(i)]) <= worst_allowed()) continue;
-      const InverseKinematics& entry = model_.kinematics[at(mechanism_.paths[at(rows.path[i])].kinematics)];
-      throw Error(Error::Category::input, "ik-unreachable",
-                  fmt::format("the mechanism cannot bring the frame of '{}' to its path at the start time {} s",
-                              entry.name, state_.t()),
-                  entry.path_location, "if it can, give the bodies a `pose` closer to the wanted one");
-    }
-    for (std::size_t i = 0; i < rows.row.size(); ++i) {
-      const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
-      if (rows.lead[i] >= 0) {
-        const JointElement& joint = model_.joints[at(rows.lead[i])];
-        consider(gap, fmt::format("joint '{}' misses its start value by {:.6g}", joint.name, gap), joint.location);
-      }
-    }
-    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
-      const int r = closed_.layout().driver_row(d);
-      if (r < 0 || !mechanism_.held_row[at(r)]) continue;
-      const double gap = std::abs(e_.phi[at(r)]);
-      consider(gap, fmt::format("driver '{}' misses its value by {:.6g}", model_.drivers[at(d)].name, gap),
-               model_.drivers[at(d)].location);
-    }
-    if (const std::optional<LoopGap> gap = loop_gap(mechanism_)) {
-      const JointElement& joint = model_.joints[at(gap->joint)];
-      text = fmt::format("joint '{}' stays open by {:.6g} m with all others closed", joint.name, gap->size);
-      location = joint.location;
-    }
-    if (const auto elsewhere = closes_elsewhere(mechanism_)) text += "; " + *elsewhere;
-    throw Error(Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
-                "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
   }
 
   void check_paths() {
@@ -498,6 +368,7 @@ class Assembler {
   State& state_;
   Evaluation& e_;
   std::vector<double> held_;  // by joint
+  GearTurnChoice gear_turns_{mechanism_, held_};
   std::vector<InitialOffset> offsets_ = std::vector<InitialOffset>(model_.joints.size(), InitialOffset{});
   std::vector<char> followed_;  // inverse-kinematics entries with drivers without a closed form
   StartReport report_;

@@ -40,6 +40,15 @@ void ClosedMechanism::count_gears(std::vector<bool> counted, bool from_slides) {
   gear_turns_.emplace(model(), system.layout(), std::move(counted), from_slides);
 }
 
+void ClosedMechanism::stand_at(const System& other, const State& start) {
+  system.take_start_of(other);
+  std::ranges::copy(start.q(), state.q().begin());
+  for (int j = 0; j < static_cast<int>(model().joints.size()); ++j) {
+    const int turn = system.layout().turn(j), own = other.layout().turn(j);
+    if (turn >= 0 && own >= 0) state.h()[at(turn)] = start.h()[at(own)];
+  }
+}
+
 void ClosedMechanism::evaluate(unsigned terms) {
   if (!system.evaluate(point(state), terms | term_coordinate, e)) throw_fault(model(), e.fault);
   if (!gear_turns_ || !gear_turns_->recount(e.coordinate, state.h())) return;

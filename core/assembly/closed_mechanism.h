@@ -50,6 +50,9 @@ class ClosedMechanism {
   void count_gears(std::vector<bool> counted, bool from_slides);
   /// After that: with as many turns of trains as come nearest to the angles given by joint; NaN where there is none.
   void turn_gears(std::span<const double> given) { gear_turns_->turn_leads(given, state.h()); }
+  /// Puts it where `start`, a state of another system of the same model, is; drivers and gears start as there.
+  void stand_at(const System& other, const State& start);
+
   /// Throws throw_fault() when an element fails.
   void evaluate(unsigned terms);
 

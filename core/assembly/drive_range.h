@@ -3,12 +3,9 @@
 
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "assembly/closed_mechanism.h"
-#include "system/state.h"
 
 namespace freeplay {
 
@@ -28,32 +25,8 @@ std::string words(const DriveRange& range, Coordinate coordinate);
 /// "97.2 deg" or "0.12 m".
 std::string words(double value, Coordinate coordinate);
 
-/// A driver that starts where its joint is at a dead point: with it the rows lose rank there and nowhere around.
-struct DeadStart {
-  int driver = 0;
-  std::vector<int> joints;  ///< whose rows depend on each other there
-};
-
-/// Of the ideal mechanism, in the state in which a run of `system` begins.
-std::optional<DeadStart> dead_start(const System& system, const State& start);
-/// One sentence without full stop.
-std::string words(const DeadStart& start, const Model& model);
-
-/// "joints 'A', 'B'": some of them where there are many.
-std::string joint_names(std::span<const int> joints, const Model& model);
-
 /// Of a mechanism whose rows do not hold: which of its leading or driven joints would have to stand elsewhere, and in
 /// which range, for it to close. The state is lost.
 std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism);
-
-/// Why a run that ended at time `t` could not go on, where a driver asks for a position that the ideal mechanism cannot
-/// take: which joint, where, how far the loop then is from closing, and between which values it can be driven, or what
-/// holds it where it can be driven nowhere. It ends with its word: "[dead-point]" or "[locked]". Empty where the
-/// mechanism could follow. `start` is the state in which the run of `system` began.
-std::optional<std::string> why_out_of_reach(const System& system, const State& start, double t);
-
-/// The first time at which a driver asks for a position that the mechanism could not take though all its play were
-/// added up twice: from there on contacts are torn apart. Infinite where there is none, and where several drivers move.
-double out_of_reach_from(const System& system, const State& start);
 
 }  // namespace freeplay

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "assembly/drive_range.h"
+#include "assembly/dead_point.h"
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
 #include "base/index.h"

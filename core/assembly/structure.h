@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "assembly/drive_range.h"
+#include "assembly/dead_point.h"
 #include "system/system.h"
 
 namespace freeplay {

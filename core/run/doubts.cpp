@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "assembly/drive_range.h"
+#include "assembly/out_of_reach.h"
 #include "base/index.h"
 #include "run/likely_cause.h"
 

@@ -1,0 +1,75 @@
+#include "assembly/assembly_failure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "assembly/drive_range.h"
+#include "assembly/loop_gap.h"
+#include "base/error.h"
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+void refuse_open_path(const ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
+  for (std::size_t i = 0; i < rows.row.size(); ++i) {
+    if (rows.path[i] < 0 ||
+        std::abs(rows.residual[static_cast<Eigen::Index>(i)]) <= mechanism.model().settings.assembly_tolerance)
+      continue;
+    const InverseKinematics& entry = mechanism.model().kinematics[at(mechanism.paths[at(rows.path[i])].kinematics)];
+    throw Error(Error::Category::input, "ik-unreachable",
+                fmt::format("the mechanism cannot bring the frame of '{}' to its path at the start time {} s",
+                            entry.name, mechanism.state.t()),
+                entry.path_location, "if it can, give the bodies a `pose` closer to the wanted one");
+  }
+}
+
+}  // namespace
+
+void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
+  const Model& model = mechanism.model();
+  const Layout& layout = mechanism.system.layout();
+  double worst = -1.0;
+  std::string text;
+  Location location;
+  const auto consider = [&](double gap, const std::string& words, const Location& place) {
+    if (!(gap <= worst)) worst = gap, text = words, location = place;
+  };
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const Slice slice = layout.rows(j);
+    if (slice.size > 0 && !mechanism.held_row[at(slice.offset)]) continue;
+    double gap = 0.0;
+    for (int r = 0; r < slice.size; ++r) gap = std::hypot(gap, mechanism.e.phi[at(slice.offset + r)]);
+    consider(gap, fmt::format("joint '{}' stays open by {:.6g} m", model.joints[at(j)].name, gap),
+             model.joints[at(j)].location);
+  }
+  refuse_open_path(mechanism, rows);
+  for (std::size_t i = 0; i < rows.row.size(); ++i) {
+    const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
+    if (rows.lead[i] >= 0) {
+      const JointElement& joint = model.joints[at(rows.lead[i])];
+      consider(gap, fmt::format("joint '{}' misses its start value by {:.6g}", joint.name, gap), joint.location);
+    }
+  }
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const int r = layout.driver_row(d);
+    if (r < 0 || !mechanism.held_row[at(r)]) continue;
+    const double gap = std::abs(mechanism.e.phi[at(r)]);
+    consider(gap, fmt::format("driver '{}' misses its value by {:.6g}", model.drivers[at(d)].name, gap),
+             model.drivers[at(d)].location);
+  }
+  if (const std::optional<LoopGap> gap = loop_gap(mechanism)) {
+    const JointElement& joint = model.joints[at(gap->joint)];
+    text = fmt::format("joint '{}' stays open by {:.6g} m with all others closed", joint.name, gap->size);
+    location = joint.location;
+  }
+  if (const auto elsewhere = closes_elsewhere(mechanism)) text += "; " + *elsewhere;
+  throw Error(Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
+              "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
+}
+
+}  // namespace freeplay

@@ -1,0 +1,84 @@
+#include "assembly/dead_point.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "assembly/continuation.h"
+#include "assembly/row_stress.h"
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double lost_rank = 1e-4;  // by singular values of the rows, of what it is beside a dead point
+
+}  // namespace
+
+std::optional<DeadStart> dead_start(const System& system, const State& start) {
+  ClosedMechanism mechanism(system);
+  const Model& model = mechanism.model();
+  if (mechanism.system.layout().nv() > most_followed_velocities) return std::nullopt;
+  mechanism.stand_at(system, start);
+  mechanism.position_rows();
+  std::vector<int> drivers;
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const Driver& driver = model.drivers[at(d)];
+    if (!prescribes(driver.kind) || driver.kinematics >= 0) continue;
+    drivers.push_back(d);
+    mechanism.held_row[at(mechanism.system.layout().driver_row(d))] = 0;
+    mechanism.leads.push_back({driver.joint, mechanism.e.coordinate[at(driver.joint)]});
+  }
+  if (drivers.empty()) return std::nullopt;
+  const ClosedMechanism::Rows rows = mechanism.position_rows();
+  if (!mechanism.holds(rows)) return std::nullopt;
+  const RowSvd here(rows);
+  const Eigen::VectorXd& values = here.svd.singularValues();
+  if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > lost_rank * values[0]) return std::nullopt;
+  const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
+  const std::vector<ClosedMechanism::Lead> leads = mechanism.leads;
+  for (std::size_t i = 0; i < leads.size(); ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      mechanism.leads = leads;
+      std::swap(mechanism.leads[i], mechanism.leads.back());
+      std::ranges::copy(q, mechanism.state.q().begin());
+      if (!leave_dead_point(mechanism, sign)) continue;
+      std::swap(mechanism.leads[i], mechanism.leads.back());
+      const RowSvd there(mechanism.position_rows());
+      const Eigen::Index last = there.rank - 1;
+      if (last < 0 || !(values[last] < lost_rank * there.svd.singularValues()[last])) continue;
+      DeadStart found{drivers[i], {}};
+      // The state of stress without load that is there and not beside it.
+      Eigen::VectorXd stress = here.svd.matrixU().col(last);
+      const auto always = there.svd.matrixU().rightCols(there.svd.matrixU().cols() - there.rank);
+      stress -= always * (always.transpose() * stress);
+      found.joints = joints_under(stress, rows, mechanism);
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string words(const DeadStart& start, const Model& model) {
+  const Driver& driver = model.drivers[at(start.driver)];
+  const std::string joints = joint_names(start.joints, model);
+  return fmt::format(
+      "driver '{}' starts joint '{}' at a dead point{}: nothing says which of two ways the mechanism goes "
+      "on, or it cannot go as it is driven; start beside it, or drive another joint",
+      driver.name, model.joints[at(driver.joint)].name,
+      joints.empty() ? std::string{} : fmt::format(", where {} hold links in line", joints));
+}
+
+std::string joint_names(std::span<const int> joints, const Model& model) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(joints.size(), most); ++i) {
+    text += fmt::format("{}'{}'", text.empty() ? "" : ", ", model.joints[at(joints[i])].name);
+  }
+  if (joints.size() > most) text += fmt::format(" and {} others", joints.size() - most);
+  if (text.empty()) return text;
+  return (joints.size() == 1 ? "joint " : "joints ") + text;
+}
+
+}  // namespace freeplay

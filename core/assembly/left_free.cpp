@@ -1,0 +1,229 @@
+#include "assembly/left_free.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "assembly/row_space.h"
+#include "base/index.h"
+
+namespace freeplay {
+
+using Eigen::MatrixXd;
+
+namespace {
+
+class FreeMotions {
+ public:
+  FreeMotions(const System& closed, const Evaluation& shut) : model_(closed.model()), closed_(closed), shut_(shut) {}
+
+  LeftFree find() const {
+    LeftFree found;
+    const MatrixXd rows = held_by_drivers(), spins = idle_spins(rows);
+    found.bodies = moving_in(rows, spins, &found.motions);
+    if (found.motions <= 0) found.bodies.clear();
+    if (!found.bodies.empty()) judge(rows, spins, found);
+    return found;
+  }
+
+ private:
+  /// Is it said where the free bodies start, and does anything act on them? Pendulums and loads are given a start.
+  void judge(const MatrixXd& held, const MatrixXd& spins, LeftFree& found) const {
+    const auto is_moving = [&](BodyId body) { return std::ranges::count(found.bodies, body) > 0; };
+    const bool acts = acts_on(is_moving);
+    const std::vector<int> unrestrained = acts ? without_start(is_moving, held, spins) : found.bodies;
+    if (unrestrained.empty()) return;
+    std::string names;
+    for (const int b : unrestrained)
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", model_.bodies[at(b)].name);
+    if (unrestrained.size() > 5)
+      names = fmt::format("'{}' and {} others", model_.bodies[at(unrestrained[0])].name, unrestrained.size() - 1);
+    found.doubtful = unrestrained.front();
+    found.doubt = fmt::format(
+        "{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver, or "
+        "say under 'initial' how it starts",
+        found.motions == 1 ? std::string("1 freedom is") : fmt::format("{} freedoms are", found.motions),
+        acts ? "no start is given for" : "nothing acts on", names);
+  }
+
+  BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
+
+  /// Rate of a joint's coordinate by all velocities.
+  MatrixXd coordinate_rate(int joint) const {
+    double row[12], bias = 0.0;
+    closed_.coordinate_row(joint, shut_, row, bias);
+    MatrixXd one = MatrixXd::Zero(1, closed_.layout().nv());
+    const int width = closed_.body_velocities();
+    const int bodies[2] = {body_of(model_.joints[at(joint)].marker_a), body_of(model_.joints[at(joint)].marker_b)};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < width && bodies[k] != ground; ++c) one(0, width * bodies[k] + c) += row[width * k + c];
+    }
+    return one;
+  }
+
+  /// All velocities of a body.
+  MatrixXd body_rates(BodyId body) const {
+    const int width = closed_.body_velocities();
+    MatrixXd rows = MatrixXd::Zero(width, closed_.layout().nv());
+    rows.middleCols(width * body, width).setIdentity();
+    return rows;
+  }
+
+  /// Rows of the closed mechanism, and coordinates on which efforts act.
+  MatrixXd held_by_drivers() const {
+    MatrixXd rows = constraint_matrix(closed_, shut_);
+    for (const Driver& driver : model_.drivers) {
+      if (!prescribes(driver.kind)) rows = stacked(rows, coordinate_rate(driver.joint));
+    }
+    return rows;
+  }
+
+  /// Spins of single bodies about their centres of mass, which nothing else notices: of rollers, of rods between two
+  /// balls.
+  MatrixXd idle_spins(const MatrixXd& rows) const {
+    const int width = closed_.body_velocities(), turns = model_.space == Space::planar ? 1 : 3;
+    MatrixXd spins(rows.cols(), 0);
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const int first = width * b + width - turns;
+      const MatrixXd own = kernel(rows.middleCols(first, turns));
+      if (rows.middleCols(first, turns).norm() <= rank_threshold) {
+        spins.conservativeResize(Eigen::NoChange, spins.cols() + turns);
+        spins.rightCols(turns).setZero();
+        spins.block(first, spins.cols() - turns, turns, turns).setIdentity();
+      } else if (own.cols() > 0) {
+        spins.conservativeResize(Eigen::NoChange, spins.cols() + own.cols());
+        spins.rightCols(own.cols()).setZero();
+        spins.block(first, spins.cols() - own.cols(), turns, own.cols()) = own;
+      }
+    }
+    return spins;
+  }
+
+  /// Bodies that motions within the kernel of `rows` move; spins that nothing notices do not count.
+  std::vector<int> moving_in(const MatrixXd& rows, const MatrixXd& spins, int* motions = nullptr) const {
+    MatrixXd free = kernel(rows);
+    free -= spins * (spins.transpose() * free);
+    if (motions != nullptr) *motions = static_cast<int>(free.cols() - spins.cols());  // spins are among the free ones
+    const int width = closed_.body_velocities();
+    std::vector<int> moving;
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      if (free.middleRows(width * b, width).norm() > counts_as_motion) moving.push_back(b);
+    }
+    return moving;
+  }
+
+  template <class IsMoving>
+  bool acts_on(const IsMoving& is_moving) const {
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const Body& body = model_.bodies[at(b)];
+      if (is_moving(b) && (body.gravity != Vector3{} || has_velocity(body))) return true;
+    }
+    for (const JointElement& joint : model_.joints) {
+      const bool on_moving =
+          joint.gear < 0 && (is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b)));
+      if (on_moving && (joint.is_force || joint.start_speed)) return true;
+    }
+    if (efforts_act_on(is_moving)) return true;
+    return std::ranges::any_of(model_.forces,
+                               [&](const AppliedForce& force) { return is_moving(body_of(force.marker)); });
+  }
+
+  /// Whether a torque or force of a driver reaches a moving body through joints: links in line with it move though
+  /// the joint on which it acts stands still.
+  template <class IsMoving>
+  bool efforts_act_on(const IsMoving& is_moving) const {
+    std::vector<char> reached(model_.bodies.size(), 0);
+    for (std::size_t b = 0; b < reached.size(); ++b) reached[b] = is_moving(static_cast<BodyId>(b)) ? 1 : 0;
+    const auto is_reached = [&](BodyId body) { return body != ground && reached[at(body)]; };
+    for (bool more = true; std::exchange(more, false);) {
+      for (const JointElement& joint : model_.joints) {
+        const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+        if (a == ground || b == ground || is_reached(a) == is_reached(b)) continue;
+        reached[at(a)] = reached[at(b)] = 1;
+        more = true;
+      }
+    }
+    return std::ranges::any_of(model_.drivers, [&](const Driver& driver) {
+      const JointElement& joint = model_.joints[at(driver.joint)];
+      return !prescribes(driver.kind) && (is_reached(body_of(joint.marker_a)) || is_reached(body_of(joint.marker_b)));
+    });
+  }
+
+  /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
+  /// what springs alone hold, on a slide or free, or a spring about an axis. A pose may be a guess for a loop: it does
+  /// not count where some frame that a loop may have closed on is used by nothing, nor for what hangs on the body and
+  /// may turn about its own centre of mass unnoticed, as a slider without its guide does.
+  template <class IsMoving>
+  std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held, const MatrixXd& spins) const {
+    std::vector<char> jointed(model_.bodies.size(), 0);
+    MatrixXd given = held;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (joint.gear >= 0) continue;
+      const bool on_moving = is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b));
+      const bool spring = joint.is_force && joint.ideal_layout.coordinate == Coordinate::angle;
+      if (on_moving && (spring || joint.start_coordinate || joint.start_speed)) {
+        given = stacked(given, coordinate_rate(j));
+      }
+      const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+      const bool driven = std::ranges::count(model_.drivers, j, &Driver::joint) > 0;
+      if (closed_.layout().rows(j).size == 0 || slides || driven) continue;
+      for (const int marker : {joint.marker_a, joint.marker_b}) {
+        if (body_of(marker) != ground) jointed[at(body_of(marker))] = 1;
+      }
+    }
+    for (const JointElement& joint : model_.joints) {
+      if (!joint.is_force) continue;
+      for (const BodyId body : {body_of(joint.marker_a), body_of(joint.marker_b)}) {
+        if (body != ground && is_moving(body) && !jointed[at(body)]) given = stacked(given, body_rates(body));
+      }
+    }
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));
+    }
+    std::vector<int> candidates = moving_in(given, idle_spins(given));
+    if (has_unused_frame(is_moving)) return candidates;
+    const auto posed = [&](int b) {
+      const Body& body = model_.bodies[at(b)];  // robots start as their file draws them
+      return body.angle || body.rotation || body.position || body.location.file != model_.file;
+    };
+    for (const int b : candidates) {
+      if (posed(b)) given = stacked(given, body_rates(b));
+    }
+    std::vector<int> unrestrained = moving_in(given, idle_spins(given));
+    const int width = closed_.body_velocities();
+    for (const int b : candidates) {
+      const bool turns_unnoticed = spins.middleRows(width * b, width).norm() > counts_as_motion;
+      if (turns_unnoticed && !posed(b) && std::ranges::count(unrestrained, b) == 0) unrestrained.push_back(b);
+    }
+    std::ranges::sort(unrestrained);
+    return unrestrained;
+  }
+
+  /// Of a moving body or of ground: declared, and nothing stands on it.
+  template <class IsMoving>
+  bool has_unused_frame(const IsMoving& is_moving) const {
+    return std::ranges::any_of(model_.frames, [&](const Marker& frame) {
+      if (frame.body != ground && !is_moving(frame.body)) return false;
+      if (frame.name.ends_with("/origin") || frame.name.ends_with("/com")) return false;
+      return std::ranges::none_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
+    });
+  }
+
+  const Model& model_;
+  const System& closed_;
+  const Evaluation& shut_;
+};
+
+}  // namespace
+
+bool has_velocity(const Body& body) {
+  const auto any = [](const Vector3& v) { return v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0; };
+  return any(body.velocity) || any(body.angular_velocity);
+}
+
+LeftFree left_free(const System& closed, const Evaluation& at_start) { return FreeMotions(closed, at_start).find(); }
+
+}  // namespace freeplay
