@@ -22,14 +22,10 @@
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "load/load.h"
-#include "load/model_file.h"
-#include "model/channel_selection.h"
-#include "results/csv_sink.h"
 #include "results/directory.h"
-#include "results/event_sink.h"
 #include "results/judgement.h"
+#include "results/recording.h"
 #include "results/row_memory.h"
-#include "results/run_log.h"
 #include "results/summary.h"
 #include "run/simulation.h"
 
@@ -90,60 +86,6 @@ void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
     verdict.add({.id = "doubtful-input", .level = Trust::doubtful, .message = diagnostic.message});
   }
 }
-
-/// The files of one run, from the open directory to the sealed summary.
-class Recording {
- public:
-  Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels)
-      : directory_(path, force),
-        log_(directory_.file("run.log")),
-        rows_(directory_.file("results.csv"), channels, select_channels(channels, model.settings.channels)),
-        events_(directory_.file("events.csv"), model),
-        advice_(model) {
-    directory_.write(is_urdf(model.file) ? "model.urdf" : "model.yaml", model.text);
-    for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
-  }
-
-  std::vector<Sink*> sinks() { return {&rows_, &events_, &advice_}; }
-  RunLog& log() { return log_; }
-  const ContactAdvice& advice() const { return advice_; }
-  /// Processor time of the thread that makes rows into text [s], after close().
-  double text_seconds() const { return rows_.thread_seconds(); }
-
-  void flush_if_due() {
-    rows_.flush_if_due();
-    events_.flush_if_due();
-  }
-
-  /// Ends the growing files. Throws Error{file} for the first that could not be written.
-  void close() {
-    rows_.close();
-    events_.close();
-    log_.close();
-  }
-
-  /// With the summary, which seal() writes.
-  std::vector<std::string> files() {
-    names_ = directory_.files();
-    std::vector<std::string> names = names_;
-    names.insert(std::ranges::lower_bound(names, "summary.json"), "summary.json");
-    return names;
-  }
-
-  /// Throws Error{file} where a file that the summary names has gone since files().
-  void seal(const Json& summary) {
-    directory_.require_all(names_);
-    directory_.write("summary.json", json_text(summary));
-  }
-
- private:
-  ResultDirectory directory_;
-  RunLog log_;
-  CsvSink rows_;
-  EventSink events_;
-  ContactAdvice advice_;
-  std::vector<std::string> names_;  // of the files that are written
-};
 
 /// Runs to the end and returns it as a record.
 class RunJob {

@@ -64,6 +64,10 @@ std::string result_name(std::string_view model_name, bool ideal) {
   return ideal ? name + "-ideal" : name;
 }
 
+std::string model_copy_name(const Model& model) {
+  return fs::path(model.file).extension() == ".urdf" ? "model.urdf" : "model.yaml";
+}
+
 void check_result_directory(const fs::path& path, bool force) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

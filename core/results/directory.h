@@ -7,11 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "model/model.h"
+
 namespace freeplay {
 
 /// Name of the default directory below `results`: the model's name with characters outside [A-Za-z0-9_.-] and leading
 /// dots replaced by '_', and `-ideal` appended for an ideal run.
 std::string result_name(std::string_view model_name, bool ideal);
+
+/// Name of the copy of the model's file in a result: model.yaml or model.urdf.
+std::string model_copy_name(const Model& model);
 
 /// Throws Error{file} unless a result may go to `path`: it does not exist, is empty, holds an earlier result (a
 /// summary.json of this program), or `force` allows to write beside other files. Changes nothing.
