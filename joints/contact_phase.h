@@ -37,7 +37,8 @@ inline constexpr double smallest_approach_speed = 1e-6;
 
 inline constexpr Channel event_fields[] = {
     {"speed", "m/s"}, {"tangential_speed", "m/s"}, {"direction", "rad"}, {"duration", "s"},
-    {"max_fn", "N"},  {"max_delta", "m"},          {"steps", "1"}};
+    {"max_fn", "N"},  {"max_delta", "m"},          {"steps", "1"},       {"impact", "1"}};
+inline constexpr EventRole begin_and_end[] = {EventRole::contact_begin, EventRole::contact_end};
 /// Where steps end at events a flight lasts until its event: an attempt that passes it stays smooth.
 inline bool flies(const JointInput& in) { return in.per_contact != 0.0 && in.history[phase] == flight; }
 inline bool touches(const JointInput& in, const Approach& gap) { return gap.penetration > 0.0 && !flies(in); }
@@ -116,7 +117,10 @@ inline void write_events(const JointInput& in, const Approach& gap, Span<double>
   g[1] = in.history[phase] != flight ? gap.penetration : not_a_number;
   rate[0] = rate[1] = gap.rate;
 }
-/// Fields 0 and 3 to 6 of an event; the others become NaN. `history[impact_time]` is left to the caller.
+/// A contact is an impact as long as it lasts no more than so many times as long as one of the law alone.
+inline constexpr double longest_impact = 4.0;
+
+/// Fields 0 and 3 to 7 of an event; the others become NaN. `history[impact_time]` is left to the caller.
 inline void tell_begin(const JointInput& in, const Approach& gap, Span<double> history, Span<double> fields) {
   std::fill(fields.begin(), fields.end(), not_a_number);
   begin(in.t, gap.rate, in.t >= history[step_end], history);
@@ -131,6 +135,10 @@ inline void tell_end(const JointInput& in, const Approach& gap, Span<double> his
   fields[4] = history[max_force];
   fields[5] = history[max_penetration];
   fields[6] = history[steps] + 1.0;  // the step in which it ends
+  // What was on from the start has no approach speed and counts as lasting.
+  const bool known = history[impact_time] > 0.0 || !(history[approach_speed] > 0.0);
+  const bool impact = history[approach_speed] > 0.0 && fields[3] <= longest_impact * history[impact_time];
+  fields[7] = !known ? not_a_number : impact ? 1.0 : 0.0;
   reset(history);
 }
 /// What commit() does to a flight that goes on.

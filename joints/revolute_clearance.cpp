@@ -40,8 +40,11 @@ constexpr std::size_t most_internal_variables = 8;
 
 constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
                                     {"contact_end", Crossing::falling, 1, event_fields}};
-constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},  {"fn", "N"},
-                                    {"ft", "N"}, {"power", "W"}, {"contact", "1"}};
+constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},   {"fn", "N"},
+                                    {"ft", "N"}, {"power", "W"}, {"contact", "1"}, {"vt", "m/s"}};
+constexpr ChannelRole gap_roles[] = {ChannelRole::eccentricity_x, ChannelRole::eccentricity_y, ChannelRole::penetration,
+                                     ChannelRole::normal_force,   ChannelRole::friction_force, ChannelRole::none,
+                                     ChannelRole::in_contact,     ChannelRole::slip_speed};
 
 /// Pin with play, in the plane: the journal (radius R_J, marker b) floats in the bearing (radius R_B, marker a) and
 /// touches it by a contact law and a friction law. No constraint rows. With origins P [m], angular velocities w
@@ -88,7 +91,9 @@ class RevoluteClearance final : public Joint {
     layout.clearance = radii_.clearance;
     surfaces_.declare(layout);
     layout.events = contact_events;
+    layout.event_roles = begin_and_end;
     layout.channels = gap_channels;
+    layout.channel_roles = gap_roles;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
     row.value = relative_angle(*in.a, *in.b);
@@ -158,7 +163,8 @@ class RevoluteClearance final : public Joint {
     const double slip_at_c = gap.slip - 0.5 * gap.penetration * (gap.w_a + gap.w_b);
     const double power = -normal * gap.rate + tangential * slip_at_c;
     const double values[] = {
-        gap.e.x(), gap.e.y(), gap.penetration, normal, tangential, power, in.history[phase] == flight ? 0.0 : 1.0};
+        gap.e.x(), gap.e.y(), gap.penetration, normal, tangential, power, in.history[phase] == flight ? 0.0 : 1.0,
+        gap.slip};
     std::copy(std::begin(values), std::end(values), channels.begin());
   }
   /// In flight the journal moves by no more than the clearance.

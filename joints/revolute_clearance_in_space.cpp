@@ -21,8 +21,9 @@ constexpr Event contact_events[] = {{"upper_contact_begin", Crossing::rising, 1,
                                     {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
                                     {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
                                     {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
-constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"}, {"ez", "m"},    {"delta", "m"},
-                                    {"fn", "N"}, {"ft", "N"}, {"power", "W"}, {"contact", "1"}};
+constexpr EventRole contact_roles[] = {EventRole::contact_begin, EventRole::contact_end,   EventRole::contact_begin,
+                                       EventRole::contact_end,   EventRole::contact_begin, EventRole::contact_end,
+                                       EventRole::contact_begin, EventRole::contact_end};
 
 /// Journal (radius R_J, marker b) in a bearing (radius R_B, marker a) of length L, in space; the axes are the z axes.
 /// No constraint rows. `revolute_play_ends.h` has the kinematics: at each end plane of the bearing, z_a = +-L/2, the
@@ -58,7 +59,9 @@ class RevoluteClearanceInSpace final : public Joint {
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
     layout.events = contact_events;
+    layout.event_roles = contact_roles;
     layout.channels = gap_channels;
+    layout.channel_roles = gap_roles;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { space::AngleAboutZ(in).write(row); }
   bool place(double angle, Pose& b_in_a) const override {
@@ -136,15 +139,16 @@ class RevoluteClearanceInSpace final : public Joint {
     const PairInFirstAxes pair = PairInFirstAxes::with_axis(in, 2);
     const RelativeMotion<double> motion = pair.numbers();
     const Normals normals = normal_forces(in, motion);
-    double deepest = -unbounded, normal = 0.0, tangential = 0.0, touching = 0.0;
+    double deepest = -unbounded, normal = 0.0, tangential = 0.0, touching = 0.0, slip = 0.0;
     std::array<double, std::size_t{ends} * 3 * most_law_variables> unused;
     const Span<double> rates{unused.data(), in.internal.size};
     for (std::size_t i = 0; i < places; ++i) {
       if (contact_input(in, i).history[phase] != flight) touching = 1.0;
       if (!is_end(i)) continue;
       deepest = std::max(deepest, normals.gap[i].penetration);
-      if (!normals.on[i]) continue;
       const EndGap<double> end = bearing_.end(motion, i, play_);
+      if (i == loaded_end(normals)) slip = std::sqrt(dot(end.slip, end.slip));
+      if (!normals.on[i]) continue;
       normal += share(i) * normals.force[i].normal;
       if (!play_.slides) continue;
       const double whole = normals.force[i].normal;
@@ -158,6 +162,31 @@ class RevoluteClearanceInSpace final : public Joint {
     channels[5] = tangential;
     channels[6] = normals.any ? pair.power(force(in, motion, normals, rates)) : 0.0;
     channels[7] = touching;
+    channels[8] = slip;
+  }
+  void contacts(const JointInput& in, Span<double> numbers) const override {
+    const RelativeMotion<double> motion = motion_of(in);
+    const Normals normals = normal_forces(in, motion);
+    std::fill(numbers.begin(), numbers.end(), 0.0);
+    std::array<double, std::size_t{ends} * 3 * most_law_variables> unused;
+    const Span<double> rates{unused.data(), in.internal.size};
+    for (std::size_t i = 0; i < places; ++i) {
+      if (!normals.on[i]) continue;
+      const ContactForce& f = normals.force[i];
+      const Approach& here = normals.gap[i];
+      double tangential = 0.0, lost = f.normal * here.rate - storing_power(play_.contact, here, f);
+      if (is_end(i) && play_.slides) {
+        const EndGap<double> end = bearing_.end(motion, i, play_);
+        const Vec<double> friction = play_.memory() == 0
+                                         ? NoMemory{play_}(i, f.normal, end)
+                                         : WithMemory<double>{*this, in, motion, rates}(i, f.normal, end);
+        tangential = along_turn(end, friction);
+        lost -= dot(friction, end.slip);
+      }
+      numbers[3 * i] = share(i) * f.normal;
+      numbers[3 * i + 1] = share(i) * tangential;
+      numbers[3 * i + 2] = share(i) * lost;
+    }
   }
   /// In flight no part of the journal moves by more than the clearance; beside a contact, not towards the bearing.
   double step_limit(const JointInput& in) const override {
@@ -234,6 +263,14 @@ class RevoluteClearanceInSpace final : public Joint {
       normals.on[i] = normals.any = true;
     }
     return normals;
+  }
+
+  /// The end that carries more, or lies deeper where none touches.
+  static std::size_t loaded_end(const Normals& n) {
+    const auto load = [&](std::size_t i) { return n.on[i] ? n.force[i].normal : 0.0; };
+    const double more = load(lower_end) - load(upper_end);
+    const bool lower = more > 0.0 || (more == 0.0 && n.gap[lower_end].penetration > n.gap[upper_end].penetration);
+    return lower ? lower_end : upper_end;
   }
 
   /// Only the ends slide and have a memory.

@@ -16,6 +16,13 @@ using space::Vec;
 /// Internal variables that a friction law may have here: they are turned on the stack.
 inline constexpr int most_law_variables = 8;
 
+inline constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"ez", "m"},      {"delta", "m"}, {"fn", "N"},
+                                           {"ft", "N"}, {"power", "W"}, {"contact", "1"}, {"vt", "m/s"}};
+inline constexpr ChannelRole gap_roles[] = {
+    ChannelRole::eccentricity_x, ChannelRole::eccentricity_y, ChannelRole::eccentricity_z,
+    ChannelRole::penetration,    ChannelRole::normal_force,   ChannelRole::friction_force,
+    ChannelRole::none,           ChannelRole::in_contact,     ChannelRole::slip_speed};
+
 /// Radii, laws and start. Throws BadParameter.
 struct SpatialPlay {
   /// `length`: of the bearing [m], NaN without one.

@@ -15,8 +15,6 @@ using space::RelativeMotion;
 
 constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
                                     {"contact_end", Crossing::falling, 1, event_fields}};
-constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"}, {"ez", "m"},    {"delta", "m"},
-                                    {"fn", "N"}, {"ft", "N"}, {"power", "W"}, {"contact", "1"}};
 
 /// Ball (radius R_J, marker b) in a socket (radius R_B, marker a) with play c = R_B - R_J. No constraint rows. With
 /// e = P_b - P_a [m] and angular velocities w [rad/s]:
@@ -42,7 +40,9 @@ class SphericalClearance final : public Joint {
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
     layout.events = contact_events;
+    layout.event_roles = begin_and_end;
     layout.channels = gap_channels;
+    layout.channel_roles = gap_roles;
   }
   void apply(const JointInput& in, JointForces& out) const override {
     out.potential_rate = 0.0;
@@ -119,6 +119,7 @@ class SphericalClearance final : public Joint {
     channels[5] = std::sqrt(dot(f.friction, f.friction));
     channels[6] = pair.power(f.total);
     channels[7] = in.history[phase] == flight ? 0.0 : 1.0;
+    channels[8] = std::sqrt(dot(gap.slip, gap.slip));
   }
   /// In flight the ball moves by no more than the clearance.
   double step_limit(const JointInput& in) const override {

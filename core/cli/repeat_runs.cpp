@@ -51,8 +51,9 @@ Json record_of(const Model& model, std::uint64_t seed, std::size_t run) {
     const Outcome outcome = simulation.run({});
     if (outcome.exit_code != 0) return failure(run, outcome.exit_code, outcome.reason);
     const ContactAdvice advice(model);
-    const RunRecord record{model,  channels, start.facts, outcome, simulation.statistics(), simulation.last_row(),
-                           advice, {},       {}};
+    const RunRecord record{
+        model,  channels, start.facts, outcome, simulation.statistics(), simulation.clearances(), simulation.last_row(),
+        advice, {},       {}};
     return {{"run", run}, {"exit_code", 0}, {"figures", RepeatSummary::figures_of(summary(record))}};
   } catch (const Error& error) {
     return failure(run, error.exit_code(), fmt::format("{} [{}]", error.message(), error.id()));

@@ -136,6 +136,7 @@ class RunJob {
   /// What is reported of a simulation when it is over.
   struct Ended {
     Statistics statistics;
+    ClearanceStatistics clearances;
     RunExtremes extremes;
     std::vector<double> last_row;
     std::vector<std::string> warnings;
@@ -188,6 +189,7 @@ class RunJob {
     const auto row = simulation_->last_row();
     const auto warnings = simulation_->warnings();
     Ended ended{simulation_->statistics(),
+                simulation_->clearances(),
                 simulation_->extremes(),
                 {row.begin(), row.end()},
                 {warnings.begin(), warnings.end()}};
@@ -196,10 +198,10 @@ class RunJob {
   }
 
   int finish(Outcome outcome, const Ended& ended, const std::optional<Verification>& verification) {
-    RunRecord record{
-        *loaded_.model,    channels_,      assembled_.start.facts, outcome,
-        ended.statistics,  ended.last_row, recording_.advice(),    warnings_of(loaded_.diagnostics, ended.warnings),
-        recording_.files()};
+    RunRecord record{*loaded_.model,    channels_,           assembled_.start.facts,
+                     outcome,           ended.statistics,    ended.clearances,
+                     ended.last_row,    recording_.advice(), warnings_of(loaded_.diagnostics, ended.warnings),
+                     recording_.files()};
     if (verification) {
       for (const ChannelError& channel : verification->channels)
         record.verify.emplace_back(channel.name, channel.error);

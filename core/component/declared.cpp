@@ -1,5 +1,6 @@
 #include "component/declared.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,6 +18,19 @@ bool all_named(Span<const Channel> channels) {
     if (channel.name == nullptr || channel.unit == nullptr) return false;
   }
   return true;
+}
+
+bool known_roles(const JointLayout& layout) {
+  if (layout.channel_roles.data == nullptr && layout.channel_roles.size > 0) return false;
+  if (layout.event_roles.data == nullptr && layout.event_roles.size > 0) return false;
+  unsigned seen = 0;
+  for (const ChannelRole role : layout.channel_roles) {
+    if (role == ChannelRole::none) continue;
+    const unsigned bit = role > ChannelRole::in_contact ? seen : 1U << static_cast<unsigned>(role);
+    if (role > ChannelRole::in_contact || (seen & bit) != 0) return false;
+    seen |= bit;
+  }
+  return std::ranges::all_of(layout.event_roles, [](EventRole role) { return role <= EventRole::contact_end; });
 }
 
 }  // namespace
@@ -50,6 +64,14 @@ std::string declaration_fault(const JointLayout& layout) {
   if (layout.events.size > most_names || layout.channels.size > most_names) {
     return fmt::format("it declares {} events and {} channels", layout.events.size, layout.channels.size);
   }
+  if (layout.channel_roles.size > 0 && layout.channel_roles.size != layout.channels.size) {
+    return fmt::format("it declares {} channels and {} roles of channels", layout.channels.size,
+                       layout.channel_roles.size);
+  }
+  if (layout.event_roles.size > 0 && layout.event_roles.size != layout.events.size) {
+    return fmt::format("it declares {} events and {} roles of events", layout.events.size, layout.event_roles.size);
+  }
+  if (!known_roles(layout)) return "it declares roles that are none, or one of a channel twice";
   bool named = all_named(layout.channels) && (layout.events.data != nullptr || layout.events.size == 0);
   if (!named) return "it declares an event or a channel without name or unit";
   for (const Event& event : layout.events) {

@@ -63,6 +63,9 @@ class JointRef {
   bool next_corner(double t, double& corner, Message& m) const {
     return ok(table_->next_corner(self_, t, &corner, &m));
   }
+  bool contacts(const JointInput& in, Span<double> numbers, Message& m) const {
+    return ok(table_->contacts(self_, &in, numbers, &m));
+  }
 
  private:
   static bool ok(Status status) { return status == Status::ok; }

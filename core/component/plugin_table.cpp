@@ -47,6 +47,7 @@ abi::JointTable defaults<abi::JointTable>() {
     *corner = unbounded;
     return Status::ok;
   };
+  table.contacts = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
   return table;
 }
 

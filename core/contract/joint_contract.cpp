@@ -161,7 +161,8 @@ bool same_layout(const JointLayout& a, const JointLayout& b) {
                       l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale);
   };
   return numbers(a) == numbers(b) && std::ranges::equal(a.planar_rows, b.planar_rows) &&
-         same_names(a.channels, b.channels) &&
+         same_names(a.channels, b.channels) && std::ranges::equal(a.channel_roles, b.channel_roles) &&
+         std::ranges::equal(a.event_roles, b.event_roles) &&
          std::ranges::equal(a.events, b.events, [](const Event& x, const Event& y) {
            return std::string_view(x.name) == y.name && x.crossing == y.crossing && x.locate == y.locate &&
                   same_names(x.fields, y.fields);
@@ -189,6 +190,7 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   check_memory(probe, twin, moments, random, findings);
   check_rest(probe, moments, random, findings);
   check_time(probe, moments, random, findings);
+  check_roles(probe, moments, findings);
   check_place(probe, random, findings);
   check_offset(probe, findings);
   return findings;

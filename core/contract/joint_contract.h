@@ -47,5 +47,6 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
                 Findings& findings);
 void check_time(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
                 Findings& findings);
+void check_roles(const JointProbe& probe, const std::vector<JointMoment>& moments, Findings& findings);
 
 }  // namespace freeplay

@@ -100,6 +100,10 @@ constexpr Rule rules[] = {
     {"channel-names", joints,
      "Names of channels are lower-case words joined by underscores, no two alike, and none that every joint has."},
     {"channel-units", joints, "Channels and event fields have units of the model format."},
+    {"roles", joints,
+     "A channel is what its role says: penetration, eccentricity in m, forces in N, slip speed in m/s; a normal force "
+     "is not negative, `in_contact` is 0 or 1, an eccentricity is the origin of b minus that of a in world axes. As "
+     "many events end a contact as begin one."},
     {"rollback", joints,
      "After history and internal variables are put back, the joint repeats itself bit for bit, also after an attempt "
      "that "

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "component/joint_roles.h"
+
 namespace freeplay {
 
 Channels::Channels(const Model& model) : planar_(model.space == Space::planar) {
@@ -50,6 +52,30 @@ Channels::Channels(const Model& model) : planar_(model.space == Space::planar) {
   energy.residual = add("energy.residual", "J");
 }
 
+int* JointColumns::of(ChannelRole role) {
+  switch (role) {
+    case ChannelRole::penetration:
+      return &penetration;
+    case ChannelRole::normal_force:
+      return &normal_force;
+    case ChannelRole::friction_force:
+      return &friction_force;
+    case ChannelRole::slip_speed:
+      return &slip;
+    case ChannelRole::eccentricity_x:
+      return &eccentricity_x;
+    case ChannelRole::eccentricity_y:
+      return &eccentricity_y;
+    case ChannelRole::eccentricity_z:
+      return &eccentricity_z;
+    case ChannelRole::in_contact:
+      return &contact;
+    case ChannelRole::none:
+      break;
+  }
+  return nullptr;
+}
+
 JointColumns Channels::add_joint(const JointElement& joint, const std::string& prefix) {
   JointColumns columns;
   const auto add_coordinate = [&] {
@@ -65,16 +91,10 @@ JointColumns Channels::add_joint(const JointElement& joint, const std::string& p
     add_coordinate();
   }
   columns.own = static_cast<int>(all_.size());
-  for (const Channel& channel : joint.layout.channels) {
+  for (std::size_t i = 0; i < joint.layout.channels.size; ++i) {
+    const Channel& channel = joint.layout.channels[i];
     const int index = add(prefix + "." + channel.name, channel.unit);
-    const std::string_view name = channel.name;
-    // The names that the contract gives a meaning in summaries, whatever type publishes them.
-    if (name == "ex") columns.eccentricity_x = index;
-    if (name == "ey") columns.eccentricity_y = index;
-    if (name == "ez") columns.eccentricity_z = index;
-    if (name == "delta") columns.penetration = index;
-    if (name == "fn") columns.normal_force = index;
-    if (name == "contact") columns.contact = index;
+    if (int* column = columns.of(channel_role(joint.layout, i))) *column = index;
   }
   return columns;
 }

@@ -21,7 +21,10 @@ struct JointColumns {
   int force = -1;  ///< first of the wrench's columns: fx fy torque; in space fx fy fz tx ty tz
   int power = -1;  ///< of an entry of `forces`
   int penetration = -1, normal_force = -1, contact = -1, eccentricity_x = -1, eccentricity_y = -1, eccentricity_z = -1;
+  int friction_force = -1, slip = -1;
   int own = -1;  ///< first of the type's own channels
+  /// The column of a role, or null for `none`.
+  int* of(ChannelRole role);
 };
 struct DriverColumns {
   int value = -1, effort = -1, power = -1;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+
+#include "component/joint_roles.h"
 
 namespace freeplay {
 
@@ -11,15 +12,13 @@ ContactAdvice::ContactAdvice(const Model& model)
   for (const JointElement& joint : model.joints) {
     auto& events = fields_.emplace_back();
     joints_.emplace_back().fewest_steps.fill(std::numeric_limits<double>::infinity());
-    for (const Event& event : joint.layout.events) {
-      Fields& fields = events.emplace_back();
-      const bool begins = std::string_view(event.name).ends_with("contact_begin");
-      for (std::size_t i = 0; i < event.fields.size; ++i) {
-        if (event.fields[i].name == std::string_view("duration")) fields.duration = static_cast<int>(i);
-        if (event.fields[i].name == std::string_view("steps")) fields.steps = static_cast<int>(i);
-        if (event.fields[i].name == std::string_view("max_fn")) fields.force = static_cast<int>(i);
-        if (event.fields[i].name == std::string_view("speed") && begins) fields.speed = static_cast<int>(i);
-      }
+    for (std::size_t i = 0; i < joint.layout.events.size; ++i) {
+      const Event& event = joint.layout.events[i];
+      const bool begins = event_role(joint.layout, i) == EventRole::contact_begin;
+      events.push_back({.duration = field_index(event, "duration"),
+                        .steps = field_index(event, "steps"),
+                        .force = field_index(event, "max_fn"),
+                        .speed = begins ? field_index(event, "speed") : -1});
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "results/event_sink.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -10,7 +11,8 @@ namespace freeplay {
 
 EventSink::EventSink(const std::filesystem::path& path, const Model& model)
     : model_(model),
-      columns_{"speed", "tangential_speed", "direction", "duration", "max_fn", "max_delta", "steps"},
+      columns_{"speed", "tangential_speed", "direction", "duration",           "max_fn",      "max_delta",
+               "steps", "approach_speed",   "impulse",   "tangential_impulse", "energy_lost", "impact"},
       file_(path) {
   for (const JointElement& joint : model.joints) {
     auto& events = place_.emplace_back();
@@ -33,8 +35,13 @@ std::size_t EventSink::column(const std::string& name) {
 }
 
 void EventSink::event(const EventRecord& record) {
+  ContactNumbers contact;
+  contact.fill(std::numeric_limits<double>::quiet_NaN());
+  if (const ContactRecord* ended = record.contact) {
+    contact = {ended->approach_speed, ended->impulse, ended->tangential_impulse, ended->energy_lost, ended->impact};
+  }
   waiting_.push_back({record.time, static_cast<std::size_t>(record.joint), static_cast<std::size_t>(record.event),
-                      fields_.size(), waiting_.size()});
+                      fields_.size(), waiting_.size(), contact});
   fields_.insert(fields_.end(), record.fields.begin(), record.fields.end());
 }
 
@@ -58,6 +65,9 @@ void EventSink::write(const Waiting& event) {
   std::ranges::fill(cells_, std::numeric_limits<double>::quiet_NaN());
   const std::vector<std::size_t>& place = place_[event.joint][event.event];
   for (std::size_t i = 0; i < place.size(); ++i) cells_[place[i]] = fields_[event.first_field + i];
+  for (std::size_t i = 0; i < contact_numbers; ++i) {
+    if (!std::isnan(event.contact[i])) cells_[of_contact + i] = event.contact[i];
+  }
   std::string& line = file_.line();
   append_number(line, event.time);
   ((line += ',') += joint.name) += ',';

@@ -1,6 +1,7 @@
 // EventSink: events.csv, one row per event of a joint.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -13,9 +14,10 @@
 
 namespace freeplay {
 
-/// Columns time, joint, kind, those of a contact, then fields of other names in declaration order. A field of an event
-/// fills the column of its name; the others stay empty. Rows are sorted by time, then joint in declaration order:
-/// events of one step come in any order, so they wait for the next result row, which no event of a later step precedes.
+/// Columns time, joint, kind, those of a contact, those of EventRecord::contact, then fields of other names in
+/// declaration order. A field of an event fills the column of its name; the others stay empty. Rows are sorted by time,
+/// then joint in declaration order: events of one step come in any order, so they wait for the next result row, which
+/// no event of a later step precedes.
 class EventSink : public Sink {
  public:
   /// `model` outlives the sink. Throws Error{file}.
@@ -29,9 +31,13 @@ class EventSink : public Sink {
   void close();
 
  private:
+  /// What the run itself says of a contact that ended: the columns from `of_contact` on, whatever the joint tells.
+  static constexpr std::size_t of_contact = 7, contact_numbers = 5;
+  using ContactNumbers = std::array<double, contact_numbers>;
   struct Waiting {
     double time;
     std::size_t joint, event, first_field, order;
+    ContactNumbers contact;
   };
 
   std::size_t column(const std::string& name);

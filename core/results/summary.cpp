@@ -151,6 +151,34 @@ Json bodies_part(const RunRecord& record) {
   return part;
 }
 
+/// Null for a joint without a normal force, numbers null where nothing was counted.
+Json play_part(const RunRecord& record, int joint) {
+  if (!record.clearances.has(joint)) return nullptr;
+  const PlayFigures seen = record.clearances.figures(joint);
+  return {{"flight", json_number(seen.flight)},
+          {"impact", json_number(seen.impact)},
+          {"lasting", json_number(seen.lasting)},
+          {"impacts", seen.impacts},
+          {"max_approach_speed", json_number(seen.max_approach_speed)},
+          {"max_impulse", json_number(seen.max_impulse)},
+          {"mean_fn", json_number(seen.mean_normal_force)},
+          {"load_angle", json_number(seen.load_angle)},
+          {"load_concentration", json_number(seen.load_concentration)},
+          {"sliding", json_number(seen.sliding)},
+          {"work", json_number(seen.work)},
+          {"pv_mean", json_number(seen.pv_mean)},
+          {"pv_max", json_number(seen.pv_max)}};
+}
+
+/// Null for a joint without play; what the file leaves open is null, too.
+Json clearance_part(const JointLayout& layout) {
+  if (!(layout.clearance > 0.0)) return nullptr;
+  return {{"radial_clearance", layout.clearance},
+          {"bearing_radius", json_number(layout.smaller_radius + layout.clearance)},
+          {"journal_radius", json_number(layout.smaller_radius)},
+          {"length", json_number(layout.contact_length)}};
+}
+
 Json joints_part(const RunRecord& record) {
   Json part = Json::object();
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
@@ -170,7 +198,9 @@ Json joints_part(const RunRecord& record) {
             {"max_eccentricity", contact(seen.max_eccentricity)},
             {"contacts", counted ? Json(seen.contacts) : Json(nullptr)},
             {"contact_fraction", contact(seen.contact_fraction)},
-            {"dissipated", contact(seen.dissipated)}});
+            {"dissipated", contact(seen.dissipated)},
+            {"clearance", clearance_part(joint.layout)},
+            {"play", play_part(record, static_cast<int>(i))}});
   }
   return part;
 }

@@ -21,6 +21,7 @@ struct RunRecord {
   const ModelFacts& facts;
   const Outcome& outcome;
   const Statistics& statistics;
+  const ClearanceStatistics& clearances;
   std::span<const double> last_row;  ///< every channel
   const ContactAdvice& advice;
   std::vector<std::string> warnings;

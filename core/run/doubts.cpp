@@ -9,6 +9,7 @@
 
 #include "assembly/out_of_reach.h"
 #include "base/index.h"
+#include "component/joint_roles.h"
 #include "run/likely_cause.h"
 
 namespace freeplay {
@@ -115,7 +116,7 @@ void RunDoubts::note_event_directions() {
       continue;
     }
     for (std::size_t i = 0; i < declared.size; ++i) {
-      if (!std::string_view(declared[i].name).ends_with("contact_begin")) continue;
+      if (event_role(run_.system.joint_layout(j), i) != EventRole::contact_begin) continue;
       if (declared[i].crossing == Crossing::rising || !(value[i] < -StepEvents::tolerance)) continue;
       const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
       run_.outcome.doubts.push_back(

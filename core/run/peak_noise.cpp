@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "base/index.h"
+#include "component/joint_roles.h"
 
 namespace freeplay {
 namespace {
@@ -26,14 +26,12 @@ PeakNoise::PeakNoise(const Model& model, std::size_t values)
       contacts_(model.joints.size()) {
   for (const JointElement& joint : model.joints) {
     std::vector<EventKind>& kinds = kinds_.emplace_back();
-    for (const Event& event : joint.layout.events) {
-      EventKind& kind = kinds.emplace_back();
-      kind.begins = std::string_view(event.name).ends_with("contact_begin");
-      kind.ends = std::string_view(event.name).ends_with("contact_end");
-      for (std::size_t i = 0; i < event.fields.size; ++i) {
-        if (event.fields[i].name == std::string_view("speed")) kind.speed = static_cast<int>(i);
-      }
-      active_ = active_ || kind.begins;
+    for (std::size_t i = 0; i < joint.layout.events.size; ++i) {
+      const EventRole role = event_role(joint.layout, i);
+      kinds.push_back({.begins = role == EventRole::contact_begin,
+                       .ends = role == EventRole::contact_end,
+                       .speed = field_index(joint.layout.events[i], "speed")});
+      active_ = active_ || kinds.back().begins;
     }
   }
   if (active_) peaks_.resize(values);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "base/index.h"
+#include "component/joint_roles.h"
 #include "run/dense_step.h"
 
 namespace freeplay {
@@ -28,6 +28,8 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       sinks_(sinks.begin(), sinks.end()),
       observer_(run.system, run.channels),
       statistics_(run.model, run.channels, run.adaptive),
+      clearances_(run.system, run.channels),
+      ledger_(run.system, run.channels),
       peaks_(statistics_.peak_values().size()),
       storm_(run.model.joints.size(), storm_limits(run.settings, run.adaptive)),
       row_(run.channels.all().size(), 0.0),
@@ -79,6 +81,7 @@ bool Recorder::record_step() {
   }
   statistics_.add(row_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), position,
                   velocity);
+  clearances_.add(row_, run_.e_accepted);
   if (run_.adaptive && run_.ended_abruptly) {
     statistics_.begin_stretch();
     peaks_.restart(run_.accepted.t(), statistics_.values());
@@ -99,12 +102,22 @@ bool Recorder::write_row() {
 bool Recorder::write_events() {
   run_.outcome.events += static_cast<long>(run_.events.happenings().size());
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
-  for (const StepEvents::Happening& happening : run_.events.happenings()) {
-    const char* name = run_.system.joint_layout(happening.joint).events[at(happening.event)].name;
-    if (std::string_view(name).ends_with("contact_begin")) statistics_.add_contact(happening.joint, happening.time);
+  if (ledger_.active()) {
+    Fault fault;
+    if (!know_row()) return false;
+    if (!ledger_.take_step(row_, run_.energy.joint_loss(), run_.events, point(run_.accepted), run_.e_accepted, fault))
+      return failure_.fail_with(fault, run_.accepted.t());
+  }
+  for (std::size_t i = 0; i < run_.events.happenings().size(); ++i) {
+    const StepEvents::Happening& happening = run_.events.happenings()[i];
+    const EventRole role = event_role(run_.system.joint_layout(happening.joint), at(happening.event));
+    const ContactRecord* ended = ledger_.ended(i);
+    if (role == EventRole::contact_begin) statistics_.add_contact(happening.joint, happening.time);
+    if (ended != nullptr && statistics_.counts(happening.time))
+      clearances_.add_contact(happening.joint, happening.time, *ended);
     statistics_.note_event(happening.joint, happening.event, run_.events.fields(happening));
     for (Sink* sink : sinks_) {
-      sink->event({happening.time, happening.joint, happening.event, run_.events.fields(happening)});
+      sink->event({happening.time, happening.joint, happening.event, run_.events.fields(happening), ended});
     }
     const EventStorm::Finding found = storm_.note(happening.joint, happening.time, run_.outcome.steps);
     if (found.events > 0) return failure_.fail_in_storm(happening, found);
@@ -190,7 +203,7 @@ bool Recorder::note_abrupt_end() {
   Fault fault;
   if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
-  statistics_.end_stretch(row_between_);
+  if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial);
   seek_peaks({run_.accepted, run_.e_accepted, run_.trial, run_.e_trial});
   return true;
 }
@@ -205,6 +218,7 @@ bool Recorder::begin_statistics_inside() {
                           run_.between.lambda(), run_.channels, row_between_);
   statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,
                   0.0);
+  clearances_.add(row_between_, run_.e_between);
   return true;
 }
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "run/clearance_statistics.h"
+#include "run/contact_ledger.h"
 #include "run/event_storm.h"
 #include "run/observer.h"
 #include "run/peak_search.h"
@@ -45,10 +47,12 @@ class Recorder {
   bool write_rows_inside();
 
   const Statistics& statistics() const { return statistics_; }
+  const ClearanceStatistics& clearances() const { return clearances_; }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.statistics_, self.peaks_, self.storm_, self.row_, self.row_is_known_, self.next_row_);
+    archive(self.statistics_, self.clearances_, self.ledger_, self.peaks_, self.storm_, self.row_, self.row_is_known_,
+            self.next_row_);
   }
 
  private:
@@ -71,6 +75,8 @@ class Recorder {
   std::vector<Sink*> sinks_;
   Observer observer_;
   Statistics statistics_;
+  ClearanceStatistics clearances_;
+  ContactLedger ledger_;
   PeakSearch peaks_;  // with error control
   EventStorm storm_;
   std::vector<double> row_, row_between_, residual_;

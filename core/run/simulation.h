@@ -8,6 +8,7 @@
 
 #include "assembly/assembly.h"
 #include "model/channel.h"
+#include "run/clearance_statistics.h"
 #include "run/equations.h"
 #include "run/hooks.h"
 #include "run/outcome.h"
@@ -35,6 +36,7 @@ class Simulation {
   /// The run as it is while RunHooks::stepped is called.
   RunState save() const;
   const Statistics& statistics() const;
+  const ClearanceStatistics& clearances() const;
   const RunExtremes& extremes() const;
   /// The last accepted row, every channel.
   std::span<const double> last_row() const;

@@ -9,12 +9,23 @@
 
 namespace freeplay {
 
+/// A contact that ended; NaN: not known.
+struct ContactRecord {
+  double approach_speed;      ///< at which it began [m/s]
+  double impulse;             ///< of the normal force [N s]
+  double tangential_impulse;  ///< of the friction force [N s]
+  double energy_lost;         ///< [J]
+  double impact;              ///< 1, or 0 for a lasting contact
+  double begin;               ///< [s]
+};
+
 /// One event of a joint. Fields that were not given are NaN.
 struct EventRecord {
   double time = 0.0;
   int joint = 0;
-  int event = 0;                   ///< index into the joint's events
-  std::span<const double> fields;  ///< as the event declares them; valid during the call only
+  int event = 0;                           ///< index into the joint's events
+  std::span<const double> fields;          ///< as the event declares them; valid during the call only
+  const ContactRecord* contact = nullptr;  ///< that the event ended; valid during the call only
 };
 
 /// Receives a run as it grows. Rows hold every channel in the order of Channels::all(); a sink picks what it writes.

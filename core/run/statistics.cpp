@@ -135,14 +135,15 @@ void Statistics::add_means(std::span<const double> row, double dt, bool first) {
   }
 }
 
-void Statistics::end_stretch(std::span<const double> row) {
+bool Statistics::end_stretch(std::span<const double> row) {
   note(row);
   const double t = row[at(channels_.time)];
-  if (!seen_ || !counts(t)) return;
+  if (!seen_ || !counts(t)) return false;
   add_means(row, t - last_time_, false);
   duration_ += t - last_time_;
   last_time_ = t;
   begin_stretch();
+  return true;
 }
 
 void Statistics::begin_stretch() {

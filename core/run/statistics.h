@@ -51,8 +51,8 @@ class Statistics {
   /// A row inside a step: its values may be the largest.
   void note(std::span<const double> row);
   /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
-  /// instant, is on the other side.
-  void end_stretch(std::span<const double> row);
+  /// instant, is on the other side. False where it does not count.
+  bool end_stretch(std::span<const double> row);
   /// After the row that was added last values go on otherwise than before.
   void begin_stretch();
   /// A row that is written.

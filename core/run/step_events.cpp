@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "component/joint_answer.h"
+#include "component/joint_roles.h"
 #include "run/event_finder.h"
 
 namespace freeplay {
@@ -78,7 +79,7 @@ bool StepEvents::functions(int joint, const Point& point, const Evaluation& e, s
 }
 
 bool StepEvents::apply(const State& before, const Evaluation& e_before, State& after, const Evaluation& e_after,
-                       Fault& fault) {
+                       Mobility mobility, void* self, Fault& fault) {
   happenings_.clear();
   values_.clear();
   for (std::size_t w = 0; w < watched_.size(); ++w) {
@@ -88,8 +89,8 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
     }
     if (inside_[at(watched_[w])] == 0 || context_.is_asleep(watched_[w])) continue;
     // A joint's present history decides what can happen next.
-    const Step step{before,      e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
-                    point(after)};
+    const Step step{before,       e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
+                    point(after), mobility, self};
     if (!apply_joint(w, step, fault)) return false;
   }
   // Stable by hand: a handful of entries, and no allocation.
@@ -132,13 +133,19 @@ bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault
     if (earliest > reached + same_instant) std::ranges::fill(told, 0);
     reached = std::max(reached, earliest);
     told[at(next)] = 1;
-    if (!tell_inside(joint, next, earliest, step.before, step.after, fault)) return false;
+    if (!tell_inside(joint, next, earliest, step, fault)) return false;
   }
   return true;
 }
 
-bool StepEvents::tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault) {
+bool StepEvents::tell_inside(int joint, int event, double s, const Step& step, Fault& fault) {
+  const State& before = step.before;
+  State& after = step.after;
   const double dt = after.t() - before.t();
+  // A contact wants its mass to know how long an impact of it lasts. The room for the state between is lent.
+  double mobility[9];
+  const bool begins = event_role(system_.joint_layout(joint), at(event)) == EventRole::contact_begin;
+  const bool moves = begins && step.mobility(step.self, joint, mobility);
   between_.t() = before.t() + s * dt;
   if (system_.model().space == Space::planar) {
     for (std::size_t i = 0; i < before.q().size(); ++i) {
@@ -156,7 +163,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const State& before
     fault = e_between_->fault;
     return false;
   }
-  return tell(joint, event, point(between_), e_between_, after, fault);
+  return tell(joint, event, point(between_), e_between_, after, fault, moves ? mobility : nullptr);
 }
 
 bool StepEvents::functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g,

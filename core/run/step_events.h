@@ -54,7 +54,8 @@ class StepEvents {
 
   /// Advances z and h of `after` over the events between `before` and `after`; `e_before` and `e_after` are evaluated
   /// there (markers and coordinates of all joints). False, with `fault`, when a joint fails.
-  bool apply(const State& before, const Evaluation& e_before, State& after, const Evaluation& e_after, Fault& fault);
+  bool apply(const State& before, const Evaluation& e_before, State& after, const Evaluation& e_after,
+             Mobility mobility, void* self, Fault& fault);
   /// Passes on rising events whose function is past zero already when the run starts.
   bool at_start(State& start, const Evaluation& e, Fault& fault);
 
@@ -88,6 +89,8 @@ class StepEvents {
     State& after;
     const Evaluation& e_after;
     Point start, end;
+    Mobility mobility;
+    void* self;
   };
   bool apply_joint(std::size_t watched, const Step& step, Fault& fault);
   bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
@@ -98,7 +101,7 @@ class StepEvents {
   bool could_cross(std::size_t event, double sign, double dt) const;
   bool sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                Passage& found, Fault& fault);
-  bool tell_inside(int joint, int event, double s, const State& before, State& after, Fault& fault);
+  bool tell_inside(int joint, int event, double s, const Step& step, Fault& fault);
   bool tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
             const double* mobility = nullptr);
 

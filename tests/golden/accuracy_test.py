@@ -1,4 +1,5 @@
 """Accuracy in place of a step, the second look of --verify, and `freeplay compare`."""
+import csv
 import json
 import math
 import os
@@ -80,7 +81,7 @@ simulation: {end: 2 s, accuracy: 1 um}
             self.assertAlmostEqual(k * 2e-5, float(time), delta=1e-15)
         self.assertGreater(summary["counts"]["contacts_total"], 5)
         with open(self.path("r/events.csv"), encoding="utf-8") as file:
-            steps = [int(line.split(",")[-1]) for line in file if "contact_end" in line]
+            steps = [int(row["steps"]) for row in csv.DictReader(file) if row["kind"] == "contact_end"]
         self.assertGreaterEqual(min(steps), 20)
 
     def test_under_resolved_impacts_are_counted_with_the_step_that_would_do(self):

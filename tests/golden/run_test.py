@@ -20,7 +20,8 @@ SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code"
            "trust", "noise", "repeat",
            "performance", "files", "warnings"]
 FILES = ["events.csv", "model.yaml", "results.csv", "run.log", "summary.json"]
-EVENTS = "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps"
+EVENTS = ("time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,"
+          "approach_speed,impulse,tangential_impulse,energy_lost,impact")
 
 PENDULUM = """freeplay: 1
 name: %s

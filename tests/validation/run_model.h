@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -67,6 +68,7 @@ struct Event {
   double time = 0.0;
   std::string joint, kind;
   std::vector<double> fields;
+  std::optional<ContactRecord> contact = {};  ///< that it ended
 };
 
 /// Keeps every row, or only `chosen` columns of it, and every event.
@@ -88,7 +90,8 @@ class RowKeeper final : public Sink {
     events_.push_back({record.time,
                        joint.name,
                        joint.layout.events[static_cast<std::size_t>(record.event)].name,
-                       {record.fields.begin(), record.fields.end()}});
+                       {record.fields.begin(), record.fields.end()},
+                       record.contact != nullptr ? std::optional(*record.contact) : std::nullopt});
   }
   bool ok() const override { return true; }
 
@@ -144,6 +147,7 @@ class ModelRun {
   const Start& start() const { return start_; }
   const Outcome& outcome() const { return outcome_; }
   const Statistics& statistics() const { return simulation_.statistics(); }
+  const ClearanceStatistics& clearances() const { return simulation_.clearances(); }
   const std::vector<Event>& events() const { return keeper_.events(); }
   const RowKeeper& kept() const { return keeper_; }
 

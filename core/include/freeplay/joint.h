@@ -35,6 +35,24 @@ struct Channel {
   const char* unit;
 };
 
+/// What a channel says of the contact of a joint, whatever its name. The host's statistics, its list of impacts and its
+/// verdict go by roles.
+enum class ChannelRole : std::uint32_t {
+  none,
+  penetration,     ///< delta, negative in flight [m]
+  normal_force,    ///< F_N, zero in flight [N]
+  friction_force,  ///< F_T [N]
+  slip_speed,      ///< v_T of the two surfaces against each other [m/s]
+  eccentricity_x,  ///< origin of b minus that of a, world axes [m]
+  eccentricity_y,
+  eccentricity_z,
+  in_contact  ///< 1 in contact, 0 in flight
+};
+
+/// What an event says of a contact. A joint may have several: the first begin and the first end in declaration order
+/// are of the same contact, so are the second ones, and so on.
+enum class EventRole : std::uint32_t { none, contact_begin, contact_end };
+
 enum class Crossing : std::uint32_t { rising, falling };
 
 /// A zero crossing at which the joint wants on_event() called: the event function passes zero in the given direction.
@@ -88,6 +106,11 @@ struct JointLayout {
   /// as functions of t alone, so closely that no change of that duration is stepped over; where it is not known, none
   /// as long as an output interval. What is shorter is met if next_corner() reports it.
   double time_scale = 0.0;
+  /// One for each of `channels`; each role but `none` at most once. Empty: roles follow from the names ex, ey, ez,
+  /// delta, fn, ft, vt and contact.
+  Span<const ChannelRole> channel_roles;
+  /// One for each of `events`. Empty: from names that end in contact_begin and contact_end.
+  Span<const EventRole> event_roles;
 };
 
 /// Everything a joint may read. All views are valid during the call only.
@@ -104,8 +127,9 @@ struct JointInput {
   /// `history` alone decides which side of an event a joint is on: an attempt that passes the event is thrown away,
   /// and is repeated up to it.
   double per_contact = 0.0;
-  /// on_event() of such runs: 3 x 3, acceleration of b relative to a [m/s^2] for a unit force [N] on b and its opposite
-  /// on a, constraints included, world axes. Else null.
+  /// on_event(): 3 x 3, acceleration of b relative to a [m/s^2] for a unit force [N] on b and its opposite on a,
+  /// constraints included, world axes. In runs that do not end their steps at events, it is that at the end of the
+  /// step, and only events that begin a contact get it. Else null.
   const double* mobility = nullptr;
 };
 
@@ -197,6 +221,10 @@ class Joint {
   /// a kink: runs with error control end a step there. It depends on nothing but t. `unbounded`: there is none. Corners
   /// of a TimeFunction among the parameters are known to the host.
   virtual double next_corner(double /*t*/) const { return unbounded; }
+  /// Joints with several contacts (events of the role contact_begin): three numbers for each, in the order of these
+  /// events: F_N [N], F_T [N] and the power that it dissipates [W]. By them impulses and losses are told apart; a joint
+  /// that leaves them as they are shares them among the contacts that are on.
+  virtual void contacts(const JointInput&, Span<double> /*numbers*/) const {}
 };
 
 namespace abi {
@@ -221,6 +249,7 @@ struct JointTable {
   Status (*warning)(const void*, const JointInput*, const char** text, Message*) noexcept;
   Status (*free_distance)(const void*, const JointInput*, double*, Message*) noexcept;
   Status (*next_corner)(const void*, double t, double* corner, Message*) noexcept;
+  Status (*contacts)(const void*, const JointInput*, Span<double> numbers, Message*) noexcept;
 };
 
 /// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
@@ -275,6 +304,9 @@ inline constexpr JointTable joint_table{
     },
     [](const void* s, double t, double* corner, Message* m) noexcept {
       return guarded(m, [&] { *corner = static_cast<const J*>(s)->next_corner(t); });
+    },
+    [](const void* s, const JointInput* in, Span<double> numbers, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->contacts(*in, numbers); });
     }};
 
 template <class J>

@@ -70,10 +70,10 @@ class Play {
     const JointInput i = in(t);
     joint_.call(&abi::JointTable::begin_step, &i, &acc, dt, hs());
   }
-  std::array<double, 7> on_event(int index, double t) {
-    std::array<double, 7> fields{};
+  std::array<double, 8> on_event(int index, double t) {
+    std::array<double, 8> fields{};
     const JointInput i = in(t);
-    joint_.call(&abi::JointTable::on_event, index, &i, zs(), hs(), Span<double>(fields.data(), 7));
+    joint_.call(&abi::JointTable::on_event, index, &i, zs(), hs(), Span<double>(fields.data(), 8));
     return fields;
   }
   void commit(double t) {
@@ -89,10 +89,10 @@ class Play {
     joint_.call(&abi::JointTable::events, &i, Span<double>(e.g), Span<double>(e.rate));
     return e;
   }
-  std::array<double, 7> observe() const {
-    std::array<double, 7> channels{};
+  std::array<double, 8> observe() const {
+    std::array<double, 8> channels{};
     const JointInput i = in();
-    joint_.call(&abi::JointTable::observe, &i, Span<const double>(), Span<double>(channels.data(), 7));
+    joint_.call(&abi::JointTable::observe, &i, Span<const double>(), Span<double>(channels.data(), 8));
     return channels;
   }
   InitialOffset offset(double fx, double fy) const {

@@ -175,10 +175,10 @@ TEST(RevoluteClearance, IsTheTwinOfRevoluteWithALinkOfTheClearance) {
   EXPECT_STREQ(row().description.ideal, "revolute");
   EXPECT_STREQ(row().description.block, "clearance");
   EXPECT_NEAR(Play(radii()).layout.clearance, c, 1e-18);
-  const char* names[] = {"ex", "ey", "delta", "fn", "ft", "power", "contact"};
+  const char* names[] = {"ex", "ey", "delta", "fn", "ft", "power", "contact", "vt"};
   const JointLayout layout = Play(radii()).layout;
-  ASSERT_EQ(layout.channels.size, 7u);
-  for (std::size_t i = 0; i < 7; ++i) EXPECT_STREQ(layout.channels[i].name, names[i]);
+  ASSERT_EQ(layout.channels.size, 8u);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_STREQ(layout.channels[i].name, names[i]);
 }
 
 std::string fault(const ParameterStub& stub) {

@@ -40,11 +40,11 @@ class SpatialForce {
     joint_.call(&abi::JointTable::observe, &i, Span<const double>(), Span<double>(channels.data(), channels.size()));
     return channels;
   }
-  std::array<double, 7> on_event(int index, double t = 0.0) {
-    std::array<double, 7> fields{};
+  std::array<double, 8> on_event(int index, double t = 0.0) {
+    std::array<double, 8> fields{};
     const JointInput i = in(t);
     joint_.call(&abi::JointTable::on_event, index, &i, Span<double>(), Span<double>(h.data(), h.size()),
-                Span<double>(fields.data(), 7));
+                Span<double>(fields.data(), 8));
     return fields;
   }
   void begin_step(double dt, const MarkerAccelerations& acc) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* header =
-    "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,heat\n";
+    "time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,approach_speed,impulse,"
+    "tangential_impulse,energy_lost,impact,heat\n";
 
 const Channel hit_fields[] = {{"heat", "J"}, {"steps", "1"}, {"duration", "s"}, {"speed", "m/s"}};
 const Event events[] = {{"hit", Crossing::rising, 0, Span<const Channel>(hit_fields)},
@@ -42,7 +43,8 @@ TEST(EventSink, FillsColumnsByNameAndAppendsOthers) {
   sink.event(record(1.5, 0, 0, fields));
   sink.event(record(2.0, 1, 1));
   sink.close();
-  EXPECT_EQ(std::string(header) + "1.5,first,hit,0.25,,,,,,12,2.5\n2,second,turn,,,,,,,,\n", folder.read("events.csv"));
+  EXPECT_EQ(std::string(header) + "1.5,first,hit,0.25,,,,,,12,,,,,,2.5\n2,second,turn,,,,,,,,,,,,,\n",
+            folder.read("events.csv"));
 }
 
 TEST(EventSink, SortsByTimeThenJointAcrossRows) {
@@ -58,8 +60,8 @@ TEST(EventSink, SortsByTimeThenJointAcrossRows) {
   sink.event(record(2.125, 0, 1));
   sink.close();
   EXPECT_EQ(std::string(header) +
-                "1.5,first,turn,,,,,,,,\n1.5,second,turn,,,,,,,,\n1.75,second,turn,,,,,,,,\n"
-                "2.125,first,turn,,,,,,,,\n2.25,second,turn,,,,,,,,\n",
+                "1.5,first,turn,,,,,,,,,,,,,\n1.5,second,turn,,,,,,,,,,,,,\n1.75,second,turn,,,,,,,,,,,,,\n"
+                "2.125,first,turn,,,,,,,,,,,,,\n2.25,second,turn,,,,,,,,,,,,,\n",
             folder.read("events.csv"));
 }
 

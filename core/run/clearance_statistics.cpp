@@ -1,0 +1,137 @@
+#include "run/clearance_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double whole_turn = 2.0 * M_PI;
+}  // namespace
+
+double BearingTable::angle(std::size_t sector) {
+  return (static_cast<double>(sector) + 0.5) * (whole_turn / static_cast<double>(sectors));
+}
+
+ClearanceStatistics::ClearanceStatistics(const System& system, const Channels& channels)
+    : channels_(channels),
+      from_(system.model().settings.start + system.model().settings.discard),
+      index_(system.model().joints.size(), -1) {
+  for (int j = 0; j < static_cast<int>(index_.size()); ++j) {
+    const JointColumns& columns = channels.joints[at(j)];
+    if (columns.normal_force < 0) continue;
+    const JointLayout& layout = system.joint_layout(j);
+    // In space a bearing has an axis, about which the joint turns; a socket has none.
+    const bool planar = system.model().space == Space::planar;
+    const bool is_bearing = columns.eccentricity_x >= 0 && columns.eccentricity_y >= 0 &&
+                            (planar || (columns.eccentricity_z >= 0 && layout.coordinate == Coordinate::angle));
+    index_[at(j)] = static_cast<int>(joints_.size());
+    OfJoint& joint = joints_.emplace_back();
+    joint.joint = j;
+    joint.marker = system.model().joints[at(j)].marker_a;
+    joint.is_bearing = is_bearing;
+    joint.area = 2.0 * (layout.smaller_radius + layout.clearance) * layout.contact_length;
+  }
+}
+
+ClearanceStatistics::Rates ClearanceStatistics::rates(const OfJoint& joint, std::span<const double> row,
+                                                      const Evaluation& e) const {
+  const JointColumns& columns = channels_.joints[at(joint.joint)];
+  const auto value = [&](int column) { return column < 0 ? 0.0 : row[at(column)]; };
+  Rates out;
+  out.normal = value(columns.normal_force);
+  out.contact = columns.contact < 0 ? (out.normal != 0.0 ? 1.0 : 0.0) : value(columns.contact);
+  if (out.contact == 0.0 && out.normal == 0.0) return out;
+  const double slip = std::abs(value(columns.slip));
+  out.slip = slip * out.contact;
+  out.rub = out.normal * slip;
+  if (!joint.is_bearing) return out;
+  const double* axes = e.markers[at(joint.marker)].rotation;
+  const double ex = value(columns.eccentricity_x), ey = value(columns.eccentricity_y),
+               ez = value(columns.eccentricity_z);
+  const double x = axes[0] * ex + axes[3] * ey + axes[6] * ez, y = axes[1] * ex + axes[4] * ey + axes[7] * ez;
+  const double angle = std::atan2(y, x), turned = angle < 0.0 ? angle + whole_turn : angle;
+  const double sectors = static_cast<double>(BearingTable::sectors);
+  out.sector = std::min(static_cast<int>(turned / whole_turn * sectors), static_cast<int>(BearingTable::sectors) - 1);
+  const double length = std::sqrt(x * x + y * y);
+  out.cosine = length > 0.0 ? x / length : 1.0;
+  out.sine = length > 0.0 ? y / length : 0.0;
+  return out;
+}
+
+void ClearanceStatistics::add_half(OfJoint& joint, const Rates& rates, double half) {
+  joint.contact_time += half * rates.contact;
+  if (rates.contact == 0.0 && rates.normal == 0.0) return;
+  joint.impulse += half * rates.normal;
+  joint.sliding += half * rates.slip;
+  joint.work += half * rates.rub;
+  if (rates.sector < 0) return;
+  joint.load_x += half * rates.normal * rates.cosine;
+  joint.load_y += half * rates.normal * rates.sine;
+  const std::size_t k = at(rates.sector);
+  joint.table.contact_time[k] += half * rates.contact;
+  joint.table.impulse[k] += half * rates.normal;
+  joint.table.sliding[k] += half * rates.slip;
+  joint.table.work[k] += half * rates.rub;
+}
+
+void ClearanceStatistics::add(std::span<const double> row, const Evaluation& e) {
+  const double t = row[at(channels_.time)], half = seen_ ? 0.5 * (t - time_) : 0.0;
+  for (OfJoint& joint : joints_) {
+    const Rates now = rates(joint, row, e);
+    add_half(joint, joint.last, half);
+    add_half(joint, now, half);
+    joint.largest_rub = std::max(joint.largest_rub, now.rub);
+    if (now.sector >= 0) joint.table.pv_max[at(now.sector)] = std::max(joint.table.pv_max[at(now.sector)], now.rub);
+    joint.last = now;
+  }
+  duration_ += 2.0 * half;
+  time_ = t;
+  seen_ = true;
+}
+
+void ClearanceStatistics::add_contact(int joint, double end, const ContactRecord& contact) {
+  if (!has(joint)) return;
+  OfJoint& sums = joints_[at(index_[at(joint)])];
+  sums.fastest = std::fmax(sums.fastest, contact.approach_speed);
+  sums.hardest = std::fmax(sums.hardest, contact.impulse);
+  if (!(contact.impact > 0.0)) return;
+  ++sums.impacts;
+  sums.impact_time += end - std::max(from_, contact.begin);
+}
+
+PlayFigures ClearanceStatistics::figures(int joint) const {
+  const OfJoint& sums = of(joint);
+  const bool any = duration_ > 0.0, slides = channels_.joints[at(joint)].slip >= 0;
+  const double time = any ? duration_ : not_known, flight = 1.0 - sums.contact_time / time,
+               impact = sums.impact_time / time, load = std::hypot(sums.load_x, sums.load_y);
+  const bool loaded = any && sums.is_bearing && sums.impulse > 0.0;
+  return {.flight = flight,
+          .impact = impact,
+          .lasting = 1.0 - flight - impact,
+          .impacts = sums.impacts,
+          .max_approach_speed = sums.fastest < 0.0 ? not_known : sums.fastest,
+          .max_impulse = sums.hardest < 0.0 ? not_known : sums.hardest,
+          .mean_normal_force = sums.impulse / time,
+          .load_angle = loaded ? std::atan2(sums.load_y, sums.load_x) : not_known,
+          .load_concentration = loaded ? load / sums.impulse : not_known,
+          .sliding = slides && any ? sums.sliding : not_known,
+          .work = slides && any ? sums.work : not_known,
+          .pv_mean = slides ? sums.work / sums.area / time : not_known,
+          .pv_max = slides && any ? sums.largest_rub / sums.area : not_known};
+}
+
+BearingTable ClearanceStatistics::table(int joint) const {
+  const OfJoint& sums = of(joint);
+  BearingTable out = sums.table;
+  for (std::size_t k = 0; k < BearingTable::sectors; ++k) {
+    out.pv_mean[k] = out.work[k] / sums.area / duration_;
+    out.pv_max[k] /= sums.area;
+  }
+  return out;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,101 @@
+// ClearanceStatistics: what joints with play go through in the time that counts: contact, load, sliding, wear.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "model/channel.h"
+#include "run/sink.h"
+#include "system/system.h"
+
+namespace freeplay {
+
+/// Of one joint with a normal force; NaN: nothing was seen, or the joint does not tell.
+struct PlayFigures {
+  double flight, impact, lasting;  ///< parts of the time, their sum is 1
+  long impacts;
+  double max_approach_speed, max_impulse;  ///< of contacts that ended [m/s, N s]
+  double mean_normal_force;                ///< [N]
+  double load_angle, load_concentration;   ///< of the load by bearing angle: direction [rad] and part in it
+  double sliding, work;                    ///< [m, J]
+  double pv_mean, pv_max;                  ///< pressure times slip [Pa m/s]
+};
+
+/// By bearing angle, that of the eccentricity in the axes of the first frame: sector k holds [k, k + 1) 2 pi/72.
+struct BearingTable {
+  static constexpr std::size_t sectors = 72;
+  using Column = std::array<double, sectors>;
+  Column contact_time{}, impulse{}, sliding{}, work{}, pv_mean{}, pv_max{};  ///< [s, N s, m, J, Pa m/s, Pa m/s]
+  /// Centre of a sector [rad].
+  static double angle(std::size_t sector);
+};
+
+/// Integrals by the trapezoidal rule over accepted steps, from the first instant that counts on; each end of a step
+/// counts half of it, in its own sector.
+class ClearanceStatistics {
+ public:
+  ClearanceStatistics(const System& system, const Channels& channels);
+
+  bool active() const { return !joints_.empty(); }
+  /// A row at the end of a step, in rising order of time and from the first instant that counts on; `e` is evaluated
+  /// there. Of two at one instant the first is before an event and the second after it.
+  void add(std::span<const double> row, const Evaluation& e);
+  /// The end of a contact at a time that counts.
+  void add_contact(int joint, double end, const ContactRecord& contact);
+
+  /// Whether the joint has figures, and whether it has a bearing angle.
+  bool has(int joint) const { return index_[static_cast<std::size_t>(joint)] >= 0; }
+  bool has_table(int joint) const { return has(joint) && of(joint).is_bearing; }
+  PlayFigures figures(int joint) const;
+  BearingTable table(int joint) const;
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.seen_, self.time_, self.duration_, self.joints_);
+  }
+
+ private:
+  /// What is integrated over time.
+  struct Rates {
+    double contact = 0.0, normal = 0.0, slip = 0.0, rub = 0.0;
+    int sector = -1;
+    double cosine = 0.0, sine = 0.0;  ///< of the bearing angle
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.contact, self.normal, self.slip, self.rub, self.sector, self.cosine, self.sine);
+    }
+  };
+  struct OfJoint {
+    int joint = 0, marker = 0;
+    bool is_bearing = false;
+    double area = 0.0;  ///< 2 R_B L [m^2]; NaN: not known
+    Rates last;
+    double contact_time = 0.0, impulse = 0.0, sliding = 0.0, work = 0.0, largest_rub = 0.0;
+    double load_x = 0.0, load_y = 0.0, impact_time = 0.0;
+    long impacts = 0;
+    double fastest = -1.0, hardest = -1.0;
+    BearingTable table;  ///< pv: F_N |v_T| and its integral
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.last, self.contact_time, self.impulse, self.sliding, self.work, self.largest_rub);
+      archive(self.load_x, self.load_y, self.impact_time, self.impacts, self.fastest, self.hardest);
+      archive(self.table.contact_time, self.table.impulse, self.table.sliding, self.table.work, self.table.pv_max);
+    }
+  };
+  const OfJoint& of(int joint) const {
+    return joints_[static_cast<std::size_t>(index_[static_cast<std::size_t>(joint)])];
+  }
+  Rates rates(const OfJoint& joint, std::span<const double> row, const Evaluation& e) const;
+  static void add_half(OfJoint& joint, const Rates& rates, double half);
+
+  const Channels& channels_;
+  double from_;
+  bool seen_ = false;
+  double time_ = 0.0, duration_ = 0.0;
+  std::vector<int> index_;  // by joint: into joints_, or -1
+  std::vector<OfJoint> joints_;
+};
+
+}  // namespace freeplay

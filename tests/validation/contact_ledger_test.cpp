@@ -1,0 +1,149 @@
+// Impulses and losses of contacts, and what joints with play go through, against closed forms and balances.
+#include "puck.h"
+
+namespace freeplay::test {
+namespace {
+
+double sum_of(const BearingTable::Column& column) {
+  double sum = 0.0;
+  for (const double value : column) sum += value;
+  return sum;
+}
+
+struct Impact {
+  const char* name;
+  const char* law;
+  const char* integrator;
+  const char* step;
+  double tolerance;
+};
+class PuckImpact : public ::testing::TestWithParam<Impact> {};
+
+// Nothing else acts: the impulse is the change of momentum, what is lost that of kinetic energy.
+TEST_P(PuckImpact, ImpulseAndLossAreThoseOfMomentumAndEnergy) {
+  const Impact& want = GetParam();
+  Puck puck;
+  puck.contact = want.law;
+  puck.y = -0.09e-3;
+  puck.vy = -0.1;
+  puck.end = 1e-3;
+  puck.integrator = want.integrator;
+  const ModelRun run(replaced(puck.text(), "step: " + number(puck.step), want.step));
+  const auto all = contacts(run);
+  ASSERT_GE(all.size(), 1u);
+  const Contact& first = all[0];
+  ASSERT_TRUE(first.end.contact);
+  const ContactRecord& record = *first.end.contact;
+  const double before = first.begin.fields[speed], after = first.end.fields[speed];
+  EXPECT_EQ(record.approach_speed, before);
+  EXPECT_EQ(record.impact, 1.0);
+  EXPECT_NEAR(record.begin, first.begin.time, 1e-15);
+  const double impulse = 0.2 * (before + after), lost = 0.1 * (before * before - after * after);
+  test::record("impulse_error", record.impulse / impulse - 1.0);
+  test::record("loss_error", record.energy_lost / (0.1 * before * before) - lost / (0.1 * before * before));
+  EXPECT_NEAR(record.impulse, impulse, want.tolerance * impulse);
+  EXPECT_NEAR(record.energy_lost, lost, want.tolerance * 0.1 * before * before);
+  EXPECT_EQ(record.tangential_impulse, 0.0);
+}
+void PrintTo(const Impact& impact, std::ostream* out) { *out << impact.name; }
+
+// A contact of about 110 steps in fixed steps, of 20 to 60 where the error chooses them.
+INSTANTIATE_TEST_SUITE_P(Laws, PuckImpact,
+                         ::testing::Values(Impact{"hertz", "hertz", "bathe", "step: 1 us", 2e-4},
+                                           Impact{"lankarani_nikravesh", "{law: lankarani-nikravesh, restitution: 0.8}",
+                                                  "bathe", "step: 1 us", 5e-4},
+                                           Impact{"jump_at_the_begin", "{law: kelvin-voigt, K: 1e8 N/m, D: 1e3 N*s/m}",
+                                                  "bathe", "step: 1 us", 1e-2},
+                                           Impact{"error_control", "{law: lankarani-nikravesh, restitution: 0.8}",
+                                                  "dopri5", "accuracy: 1e-10", 5e-4}),
+                         [](const auto& made) { return std::string(made.param.name); });
+
+/// A puck that falls and bounces until it lies.
+std::string bouncing(const std::string& step) {
+  Puck puck;
+  puck.contact = "{law: lankarani-nikravesh, restitution: 0.5}";
+  puck.more = ", friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}, length: 8 mm";
+  puck.x = 0.02e-3;
+  puck.vx = 0.02;
+  puck.end = 0.05;
+  puck.sections = "gravity: [0, -9.81]\n";
+  return replaced(puck.text(), "step: " + number(puck.step), step);
+}
+
+TEST(ContactLedger, ContactsLoseTogetherWhatTheAccountSays) {
+  for (const char* step : {"step: 2 us", "step: 20 us", "accuracy: 1e-9"}) {
+    const ModelRun run(bouncing(step));
+    double lost = 0.0;
+    int ended = 0;
+    for (const Event& event : run.events()) {
+      if (!event.contact) continue;
+      lost += event.contact->energy_lost;
+      ++ended;
+    }
+    const auto all = contacts(run);
+    // What the last one has not ended yet is not in the list.
+    const double account = run.last("energy.dissipated");
+    EXPECT_GE(ended, 5) << step;
+    const bool open = all.back().end.kind.empty();
+    EXPECT_NEAR(lost, account, (open ? 1e-3 : 1e-12) * account) << step;
+    EXPECT_EQ(run.statistics().joint(0).dissipated, account);
+  }
+}
+
+TEST(ContactLedger, LastingContactIsNoImpact) {
+  const ModelRun run(bouncing("step: 2 us"));
+  const auto all = contacts(run);
+  ASSERT_GE(all.size(), 3u);
+  EXPECT_EQ(all[0].end.contact->impact, 1.0);
+  const PlayFigures play = run.clearances().figures(0);
+  EXPECT_GT(play.impacts, 2);
+  EXPECT_GT(play.lasting, 0.2);
+  EXPECT_NEAR(play.flight + play.impact + play.lasting, 1.0, 1e-15);
+  EXPECT_NEAR(play.max_approach_speed, all[0].begin.fields[speed], 1e-15);
+}
+
+TEST(ClearanceStatistics, SectorsAddUpToTheJoint) {
+  for (const char* step : {"step: 2 us", "accuracy: 1e-9"}) {
+    const ModelRun run(bouncing(step));
+    const PlayFigures play = run.clearances().figures(0);
+    const BearingTable table = run.clearances().table(0);
+    EXPECT_NEAR(sum_of(table.work), play.work, 1e-12 * play.work);
+    EXPECT_NEAR(sum_of(table.sliding), play.sliding, 1e-12 * play.sliding);
+    EXPECT_NEAR(sum_of(table.pv_mean), play.pv_mean, 1e-12 * play.pv_mean);
+    EXPECT_NEAR(sum_of(table.impulse), play.mean_normal_force * 0.05, 1e-12);
+    EXPECT_NEAR(sum_of(table.contact_time), (1.0 - play.flight) * 0.05, 1e-14);
+    EXPECT_EQ(*std::ranges::max_element(table.pv_max), play.pv_max);
+  }
+}
+
+// A journal of 0.2 kg lies in a bearing that is turned by 30 degrees and turns with 10 rad/s without friction: slip is
+// R_J w, the load m g straight down, which in the axes of the bearing is at -120 degrees.
+TEST(ClearanceStatistics, JournalThatTurnsAtRestHasTheFiguresOfItsLoad) {
+  const ModelRun run(
+      "freeplay: 1\ngravity: [0, -9.81]\n"
+      "bodies: {ground: {frames: {ring: [0, 0, 30 deg]}}, shaft: {mass: 0.2, inertia: 1e-4}}\n"
+      "joints: {pin: {type: revolute, between: [ground/ring, shaft], clearance: {bearing_radius: 5 mm, "
+      "radial_clearance: 0.1 mm, length: 8 mm, material: {E: 207 GPa, nu: 0.3}, contact: hertz, initial: loaded}}}\n"
+      "initial: {speeds: {pin: 10 rad/s}}\n"
+      "simulation: {end: 10 ms, step: 10 us, integrator: bathe, output: {interval: 1 ms, discard: 2 ms}}\n");
+  const double load = 0.2 * 9.81, slip = 4.9e-3 * 10.0, time = 8e-3, pressure = load / (2.0 * 5e-3 * 8e-3);
+  const PlayFigures play = run.clearances().figures(0);
+  EXPECT_NEAR(play.flight, 0.0, 1e-15);
+  EXPECT_NEAR(play.impact, 0.0, 1e-15);
+  EXPECT_NEAR(play.lasting, 1.0, 1e-15);
+  EXPECT_EQ(play.impacts, 0);
+  EXPECT_TRUE(std::isnan(play.max_approach_speed));
+  EXPECT_NEAR(play.mean_normal_force, load, 1e-9 * load);
+  EXPECT_NEAR(play.load_angle, -2.0 * M_PI / 3.0, 1e-9);
+  EXPECT_NEAR(play.load_concentration, 1.0, 1e-12);
+  EXPECT_NEAR(play.sliding, slip * time, 1e-9 * slip * time);
+  EXPECT_NEAR(play.work, load * slip * time, 1e-9 * load * slip * time);
+  EXPECT_NEAR(play.pv_mean, pressure * slip, 1e-9 * pressure * slip);
+  EXPECT_NEAR(play.pv_max, pressure * slip, 1e-9 * pressure * slip);
+  const BearingTable table = run.clearances().table(0);
+  EXPECT_NEAR(table.work[47] + table.work[48], play.work, 1e-12 * play.work);  // 240 degrees is their border
+  EXPECT_NEAR(run.last("joint.pin.vt"), slip, 1e-9 * slip);
+}
+
+}  // namespace
+}  // namespace freeplay::test
