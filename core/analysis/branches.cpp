@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -24,7 +25,7 @@ double spread(int index, std::size_t dimension) {
 bool alike(const Posture& a, const Posture& b, double size) {
   for (std::size_t i = 0; i < a.q.size(); ++i) {
     const double gap = a.q[i] - b.q[i];
-    if (std::abs(i % 3 == 2 ? std::remainder(gap, 2.0 * M_PI) : gap / size) > same) return false;
+    if (std::abs(i % 3 == 2 ? wrapped(gap) : gap / size) > same) return false;
   }
   return true;
 }
@@ -91,12 +92,12 @@ std::vector<Posture> all_postures(IdealMechanism& mechanism, const Demand& deman
     const FramePose left = solver.frame(a), right = solver.frame(b);
     const auto key = [&](double x) { return std::round(x / (same * size)); };
     for (std::size_t i = 0; i < 3; ++i) {
-      const double x = i < 2 ? left[i] : std::remainder(left[i], 2.0 * M_PI) * size;
-      const double y = i < 2 ? right[i] : std::remainder(right[i], 2.0 * M_PI) * size;
+      const double x = i < 2 ? left[i] : wrapped(left[i]) * size;
+      const double y = i < 2 ? right[i] : wrapped(right[i]) * size;
       if (key(x) != key(y)) return x < y;
     }
     for (std::size_t i = 2; i < a.q.size(); i += 3) {
-      const double x = std::remainder(a.q[i], 2.0 * M_PI), y = std::remainder(b.q[i], 2.0 * M_PI);
+      const double x = wrapped(a.q[i]), y = wrapped(b.q[i]);
       if (std::abs(x - y) > same) return x < y;
     }
     return false;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/posture.h"
+#include "analysis/regular_start.h"
 #include "assembly/assembly.h"
 #include "base/error.h"
 #include "base/index.h"
@@ -85,6 +86,7 @@ IdealMechanism::IdealMechanism(const Model& model, Platform platform)
       body_(model_->markers[at(platform_.marker)].body) {
   find_plays();
   find_parts();
+  find_legs();
   find_lengths();
   const bool gears_keep_start = std::ranges::any_of(model_->gears, [](const Gear& gear) { return !gear.offset; });
   closed_form_ = !gears_keep_start && model_->drivers.empty() &&
@@ -127,6 +129,27 @@ void IdealMechanism::add_play(int joint, double radius) {
   }
 }
 
+// Whether it holds bodies together: by rows, a driver or an input.
+bool IdealMechanism::ties(int j) const {
+  return system_->layout().rows(j).size > 0 || is_input(platform_, j) ||
+         std::ranges::any_of(model_->drivers,
+                             [&](const Driver& driver) { return driver.joint == j && prescribes(driver.kind); });
+}
+
+// Those of a joint, or of both joints of a gear, without the platform and ground.
+std::vector<BodyId> IdealMechanism::bodies_of(int j) const {
+  std::vector<BodyId> out;
+  const JointElement& joint = model_->joints[at(j)];
+  std::vector<int> joints{j};
+  if (joint.gear >= 0) joints = {model_->gears[at(joint.gear)].first, model_->gears[at(joint.gear)].second};
+  for (const int one : joints) {
+    for (const int m : {model_->joints[at(one)].marker_a, model_->joints[at(one)].marker_b}) {
+      if (const BodyId b = model_->markers[at(m)].body; b != ground && b != body_) out.push_back(b);
+    }
+  }
+  return out;
+}
+
 void IdealMechanism::find_parts() {
   const int bodies = static_cast<int>(model_->bodies.size());
   std::vector<int> root(at(bodies));
@@ -134,25 +157,6 @@ void IdealMechanism::find_parts() {
   const auto find = [&](int b) {
     while (root[at(b)] != b) b = root[at(b)];
     return b;
-  };
-  const auto loose = [&](BodyId b) { return b != ground && b != body_; };
-  // Bodies that a joint, a gear, a driver or an input concerns.
-  const auto bodies_of = [&](int j) {
-    std::vector<BodyId> out;
-    const JointElement& joint = model_->joints[at(j)];
-    std::vector<int> joints{j};
-    if (joint.gear >= 0) joints = {model_->gears[at(joint.gear)].first, model_->gears[at(joint.gear)].second};
-    for (const int one : joints) {
-      for (const int m : {model_->joints[at(one)].marker_a, model_->joints[at(one)].marker_b}) {
-        if (const BodyId b = model_->markers[at(m)].body; loose(b)) out.push_back(b);
-      }
-    }
-    return out;
-  };
-  const auto ties = [&](int j) {
-    return system_->layout().rows(j).size > 0 || is_input(platform_, j) ||
-           std::ranges::any_of(model_->drivers,
-                               [&](const Driver& driver) { return driver.joint == j && prescribes(driver.kind); });
   };
   const int joints = static_cast<int>(model_->joints.size());
   for (int j = 0; j < joints; ++j) {
@@ -162,7 +166,7 @@ void IdealMechanism::find_parts() {
   }
   std::map<int, std::size_t> part_of;  // by root
   for (int b = 0; b < bodies; ++b) {
-    if (!loose(b)) continue;
+    if (b == body_) continue;
     const auto [place, fresh] = part_of.emplace(find(b), parts_.size());
     if (fresh) parts_.emplace_back();
     parts_[place->second].bodies.push_back(b);
@@ -192,6 +196,9 @@ void IdealMechanism::find_parts() {
     return part.inputs.empty() ? std::numeric_limits<int>::max() : part.inputs.front();
   };
   std::ranges::stable_sort(parts_, {}, first_input);
+}
+
+void IdealMechanism::find_legs() {
   for (Limb& part : parts_) {
     if (part.inputs.size() != 1 || part.bodies.size() != 2 || part.rows.size() != 6) continue;
     std::optional<Leg> leg = find_leg(*model_, platform_.inputs[at(part.inputs[0])], platform_.marker);

@@ -78,7 +78,10 @@ class IdealMechanism {
   std::vector<Jet> driven_inputs(double t);
 
  private:
+  bool ties(int joint) const;
+  std::vector<BodyId> bodies_of(int joint) const;
   void find_parts();
+  void find_legs();
   void find_plays();
   void add_play(int joint, double radius);
   void find_lengths();

@@ -10,7 +10,9 @@
 #include "analysis/clearance_error.h"
 #include "analysis/inverse_dynamics.h"
 #include "analysis/play_samples.h"
+#include "analysis/regular_start.h"
 #include "analysis/singularity.h"
+#include "base/angle.h"
 #include "base/error.h"
 #include "base/index.h"
 
@@ -30,19 +32,13 @@ class Turns {
  public:
   double next(std::size_t column, double angle, bool follows) {
     if (last_.size() <= column) last_.resize(column + 1, nan);
-    if (follows && !std::isnan(last_[column])) angle += 2.0 * M_PI * std::round((last_[column] - angle) / (2.0 * M_PI));
+    if (follows && !std::isnan(last_[column])) angle = nearest_turn(angle, last_[column]);
     return last_[column] = angle;
   }
 
  private:
   std::vector<double> last_;
 };
-
-/// The first coordinate of an angle lies in (-pi, pi].
-double principal(double angle) {
-  const double rest = std::remainder(angle, 2.0 * M_PI);
-  return rest <= -M_PI ? rest + 2.0 * M_PI : rest;
-}
 
 /// The numbers of the pose: as given, or where the frame is then.
 FramePose shown_pose(const Station& station, const PostureSolver& solver) {
@@ -51,7 +47,7 @@ FramePose shown_pose(const Station& station, const PostureSolver& solver) {
   if (station.reachable) {
     pose = solver.frame(station.posture);
     for (std::size_t i = solver.form().lengths; i < solver.form().size(); ++i) {
-      pose[i] = std::remainder(pose[i], 2.0 * M_PI);
+      pose[i] = wrapped(pose[i]);
     }
   }
   for (std::size_t i = 0; i < solver.form().size(); ++i) {
@@ -127,7 +123,7 @@ void append_inputs(const IdealMechanism& mechanism, const Station& station, Post
       }
     }
     double value = e.coordinate[at(j)];
-    if (mechanism.is_angle(i)) value = turns.next(at(i), principal(value), moves);
+    if (mechanism.is_angle(i)) value = turns.next(at(i), principal_angle(value), moves);
     append(row, {value, known ? speed : nan, known ? acceleration : nan});
   }
 }
@@ -245,33 +241,44 @@ std::vector<double> determinants(const IdealMechanism& mechanism, const std::vec
   return out;
 }
 
+namespace {
+
+/// In the plane the turn is one of the changes.
+bool has_several_turns(const PoseForm& form) { return form.size() > form.lengths + 1; }
+
+std::vector<std::string> error_columns(const IdealMechanism& mechanism, const ErrorColumns& of) {
+  const PoseForm& form = mechanism.form();
+  std::vector<std::string> out = pose_columns(form, "");
+  out.emplace_back("reachable");
+  for (const std::string prefix : {"", "ls_"}) {
+    for (const char* change : form.changes) out.push_back(prefix + change);
+    out.push_back(prefix + "position");
+    if (has_several_turns(form)) out.push_back(prefix + "dangle");
+  }
+  if (of.sensitivity) {
+    for (const Play& play : mechanism.plays()) {
+      out.push_back(play_name(mechanism, play) + ".sensitivity");
+    }
+    for (int i = 0; i < input_count(mechanism); ++i) {
+      out.push_back("driver." + input_name(mechanism, i) + ".sensitivity");
+    }
+  }
+  if (of.samples > 0) {
+    for (const char* name : {"rms_position", "rms_dangle", "max_position", "max_dangle"}) {
+      out.push_back(std::string("sample_") + name);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                          const ErrorColumns& columns, int threads, std::vector<std::string>& warnings,
                          const Tick& tick) {
   AnalysisTable table;
   const PoseForm& form = mechanism.form();
-  // In the plane the turn is one of the changes.
-  const bool several_turns = form.size() > form.lengths + 1;
-  table.columns = pose_columns(form, "");
-  table.columns.emplace_back("reachable");
-  for (const std::string prefix : {"", "ls_"}) {
-    for (const char* change : form.changes) table.columns.push_back(prefix + change);
-    table.columns.push_back(prefix + "position");
-    if (several_turns) table.columns.push_back(prefix + "dangle");
-  }
-  if (columns.sensitivity) {
-    for (const Play& play : mechanism.plays()) {
-      table.columns.push_back(play_name(mechanism, play) + ".sensitivity");
-    }
-    for (int i = 0; i < input_count(mechanism); ++i) {
-      table.columns.push_back("driver." + input_name(mechanism, i) + ".sensitivity");
-    }
-  }
-  if (columns.samples > 0) {
-    for (const char* name : {"rms_position", "rms_dangle", "max_position", "max_dangle"}) {
-      table.columns.push_back(std::string("sample_") + name);
-    }
-  }
+  table.columns = error_columns(mechanism, columns);
   table.rows.resize(stations.size());
   std::vector<char> singular(stations.size(), 0), unclosed = singular;
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
@@ -293,7 +300,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
       for (const WorstCase* bound : {&error->exact, &error->least_squares}) {
         append_all(row, std::span(bound->change).first(form.size()));
         append(row, {bound->position});
-        if (several_turns) append(row, {bound->dangle});
+        if (has_several_turns(form)) append(row, {bound->dangle});
       }
       if (columns.sensitivity) append_all(row, error->sensitivity);
       if (columns.samples > 0) {

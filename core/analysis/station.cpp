@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/regular_start.h"
 #include "base/error.h"
 #include "base/index.h"
 

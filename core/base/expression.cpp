@@ -53,33 +53,13 @@ int Expression::operand_count(Operation operation) noexcept {
   }
 }
 
-/// Replaces operands[0] by the result.
-bool Expression::apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept {
+// Functions that have no value or no derivative somewhere, and smooth. Returns why the operands are outside of its
+// domain, or null.
+inline const char* Expression::apply_function(const Instruction& instruction, Jet* operands) noexcept {
   Jet& a = operands[0];
   const Jet* const b = operands + 1;  // only read by operations of two and more operands
   const char* outside = nullptr;
   switch (instruction.operation) {
-    case Operation::push_constant:
-      a = Jet::constant(instruction.constant);
-      break;
-    case Operation::push_time:
-      break;
-    case Operation::negate:
-      a = -a;
-      break;
-    case Operation::add:
-      a = a + *b;
-      break;
-    case Operation::subtract:
-      a = a - *b;
-      break;
-    case Operation::multiply:
-      a = a * *b;
-      break;
-    case Operation::divide:
-      if (b->value == 0.0) outside = "division by zero";
-      a = a / *b;
-      break;
     case Operation::power_constant:
       outside = power_domain(a.value, instruction.constant);
       a = pow(a, instruction.constant);
@@ -116,12 +96,49 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
       if (a.value <= 0.0) outside = "logarithm of a number that is not positive";
       a = log(a);
       break;
-    case Operation::absolute:
-      a = abs(a);
-      break;
     case Operation::arctangent2:
       if (a.value == 0.0 && b->value == 0.0) outside = "atan2(0, 0) has no value";
       a = atan2(a, *b);
+      break;
+    case Operation::smooth:
+      if (b[0].value >= b[1].value) outside = "smooth(x, a, b) needs a < b";
+      a = freeplay::smooth(a, b[0], b[1]);
+      break;
+    default:
+      break;
+  }
+  return outside;
+}
+
+// Replaces operands[0] by the result.
+bool Expression::apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept {
+  Jet& a = operands[0];
+  const Jet* const b = operands + 1;
+  const char* outside = nullptr;
+  switch (instruction.operation) {
+    case Operation::push_constant:
+      a = Jet::constant(instruction.constant);
+      break;
+    case Operation::push_time:
+      break;
+    case Operation::negate:
+      a = -a;
+      break;
+    case Operation::add:
+      a = a + *b;
+      break;
+    case Operation::subtract:
+      a = a - *b;
+      break;
+    case Operation::multiply:
+      a = a * *b;
+      break;
+    case Operation::divide:
+      if (b->value == 0.0) outside = "division by zero";
+      a = a / *b;
+      break;
+    case Operation::absolute:
+      a = abs(a);
       break;
     case Operation::minimum:
       a = min(a, *b);
@@ -129,10 +146,8 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
     case Operation::maximum:
       a = max(a, *b);
       break;
-    case Operation::smooth:
-      if (b[0].value >= b[1].value) outside = "smooth(x, a, b) needs a < b";
-      a = freeplay::smooth(a, b[0], b[1]);
-      break;
+    default:
+      outside = apply_function(instruction, operands);
   }
   if (!outside && a.is_finite(derivatives_)) return true;
   if (outside) {

@@ -135,6 +135,7 @@ class Expression {
 
   template <int depth>
   bool run(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+  static const char* apply_function(const Instruction& instruction, Jet* operands) noexcept;
   bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   static int operand_count(Operation operation) noexcept;
   std::vector<Instruction> program_;

@@ -30,6 +30,7 @@ class FormulaCourse::PeriodFinder {
   };
   Course of(const Expression::Instruction& instruction, const Course* x) const;
   static Course with(const Course& a, const Course& b, double slope);
+  static Course product(const Course* x, bool quotient);
   static Course wave(const Course& x, double turn);
   static IntervalJet range_of(const Expression::Instruction& instruction, const Course* x);
 
@@ -97,6 +98,20 @@ IntervalJet FormulaCourse::PeriodFinder::range_of(const Expression::Instruction&
   }
 }
 
+// Of both operands, or of the first over the second.
+auto FormulaCourse::PeriodFinder::product(const Course* x, bool quotient) -> Course {
+  const Interval &a = x[0].range.value, &b = x[1].range.value;
+  Course out = with(x[0], x[1], 0.0);
+  if (x[1].constant() && b.low == b.high) {
+    out.slope = quotient ? x[0].slope / b.low : x[0].slope * b.low;
+  } else if (!quotient && x[0].constant() && a.low == a.high) {
+    out.slope = x[1].slope * a.low;
+  } else {
+    out.known = out.known && x[0].recurs() && x[1].recurs();
+  }
+  return out;
+}
+
 auto FormulaCourse::PeriodFinder::of(const Expression::Instruction& instruction, const Course* x) const -> Course {
   const auto operands = static_cast<std::size_t>(Expression::operand_count(instruction.operation));
   Course out;
@@ -119,19 +134,9 @@ auto FormulaCourse::PeriodFinder::of(const Expression::Instruction& instruction,
       out = with(x[0], x[1], x[0].slope - x[1].slope);
       break;
     case Operation::multiply:
-    case Operation::divide: {
-      const bool by = instruction.operation == Operation::divide;
-      const Interval &a = x[0].range.value, &b = x[1].range.value;
-      out = with(x[0], x[1], 0.0);
-      if (x[1].constant() && b.low == b.high) {
-        out.slope = by ? x[0].slope / b.low : x[0].slope * b.low;
-      } else if (!by && x[0].constant() && a.low == a.high) {
-        out.slope = x[1].slope * a.low;
-      } else {
-        out.known = out.known && x[0].recurs() && x[1].recurs();
-      }
+    case Operation::divide:
+      out = product(x, instruction.operation == Operation::divide);
       break;
-    }
     case Operation::sine:
     case Operation::cosine:
       out = wave(x[0], 2.0 * std::numbers::pi);

@@ -58,15 +58,7 @@ class TableReader {
     const auto outside = word(map.find("outside"), {"hold", "repeat", "error"});
     const auto time_column = map.find("time"), value_column = map.find("value");
     if (source_ != nullptr) {
-      const auto text = [](const std::optional<CheckedValue>& key) { return key ? key->node().text : std::string(); };
-      *source_ = {text(file),
-                  text(time_column),
-                  text(value_column),
-                  text(map.find("time_unit")),
-                  text(map.find("unit")),
-                  static_cast<Interpolation>(interpolation.value_or(0)),
-                  static_cast<SplineEnds>(ends.value_or(0)),
-                  static_cast<Outside>(outside.value_or(0))};
+      note_source(map, file, {interpolation.value_or(0), ends.value_or(0), outside.value_or(0)});
     }
     map.conflict("file", "points");
     if (!file) {
@@ -106,6 +98,19 @@ class TableReader {
   }
 
  private:
+  /// `words`: places of interpolation, ends and outside in their lists.
+  void note_source(MapReader& map, const std::optional<CheckedValue>& file, const std::array<int, 3>& words) {
+    const auto text = [](const std::optional<CheckedValue>& key) { return key ? key->node().text : std::string(); };
+    *source_ = {text(file),
+                text(map.find("time")),
+                text(map.find("value")),
+                text(map.find("time_unit")),
+                text(map.find("unit")),
+                static_cast<Interpolation>(words[0]),
+                static_cast<SplineEnds>(words[1]),
+                static_cast<Outside>(words[2])};
+  }
+
   std::filesystem::path path_of(const std::string& name) const {
     return (std::filesystem::path(draft_.model.file).parent_path() / name).lexically_normal();
   }
