@@ -14,6 +14,7 @@ import sys
 import time
 
 import commits
+import sizes
 import spelling
 from sources import ROOT, Finding, changed, git, sources
 
@@ -126,6 +127,8 @@ CHECKS = {
     "format": ("sources as .clang-format sets them", format_findings),
     "suppressions": ("each has a check and a reason", suppression_findings),
     "layering": ("includes as the rooms allow them", layering_findings),
+    "sizes": ("files of %d lines, functions of %d, classes of %d public functions"
+              % (sizes.LONGEST_FILE, sizes.LONGEST_FUNCTION, sizes.MOST_FUNCTIONS), lambda _: sizes.findings()),
     "spelling": ("pages in British English", lambda _: spelling.findings()),
     "commits": ("subjects of at most %d characters" % commits.LONGEST, lambda _: commits.findings()),
     "tidy": ("the checks of .clang-tidy", tidy_findings),

@@ -11,6 +11,7 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import commits
 import lint
+import sizes
 import sources
 import spelling
 
@@ -25,6 +26,62 @@ class Lint(unittest.TestCase):
             self.assertEqual([], lint.suppressions_without_reason("a.cpp", text), text)
         for text in bad:
             self.assertEqual(1, len(lint.suppressions_without_reason("a.cpp", text)), text)
+
+    def test_functions_are_measured_from_their_first_line_to_their_last(self):
+        text = """
+            namespace a {
+            constexpr int table[] = {1, 2};
+            class B : public C<int> {
+             public:
+              B(int x) : x_{x}, y_(x) {
+                if (x) {
+                }
+              }
+              /// f(); { in a comment, "} in a text" and '{'
+              [[noreturn]] void f(int a = g({1, 2}),
+                                  std::function<void()> h = {}) const noexcept { auto l = [] { return "}"; }; }
+              template <class T>
+              auto k(T t) -> std::vector<T> {
+                return {t};
+              }
+              bool operator==(const B&) const = default;
+              int z() const;
+
+             private:
+              int hidden() const { return x_; }
+              int x_{0}, y_;
+            };
+            }
+            template <>
+            int a::B::z<int>() const {
+              for (;;) {
+              }
+            }
+            """
+        functions, classes = sizes.measure(text)
+        self.assertEqual([("B", 4), ("f", 2), ("k", 4), ("hidden", 1), ("a::B::z<int>", 5)],
+                         [(name, lines) for name, _, lines in functions])
+        self.assertEqual([("B", 4, {"f", "k", "z"})], classes)
+
+    def test_files_functions_and_classes_beyond_the_limits_are_found(self):
+        self.assertEqual([], sizes.too_large("a.cpp", "void f() {\n" + "g();\n" * 58 + "}\n"))
+        found = sizes.too_large("a.cpp", "void f() {\n" + "g();\n" * 59 + "}\n")
+        self.assertEqual("a.cpp:1: f() has 61 lines, at most 60", str(found[0]))
+        face = "struct A {\n" + "".join("int f%d();\nint f%d(int x);\n" % (i, i) for i in range(26)) + "};\n"
+        self.assertEqual("a.cpp:1: A has 26 public functions, at most 25", str(sizes.too_large("a.cpp", face)[0]))
+        self.assertEqual("a.cpp: 451 lines, at most 450", str(sizes.too_large("a.cpp", "\n" * 451)[0]))
+
+    def test_every_exception_of_size_is_still_needed(self):
+        for key in sizes.EXCEPTIONS:
+            path = key.partition(" ")[0]
+            with open(os.path.join(sizes.ROOT, path), encoding="utf-8") as file:
+                text = file.read()
+            kept = dict(sizes.EXCEPTIONS)
+            del sizes.EXCEPTIONS[key]
+            try:
+                self.assertTrue(sizes.too_large(path, text), key)
+            finally:
+                sizes.EXCEPTIONS.update(kept)
 
     def test_a_subject_has_at_most_72_characters(self):
         found = commits.too_long([("a1", "x" * 72), ("b2", "y" * 73)])
