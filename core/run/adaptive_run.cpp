@@ -35,33 +35,26 @@ double load_errors(int error_power) { return error_power < 5 ? 64.0 : 2.0; }
 
 }  // namespace
 
-AdaptiveRun::AdaptiveRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
-                         Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit,
-                         EndCheck& end)
-    : run_(run),
-      failure_(failure),
-      attempt_(attempt),
-      acceptance_(acceptance),
-      recorder_(recorder),
-      growth_(growth),
-      corners_(corners),
+AdaptiveRun::AdaptiveRun(const RunParts& parts, EventPursuit& pursuit)
+    : parts_(parts),
+      run_(parts.run),
       pursuit_(pursuit),
-      end_(end),
-      control_(step_limits(run.settings), error_power(run.integrator_layout)),
-      budget_(load_errors(error_power(run.integrator_layout)) / accuracy_per_step, error_power(run.integrator_layout)),
-      velocity_allowed_(run.allowed) {}
+      control_(step_limits(parts.run.settings), error_power(parts.run.integrator_layout)),
+      budget_(load_errors(error_power(parts.run.integrator_layout)) / accuracy_per_step,
+              error_power(parts.run.integrator_layout)),
+      velocity_allowed_(parts.run.allowed) {}
 
 void AdaptiveRun::run(const RunHooks& hooks) {
   while (run_.accepted.t() < run_.settings.end) {
     const long before = run_.outcome.steps;
-    const bool going = step() && end_.check_stop();
-    const bool due = run_.accepted.t() >= recorder_.next_row_time();
-    if (run_.outcome.steps > before && (due || !going) && !recorder_.write_row()) return;
+    const bool going = step() && parts_.end.check_stop();
+    const bool due = run_.accepted.t() >= parts_.recorder.next_row_time();
+    if (run_.outcome.steps > before && (due || !going) && !parts_.recorder.write_row()) return;
     if (!going) return;
-    recorder_.pass_rows();
+    parts_.recorder.pass_rows();
     if (hooks.stepped) hooks.stepped();
-    if (end_.check_interrupt(hooks)) continue;
-    if (!due) recorder_.write_row();
+    if (parts_.end.check_interrupt(hooks)) continue;
+    if (!due) parts_.recorder.write_row();
     return;
   }
 }
@@ -82,22 +75,22 @@ bool AdaptiveRun::begin_search(Search& search) {
   if (!bounded_step(search.dt, search.limiting)) return false;
   Fault fault;
   if (!run_.events.look_from(run_.accepted, run_.e_accepted, fault)) {
-    return failure_.fail_with(fault, run_.accepted.t());
+    return parts_.failure.fail_with(fault, run_.accepted.t());
   }
   const double smallest = control_.limits().smallest;
   if (!(search.dt >= smallest)) {
     const bool stuck = run_.solver.regularity() < stuck_there;
-    return failure_.fail(4,
-                         stuck ? failure_.why_singular() : failure_.why_so_small(search.dt, smallest, search.limiting));
+    return parts_.failure.fail(
+        4, stuck ? parts_.failure.why_singular() : parts_.failure.why_so_small(search.dt, smallest, search.limiting));
   }
   double kink = 0.0;
-  if (!corners_.next_corner(search.dt, kink)) return false;
+  if (!parts_.corners.next_corner(search.dt, kink)) return false;
   const bool to_kink = kink <= run_.settings.end;
   search.goal = to_kink ? Corners::before(kink) : run_.settings.end;
   if (to_kink) search.kink = kink;
   const double proposed = std::min(search.dt, search.goal - run_.accepted.t());
   double reach = proposed;
-  if (!corners_.resolve_inputs(reach)) return false;
+  if (!parts_.corners.resolve_inputs(reach)) return false;
   if (reach < proposed) search.dt = reach;
   search.hunted = run_.events.expected_within(reach);
   if (search.hunted.joint >= 0) search.dt = search.hunted.fraction * reach;
@@ -109,24 +102,24 @@ AdaptiveRun::Found AdaptiveRun::attempt(Search& search) {
   const bool last = search.dt >= left * (1.0 - 1e-12);
   if (last) search.dt = left;
   if (!last && from + search.dt == from) {
-    failure_.fail(4, failure_.why_so_small(search.dt, control_.limits().smallest, search.limiting));
+    parts_.failure.fail(4, parts_.failure.why_so_small(search.dt, control_.limits().smallest, search.limiting));
     return Found::failed;
   }
   bool converged = false;
   run_.ended_inside = false;
-  if (!attempt_.make(search.dt, converged)) return Found::failed;
-  search.hidden = converged ? corners_.hidden_error(search.dt) : 1.0;
+  if (!parts_.attempt.make(search.dt, converged)) return Found::failed;
+  search.hidden = converged ? parts_.corners.hidden_error(search.dt) : 1.0;
   run_.error *= search.hidden;
   const bool passed = converged && run_.error <= 1.0;
   if (search.hunted.joint < 0 && take_detour(passed, search)) return Found::no;
   if (passed && run_.solver.regularity() < hopeless) {
-    failure_.fail(4, failure_.why_singular());
+    parts_.failure.fail(4, parts_.failure.why_singular());
     return Found::failed;
   }
   if (!passed) return shorten(search, converged);
   if (last) run_.trial.t() = search.goal;
-  if (!attempt_.evaluate_all(run_.trial, run_.e_trial)) {
-    failure_.fail_with(run_.e_trial->fault, run_.trial.t());
+  if (!parts_.attempt.evaluate_all(run_.trial, run_.e_trial)) {
+    parts_.failure.fail_with(run_.e_trial->fault, run_.trial.t());
     return Found::failed;
   }
   return judge(search);
@@ -147,29 +140,30 @@ AdaptiveRun::Found AdaptiveRun::shorten(Search& search, bool converged) {
   const double smallest = control_.limits().smallest;
   if (dt >= smallest) return Found::no;
   if (run_.plugin_fault.kind == Fault::Kind::plugin) {
-    failure_.fail_with(run_.plugin_fault, run_.accepted.t());
+    parts_.failure.fail_with(run_.plugin_fault, run_.accepted.t());
   } else if (run_.solver.regularity() < stuck_there) {
-    failure_.fail(4, failure_.why_singular());
+    parts_.failure.fail(4, parts_.failure.why_singular());
   } else {
-    failure_.fail(4, converged ? failure_.why_so_small(dt, smallest, -1) : failure_.why_not_converged(dt));
+    parts_.failure.fail(
+        4, converged ? parts_.failure.why_so_small(dt, smallest, -1) : parts_.failure.why_not_converged(dt));
   }
   return Found::failed;
 }
 
 // A step that erred little enough may still gain energy, go over what joints do inside, or pass an event.
 AdaptiveRun::Found AdaptiveRun::judge(Search& search) {
-  if (growth_.too_large()) {
+  if (parts_.growth.too_large()) {
     ++run_.outcome.rejected;
     search.hunted = {};
     control_.halve(search.dt);
     search.dt = control_.next();
     if (!(search.dt < control_.limits().smallest)) return Found::no;
-    failure_.fail(4, failure_.why_energy_grows(search.dt, growth_.gained()));
+    parts_.failure.fail(4, parts_.failure.why_energy_grows(search.dt, parts_.growth.gained()));
     return Found::failed;
   }
   const double whole = run_.trial.t() - run_.accepted.t();
   double resolved = whole;
-  if (!corners_.resolves_joints(resolved)) return Found::failed;
+  if (!parts_.corners.resolves_joints(resolved)) return Found::failed;
   if (!(resolved < barely * whole)) return end_at_event(search);
   ++run_.outcome.rejected;
   search.hunted = {};
@@ -197,13 +191,13 @@ bool AdaptiveRun::accept(const Search& search) {
   const bool at_kink = search.kink < unbounded && run_.trial.t() == search.goal;
   if (search.quick) budget_.spend(run_.error, search.unbounded_slope);
   budget_.pass(run_.trial.t() - run_.accepted.t());
-  const CornerKind corner = corners_.end_step(at_kink ? std::optional(search.kink) : std::nullopt);
+  const CornerKind corner = parts_.corners.end_step(at_kink ? std::optional(search.kink) : std::nullopt);
   if (at_kink && corner == CornerKind::motion) {
     control_.restart();
   } else if (search.hunted.joint < 0) {
     control_.accept(run_.trial.t() - run_.accepted.t(), run_.error);
   }
-  if (!acceptance_.accept(
+  if (!parts_.acceptance.accept(
           {.located = search.hunted, .late = pursuit_.event_lateness(), .kink = at_kink ? search.kink : unbounded}))
     return false;
   // Forces that begin or end at an event do so once the joint has handled it.
@@ -227,12 +221,12 @@ bool AdaptiveRun::take_detour(bool passed, Search& search) {
 // a contact acts its own errors rule, and no sum of them is one of the load.
 void AdaptiveRun::allow_error(Search& search) {
   if (!(run_.settings.accuracy > 0.0)) return;
-  search.quick = corners_.act_quickly() && !in_contact(run_.e_accepted);
+  search.quick = parts_.corners.act_quickly() && !in_contact(run_.e_accepted);
   double in_position = run_.allowed, in_velocity = run_.allowed;
   if (search.quick) {
     const double least = std::min(run_.allowed, least_allowed * rounding * run_.system.size());
     const double lasting = std::max(1.0, run_.settings.end - run_.accepted.t());
-    search.unbounded_slope = corners_.hide_errors();
+    search.unbounded_slope = parts_.corners.hide_errors();
     in_position = std::max(budget_.share(1.0, search.unbounded_slope) * run_.allowed, least);
     in_velocity = std::max(budget_.share(lasting, search.unbounded_slope) * run_.allowed, least);
   }
@@ -262,7 +256,7 @@ bool AdaptiveRun::bounded_step(double& dt, int& limiting_joint) {
     if (!run_.system.joint(j).step_limit(in, limit, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
-      return failure_.fail_with(fault, run_.accepted.t());
+      return parts_.failure.fail_with(fault, run_.accepted.t());
     }
     if (run_.system.joint_layout(j).coordinate == Coordinate::angle) {
       limit = std::min(limit, largest_turn / std::abs(in.coordinate_rate));

@@ -3,19 +3,17 @@
 
 #include <cstddef>
 
-#include "run/end_check.h"
 #include "run/error_budget.h"
 #include "run/event_bracket.h"
 #include "run/event_pursuit.h"
-#include "run/step_acceptance.h"
+#include "run/parts.h"
 #include "run/step_control.h"
 
 namespace freeplay {
 
 class AdaptiveRun {
  public:
-  AdaptiveRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
-              Recorder& recorder, EnergyGrowth& growth, Corners& corners, EventPursuit& pursuit, EndCheck& end);
+  AdaptiveRun(const RunParts& parts, EventPursuit& pursuit);
 
   /// To the end of the run, from the accepted state.
   void run(const RunHooks& hooks);
@@ -55,15 +53,9 @@ class AdaptiveRun {
   bool take_detour(bool passed, Search& search);
   bool accept(const Search& search);
 
+  const RunParts parts_;
   RunContext& run_;
-  RunFailure& failure_;
-  StepAttempt& attempt_;
-  StepAcceptance& acceptance_;
-  Recorder& recorder_;
-  EnergyGrowth& growth_;
-  Corners& corners_;
   EventPursuit& pursuit_;
-  EndCheck& end_;
   StepControl control_;
   ErrorBudget budget_;       // of steps over short loads
   double velocity_allowed_;  // by which velocities may err in the step to come [m/s]

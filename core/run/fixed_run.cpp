@@ -10,24 +10,15 @@ namespace {
 constexpr double smallest_step = 1e-3;  // of the step asked for
 }  // namespace
 
-FixedRun::FixedRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance,
-                   Recorder& recorder, EnergyGrowth& growth, Corners& corners, StepCorners& step_corners, EndCheck& end)
-    : run_(run),
-      failure_(failure),
-      attempt_(attempt),
-      acceptance_(acceptance),
-      recorder_(recorder),
-      growth_(growth),
-      corners_(corners),
-      step_corners_(step_corners),
-      end_(end) {}
+FixedRun::FixedRun(const RunParts& parts, StepCorners& step_corners)
+    : parts_(parts), run_(parts.run), step_corners_(step_corners) {}
 
 // The way to the next output instant.
 bool FixedRun::begin_leg() {
-  const double from = run_.accepted.t(), target = recorder_.take_next_row();
+  const double from = run_.accepted.t(), target = parts_.recorder.take_next_row();
   // Beyond this the time itself could not be advanced: t + dt would round to t.
   if (!((target - from) / run_.settings.step < 1e15)) {
-    return failure_.fail(
+    return parts_.failure.fail(
         4, fmt::format("t = {:.9g} s: a step of {:.3g} s is too small to advance the time", from, run_.settings.step));
   }
   const long count = std::max(1L, std::lround(std::ceil((target - from) / run_.settings.step - 1e-6)));
@@ -55,24 +46,25 @@ bool FixedRun::step() {
     // The step that ends at a corner has the forces before it to its end.
     const bool to_corner = corner < unbounded;
     bool converged = false;
-    if (!attempt_.make(to_corner ? step_corners_.before(corner) - run_.accepted.t() : dt, converged)) return false;
+    if (!parts_.attempt.make(to_corner ? step_corners_.before(corner) - run_.accepted.t() : dt, converged))
+      return false;
     if (!converged) {
       if (!run_.sleeping.stayed()) continue;
       ++run_.outcome.rejected;
       dt *= 0.5;
       if (dt < smallest && run_.plugin_fault.kind == Fault::Kind::plugin)
-        return failure_.fail_with(run_.plugin_fault, run_.accepted.t());
-      if (dt < smallest) return failure_.fail(4, failure_.why_not_converged(dt));
+        return parts_.failure.fail_with(run_.plugin_fault, run_.accepted.t());
+      if (dt < smallest) return parts_.failure.fail(4, parts_.failure.why_not_converged(dt));
       continue;
     }
     if (last || to_corner) run_.trial.t() = end;
-    if (!attempt_.evaluate_all(run_.trial, run_.e_trial))
-      return failure_.fail_with(run_.e_trial->fault, run_.trial.t());
+    if (!parts_.attempt.evaluate_all(run_.trial, run_.e_trial))
+      return parts_.failure.fail_with(run_.e_trial->fault, run_.trial.t());
     if (!run_.sleeping.held(dt, run_.e_trial)) continue;
-    if (growth_.too_large()) {
+    if (parts_.growth.too_large()) {
       ++run_.outcome.rejected;
       dt *= 0.5;
-      if (dt < smallest) return failure_.fail(4, failure_.why_energy_grows(dt, growth_.gained()));
+      if (dt < smallest) return parts_.failure.fail(4, parts_.failure.why_energy_grows(dt, parts_.growth.gained()));
       continue;
     }
     return accept(corner);
@@ -82,23 +74,23 @@ bool FixedRun::step() {
 // A blow inside the step does work.
 bool FixedRun::accept(double corner) {
   for (const auto& [kink, of_motion] : step_corners_.all()) {
-    if (of_motion && kink <= run_.trial.t() && corners_.note_jumps(kink)) corners_.book_jump(kink);
+    if (of_motion && kink <= run_.trial.t() && parts_.corners.note_jumps(kink)) parts_.corners.book_jump(kink);
   }
   const bool has_energy = step_corners_.add_energy();
-  return acceptance_.accept({.corner = corner, .has_energy = has_energy});
+  return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
 
 void FixedRun::run(const RunHooks& hooks) {
   while (run_.accepted.t() < run_.settings.end) {
     if (!(run_.accepted.t() < leg_.target) && !begin_leg()) return;
-    const bool going = step() && end_.check_stop();
+    const bool going = step() && parts_.end.check_stop();
     const bool arrived = going && !(run_.accepted.t() < leg_.target);
     // A run that was stopped keeps the state it stopped in.
-    if ((arrived || (!going && run_.outcome.steps > leg_.steps_before)) && !recorder_.write_row()) return;
+    if ((arrived || (!going && run_.outcome.steps > leg_.steps_before)) && !parts_.recorder.write_row()) return;
     if (!going) return;
     if (hooks.stepped) hooks.stepped();
-    if (end_.check_interrupt(hooks)) continue;
-    if (!arrived) recorder_.write_row();
+    if (parts_.end.check_interrupt(hooks)) continue;
+    if (!arrived) parts_.recorder.write_row();
     return;
   }
 }

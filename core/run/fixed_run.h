@@ -1,15 +1,14 @@
 // FixedRun: a run in steps of one size.
 #pragma once
 
-#include "run/end_check.h"
-#include "run/step_acceptance.h"
+#include "run/parts.h"
+#include "run/step_corners.h"
 
 namespace freeplay {
 
 class FixedRun {
  public:
-  FixedRun(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepAcceptance& acceptance, Recorder& recorder,
-           EnergyGrowth& growth, Corners& corners, StepCorners& step_corners, EndCheck& end);
+  FixedRun(const RunParts& parts, StepCorners& step_corners);
 
   /// To the end of the run, from the accepted state.
   void run(const RunHooks& hooks);
@@ -36,15 +35,9 @@ class FixedRun {
   bool step();
   bool accept(double corner);
 
+  const RunParts parts_;
   RunContext& run_;
-  RunFailure& failure_;
-  StepAttempt& attempt_;
-  StepAcceptance& acceptance_;
-  Recorder& recorder_;
-  EnergyGrowth& growth_;
-  Corners& corners_;
   StepCorners& step_corners_;
-  EndCheck& end_;
   Leg leg_;
 };
 

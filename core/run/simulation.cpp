@@ -32,8 +32,9 @@ struct Simulation::Impl {
   StepAcceptance acceptance{context, failure, attempt, recorder, doubts, growth, corners, step_corners};
   EventPursuit pursuit{context, failure, attempt, inside};
   EndCheck end{context, recorder};
-  FixedRun fixed{context, failure, attempt, acceptance, recorder, growth, corners, step_corners, end};
-  AdaptiveRun adaptive{context, failure, attempt, acceptance, recorder, growth, corners, pursuit, end};
+  RunParts parts{context, failure, attempt, acceptance, recorder, growth, corners, end};
+  FixedRun fixed{parts, step_corners};
+  AdaptiveRun adaptive{parts, pursuit};
 };
 
 Outcome Simulation::Impl::run(const RunHooks& hooks) {
