@@ -1,8 +1,8 @@
 #include "drawing/joint_freedom.h"
 
-#include <vector>
-
 #include <Eigen/LU>
+
+#include "system/joint_jacobian.h"
 
 namespace freeplay {
 namespace {
@@ -28,19 +28,9 @@ JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, con
   JointFreedom freedom;
   const int count = layout.constraint_rows;
   if (count == 0) return freedom;
-  std::vector<double> phi(static_cast<std::size_t>(count)), nu(phi), gamma(phi);
-  Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor> jacobian =
-      Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor>::Zero(count, 12);
-  ConstraintRows rows{{phi.data(), phi.size()},
-                      {jacobian.data(), static_cast<std::size_t>(jacobian.size())},
-                      {nu.data(), nu.size()},
-                      {gamma.data(), gamma.size()}};
-  JointInput in{};
-  in.a = &a;
-  in.b = &b;
-  Message message;
-  if (!joint.constrain(in, rows, message)) return {0, 0, freedom.slide, freedom.turn};
-  const Rows along = jacobian.middleCols<3>(6), about = jacobian.rightCols<3>();
+  const auto jacobian = joint_jacobian(joint, count, a, b);
+  if (!jacobian) return {0, 0, freedom.slide, freedom.turn};
+  const Rows along = jacobian->middleCols<3>(6), about = jacobian->rightCols<3>();
   freedom.slides = free_directions(along, freedom.slide);
   // Turns are free where the second origin can follow: sums of rows that do not see it must not see them.
   Eigen::MatrixXd blind = Eigen::MatrixXd::Identity(count, count);

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "base/index.h"
+#include "system/joint_jacobian.h"
 
 namespace freeplay {
 namespace {
@@ -24,20 +25,11 @@ double room(const JointLayout& layout) {
 bool holds_origins(const JointElement& element, Space space) {
   const int count = element.ideal_layout.constraint_rows, needed = space == Space::planar ? 2 : 3;
   if (element.gear >= 0 || element.is_force || count < needed) return false;
-  std::vector<double> phi(at(count)), nu(phi), gamma(phi);
-  Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor> jacobian =
-      Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor>::Zero(count, 12);
-  ConstraintRows rows{{phi.data(), phi.size()},
-                      {jacobian.data(), static_cast<std::size_t>(jacobian.size())},
-                      {nu.data(), nu.size()},
-                      {gamma.data(), gamma.size()}};
   MarkerKinematics marker{};
   std::ranges::copy(no_rotation, marker.rotation);
-  JointInput in{};
-  in.a = in.b = &marker;
-  Message message;
-  if (!element.ideal.constrain(in, rows, message)) return false;
-  return Eigen::FullPivLU<Eigen::MatrixXd>(jacobian.middleCols(6, needed)).setThreshold(1e-9).rank() == needed;
+  const auto jacobian = joint_jacobian(element.ideal, count, marker, marker);
+  if (!jacobian) return false;
+  return Eigen::FullPivLU<Eigen::MatrixXd>(jacobian->middleCols(6, needed)).setThreshold(1e-9).rank() == needed;
 }
 
 }  // namespace
