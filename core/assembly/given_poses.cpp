@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -27,12 +28,12 @@ GivenPoses::GivenPoses(const System& system)
 std::array<double, 3> GivenPoses::turn_vector(BodyId id, std::span<const double> q) const {
   const Body& body = model_.bodies[at(id)];
   if (!gives_turn(body)) return {};
-  if (planar_) return {0.0, 0.0, std::remainder(q[3 * at(id) + 2] - *body.angle, 2.0 * std::numbers::pi)};
+  if (planar_) return {0.0, 0.0, wrapped(q[3 * at(id) + 2] - *body.angle)};
   const Pose pose = system_.coordinates().frame_pose(id, q);
   const Eigen::Matrix3d turned =
       Eigen::Map<const RowMajor>(pose.rotation) * Eigen::Map<const RowMajor>(body.rotation->data()).transpose();
   const Eigen::AngleAxisd angle(turned);
-  const double size = std::remainder(angle.angle(), 2.0 * std::numbers::pi);
+  const double size = wrapped(angle.angle());
   return {size * angle.axis().x(), size * angle.axis().y(), size * angle.axis().z()};
 }
 

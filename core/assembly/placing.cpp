@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -22,7 +23,7 @@ struct PlanarPose {
   // The second frame of a joint in the first.
   static PlanarPose of(const Pose& relative, bool is_angle, double coordinate) {
     double angle = std::atan2(relative.rotation[3], relative.rotation[0]);
-    if (is_angle) angle += 2.0 * M_PI * std::round((coordinate - angle) / (2.0 * M_PI));
+    if (is_angle) angle = nearest_turn(angle, coordinate);
     return {relative.position[0], relative.position[1], angle};
   }
   // Turned as the body's own guess says, if it does, for a frame that stands at `end`.

@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -30,8 +31,7 @@ constexpr Eigen::Index most_columns = 180, columns_for_many = 45, columns_for_so
 
 VectorXd scaled(const System& system, VectorXd increment) {
   for (int i = 0; i < static_cast<int>(increment.size()); ++i) {
-    increment[i] = system.coordinates().is_turn(i) ? std::remainder(increment[i], 2.0 * std::numbers::pi)
-                                                   : increment[i] / system.size();
+    increment[i] = system.coordinates().is_turn(i) ? wrapped(increment[i]) : increment[i] / system.size();
   }
   return increment;
 }

@@ -8,6 +8,7 @@
 
 #include "assembly/given_poses.h"
 #include "assembly/placing.h"
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -100,15 +101,13 @@ TwinStart twin_start(const System& closed, std::span<const double> taken, std::s
   double largest = -1.0;
   bool turns = true;
   for (int i = 0; i < static_cast<int>(difference.size()); ++i) {
-    const double size = closed.coordinates().is_turn(i)
-                            ? std::abs(std::remainder(difference[at(i)], 2.0 * std::numbers::pi))
-                            : std::abs(difference[at(i)]) / closed.size();
+    const double size = closed.coordinates().is_turn(i) ? std::abs(wrapped(difference[at(i)]))
+                                                        : std::abs(difference[at(i)]) / closed.size();
     if (size > largest * (1.0 + 1e-6)) largest = size, worst = i / width, turns = closed.coordinates().is_turn(i);
   }
   const Body& body = model.bodies[at(worst)];
   const auto where = [&](std::span<const double> q) {
-    if (turns && width == 3)
-      return fmt::format("{:.1f} deg", degrees(std::remainder(q[3 * at(worst) + 2], 2.0 * std::numbers::pi)));
+    if (turns && width == 3) return fmt::format("{:.1f} deg", degrees(wrapped(q[3 * at(worst) + 2])));
     const Pose pose = closed.coordinates().frame_pose(worst, q);
     if (width == 3) return fmt::format("[{:.4g}, {:.4g}] m", pose.position[0], pose.position[1]);
     if (!turns) return fmt::format("[{:.4g}, {:.4g}, {:.4g}] m", pose.position[0], pose.position[1], pose.position[2]);

@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "freeplay/eigen.h"
 
 namespace freeplay {
 namespace {
 
 // Angles in any turn: what is left after the nearest whole turn.
-double without_turns(double angle) { return angle - 2.0 * M_PI * std::round(angle / (2.0 * M_PI)); }
 
 /// Sizes of a moment's numbers: ordinary, or those of a large, fast or long simulation.
 struct Extent {
@@ -69,9 +69,9 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
     probe.begin_step(other, random_twelve(space, random, 10.0), dt, begun);
     if (probe.layout().history > 0) moments.push_back(begun);
     for (int event = 0; event < static_cast<int>(probe.layout().events.size); ++event) {
-      JointMoment told = fresh;
-      probe.on_event(event, told);
-      moments.push_back(told);
+      JointMoment after_event = fresh;
+      probe.on_event(event, after_event);
+      moments.push_back(after_event);
     }
   };
   // A joint with play is no model of anything where its parts have left each other's reach.

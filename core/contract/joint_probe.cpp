@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "component/declared.h"
 #include "contract/joint_words.h"
 
@@ -42,7 +43,7 @@ struct JointProbe::Fed {
     if (!good) return;
     in.coordinate = row.value;
     if (probe.layout_.coordinate == Coordinate::angle) {
-      in.coordinate += 2.0 * M_PI * std::round((moment.coordinate - row.value) / (2.0 * M_PI));
+      in.coordinate = nearest_turn(in.coordinate, moment.coordinate);
     }
     const Twelve twist = twists(markers);
     for (std::size_t i = 0; i < twist.size(); ++i) in.coordinate_rate += row.jacobian[i] * twist[i];
@@ -131,7 +132,7 @@ CoordinateValues JointProbe::coordinate(const JointMoment& moment) const {
   if (!watch("coordinate", fed, {&numbers, &pair})) return {};
   double value = row.value;
   if (layout_.coordinate == Coordinate::angle) {
-    value += 2.0 * M_PI * std::round((moment.coordinate - value) / (2.0 * M_PI));
+    value = nearest_turn(value, moment.coordinate);
   }
   return {value, row.bias, numbers.values()};
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "contract/joint_contract.h"
 #include "contract/joint_words.h"
 #include "contract/planar_declaration.h"
@@ -209,7 +210,7 @@ class RowCheck {
   void equals(std::size_t row, const DeclaredRow& wanted) {
     const double size = 1.0 + sizes_of_terms()[row], fastest = 1.0 + sizes_of_rates()[row];
     double off = here_.value[row] - wanted.value;
-    if (wanted.is_angle) off -= 2.0 * M_PI * std::round(off / (2.0 * M_PI));
+    if (wanted.is_angle) off = without_turns(off);
     bool same = std::abs(off) <= 1e-12 * size && std::abs(here_.nu[row]) <= 1e-12 * fastest &&
                 std::abs(here_.gamma[row] - wanted.gamma) <= 1e-12 * fastest * fastest;
     for (std::size_t i = 0; i < 12; ++i) {
@@ -258,7 +259,7 @@ class RowCheck {
     for (std::size_t r = 0; r < std::min(values.size(), here_.size()); ++r) {
       const double jump = values[r] - here_.value[r];
       const bool angle = std::abs(values[r]) < 12.6 && std::abs(here_.value[r]) < 12.6;
-      if (angle && std::abs(jump) > 3.0) values[r] -= 2.0 * M_PI * std::round(jump / (2.0 * M_PI));
+      if (angle && std::abs(jump) > 3.0) values[r] -= whole_turn * std::round(jump / whole_turn);
     }
     return values;
   }

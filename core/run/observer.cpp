@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/angle.h"
 #include "base/index.h"
 #include "component/joint_answer.h"
 #include "run/energy_account.h"
@@ -116,7 +117,7 @@ bool Observer::observe_path(int index, const Point& point, const Evaluation& e, 
   const double turned = system_.marker_angle(marker, e.q) - wanted[2].value;
   row[at(columns.error_x)] = e.markers[at(marker)].position[0] - wanted[0].value;
   row[at(columns.error_y)] = e.markers[at(marker)].position[1] - wanted[1].value;
-  row[at(columns.error_angle)] = turned - 2.0 * M_PI * std::round(turned / (2.0 * M_PI));
+  row[at(columns.error_angle)] = without_turns(turned);
   return true;
 }
 

@@ -131,7 +131,7 @@ void DeclaredRows::fill_rows(std::span<const Mount> mounts, Evaluation& e) const
       return (body == ground ? 0.0 : e.q[3 * at(body) + 2]) + mounts[at(marker)].angle;
     };
     const double apart = angle(row.ends.body_b, row.ends.marker_b) - angle(row.ends.body_a, row.ends.marker_a);
-    phi[row.row] = apart - whole_turn * std::round(apart / whole_turn);
+    phi[row.row] = without_turns(apart);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/angle.h"
 #include "base/index.h"
 #include "system/finite.h"
 #include "system/system.h"
@@ -211,7 +212,7 @@ bool System::evaluate_coordinates(const Point& point, unsigned terms, Evaluation
     }
     if (record.turn >= 0) {
       // The turn nearest to the last accepted angle: a step never turns a joint by more than half a revolution.
-      row.value += 2.0 * M_PI * std::round((point.h[at(record.turn)] - row.value) / (2.0 * M_PI));
+      row.value = nearest_turn(row.value, point.h[at(record.turn)]);
     }
     e.coordinate[at(j)] = row.value;
     e.coordinate_rate[at(j)] = rate_of(row.jacobian, *in.a, *in.b);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.h"
 #include "system/planar_kinematics.h"
 #include "system/spatial_kinematics.h"
 
@@ -197,7 +198,7 @@ class Differences {
     if (!differenced_.joint.coordinate(in, row, message_)) return false;
     const bool angle = differenced_.layout.coordinate == Coordinate::angle;
     in.coordinate = row.value;
-    if (angle) in.coordinate += 2.0 * M_PI * std::round((in_.coordinate - row.value) / (2.0 * M_PI));
+    if (angle) in.coordinate = nearest_turn(row.value, in_.coordinate);
     in.coordinate_rate = 0.0;
     for (int i = 0; i < 3; ++i) {
       in.coordinate_rate += row.jacobian[i] * in.a->velocity[i] + row.jacobian[3 + i] * in.a->angular_velocity[i] +

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -16,7 +17,7 @@ void PathRow::entries(const Evaluation& e, double* row) const {
 double PathRow::residual(const System& system, const Point& point, const Evaluation& e, double path) const {
   if (component < 2) return e.markers[at(marker)].position[component] - path;
   const double error = system.marker_angle(marker, point.q) - path;
-  return error - 2.0 * M_PI * std::round(error / (2.0 * M_PI));
+  return without_turns(error);
 }
 
 double PathRow::gamma(const Evaluation& e, double path_acceleration) const {

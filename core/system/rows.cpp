@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/index.h"
 #include "system/finite.h"
 #include "system/system.h"
@@ -123,7 +124,7 @@ void System::evaluate_driver_rows(Evaluation& e) const {
     const TimeValue& f = e.motion[at(driver.driver)];
     double error = e.coordinate[at(driver.joint)] - f.value;
     if (std::abs(error) > M_PI && motions_->modulo_turns(driver.driver)) {
-      error -= 2.0 * M_PI * std::round(error / (2.0 * M_PI));
+      error = without_turns(error);
     }
     e.phi[at(driver.row)] = error;
     e.nu[at(driver.row)] = f.rate;

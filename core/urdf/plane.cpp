@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay::urdf {
@@ -154,7 +155,7 @@ class Projector {
     if (joint.closed_at_zero) {
       const PlanarPose zero = body_pose(joint.child.link) * flat(second);
       planar.first = inverse(body_pose(joint.parent.link)) * zero;
-      planar.first.angle = std::remainder(planar.first.angle, 2.0 * std::numbers::pi);
+      planar.first.angle = wrapped(planar.first.angle);
       const double turned = joint.axis_in_world ? -zero.angle : 0.0;
       axis = Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()) * axis;
       first.turn = Eigen::AngleAxisd(planar.first.angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
