@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t many = 1 << 16;
 
-[[noreturn]] void fail(const std::filesystem::path& path, const char* reason) {
-  throw Error(Error::Category::file, "cannot-write", fmt::format("cannot write '{}': {}", path.string(), reason));
+std::string words(const std::filesystem::path& path, const char* reason) {
+  return fmt::format("cannot write '{}': {}", path.string(), reason);
 }
 
 /// Whether no folder names the file any more: it was removed, or another took its place.
@@ -32,7 +32,7 @@ GrowingFile::GrowingFile(std::filesystem::path path)
     : path_(std::move(path)),
       descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
       last_flush_(std::chrono::steady_clock::now()) {
-  if (descriptor_ < 0) fail(path_, std::strerror(errno));
+  if (descriptor_ < 0) throw Error(Error::Category::file, "cannot-write", words(path_, std::strerror(errno)));
   text_.reserve(2 * many);
 }
 
@@ -76,15 +76,28 @@ void GrowingFile::flush() {
   last_flush_ = std::chrono::steady_clock::now();
 }
 
+void GrowingFile::sync() {
+  flush();
+  if (failure_ == 0 && ::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) failure_ = errno;
+}
+
+void GrowingFile::look_after() {
+  if (descriptor_ >= 0 && !removed_) removed_ = has_no_name(descriptor_);
+}
+
+std::string GrowingFile::failure() const {
+  if (failure_ != 0) return words(path_, std::strerror(failure_));
+  return removed_ ? words(path_, "it was removed or replaced while it was written") : std::string();
+}
+
 void GrowingFile::close() {
   if (descriptor_ >= 0) {
     flush();
-    removed_ = has_no_name(descriptor_);
+    look_after();
     if (::close(descriptor_) != 0 && failure_ == 0) failure_ = errno;
     descriptor_ = -1;
   }
-  if (failure_ != 0) fail(path_, std::strerror(failure_));
-  if (removed_) fail(path_, "it was removed or replaced while it was written");
+  if (!ok()) throw Error(Error::Category::file, "cannot-write", failure());
 }
 
 }  // namespace freeplay

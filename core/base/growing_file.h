@@ -25,14 +25,20 @@ class GrowingFile {
   void end_line();
   /// Writes if the last time was a second ago.
   void flush_if_due();
+  /// Writes what was collected.
+  void flush();
+  /// The same, and tells the disk.
+  void sync();
+  /// Notes as a failure that the file was removed or replaced.
+  void look_after();
   /// Writes everything. Throws Error{file} "cannot-write" for the first failure of all, and where the file was removed.
   void close();
 
-  bool ok() const { return failure_ == 0; }
+  bool ok() const { return failure_ == 0 && !removed_; }
+  /// "cannot write 'FILE': REASON"; empty while all is well.
+  std::string failure() const;
 
  private:
-  void flush();
-
   std::filesystem::path path_;
   int descriptor_ = -1;
   int failure_ = 0;  // errno of the first failure

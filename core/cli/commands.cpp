@@ -6,6 +6,7 @@
 #include "cli/convert_command.h"
 #include "cli/describe_command.h"
 #include "cli/doctor_command.h"
+#include "cli/export_command.h"
 #include "cli/init_command.h"
 #include "cli/list_command.h"
 #include "cli/run_command.h"
@@ -22,6 +23,7 @@ std::span<const CommandEntry> all_commands() {
       {"validate", add_validate_command},
       {"analyze", add_analyze_command},
       {"compare", add_compare_command},
+      {"export", add_export_command},
       {"show", add_show_command},
       {"convert", add_convert_command},
       {"doctor", add_doctor_command},

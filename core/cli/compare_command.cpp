@@ -81,7 +81,7 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
     throw Error(Error::Category::usage, "missing-argument", "compare needs two results");
   }
   const ComparisonRules rules = rules_of(options);
-  const ResultTable a = read_result(options.a), b = read_result(options.b);
+  const ResultTable a = read_result(options.a, rules.channels), b = read_result(options.b, rules.channels);
   const Comparison comparison = compare(a, b, rules);
   if (common.json) {
     print_json(table_json(comparison));
@@ -100,7 +100,7 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
 Command add_compare_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "compare", "Print how far two results agree");
   const auto options = std::make_shared<CompareOptions>();
-  add_option(*app, "A", options->a, "Result directory or CSV file");
+  add_option(*app, "A", options->a, "Result directory, CSV or HDF5 file");
   add_option(*app, "B", options->b, "Another; it is interpolated where its times differ");
   add_option(*app, "--tolerance", options->tolerance, "Part of the largest |a| that may differ (1e-6)", "REL");
   add_option(*app, "--absolute", options->absolute, "What may differ besides (1e-12)", "ABS");

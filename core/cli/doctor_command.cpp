@@ -16,6 +16,7 @@
 #include "cli/terminal.h"
 #include "component/library.h"
 #include "freeplay/plugin.h"
+#include "results/formats.h"
 
 namespace freeplay {
 namespace {
@@ -41,7 +42,7 @@ class Doctor {
     examine_threads();
     examine_folder_of_results();
     add("ok", "URDF", "links and joints read by urdfdom, loops and places by the program itself");
-    add("note", "HDF5", "not in this build: results are CSV");
+    add("ok", "HDF5", fmt::format("{}: results are HDF5 and CSV", hdf5_version()));
     examine_reference();
     return std::move(findings_);
   }

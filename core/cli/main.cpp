@@ -74,6 +74,8 @@ bool json_wanted(int argc, char** argv) {
 
 int execute_and_report(int argc, char** argv) {
   CommonOptions common;
+  common.command = "freeplay";
+  for (int i = 1; i < argc; ++i) (common.command += ' ') += argv[i];
   try {
     return execute(argc, argv, common);
   } catch (const Error& error) {

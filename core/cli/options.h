@@ -22,6 +22,7 @@ struct CommonOptions {
   bool quiet = false, verbose = false, json = false, no_color = false, strict = false;
   int max_errors = 20;  ///< 0: no limit
   std::vector<std::string> plugins;
+  std::string command;  ///< the command line as typed
 };
 
 /// Options of every command that reads a model.

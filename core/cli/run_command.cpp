@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/number_text.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/facts.h"
@@ -47,10 +48,14 @@ void refuse_idle_options(const RunOptions& options) {
     throw Error(Error::Category::usage, "usage",
                 fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
   }
-  if (options.format == "hdf5" || options.format == "both") not_in_this_release("--format " + options.format);
-  if (options.format.empty() || options.format == "csv") return;
+}
+
+std::optional<ResultFormat> result_format(const std::string& word) {
+  if (word.empty()) return std::nullopt;
+  const auto found = std::ranges::find(result_formats, word, [](const char* format) { return std::string(format); });
+  if (found != std::end(result_formats)) return static_cast<ResultFormat>(found - std::begin(result_formats));
   throw Error(Error::Category::usage, "bad-value",
-              fmt::format("bad value '{}' of --format: it must be csv", options.format));
+              fmt::format("bad value '{}' of --format: it must be csv, hdf5 or both", word));
 }
 
 BuildOptions build_options(const RunOptions& options) {
@@ -62,7 +67,26 @@ BuildOptions build_options(const RunOptions& options) {
     throw Error(Error::Category::usage, "usage", "--step and --accuracy exclude each other");
   }
   if (!options.integrator.empty()) build.integrator = options.integrator;
+  build.format = result_format(options.format);
   return build;
+}
+
+/// Its arguments make the same run of the same model file, in whatever words this one was asked for.
+Making making(const RunOptions& options, const CommonOptions& common, const Model& model) {
+  Making making{.made = "run", .command = common.command, .arguments = {}, .build = FREEPLAY_BUILD};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (value.empty()) return;
+    making.arguments.emplace_back(option);
+    making.arguments.push_back(value);
+  };
+  add("--end", fmt::format("{} s", number_text(model.settings.end)));
+  for (const auto& [name, text] : model.overrides) add("--set", fmt::format("{}={}", name, text));
+  for (const std::string& joint : model.ideal) add("--ideal", joint);
+  add("--step", options.step);
+  add("--accuracy", options.accuracy);
+  add("--integrator", options.integrator);
+  for (const std::string& plugin : common.plugins) add("--plugin", plugin);
+  return making;
 }
 
 std::filesystem::path result_path(const RunOptions& options, const Model& model) {
@@ -99,7 +123,7 @@ class RunJob {
         repeats_(repeats),
         path_(std::move(path)),
         channels_(*loaded.model),
-        recording_(path_, options.force, *loaded.model, channels_),
+        recording_(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model)),
         sinks_(recording_.sinks()),
         simulation_(std::in_place, assembled.system, assembled.start, channels_, all_sinks()) {}
 
@@ -128,7 +152,7 @@ class RunJob {
       outcome.reason = "interrupted during the second run of --verify: this one had come to its end";
       recording_.log().write("note", outcome.reason);
     }
-    recording_.close();
+    if (const std::string failure = recording_.close(); !failure.empty()) fail_writing(failure, outcome);
     return finish(outcome, ended, verification);
   }
 
@@ -175,13 +199,24 @@ class RunJob {
   Outcome run() {
     ProgressLine progress(settings().start, settings().end, stderr_is_terminal() && !common_.quiet);
     RunHooks hooks;
-    hooks.interrupt = &watch_interrupts();
+    const std::atomic<int>& interrupt = watch_interrupts();
+    std::atomic<int> stop{0};
+    hooks.interrupt = &stop;
     if (options_.profile) hooks.profile = &profile_;
     hooks.progress = [&](double t, long steps) {
       progress.update(t, steps);
-      recording_.flush_if_due();
+      if (interrupt != 0 || !recording_.ok()) stop = 1;
     };
     return simulation_->run(hooks);
+  }
+
+  /// Nothing is claimed that the files do not hold.
+  void fail_writing(const std::string& failure, Outcome& outcome) const {
+    outcome.status = RunStatus::failed;
+    outcome.exit_code = 6;
+    outcome.rows = recording_.rows();
+    outcome.reason =
+        outcome.rows > 0 ? fmt::format("{}; rows up to t = {:g} s are safe", failure, recording_.last_time()) : failure;
   }
 
   /// The summary of a large model takes memory, and a second run as much as this one did: matrices go first.
@@ -221,6 +256,10 @@ class RunJob {
                           .limit = verification->limit});
       }
     }
+    recording_.bearing(ended.clearances);
+    record.hashes = recording_.hashes();
+    record.provenance = recording_.provenance();
+    record.provenance["hashes"] = record.hashes;
     record.extremes = ended.extremes;
     record.trust.add(outcome.doubts);
     doubt_input(loaded_.diagnostics, record.trust);
@@ -334,7 +373,7 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
            "Print where the time went: assembly, factorization, joints, events, output");
   add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");
   add_flag(*app, "--force", options->force, "Write into a directory that holds other files");
-  add_option(*app, "--format", options->format, "Of the results: csv", "FORMAT");
+  add_option(*app, "--format", options->format, "Of the results: csv, hdf5, both (both)", "FORMAT");
   add_later_flag(*app, "--resume", options->resume);
   add_flag(*app, "--dry-run", options->dry_run, "Load, assemble, print the facts, write nothing");
   add_model_options(*app, options->model_options);

@@ -18,7 +18,6 @@ namespace {
 const std::vector<std::string> later_commands{
     "sweep",   //
     "report",  //
-    "export",  //
 };
 
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,

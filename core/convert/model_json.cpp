@@ -335,7 +335,7 @@ class ModelWriter {
     json["output"] = {{"interval", number(settings.interval, "s")},
                       {"channels", settings.channels},
                       {"frames", frames},
-                      {"format", "csv"},
+                      {"format", result_formats[static_cast<std::size_t>(settings.format)]},
                       {"discard", number(settings.discard, "s")}};
     json["stop"] = Json::array();
     for (const StopCondition& one : settings.stop) json["stop"].push_back(condition(one));

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/model.h"
+
 namespace freeplay {
 
 class Readout;
@@ -16,6 +18,7 @@ struct BuildOptions {
   std::optional<double> end, step;                       ///< [s]
   std::optional<double> accuracy = std::nullopt;         ///< [m per s]; in place of any step
   std::optional<std::string> integrator;                 ///< name
+  std::optional<ResultFormat> format = std::nullopt;     ///< of the results
   Readout* readout = nullptr;                            ///< receives what values and names came to
   std::optional<double> largest_step = std::nullopt;     ///< of runs with an accuracy [s]
 };

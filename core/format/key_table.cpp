@@ -199,7 +199,7 @@ constexpr FormatKey output[] = {
     {"channels", "list of text", "", "[\"*\"]", "Patterns of the columns; `freeplay list channels FILE` shows all.",
      "[\"joint.*.fx\", \"energy.*\"]"},
     {"frames", "list of frame", "", "", "Frames whose pose and velocity are reported.", "[rod/tip]"},
-    {"format", "'csv'", "", "csv", "Of the results.", "csv"},
+    {"format", "'csv' | 'hdf5' | 'both'", "", "both", "Of the results.", "csv"},
     {"discard", "quantity", "s", "0", "Time from the start that statistics leave out.", "5 ms"}};
 
 constexpr FormatKey stop[] = {

@@ -47,6 +47,7 @@ class SimulationSection {
     if (options.step) settings_.accuracy = 0.0;
     if (options.accuracy) settings_.accuracy = *options.accuracy;
     if (options.accuracy || options.step) settings_.accuracy_location = {};
+    if (options.format) settings_.format = *options.format;
     if (!section_given) {
       settings_.end = options.end.value_or(settings_.end);
       settings_.interval = (settings_.end - settings_.start) / 1000.0;
@@ -213,12 +214,9 @@ class SimulationSection {
     }
   }
 
-  static void read_format(const CheckedValue& value) {
-    if (value.node().is_scalar() && (value.node().text == "hdf5" || value.node().text == "both")) {
-      return value.fail("wrong-type", "'" + value.path() + "' must be csv, not '" + value.node().text + "'", {},
-                        "not in this release");
-    }
-    value.word({"csv"});
+  void read_format(const CheckedValue& value) {
+    if (const auto word = value.word({std::begin(result_formats), std::end(result_formats)}))
+      settings_.format = static_cast<ResultFormat>(*word);
   }
 
   void read_stop(const CheckedValue& value) {

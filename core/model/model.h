@@ -166,6 +166,9 @@ struct StopCondition {
   Location location;
 };
 
+enum class ResultFormat { csv, hdf5, both };
+inline constexpr const char* result_formats[] = {"csv", "hdf5", "both"};
+
 struct Settings {
   double start = 0.0, end = 1.0;  ///< [s]
   double step = 1e-4;             ///< fixed, or the first of an adaptive run [s]
@@ -181,6 +184,7 @@ struct Settings {
   double discard = 0.0;                    ///< left out of statistics, from the start [s]
   std::vector<std::string> channels{"*"};  ///< patterns of result columns
   std::vector<int> frames;                 ///< markers to report
+  ResultFormat format = ResultFormat::both;
   std::vector<StopCondition> stop;
   double assembly_tolerance = 1e-10;  ///< [m, rad]
   int assembly_iterations = 50;

@@ -3,35 +3,71 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <tuple>
 
-#include "base/number_text.h"
-
 namespace freeplay {
+namespace {
 
-EventSink::EventSink(const std::filesystem::path& path, const Model& model)
-    : model_(model),
-      columns_{"speed", "tangential_speed", "direction", "duration",           "max_fn",      "max_delta",
-               "steps", "approach_speed",   "impulse",   "tangential_impulse", "energy_lost", "impact"},
-      file_(path) {
-  for (const JointElement& joint : model.joints) {
-    auto& events = place_.emplace_back();
-    for (const Event& event : joint.layout.events) {
-      auto& fields = events.emplace_back();
-      for (const Channel& field : event.fields) fields.push_back(column(field.name));
-    }
-  }
-  cells_.resize(columns_.size());
-  file_.line() += "time,joint,kind";
-  for (const std::string& name : columns_) (file_.line() += ',') += name;
-  file_.end_line();
+constexpr struct {
+  const char *name, *unit, *long_name;
+} contact_columns[] = {
+    {"speed", "m/s", "speed along the normal"},
+    {"tangential_speed", "m/s", "speed along the wall"},
+    {"direction", "rad", "direction of the contact in global axes"},
+    {"duration", "s", "duration of the contact"},
+    {"max_fn", "N", "largest normal force of the contact"},
+    {"max_delta", "m", "largest penetration of the contact"},
+    {"steps", "1", "steps of the contact"},
+    {"approach_speed", "m/s", "normal speed at which the contact began"},
+    {"impulse", "N*s", "impulse of the normal force over the contact"},
+    {"tangential_impulse", "N*s", "impulse of the friction force over the contact"},
+    {"energy_lost", "J", "energy lost in the contact"},
+    {"impact", "1", "1 for an impact, 0 for a lasting contact"},
+};
+
+std::size_t place_of(const std::vector<RecordColumn>& columns, std::string_view name) {
+  return static_cast<std::size_t>(std::ranges::find(columns, name, &RecordColumn::name) - columns.begin());
 }
 
-std::size_t EventSink::column(const std::string& name) {
-  const auto found = std::ranges::find(columns_, name);
-  const std::size_t index = static_cast<std::size_t>(found - columns_.begin());
-  if (found == columns_.end()) columns_.push_back(name);
-  return index;
+std::size_t place_of(const std::vector<std::string>& words, std::string_view word) {
+  return static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
+}
+
+}  // namespace
+
+void add_event_columns(const Model& model, RecordLayout& layout) {
+  const std::string source = "events of joints";
+  layout.events = {{"time", "s", "time of the event", source},
+                   {"joint", "1", "joint of the event", source},
+                   {"kind", "1", "kind of the event", source}};
+  for (const auto& column : contact_columns) {
+    layout.events.push_back({column.name, column.unit, column.long_name, source});
+  }
+  for (const JointElement& joint : model.joints) {
+    layout.joints.push_back(joint.name);
+    for (const Event& event : joint.layout.events) {
+      if (place_of(layout.kinds, event.name) == layout.kinds.size()) layout.kinds.emplace_back(event.name);
+      for (const Channel& field : event.fields) {
+        if (place_of(layout.events, field.name) < layout.events.size()) continue;
+        const std::string type = joint.component != nullptr ? joint.component->description.name : "a joint";
+        layout.events.push_back(
+            {field.name, field.unit, std::string(field.name) + " of the event", "events of " + type});
+      }
+    }
+  }
+}
+
+EventSink::EventSink(const Model& model, const RecordLayout& layout, Take take)
+    : numbers_(layout.events.size()), take_(std::move(take)) {
+  for (const JointElement& joint : model.joints) {
+    auto& events = events_.emplace_back();
+    for (const Event& event : joint.layout.events) {
+      OfEvent& of = events.emplace_back();
+      of.kind = place_of(layout.kinds, event.name);
+      for (const Channel& field : event.fields) of.place.push_back(place_of(layout.events, field.name));
+    }
+  }
 }
 
 void EventSink::event(const EventRecord& record) {
@@ -46,39 +82,32 @@ void EventSink::event(const EventRecord& record) {
 }
 
 void EventSink::row(std::span<const double> values) {
-  if (!waiting_.empty()) write_until(values[0]);
-  file_.flush_if_due();
+  if (!waiting_.empty()) give_until(values[0]);
 }
 
-void EventSink::write_until(double time) {
+void EventSink::give_until(double time) {
   const auto place = [](const Waiting& event) { return std::tuple(event.time, event.joint, event.order); };
   // By order of arrival last, which a stable sort would give too, but with an allocation.
   std::ranges::sort(waiting_, {}, place);
   const auto later = std::ranges::find_if(waiting_, [&](const Waiting& event) { return event.time > time; });
-  for (auto event = waiting_.begin(); event != later; ++event) write(*event);
+  for (auto event = waiting_.begin(); event != later; ++event) give(*event);
   waiting_.erase(waiting_.begin(), later);
   if (waiting_.empty()) fields_.clear();
 }
 
-void EventSink::write(const Waiting& event) {
-  const JointElement& joint = model_.joints[event.joint];
-  std::ranges::fill(cells_, std::numeric_limits<double>::quiet_NaN());
-  const std::vector<std::size_t>& place = place_[event.joint][event.event];
-  for (std::size_t i = 0; i < place.size(); ++i) cells_[place[i]] = fields_[event.first_field + i];
+void EventSink::give(const Waiting& event) {
+  const OfEvent& of = events_[event.joint][event.event];
+  std::ranges::fill(numbers_, std::numeric_limits<double>::quiet_NaN());
+  numbers_[0] = event.time;
+  numbers_[1] = static_cast<double>(event.joint);
+  numbers_[2] = static_cast<double>(of.kind);
+  for (std::size_t i = 0; i < of.place.size(); ++i) numbers_[of.place[i]] = fields_[event.first_field + i];
   for (std::size_t i = 0; i < contact_numbers; ++i) {
-    if (!std::isnan(event.contact[i])) cells_[of_contact + i] = event.contact[i];
+    if (!std::isnan(event.contact[i])) numbers_[of_contact + i] = event.contact[i];
   }
-  std::string& line = file_.line();
-  append_number(line, event.time);
-  ((line += ',') += joint.name) += ',';
-  line += joint.layout.events[event.event].name;
-  for (const double cell : cells_) append_number(line += ',', cell);
-  file_.end_line();
+  take_(numbers_);
 }
 
-void EventSink::close() {
-  write_until(std::numeric_limits<double>::infinity());
-  file_.close();
-}
+void EventSink::finish() { give_until(std::numeric_limits<double>::infinity()); }
 
 }  // namespace freeplay

@@ -1,31 +1,116 @@
 #include "results/recording.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
+#include "base/error.h"
+#include "base/sha256.h"
+#include "base/version.h"
 #include "model/channel_selection.h"
+#include "results/record_layout.h"
+#include "results/summary.h"
 
 namespace freeplay {
+namespace {
 
-Recording::Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels)
+std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+RecordLayout layout_of(const Model& model, const Channels& channels, std::span<const std::size_t> picked,
+                       const Json& provenance) {
+  RecordLayout layout = record_layout(model, channels, picked);
+  Json inputs = Json::array();
+  for (const InputFile& input : model.inputs) {
+    inputs.push_back({{"name", input.name}, {"sha256", sha256(input.text)}, {"text", input.text}});
+  }
+  layout.attributes = {{"Conventions", "Freeplay-1"},
+                       {"title", model.name},
+                       {"freeplay_version", program_version},
+                       {"model", model.text},
+                       {"model_sha256", sha256(model.text)},
+                       {"inputs", compact(inputs)},
+                       {"settings", compact(settings_json(model))},
+                       {"provenance", compact(provenance)}};
+  return layout;
+}
+
+/// Of the whole run; what it does not reach leaves chunks a little larger.
+std::size_t expected_rows(const Settings& settings) {
+  const double rows = (settings.end - settings.start) / settings.interval + 1.0;
+  return static_cast<std::size_t>(std::clamp(std::ceil(rows), 1.0, 1e9));
+}
+
+}  // namespace
+
+Recording::Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels,
+                     const Making& making)
     : directory_(path, force),
       log_(directory_.file("run.log")),
-      rows_(directory_.file("results.csv"), channels, select_channels(channels, model.settings.channels)),
-      events_(directory_.file("events.csv"), model),
+      provenance_(freeplay::provenance(model, making)),
+      picked_(select_channels(channels, model.settings.channels)),
+      layout_(layout_of(model, channels, picked_, provenance_)),
+      thread_(picked_.size(), make_writers(model)),
+      events_(model, layout_, [this](std::span<const double> numbers) { thread_.add_event(numbers); }),
       advice_(model) {
   directory_.write(model_copy_name(model), model.text);
   for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
 }
 
-void Recording::flush_if_due() {
-  rows_.flush_if_due();
-  events_.flush_if_due();
+std::vector<std::unique_ptr<RecordWriter>> Recording::make_writers(const Model& model) {
+  std::vector<std::unique_ptr<RecordWriter>> writers;
+  const ResultFormat format = model.settings.format;
+  auto hash = std::make_unique<RowHash>();
+  auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_);
+  row_hash_ = hash.get();
+  event_text_ = events.get();
+  writers.push_back(std::move(hash));
+  writers.push_back(std::move(events));
+  if (format != ResultFormat::hdf5) {
+    writers.push_back(std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_));
+  }
+  if (format != ResultFormat::csv) {
+    const Hdf5Writer::Options options{.expected_rows = expected_rows(model.settings), .grows = true};
+    auto hdf5 = std::make_unique<Hdf5Writer>(directory_.file("results.h5"), layout_, options);
+    hdf5_ = hdf5.get();
+    writers.push_back(std::move(hdf5));
+  }
+  return writers;
 }
 
-void Recording::close() {
-  rows_.close();
-  events_.close();
-  log_.close();
+void Recording::when_safe(std::function<void()> then) { thread_.when_safe(std::move(then)); }
+
+std::string Recording::close() {
+  events_.finish();
+  std::string failure = thread_.close();
+  try {
+    log_.close();
+  } catch (const Error& error) {
+    if (failure.empty()) failure = error.message();
+  }
+  return failure;
 }
+
+void Recording::bearing(const ClearanceStatistics& clearances) {
+  constexpr std::pair<const char*, BearingTable::Column BearingTable::*> all[] = {
+      {"contact_time", &BearingTable::contact_time}, {"impulse", &BearingTable::impulse},
+      {"sliding", &BearingTable::sliding},           {"work", &BearingTable::work},
+      {"pv_mean", &BearingTable::pv_mean},           {"pv_max", &BearingTable::pv_max}};
+  BearingTable::Column unknown;
+  unknown.fill(std::numeric_limits<double>::quiet_NaN());
+  for (const std::string& name : layout_.bearings) {
+    const int joint = static_cast<int>(std::ranges::find(layout_.joints, name) - layout_.joints.begin());
+    const bool has_table = clearances.has_table(joint);
+    const BearingTable table = has_table ? clearances.table(joint) : BearingTable{};
+    for (const auto& [quantity, column] : all) {
+      const BearingTable::Column& numbers = has_table ? table.*column : unknown;
+      std::vector<double>& out = tables_[quantity];
+      out.insert(out.end(), numbers.begin(), numbers.end());
+    }
+  }
+}
+
+Json Recording::hashes() const { return {{"rows", row_hash_->digits()}, {"events", event_text_->digits()}}; }
 
 std::vector<std::string> Recording::files() {
   names_ = directory_.files();
@@ -36,7 +121,12 @@ std::vector<std::string> Recording::files() {
 
 void Recording::seal(const Json& summary) {
   directory_.require_all(names_);
-  directory_.write("summary.json", json_text(summary));
+  const std::string text = json_text(summary);
+  if (hdf5_ != nullptr) {
+    hdf5_->finish(tables_, text);
+    if (!hdf5_->failure().empty()) throw Error(Error::Category::file, "cannot-write", hdf5_->failure());
+  }
+  directory_.write("summary.json", text);
 }
 
 }  // namespace freeplay

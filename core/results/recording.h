@@ -2,15 +2,24 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/json_text.h"
+#include "model/channel.h"
 #include "results/contact_advice.h"
-#include "results/csv_sink.h"
 #include "results/directory.h"
 #include "results/event_sink.h"
+#include "results/hdf5_writer.h"
+#include "results/provenance.h"
+#include "results/record.h"
+#include "results/record_thread.h"
+#include "results/row_hash.h"
 #include "results/run_log.h"
+#include "results/text_writers.h"
+#include "run/clearance_statistics.h"
 
 namespace freeplay {
 
@@ -19,30 +28,65 @@ class Recording {
  public:
   /// Makes the directory, replaces an earlier result in it (`force`: beside other files) and writes the model and its
   /// inputs. `model` outlives the recording. Throws Error{file}.
-  Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels);
+  Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels,
+            const Making& making);
 
   /// Where rows and events of the run go.
   std::vector<Sink*> sinks() { return {&rows_, &events_, &advice_}; }
+  /// False once a file could not be written, or was removed.
+  bool ok() const { return thread_.ok(); }
+  /// Once all rows and events so far are safe on the disk, calls `then` in the thread that writes; does not wait.
+  void when_safe(std::function<void()> then);
   RunLog& log() { return log_; }
   const ContactAdvice& advice() const { return advice_; }
-  /// Processor time of the thread that makes rows into text [s], after close().
-  double text_seconds() const { return rows_.thread_seconds(); }
+  /// Tables of /bearing, for seal().
+  void bearing(const ClearanceStatistics& clearances);
 
-  /// Hands over what has waited; to be called at least once a second.
-  void flush_if_due();
-  /// Ends the growing files. Throws Error{file} for the first that could not be written.
-  void close();
+  /// Ends the growing files. Returns the first failure to write any of them, empty without: "cannot write 'FILE':
+  /// REASON".
+  std::string close();
+  /// After close(): rows that every file holds, and the time of the last.
+  long rows() const { return thread_.rows(); }
+  double last_time() const { return thread_.last_time(); }
+  /// Processor time of the thread that writes [s].
+  double text_seconds() const { return thread_.thread_seconds(); }
+  /// The fields `provenance` and `hashes` of the summary.
+  const Json& provenance() const { return provenance_; }
+  Json hashes() const;
+
   /// Sorted names of all files, with the summary, which seal() writes.
   std::vector<std::string> files();
-  /// Writes summary.json. Throws Error{file}, also where a file that the summary names has gone since files().
+  /// Writes the summary into results.h5 and as summary.json. Throws Error{file}, also where a file that the summary
+  /// names has gone since files().
   void seal(const Json& summary);
 
  private:
+  class Rows : public Sink {
+   public:
+    explicit Rows(Recording& recording) : recording_(recording) {}
+    void row(std::span<const double> values) override { recording_.thread_.add_row(values, recording_.picked_); }
+    void event(const EventRecord&) override {}
+    bool ok() const override { return recording_.ok(); }
+
+   private:
+    Recording& recording_;
+  };
+  std::vector<std::unique_ptr<RecordWriter>> make_writers(const Model& model);
+
   ResultDirectory directory_;
   RunLog log_;
-  CsvSink rows_;
+  Json provenance_;
+  std::vector<std::size_t> picked_;
+  RecordLayout layout_;
+  // Of the thread, which owns them.
+  RowHash* row_hash_ = nullptr;
+  EventTextWriter* event_text_ = nullptr;
+  Hdf5Writer* hdf5_ = nullptr;
+  RecordThread thread_;
+  Rows rows_{*this};
   EventSink events_;
   ContactAdvice advice_;
+  BearingTables tables_;
   std::vector<std::string> names_;  // of the files that are written
 };
 

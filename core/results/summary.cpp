@@ -89,20 +89,6 @@ Json step_part(const Settings& settings) {
   return part;
 }
 
-Json settings_part(const Model& model) {
-  const Settings& settings = model.settings;
-  Json set = Json::object();
-  for (const auto& [name, text] : model.overrides) set[name] = text;
-  return {{"start", settings.start},
-          {"end", settings.end},
-          {"integrator", integrator_part(settings.integrator_parameters)},
-          {"step", step_part(settings)},
-          {"interval", settings.interval},
-          {"discard", settings.discard},
-          {"set", set},
-          {"ideal", model.ideal}};
-}
-
 Json counts_part(const Outcome& outcome, const Statistics& statistics) {
   return {{"rows", outcome.rows},
           {"steps", outcome.steps},
@@ -372,11 +358,25 @@ bool has_contact_statistics(const JointColumns& columns) {
   return columns.normal_force >= 0 && columns.penetration >= 0 && columns.contact >= 0;
 }
 
+Json settings_json(const Model& model) {
+  const Settings& settings = model.settings;
+  Json set = Json::object();
+  for (const auto& [name, text] : model.overrides) set[name] = text;
+  return {{"start", settings.start},
+          {"end", settings.end},
+          {"integrator", integrator_part(settings.integrator_parameters)},
+          {"step", step_part(settings)},
+          {"interval", settings.interval},
+          {"discard", settings.discard},
+          {"set", set},
+          {"ideal", model.ideal}};
+}
+
 Json summary(const RunRecord& record) {
   const Outcome& outcome = record.outcome;
   return {{"freeplay", {{"version", program_version}, {"schema", schema_version}}},
           {"model", model_part(record.model, record.facts)},
-          {"settings", settings_part(record.model)},
+          {"settings", settings_json(record.model)},
           {"status", status_word(outcome.status)},
           {"stop_reason", outcome.reason.empty() ? Json(nullptr) : Json(outcome.reason)},
           {"exit_code", outcome.exit_code},
@@ -397,6 +397,8 @@ Json summary(const RunRecord& record) {
           {"trust", trust_part(record.trust)},
           {"noise", noise_part(record)},
           {"repeat", record.repeat},
+          {"hashes", record.hashes},
+          {"provenance", record.provenance},
           {"performance", performance_part(outcome)},
           {"files", record.files},
           {"warnings", record.warnings}};

@@ -32,7 +32,8 @@ struct RunRecord {
   RunExtremes extremes{};
   Json verification{};  ///< what the second run was and what it says of the first; null without one
   Verdict trust{};
-  Json repeat = nullptr;  ///< of RepeatSummary, of a repeated run
+  Json hashes = nullptr, provenance = nullptr;  ///< of Recording
+  Json repeat = nullptr;                        ///< of RepeatSummary, of a repeated run
 };
 
 /// completed, stopped, failed or interrupted.
@@ -40,6 +41,9 @@ const char* status_word(RunStatus status);
 
 /// The object of section 2.4 of the command-line contract.
 Json summary(const RunRecord& record);
+
+/// Its field `settings`.
+Json settings_json(const Model& model);
 
 /// Name and type of an entry of Model::force_elements.
 struct ForceWords {

@@ -29,10 +29,13 @@ Json numbers(std::initializer_list<const char*> names) {
   return record(std::move(fields));
 }
 
+/// SHA-256.
+Json digits() { return {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}; }
+
 Json model_part() {
   return record({{"name", text()},
                  {"file", text()},
-                 {"sha256", {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}},
+                 {"sha256", digits()},
                  {"space", {{"enum", {"planar", "spatial"}}}},
                  {"bodies", integer()},
                  {"joints", integer()},
@@ -149,6 +152,28 @@ Json statistics_part() {
   return record({{"from", number()}, {"to", number_or_null()}, {"before", {{"anyOf", {before, {{"type", "null"}}}}}}});
 }
 
+Json provenance_part() {
+  const Json digits_or_null = {{"type", {"string", "null"}}, {"pattern", "^[0-9a-f]{64}$"}};
+  const Json file = record({{"name", text()}, {"sha256", digits()}});
+  return record(
+      {{"freeplay", text()},
+       {"schema", {{"const", schema_version}}},
+       {"build", text()},
+       {"compiler", text()},
+       {"plugin_abi", integer()},
+       {"platform", text()},
+       {"made", text()},
+       {"command", text()},
+       {"arguments", list_of(text())},
+       {"model", file},
+       {"inputs", list_of(file)},
+       {"plugins",
+        list_of(record({{"name", text()}, {"version", text()}, {"file", text()}, {"sha256", digits_or_null}}))},
+       {"seed", integer_or_null()},
+       {"hashes", record({{"rows", digits()}, {"events", digits()}})},
+       {"data_sha256", digits_or_null}});
+}
+
 }  // namespace
 
 Json summary_schema() {
@@ -185,6 +210,8 @@ Json summary_schema() {
        {"trust", trust_part()},
        {"noise", noise_part()},
        {"repeat", repeat_part()},
+       {"hashes", record({{"rows", digits()}, {"events", digits()}})},
+       {"provenance", provenance_part()},
        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
        {"files", list_of(text())},
        {"warnings", list_of(text())}});

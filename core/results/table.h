@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,9 @@ struct ResultTable {
   int find(std::string_view name) const;
 };
 
-/// Reads a result directory (its results.csv) or a CSV file. Throws Error{file} "unreadable-result" that says why: it
-/// is not there, has no column `time`, a field that is no number, a row of another length, times that do not grow.
-ResultTable read_result(const std::filesystem::path& path);
+/// Reads time and the channels that fit a pattern from a result directory, a CSV or an HDF5 file; others are not read.
+/// Throws Error{file} "unreadable-result" that says why: it is not there, has no column `time`, a field that is no
+/// number, a row of another length, times that do not grow.
+ResultTable read_result(const std::filesystem::path& path, std::span<const std::string> patterns);
 
 }  // namespace freeplay

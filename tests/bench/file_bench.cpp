@@ -6,7 +6,9 @@
 
 #include "base/number_text.h"
 #include "bench_model.h"
-#include "results/csv_sink.h"
+#include "results/record_layout.h"
+#include "results/record_thread.h"
+#include "results/text_writers.h"
 
 namespace freeplay::bench {
 namespace {
@@ -34,9 +36,12 @@ void row(benchmark::State& state, const std::string& name, int windows) {
   std::iota(columns.begin(), columns.end(), std::size_t{0});
   std::vector<double> values(columns.size());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<double>(i) + 0.5);
-  CsvSink sink("/dev/null", channels, columns);
-  for (auto _ : state) sink.row(values);
-  sink.close();
+  const RecordLayout layout = record_layout(*model, channels, columns);
+  std::vector<std::unique_ptr<RecordWriter>> writers;
+  writers.push_back(std::make_unique<RowTextWriter>("/dev/null", layout));
+  RecordThread thread(columns.size(), std::move(writers));
+  for (auto _ : state) thread.add_row(values, columns);
+  thread.close();
   state.counters["per_number"] = benchmark::Counter(
       static_cast<double>(values.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }

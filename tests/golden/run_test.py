@@ -18,8 +18,8 @@ SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code"
            "residuals", "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until",
            "verification",
            "trust", "noise", "repeat",
-           "performance", "files", "warnings"]
-FILES = ["events.csv", "model.yaml", "results.csv", "run.log", "summary.json"]
+           "hashes", "provenance", "performance", "files", "warnings"]
+FILES = ["events.csv", "model.yaml", "results.csv", "results.h5", "run.log", "summary.json"]
 EVENTS = ("time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,"
           "approach_speed,impulse,tangential_impulse,energy_lost,impact")
 
@@ -299,7 +299,7 @@ simulation: {end: 10 ms, step: 1 ms}
             self.assertEqual(self.read("a", name), self.read("b", name))
         summaries = [self.summary(name) for name in ("a", "b")]
         for summary in summaries:
-            del summary["performance"]
+            del summary["performance"], summary["provenance"]["command"]
         self.assertEqual(*summaries)
 
     def test_an_interrupt_seals_the_files(self):

@@ -7,9 +7,9 @@ import unittest
 
 from program import PROGRAM, ROOT, ProgramTest, mechanism
 
-COMMANDS = ["run", "validate", "analyze", "compare", "show", "convert", "doctor", "list", "describe", "schema", "init",
+COMMANDS = ["run", "validate", "analyze", "compare", "show", "convert", "doctor", "list", "describe", "schema", "init", "export",
             "check-plugin"]
-LATER_COMMANDS = ["sweep", "report", "export"]
+LATER_COMMANDS = ["sweep", "report"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 
@@ -72,7 +72,7 @@ class Words(ProgramTest):
 
     def test_later_options(self):
         model = mechanism("pendulum")
-        for option in (["--resume"], ["--format", "hdf5"], ["--format", "both"]):
+        for option in (["--resume"],):
             _, err = self.freeplay("run", model, *option, code=2)
             self.assertIn("not in this release", err)
         self.assertEqual([], os.listdir(self.folder))
@@ -80,10 +80,9 @@ class Words(ProgramTest):
     def test_help_and_schema_show_only_what_is_not_refused(self):
         for command in [[], *[[name] for name in COMMANDS]]:
             out, _ = self.freeplay(*command, "--help")
-            for word in ("hdf5", "--resume", "not in this release", "sweep"):
+            for word in ("--resume", "not in this release", "sweep"):
                 self.assertNotIn(word, out, command)
         self.assertNotIn("--ideal", self.freeplay("convert", "--help")[0])
-        self.assertNotIn("hdf5", self.freeplay("schema")[0])
         self.assertNotIn("resume", self.freeplay("run", "x.yaml", "--resum", code=2)[1])
         self.assertIn("not in this release", self.freeplay("schema", "sweep", code=2)[1])
 

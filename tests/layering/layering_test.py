@@ -55,6 +55,8 @@ LIBRARIES = {
     "klu.h": {"linear"},
     "SuiteSparseQR.hpp": {"linear"},
     "sha2.h": {"base"},
+    "hdf5.h": {"results"},
+    "matio.h": {"results"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"base"},
@@ -66,7 +68,7 @@ LIBRARIES = {
 OPTIONAL_LIBRARIES = {"solvers/sundials_": {"arkode", "nvector"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 STANDARD = re.compile(r"^[a-z_0-9]+$")
-SYSTEM = {"unistd.h", "fcntl.h", "sched.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/stat.h", "sys/types.h", "sys/wait.h"}
+SYSTEM = {"unistd.h", "fcntl.h", "sched.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/stat.h", "sys/types.h", "sys/utsname.h", "sys/wait.h"}
 
 
 def sources(*folders):

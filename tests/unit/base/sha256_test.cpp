@@ -23,5 +23,14 @@ TEST(Sha256, OfLengthsAboutTheEndOfABlock) {
   EXPECT_EQ(sha256(std::string(65, '\xff')), "855c9a28fff2bbbd71327165554a00c6fdd44d5d58c1f12b8fdff29b5d67f001");
 }
 
+TEST(Sha256, OfPiecesIsThatOfTheWhole) {
+  Sha256 hash;
+  const std::string text(1000, 'q');
+  for (std::size_t at = 0; at < text.size(); at += 77) {
+    hash.add(text.data() + at, std::min<std::size_t>(77, text.size() - at));
+    EXPECT_EQ(sha256(text.substr(0, std::min<std::size_t>(at + 77, text.size()))), hash.digits());
+  }
+}
+
 }  // namespace
 }  // namespace freeplay

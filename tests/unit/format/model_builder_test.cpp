@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"its parameter", "simulation: {integrator: {type: stepper, split: 1}}\n", "5:49 out-of-range "},
         Mistake{"its integer", "simulation: {integrator: {type: stepper, newton: {max_iterations: 1.5}}}\n",
                 "5:67 wrong-type "},
-        Mistake{"format", "simulation: {output: {format: hdf5}}\n", "5:31 wrong-type "},
+        Mistake{"format", "simulation: {output: {format: xml}}\n", "5:31 wrong-type "},
         Mistake{"output frame", "simulation: {output: {frames: [rod/tap]}}\n", "5:32 unknown-name "},
         Mistake{"stop", "simulation: {stop: [{chanel: a, above: 1}]}\n", "5:21 missing-key 5:22 unknown-key "},
         Mistake{"stop limits", "simulation: {stop: [{channel: a, above: 1, below: 1}]}\n", "5:44 conflicting-keys "},

@@ -3,10 +3,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
+#include "base/sha256.h"
 #include "results/contact_advice.h"
+#include "results/text_writers.h"
 #include "unit/scratch_folder.h"
 
 namespace freeplay {
@@ -35,22 +38,45 @@ EventRecord record(double time, int joint, int event, std::span<const double> fi
   return {time, joint, event, fields};
 }
 
+/// What a sink gives, as text.
+class EventFile {
+ public:
+  explicit EventFile(const Model& model) {
+    add_event_columns(model, layout_);
+    file_.emplace(folder_.file("events.csv"), layout_);
+    sink.emplace(model, layout_, [this](std::span<const double> numbers) {
+      file_->write({.rows = {}, .events = {numbers.begin(), numbers.end()}});
+    });
+  }
+  std::string text() {
+    sink->finish();
+    file_->close();
+    EXPECT_EQ(sha256(folder_.read("events.csv")), file_->digits());
+    return folder_.read("events.csv");
+  }
+  std::optional<EventSink> sink;
+
+ private:
+  ScratchFolder folder_;
+  RecordLayout layout_;
+  std::optional<EventTextWriter> file_;
+};
+
 TEST(EventSink, FillsColumnsByNameAndAppendsOthers) {
-  const ScratchFolder folder;
   const Model model = two_joints();
-  EventSink sink(folder.file("events.csv"), model);
+  EventFile file(model);
+  EventSink& sink = *file.sink;
   const std::array<double, 4> fields{2.5, 12.0, none, 0.25};
   sink.event(record(1.5, 0, 0, fields));
   sink.event(record(2.0, 1, 1));
-  sink.close();
   EXPECT_EQ(std::string(header) + "1.5,first,hit,0.25,,,,,,12,,,,,,2.5\n2,second,turn,,,,,,,,,,,,,\n",
-            folder.read("events.csv"));
+            file.text());
 }
 
 TEST(EventSink, SortsByTimeThenJointAcrossRows) {
-  const ScratchFolder folder;
   const Model model = two_joints();
-  EventSink sink(folder.file("events.csv"), model);
+  EventFile file(model);
+  EventSink& sink = *file.sink;
   const double at[] = {2.0};
   sink.event(record(1.75, 1, 1));
   sink.event(record(2.25, 1, 1));  // of a step that crosses the row
@@ -58,11 +84,10 @@ TEST(EventSink, SortsByTimeThenJointAcrossRows) {
   sink.event(record(1.5, 0, 1));
   sink.row(at);
   sink.event(record(2.125, 0, 1));
-  sink.close();
   EXPECT_EQ(std::string(header) +
                 "1.5,first,turn,,,,,,,,,,,,,\n1.5,second,turn,,,,,,,,,,,,,\n1.75,second,turn,,,,,,,,,,,,,\n"
                 "2.125,first,turn,,,,,,,,,,,,,\n2.25,second,turn,,,,,,,,,,,,,\n",
-            folder.read("events.csv"));
+            file.text());
 }
 
 TEST(ContactAdvice, CountsContactsWithTooFewSteps) {

@@ -1,0 +1,155 @@
+#include "cli/export_command.h"
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/growing_file.h"
+#include "base/sha256.h"
+#include "base/staged_file.h"
+#include "base/whole_file.h"
+#include "cli/terminal.h"
+#include "results/reader.h"
+#include "results/result_record.h"
+#include "results/table_files.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportOptions {
+  std::string path, to, table, from, until, every, out;
+  std::vector<std::string> channels;
+  bool force = false;
+};
+
+std::size_t whole_number(const std::string& option, const std::string& text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size() && number > 0) return number;
+  throw Error(Error::Category::usage, "bad-value",
+              fmt::format("bad value '{}' of {}: it must be a whole number from 1 on", text, option));
+}
+
+TableRequest request_of(const ExportOptions& options) {
+  TableRequest request;
+  if (!options.table.empty()) {
+    const auto words = table_words();
+    require_word("table", options.table, {words.begin(), words.end()});
+    request.table = options.table;
+  }
+  if (!options.channels.empty()) request.channels = options.channels;
+  RowWindow& window = request.window;
+  if (!options.from.empty()) window.from = signed_quantity("--from", options.from, dimension::time);
+  if (!options.until.empty()) window.until = signed_quantity("--until", options.until, dimension::time);
+  if (!options.every.empty()) window.every = whole_number("--every", options.every);
+  if (window.from > window.until) {
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("--from {} is after --until {}", options.from, options.until));
+  }
+  return request;
+}
+
+/// What makes the same table of the same result.
+std::vector<std::string> arguments_of(const ExportOptions& options) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+  };
+  add("--to", options.to);
+  add("--table", options.table);
+  for (const std::string& pattern : options.channels) add("--channels", pattern);
+  add("--from", options.from);
+  add("--until", options.until);
+  add("--every", options.every);
+  return arguments;
+}
+
+class Export {
+ public:
+  Export(const ExportOptions& options, const CommonOptions& common, const TableRequest& request)
+      : options_(options),
+        name_(request.table),
+        reader_(ResultReader::open(options.path)),
+        table_(*reader_, request),
+        provenance_(record_of_export(options.path, *reader_, common.command, arguments_of(options))) {}
+
+  void execute() {
+    if (options_.out.empty()) return give(print_data);
+    StagedFile file(options_.out, options_.force);
+    const bool text = options_.to == "csv" || options_.to == "json";
+    if (text) {
+      GrowingFile growing(file.temporary());
+      give([&](std::string_view some) {
+        hash_.add(some.data(), some.size());
+        growing.line() += some;
+        growing.flush();
+      });
+      growing.close();
+    } else if (options_.to == "hdf5") {
+      write_hdf5(table_, *reader_, provenance_, file.temporary());
+    } else {
+      write_mat(table_, provenance_, file.temporary());
+    }
+    file.commit();
+    if (options_.to != "csv") return;
+    provenance_["data_sha256"] = hash_.digits();
+    write_whole_file(options_.out + ".provenance.json", json_text(provenance_));
+  }
+
+ private:
+  void give(const TakeText& take) {
+    options_.to == "csv" ? give_csv(table_, take) : give_json(table_, name_, nullptr, provenance_, take);
+  }
+
+  const ExportOptions& options_;
+  std::string name_;
+  std::unique_ptr<ResultReader> reader_;
+  TableView table_;
+  Json provenance_;
+  Sha256 hash_;
+};
+
+int export_result(const ExportOptions& options, const CommonOptions& common) {
+  if (options.path.empty()) throw Error(Error::Category::usage, "missing-argument", "export needs a result");
+  if (options.to.empty())
+    throw Error(Error::Category::usage, "missing-argument", "export needs --to csv, hdf5, mat or json");
+  require_word("format", options.to, {"csv", "hdf5", "mat", "json"});
+  const TableRequest request = request_of(options);
+  const bool binary = options.to == "hdf5" || options.to == "mat";
+  if (binary && options.out.empty()) {
+    throw Error(Error::Category::usage, "missing-argument", fmt::format("--to {} needs --out FILE", options.to));
+  }
+  if (options.to == "hdf5" && request.table != "results") {
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("--to hdf5 holds rows and events of a result, not a table of {}", request.table), {},
+                "take --to csv, json or mat");
+  }
+  Export(options, common, request).execute();
+  return 0;
+}
+
+}  // namespace
+
+Command add_export_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = add_command(program, "export", "Write rows or events of a result as another file");
+  const auto options = std::make_shared<ExportOptions>();
+  add_option(*app, "RESULT", options->path, "Result directory, results.csv or results.h5");
+  add_option(*app, "--to", options->to, "csv, hdf5, mat or json", "FORMAT");
+  add_option(*app, "--table", options->table, "results, events or impacts (results)", "NAME");
+  add_repeatable(*app, "--channels", options->channels, "Channels to write, a name or pattern with *; repeatable",
+                 "PATTERN");
+  add_option(*app, "--from", options->from, "First time: \"10 ms\"", "T");
+  add_option(*app, "--until", options->until, "Last time", "T");
+  add_option(*app, "--every", options->every, "Every N-th row of these", "N");
+  add_file_option(*app, "--out", options->out, "File (stdout, for csv and json)", "FILE");
+  add_flag(*app, "--force", options->force, "Replace a file that is there already");
+  add_common_options(*app, common);
+  return {app, [options, &common] { return export_result(*options, common); }};
+}
+
+}  // namespace freeplay

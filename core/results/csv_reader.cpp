@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "results/reader.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t piece = 1 << 20;          // bytes read at a time
+constexpr std::size_t block_numbers = 1 << 16;  // given at a time
+
+template <class Take>
+void for_each_field(std::string_view line, Take&& take) {
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    take(line.substr(0, comma));
+    if (comma == std::string_view::npos) return;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+/// Whole lines of a file; what follows the last line feed is a line that is still written, and left out.
+class Lines {
+ public:
+  explicit Lines(const std::string& file) : file_(file), stream_(file, std::ios::binary) {
+    if (!stream_) unreadable_result(file, fmt::format("it cannot be opened: {}", std::strerror(errno)));
+  }
+
+  /// False at the end. The line is valid until the next call.
+  bool next(std::string_view& line) {
+    std::size_t end = text_.find('\n', at_);
+    while (end == std::string::npos) {
+      text_.erase(0, std::exchange(at_, 0));
+      const std::size_t had = text_.size();
+      text_.resize(had + piece);
+      stream_.read(text_.data() + had, static_cast<std::streamsize>(piece));
+      text_.resize(had + static_cast<std::size_t>(stream_.gcount()));
+      if (stream_.bad()) unreadable_result(file_, std::strerror(errno));
+      if (text_.size() == had) return false;
+      end = text_.find('\n', had);
+    }
+    line = std::string_view(text_).substr(at_, end - at_);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    at_ = end + 1;
+    ++number_;
+    return true;
+  }
+
+  int number() const { return number_; }
+
+ private:
+  std::string file_;
+  std::ifstream stream_;
+  std::string text_;
+  std::size_t at_ = 0;
+  int number_ = 0;
+};
+
+double number(std::string_view field, const std::string& file, int line) {
+  if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc{} || end != field.data() + field.size()) {
+    unreadable_result(file, fmt::format("line {}: '{}' is not a number", line, field.substr(0, 40)), line);
+  }
+  return value;
+}
+
+void require_fields(std::size_t fields, std::size_t names, const std::string& file, int line) {
+  if (fields == names) return;
+  unreadable_result(file, fmt::format("line {} has {} fields, the header {}", line, fields, names), line);
+}
+
+double index_of(std::string_view word, std::vector<std::string>& words) {
+  const auto found = std::ranges::find(words, word);
+  const auto index = found - words.begin();
+  if (found == words.end()) words.emplace_back(word);
+  return static_cast<double>(index);
+}
+
+class CsvReader : public ResultReader {
+ public:
+  explicit CsvReader(const fs::path& path) : ResultReader(path.string()), events_(path.parent_path() / "events.csv") {
+    Lines lines(file_);
+    std::string_view header;
+    if (!lines.next(header)) unreadable_result(file_, "it has no whole line");
+    for_each_field(header, [&](std::string_view name) { layout_.columns.push_back({std::string(name), "", "", ""}); });
+    if (layout_.columns.front().name != "time") unreadable_result(file_, "its first column is not 'time'", 1);
+    read_event_header();
+  }
+
+  void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) override {
+    std::vector<std::size_t> place(layout_.columns.size(), columns.size());  // of each field in a row that is given
+    for (std::size_t i = 0; i < columns.size(); ++i) place[columns[i]] = i;
+    RowPicker picker(window, columns.size(), take);
+    std::vector<double> block, row(columns.size());
+    Lines lines(file_);
+    std::string_view line;
+    double last = -std::numeric_limits<double>::infinity();
+    for (lines.next(line); !picker.over() && lines.next(line);) {
+      std::size_t field = 0;
+      for_each_field(line, [&](std::string_view text) {
+        if (field < place.size() && place[field] < row.size()) row[place[field]] = number(text, file_, lines.number());
+        ++field;
+      });
+      require_fields(field, place.size(), file_, lines.number());
+      if (!(row[0] > last))
+        unreadable_result(file_, fmt::format("line {}: time does not grow", lines.number()), lines.number());
+      last = row[0];
+      block.insert(block.end(), row.begin(), row.end());
+      if (block.size() < block_numbers) continue;
+      picker.add(block);
+      block.clear();
+    }
+    picker.add(block);
+    picker.finish();
+  }
+
+  void events(const Take& take) override {
+    if (layout_.events.empty()) unreadable_result(events_.string(), "there is no such file");
+    Lines lines(events_.string());
+    std::string_view line;
+    std::vector<double> block;
+    for (lines.next(line); lines.next(line);) {
+      std::size_t field = 0;
+      for_each_field(line, [&](std::string_view text) {
+        if (field == 1) {
+          block.push_back(index_of(text, layout_.joints));
+        } else if (field == 2) {
+          block.push_back(index_of(text, layout_.kinds));
+        } else {
+          block.push_back(number(text, events_.string(), lines.number()));
+        }
+        ++field;
+      });
+      require_fields(field, layout_.events.size(), events_.string(), lines.number());
+      if (block.size() < block_numbers) continue;
+      take(block);
+      block.clear();
+    }
+    if (!block.empty()) take(block);
+  }
+
+ private:
+  void read_event_header() {
+    std::error_code ignored;
+    if (!fs::exists(events_, ignored)) return;
+    Lines lines(events_.string());
+    std::string_view header;
+    if (!lines.next(header) || !header.starts_with("time,joint,kind")) return;
+    for_each_field(header, [&](std::string_view name) { layout_.events.push_back({std::string(name), "", "", ""}); });
+  }
+
+  fs::path events_;
+};
+
+}  // namespace
+
+std::unique_ptr<ResultReader> open_csv(const fs::path& path) { return std::make_unique<CsvReader>(path); }
+
+}  // namespace freeplay

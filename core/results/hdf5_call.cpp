@@ -1,0 +1,61 @@
+#include "results/hdf5_call.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "results/formats.h"
+
+namespace freeplay {
+namespace {
+
+std::recursive_mutex& library() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+// The system's reason stands in the text of the innermost failure; those around it say what was tried.
+herr_t note_reason(unsigned, const H5E_error2_t* error, void* result) {
+  std::string& reason = *static_cast<std::string*>(result);
+  const std::string_view text = error->desc != nullptr ? error->desc : "";
+  constexpr std::string_view mark = "error message = '";
+  if (const std::size_t at = text.find(mark); at != std::string_view::npos) {
+    const std::string_view rest = text.substr(at + mark.size());
+    reason = rest.substr(0, rest.find('\''));
+  } else if (reason.empty()) {
+    reason = text;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Hdf5Lock::Hdf5Lock() : lock_(library()) {
+  static const bool ready = [] {
+    H5dont_atexit();
+    H5open();
+    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  }();
+  static_cast<void>(ready);
+}
+
+void fail_hdf5() {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_reason, &reason);
+  throw Hdf5Failure(reason.empty() ? "HDF5 says no reason" : reason);
+}
+
+std::string hdf5_version() {
+  const Hdf5Lock lock;
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
+std::string dataset_name(std::string channel) {
+  std::ranges::replace(channel, '/', ':');
+  return channel;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,484 @@
+#include "results/hdf5_writer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "results/hdf5_call.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr hsize_t least_chunk = 64, largest_chunk = 1024, event_chunk = 256, summary_chunk = 8192, bearing_chunk = 16;
+constexpr std::size_t first_field = 3;  // of events: after time, joint and kind
+
+constexpr BearingQuantity quantities[] = {
+    {"contact_time", "s", "time in contact by bearing sector"},
+    {"impulse", "N*s", "impulse of the normal force by bearing sector"},
+    {"sliding", "m", "sliding distance by bearing sector"},
+    {"work", "J", "work of normal force over sliding by bearing sector"},
+    {"pv_mean", "Pa*m/s", "mean pressure-velocity product by bearing sector"},
+    {"pv_max", "Pa*m/s", "largest pressure-velocity product by bearing sector"},
+};
+
+Hdf5Id string_type(std::size_t size, H5T_cset_t set) {
+  Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  checked(H5Tset_size(type, size));
+  checked(H5Tset_cset(type, set));
+  return type;
+}
+
+void put_attribute(hid_t object, const char* name, hid_t type, hid_t space, const void* value) {
+  Hdf5Id attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  checked(H5Awrite(attribute, type, value));
+  attribute.close();
+}
+
+/// Fixed length, as long as its bytes; an empty one is left out.
+void put_text(hid_t object, const char* name, const std::string& text) {
+  if (text.empty()) return;
+  const Hdf5Id type = string_type(text.size(), H5T_CSET_UTF8), space(H5Screate(H5S_SCALAR), H5Sclose);
+  put_attribute(object, name, type, space, text.data());
+}
+
+void put_numbers(hid_t object, const char* name, const std::vector<std::int32_t>& numbers) {
+  const hsize_t count = numbers.size();
+  const Hdf5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  put_attribute(object, name, H5T_NATIVE_INT32, space, numbers.data());
+}
+
+/// What makes a dataset a dimension for HDF5 and netCDF: with a null at the end.
+void put_scale(hid_t dataset, const std::string& name) {
+  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const std::string scale = "DIMENSION_SCALE";
+  put_attribute(dataset, "CLASS", string_type(scale.size() + 1, H5T_CSET_ASCII), space, scale.c_str());
+  put_attribute(dataset, "NAME", string_type(name.size() + 1, H5T_CSET_ASCII), space, name.c_str());
+}
+
+void put_words(hid_t dataset, const std::vector<std::string>& words) {
+  if (words.empty()) return;
+  std::vector<std::int32_t> values(words.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int32_t>(i);
+  put_numbers(dataset, "flag_values", values);
+  put_text(dataset, "flag_meanings", fmt::format("{}", fmt::join(words, " ")));
+}
+
+void put_column(hid_t dataset, const RecordColumn& column) {
+  put_text(dataset, "units", column.unit);
+  put_text(dataset, "long_name", column.long_name);
+  put_text(dataset, "source", column.source);
+}
+
+/// What netCDF calls a dimension that is no variable; `number` tells those of one file apart.
+std::string bare_dimension(int number) {
+  return fmt::format("This is a netCDF dimension but not a netCDF variable.{:>10}", number);
+}
+
+/// A dimension and the datasets along it.
+struct Scale {
+  hobj_ref_t self;
+  struct User {
+    hobj_ref_t dataset;
+    std::int32_t dimension;
+  };
+  std::vector<User> users;
+};
+
+hobj_ref_t reference(hid_t group, const std::string& name) {
+  hobj_ref_t result{};
+  checked(H5Rcreate(&result, group, name.c_str(), H5R_OBJECT, -1));
+  return result;
+}
+
+/// Lists on both sides, each in one go.
+void put_along(hid_t dataset, hobj_ref_t self, const std::vector<Scale*>& scales) {
+  const Hdf5Id type(H5Tvlen_create(H5T_STD_REF_OBJ), H5Tclose);
+  const hsize_t count = scales.size();
+  const Hdf5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  std::vector<hvl_t> list;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    list.push_back({1, &scales[i]->self});
+    scales[i]->users.push_back({self, static_cast<std::int32_t>(i)});
+  }
+  put_attribute(dataset, "DIMENSION_LIST", type, space, list.data());
+}
+
+void put_users(hid_t dataset, const Scale& scale) {
+  if (scale.users.empty()) return;
+  const Hdf5Id type(H5Tcreate(H5T_COMPOUND, sizeof(Scale::User)), H5Tclose);
+  checked(H5Tinsert(type, "dataset", offsetof(Scale::User, dataset), H5T_STD_REF_OBJ));
+  checked(H5Tinsert(type, "dimension", offsetof(Scale::User, dimension), H5T_NATIVE_INT32));
+  const hsize_t count = scale.users.size();
+  const Hdf5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  put_attribute(dataset, "REFERENCE_LIST", type, space, scale.users.data());
+}
+
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool good = descriptor >= 0 && (::fsync(descriptor) == 0 || errno == EINVAL);
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!good) throw Hdf5Failure(std::strerror(reason));
+}
+
+}  // namespace
+
+std::span<const BearingQuantity> bearing_quantities() { return quantities; }
+
+/// The open file. Members hold plain handles: closing the file closes them, and after a failure nothing is.
+struct Hdf5Writer::File {
+  File(const fs::path& path, const RecordLayout& layout, const Options& options);
+
+  void write(const RecordBlock& block);
+  void flush();
+  void finish(const BearingTables& tables, const std::string& summary);
+  void sync();
+
+  const fs::path path, part;
+  const RecordLayout& layout;
+  const bool grows;
+  const hsize_t chunk;
+  hid_t file = -1;
+  std::vector<hid_t> columns, event_columns;
+  hid_t event = -1;
+
+ private:
+  void make();
+  void make_events(hid_t group);
+  void make_bearing(hid_t group);
+  void open_datasets();
+  Hdf5Id make_dataset(hid_t group, const std::string& name, hid_t type, std::vector<hsize_t> size, hsize_t per_chunk,
+                      const void* fill) const;
+  Hdf5Id make_column(hid_t group, const RecordColumn& column, hsize_t per_chunk, Scale* scale);
+  static hid_t open_dataset(hid_t group, const std::string& name, hsize_t per_chunk);
+  void write_columns();
+  void write_events();
+  static void extend(hid_t dataset, hsize_t size) { checked(H5Dset_extent(dataset, &size)); }
+  static void put(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* numbers);
+
+  std::vector<double> waiting;  // of the chunk in hand, column by column
+  hsize_t rows = 0;             // all
+  hsize_t in_chunk = 0, done_in_chunk = 0;
+  std::vector<double> times;  // not yet written: rows are complete as far as they are
+  std::vector<double> events;
+  hsize_t events_written = 0;
+};
+
+Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& options)
+    : path(p),
+      part(options.grows ? p.parent_path() / fmt::format(".{}.part", p.filename().string()) : p),
+      layout(l),
+      grows(options.grows),
+      chunk(std::clamp<hsize_t>(std::bit_ceil(options.expected_rows), least_chunk, largest_chunk)) {
+  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  checked(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  checked(grows ? H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110)
+                : H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
+  checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
+  checked(H5Pset_file_locking(access, 0, 1));
+  file = checked(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, creation, access));
+  make();
+  if (grows) checked(H5Fstart_swmr_write(file));
+  checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  if (grows) {
+    if (::rename(part.c_str(), path.c_str()) != 0) throw Hdf5Failure(std::strerror(errno));
+    sync_folder(path.parent_path());
+  }
+  open_datasets();
+  waiting.resize(layout.columns.size() * chunk);
+}
+
+Hdf5Id Hdf5Writer::File::make_dataset(hid_t group, const std::string& name, hid_t type, std::vector<hsize_t> size,
+                                      hsize_t per_chunk, const void* fill) const {
+  const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  std::vector<hsize_t> most = size, chunks = size;
+  most[0] = H5S_UNLIMITED;
+  chunks[0] = per_chunk;
+  const int rank = static_cast<int>(size.size());
+  checked(H5Pset_chunk(creation, rank, chunks.data()));
+  if (fill != nullptr) checked(H5Pset_fill_value(creation, type, fill));
+  checked(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_INCR));
+  checked(H5Pset_obj_track_times(creation, 0));
+  checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  if (!grows) {
+    checked(H5Pset_shuffle(creation));
+    checked(H5Pset_deflate(creation, 1));
+  }
+  const Hdf5Id space(H5Screate_simple(rank, size.data(), most.data()), H5Sclose);
+  return Hdf5Id(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
+}
+
+Hdf5Id Hdf5Writer::File::make_column(hid_t group, const RecordColumn& column, hsize_t per_chunk, Scale* scale) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const std::string name = dataset_name(column.name);
+  Hdf5Id dataset = make_dataset(group, name, H5T_NATIVE_DOUBLE, {0}, per_chunk, &none);
+  put_column(dataset, column);
+  if (scale != nullptr) put_along(dataset, reference(group, name), {scale});
+  return dataset;
+}
+
+void Hdf5Writer::File::make() {
+  const Hdf5Id root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
+  for (const auto& [name, text] : layout.attributes) put_text(root, name.c_str(), text);
+  Hdf5Id time = make_column(root, layout.columns.front(), chunk, nullptr);
+  put_scale(time, "time");
+  Scale along_time{reference(root, "time"), {}};
+  for (const RecordColumn& column : std::span(layout.columns).subspan(1)) {
+    make_column(root, column, chunk, &along_time).close();
+  }
+  put_users(time, along_time);
+  time.close();
+
+  Hdf5Id length = make_dataset(root, "summary_length", H5T_IEEE_F32BE, {0}, summary_chunk, nullptr);
+  put_scale(length, bare_dimension(0));
+  Scale along_length{reference(root, "summary_length"), {}};
+  const Hdf5Id letter = string_type(1, H5T_CSET_ASCII);
+  Hdf5Id summary = make_dataset(root, "summary", letter, {0}, summary_chunk, nullptr);
+  put_along(summary, reference(root, "summary"), {&along_length});
+  put_users(length, along_length);
+  length.close();
+  summary.close();
+
+  const Hdf5Id creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  checked(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  Hdf5Id of_events(H5Gcreate2(root, "events", H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+  make_events(of_events);
+  of_events.close();
+  Hdf5Id of_bearing(H5Gcreate2(root, "bearing", H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+  make_bearing(of_bearing);
+  of_bearing.close();
+}
+
+void Hdf5Writer::File::make_events(hid_t group) {
+  Hdf5Id counter = make_dataset(group, "event", H5T_IEEE_F32BE, {0}, event_chunk, nullptr);
+  put_scale(counter, bare_dimension(0));
+  Scale along_event{reference(group, "event"), {}};
+  constexpr std::int32_t none = -1;
+  for (std::size_t i = 0; i < layout.events.size(); ++i) {
+    const RecordColumn& column = layout.events[i];
+    if (i == 0 || i >= first_field) {
+      make_column(group, column, event_chunk, &along_event).close();
+      continue;
+    }
+    Hdf5Id dataset = make_dataset(group, column.name, H5T_NATIVE_INT32, {0}, event_chunk, &none);
+    put_column(dataset, column);
+    put_words(dataset, i == 1 ? layout.joints : layout.kinds);
+    put_along(dataset, reference(group, column.name), {&along_event});
+    dataset.close();
+  }
+  put_users(counter, along_event);
+  counter.close();
+}
+
+void Hdf5Writer::File::make_bearing(hid_t group) {
+  const hsize_t sectors = bearing_sectors;
+  const Hdf5Id space(H5Screate_simple(1, &sectors, nullptr), H5Sclose);
+  const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  checked(H5Pset_obj_track_times(creation, 0));
+  checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  Hdf5Id angle(H5Dcreate2(group, "angle", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
+  std::vector<double> centres(bearing_sectors);
+  for (std::size_t k = 0; k < centres.size(); ++k) {
+    centres[k] = (static_cast<double>(k) + 0.5) * (2.0 * std::numbers::pi / static_cast<double>(bearing_sectors));
+  }
+  checked(H5Dwrite(angle, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, centres.data()));
+  put_column(angle, {"angle", "rad", "centre of the bearing sector", "72 sectors of the bearing"});
+  put_scale(angle, "angle");
+  constexpr std::int32_t no_joint = -1;
+  Hdf5Id joint = make_dataset(group, "joint", H5T_NATIVE_INT32, {0}, bearing_chunk, &no_joint);
+  put_column(joint, {"joint", "1", "joint with play", "the model"});
+  put_words(joint, layout.bearings);
+  put_scale(joint, "joint");
+  Scale along_joint{reference(group, "joint"), {}}, along_angle{reference(group, "angle"), {}};
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const BearingQuantity& quantity : quantities) {
+    Hdf5Id table = make_dataset(group, quantity.name, H5T_NATIVE_DOUBLE, {0, bearing_sectors}, bearing_chunk, &none);
+    put_column(table, {quantity.name, quantity.unit, quantity.long_name, "integrals over accepted steps"});
+    put_along(table, reference(group, quantity.name), {&along_joint, &along_angle});
+    table.close();
+  }
+  put_users(joint, along_joint);
+  put_users(angle, along_angle);
+  joint.close();
+  angle.close();
+}
+
+hid_t Hdf5Writer::File::open_dataset(hid_t group, const std::string& name, hsize_t per_chunk) {
+  const Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  checked(H5Pset_chunk_cache(access, 1, per_chunk * sizeof(double), 1.0));
+  return checked(H5Dopen2(group, name.c_str(), access));
+}
+
+void Hdf5Writer::File::open_datasets() {
+  for (const RecordColumn& column : layout.columns) {
+    columns.push_back(open_dataset(file, dataset_name(column.name), chunk));
+  }
+  for (const RecordColumn& column : layout.events) {
+    event_columns.push_back(open_dataset(file, "events/" + column.name, event_chunk));
+  }
+  event = open_dataset(file, "events/event", event_chunk);
+}
+
+void Hdf5Writer::File::put(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* numbers) {
+  const Hdf5Id memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose);
+  checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
+  checked(H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, numbers));
+}
+
+void Hdf5Writer::File::write(const RecordBlock& block) {
+  const std::size_t width = layout.columns.size();
+  for (std::size_t at = 0; at < block.rows.size(); at += width) {
+    times.push_back(block.rows[at]);
+    for (std::size_t c = 1; c < width; ++c) waiting[c * chunk + in_chunk] = block.rows[at + c];
+    ++rows;
+    if (++in_chunk == chunk) write_columns();
+  }
+  events.insert(events.end(), block.events.begin(), block.events.end());
+}
+
+/// All but the time of what waits.
+void Hdf5Writer::File::write_columns() {
+  const hsize_t count = in_chunk - done_in_chunk, first = rows - count;
+  for (std::size_t c = 1; c < columns.size() && count > 0; ++c) {
+    extend(columns[c], rows);
+    put(columns[c], H5T_NATIVE_DOUBLE, first, count, waiting.data() + c * chunk + done_in_chunk);
+  }
+  done_in_chunk = in_chunk;
+  if (in_chunk == chunk) in_chunk = done_in_chunk = 0;
+}
+
+void Hdf5Writer::File::write_events() {
+  const std::size_t width = event_columns.size();
+  const hsize_t count = events.size() / width;
+  std::vector<double> column(count);
+  std::vector<std::int32_t> indices(count);
+  for (std::size_t c = 0; c < width && count > 0; ++c) {
+    for (std::size_t i = 0; i < count; ++i) column[i] = events[i * width + c];
+    extend(event_columns[c], events_written + count);
+    if (c == 0 || c >= first_field) {
+      put(event_columns[c], H5T_NATIVE_DOUBLE, events_written, count, column.data());
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) indices[i] = static_cast<std::int32_t>(column[i]);
+    put(event_columns[c], H5T_NATIVE_INT32, events_written, count, indices.data());
+  }
+  events_written += count;
+  events.clear();
+}
+
+/// A kill may come at any instant: what says how many rows and events are complete follows them.
+void Hdf5Writer::File::flush() {
+  if (times.empty() && events.empty()) return;
+  const bool some_events = !events.empty();
+  write_columns();
+  write_events();
+  checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  if (!times.empty()) {
+    extend(columns.front(), rows);
+    put(columns.front(), H5T_NATIVE_DOUBLE, rows - times.size(), times.size(), times.data());
+    times.clear();
+  }
+  if (some_events) extend(event, events_written);
+  checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+}
+
+void Hdf5Writer::File::sync() {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool good = descriptor >= 0 && (::fdatasync(descriptor) == 0 || errno == EINVAL || errno == EROFS);
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!good) throw Hdf5Failure(std::strerror(reason));
+}
+
+void Hdf5Writer::File::finish(const BearingTables& tables, const std::string& summary) {
+  flush();
+  if (!tables.empty() && !layout.bearings.empty()) {
+    const hsize_t count = layout.bearings.size();
+    std::vector<std::int32_t> joints(count);
+    for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = static_cast<std::int32_t>(i);
+    for (const auto& [name, numbers] : tables) {
+      const hid_t table = open_dataset(file, "bearing/" + name, bearing_chunk * bearing_sectors);
+      const hsize_t size[] = {count, bearing_sectors};
+      checked(H5Dset_extent(table, size));
+      checked(H5Dwrite(table, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()));
+    }
+    const hid_t joint = open_dataset(file, "bearing/joint", bearing_chunk);
+    extend(joint, count);
+    put(joint, H5T_NATIVE_INT32, 0, count, joints.data());
+  }
+  if (!summary.empty()) {
+    const hid_t text = open_dataset(file, "summary", summary_chunk), length = open_dataset(file, "summary_length", 1);
+    extend(text, summary.size());
+    put(text, string_type(1, H5T_CSET_ASCII), 0, summary.size(), summary.data());
+    extend(length, summary.size());
+  }
+  checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  checked(H5Fclose(std::exchange(file, -1)));
+  sync();
+}
+
+Hdf5Writer::Hdf5Writer(fs::path path, const RecordLayout& layout, const Options& options)
+    : path_(std::move(path)), layout_(layout), options_(options) {}
+
+// Closing is for finish(): a file that was not ended stays as it was flushed.
+Hdf5Writer::~Hdf5Writer() {
+  if (file_ != nullptr && file_->file >= 0 && failure_.empty()) {
+    const Hdf5Lock lock;
+    H5Fclose(file_->file);
+  }
+}
+
+template <class Act>
+void Hdf5Writer::attempt(Act&& act) {
+  if (!failure_.empty()) return;
+  const Hdf5Lock lock;
+  try {
+    if (file_ == nullptr) file_ = std::make_unique<File>(path_, layout_, options_);
+    act(*file_);
+  } catch (const Hdf5Failure& failure) {
+    failure_ = fmt::format("cannot write '{}': {}", path_.string(), failure.what());
+    std::error_code ignored;
+    fs::remove(path_.parent_path() / fmt::format(".{}.part", path_.filename().string()), ignored);
+  }
+}
+
+void Hdf5Writer::write(const RecordBlock& block) {
+  attempt([&](File& file) { file.write(block); });
+}
+
+void Hdf5Writer::flush() {
+  attempt([](File& file) { file.flush(); });
+}
+
+void Hdf5Writer::sync() {
+  attempt([](File& file) {
+    file.flush();
+    file.sync();
+  });
+}
+
+void Hdf5Writer::look_after() {
+  struct stat there {};
+  if (file_ == nullptr || !options_.grows || !failure_.empty()) return;
+  if (::stat(path_.c_str(), &there) == 0) return;
+  failure_ = fmt::format("cannot write '{}': it was removed or replaced while it was written", path_.string());
+}
+
+void Hdf5Writer::finish(const BearingTables& tables, const std::string& summary) {
+  attempt([&](File& file) { file.finish(tables, summary); });
+}
+
+}  // namespace freeplay

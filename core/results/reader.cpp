@@ -1,0 +1,70 @@
+#include "results/reader.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace freeplay {
+
+namespace fs = std::filesystem;
+
+void unreadable_result(const std::string& file, const std::string& why, int line, const std::string& hint) {
+  throw Error(Error::Category::file, "unreadable-result", fmt::format("result '{}' cannot be read: {}", file, why),
+              {file, line, line > 0 ? 1 : 0}, hint);
+}
+
+std::size_t ResultReader::find(std::string_view name) const {
+  return static_cast<std::size_t>(std::ranges::find(layout_.columns, name, &RecordColumn::name) -
+                                  layout_.columns.begin());
+}
+
+std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) unreadable_result(path.string(), "there is no such file or directory");
+  if (!fs::is_directory(path, ignored)) return path.extension() == ".h5" ? open_hdf5(path) : open_csv(path);
+  const bool text = fs::exists(path / "results.csv", ignored);
+  if (fs::exists(path / "results.h5", ignored)) {
+    try {
+      return open_hdf5(path / "results.h5");
+    } catch (const Error&) {
+      if (!text) throw;
+    }
+  }
+  if (!text) unreadable_result(path.string(), "it holds neither results.h5 nor results.csv");
+  return open_csv(path / "results.csv");
+}
+
+bool RowPicker::inside(double time) const { return time >= window_.from - same_ && time <= window_.until + same_; }
+
+void RowPicker::add(std::span<const double> rows) {
+  picked_.clear();
+  const auto look_at = [&](std::span<const double> row) {
+    if (!inside(row[0])) {
+      over_ = over_ || row[0] > window_.until + same_;
+      return;
+    }
+    if (met_++ % window_.every == 0) picked_.insert(picked_.end(), row.begin(), row.end());
+  };
+  for (; !rows.empty(); rows = rows.subspan(width_)) {
+    const auto row = rows.first(width_);
+    if (++seen_ == 1) {
+      held_.assign(row.begin(), row.end());
+      continue;
+    }
+    if (seen_ == 2) {
+      same_ = 1e-9 * (row[0] - held_[0]);
+      look_at(held_);
+    }
+    look_at(row);
+  }
+  if (!picked_.empty()) take_(picked_);
+}
+
+void RowPicker::finish() {
+  if (seen_ == 1 && inside(held_[0])) take_(held_);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,83 @@
+// ResultReader: rows and events of a result, whatever files it has.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "results/record.h"
+
+namespace freeplay {
+
+/// Which rows: from <= time <= until, to 1e-9 of the interval, and of these every N-th, the first included.
+struct RowWindow {
+  double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();
+  std::size_t every = 1;
+};
+
+/// Reads what is complete of a result that may belong to a run that goes on or was killed.
+class ResultReader {
+ public:
+  using Take = std::function<void(std::span<const double>)>;
+
+  /// A result directory (its results.h5, or results.csv where that cannot be read), a CSV or an HDF5 file. Throws
+  /// Error{file} "unreadable-result" that says why, as the functions below do.
+  static std::unique_ptr<ResultReader> open(const std::filesystem::path& path);
+  virtual ~ResultReader() = default;
+
+  /// What is read, for messages.
+  const std::string& file() const { return file_; }
+  /// Names of the columns, the first is time; units and sources where the file has them.
+  const RecordLayout& layout() const { return layout_; }
+  /// Index of a column in the layout, or its size.
+  std::size_t find(std::string_view name) const;
+  /// Numbers of some columns, row after row, in blocks of whole rows. Only these are read; `columns` begins with time.
+  virtual void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) = 0;
+  /// Numbers of all events as RecordLayout says, in blocks of whole events.
+  virtual void events(const Take& take) = 0;
+
+ protected:
+  explicit ResultReader(std::string file) : file_(std::move(file)) {}
+
+  std::string file_;
+  RecordLayout layout_;
+};
+
+[[noreturn]] void unreadable_result(const std::string& file, const std::string& why, int line = 0,
+                                    const std::string& hint = {});
+
+/// Picks rows that come in blocks.
+class RowPicker {
+ public:
+  RowPicker(const RowWindow& window, std::size_t width, const ResultReader::Take& take)
+      : window_(window), width_(width), take_(take) {}
+
+  /// Whole rows, time first.
+  void add(std::span<const double> rows);
+  /// Gives the last rows of all; without it they wait.
+  void finish();
+  /// No row to come can be wanted.
+  bool over() const { return over_; }
+
+ private:
+  bool inside(double time) const;
+
+  const RowWindow window_;
+  const std::size_t width_;
+  const ResultReader::Take& take_;
+  std::vector<double> held_;  // the first row, until the second tells the interval
+  double same_ = 0.0;
+  std::size_t seen_ = 0, met_ = 0;
+  std::vector<double> picked_;
+  bool over_ = false;
+};
+
+std::unique_ptr<ResultReader> open_csv(const std::filesystem::path& path);
+std::unique_ptr<ResultReader> open_hdf5(const std::filesystem::path& path);
+
+}  // namespace freeplay

@@ -1,0 +1,15 @@
+// RecordLayout of a model: names, units and sources of what its files hold.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "model/channel.h"
+#include "results/record.h"
+
+namespace freeplay {
+
+/// `picked`: indices into Channels::all(). Root attributes are left to the caller.
+RecordLayout record_layout(const Model& model, const Channels& channels, std::span<const std::size_t> picked);
+
+}  // namespace freeplay

@@ -1,0 +1,65 @@
+// RecordThread: the thread that writes what a run gives.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "results/record.h"
+
+namespace freeplay {
+
+/// Rows and events are only copied where the run is; a thread gives them to the writers in their order, hands them over
+/// to the system at least once a second, and sees within two that a file was removed.
+class RecordThread {
+ public:
+  /// `width`: numbers of a row.
+  RecordThread(std::size_t width, std::vector<std::unique_ptr<RecordWriter>> writers);
+  ~RecordThread();
+  RecordThread(const RecordThread&) = delete;
+  RecordThread& operator=(const RecordThread&) = delete;
+
+  /// One row: the numbers of `values` at `picked`. Waits where far too many have not been written yet.
+  void add_row(std::span<const double> values, std::span<const std::size_t> picked);
+  void add_event(std::span<const double> numbers);
+  /// Once all that was added is safe on the disk, calls `then` in the thread. Does not wait; `then` is not called after
+  /// a failure of a writer.
+  void when_safe(std::function<void()> then);
+
+  bool ok() const { return good_.load(std::memory_order_relaxed); }
+  /// Writes the rest, ends the thread and closes the files. Returns the first failure, empty without.
+  std::string close();
+  /// After close(): rows that all files hold, and processor time that the thread took [s].
+  long rows() const { return rows_; }
+  double last_time() const { return last_time_; }
+  double thread_seconds() const { return thread_seconds_; }
+
+ private:
+  void serve();
+  void write_all();
+  template <class Act>
+  void each(Act&& act);
+
+  std::size_t width_;
+  std::vector<std::unique_ptr<RecordWriter>> writers_;  // of the thread
+  RecordBlock waiting_, writing_;                       // the second is the thread's
+  std::vector<std::function<void()>> asked_, asking_;   // as the blocks
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ending_ = false;
+  std::atomic<bool> good_ = true;
+  std::string failure_;  // of the thread, until it ended
+  long rows_ = 0;
+  double last_time_ = 0.0, thread_seconds_ = 0.0;
+  std::thread thread_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,58 @@
+#include "results/text_writers.h"
+
+#include <string_view>
+
+#include "base/error.h"
+#include "base/number_text.h"
+
+namespace freeplay {
+
+TextWriter::TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns)
+    : width_(columns.size()), file_(path) {
+  for (const RecordColumn& column : columns) (header_ += column.name) += ',';
+  header_.back() = '\n';
+  file_.line() += std::string_view(header_).substr(0, header_.size() - 1);
+  file_.end_line();
+}
+
+void TextWriter::note() {
+  if (failure_.empty() && !file_.ok()) failure_ = file_.failure();
+}
+
+void TextWriter::close() {
+  try {
+    file_.close();
+  } catch (const Error&) {
+    note();
+  }
+}
+
+void RowTextWriter::write(const RecordBlock& block) {
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    append_number(file_.line(), block.rows[i]);
+    if ((i + 1) % width_ == 0) {
+      file_.end_line();
+    } else {
+      file_.line() += ',';
+    }
+  }
+  note();
+}
+
+void EventTextWriter::write(const RecordBlock& block) {
+  for (std::size_t i = 0; i < block.events.size(); i += width_) {
+    const std::span<const double> event = std::span(block.events).subspan(i, width_);
+    std::string& line = file_.line();
+    const std::size_t begin = line.size();
+    append_number(line, event[0]);
+    ((line += ',') += layout_.joints[static_cast<std::size_t>(event[1])]) += ',';
+    line += layout_.kinds[static_cast<std::size_t>(event[2])];
+    for (const double field : event.subspan(3)) append_number(line += ',', field);
+    hash_.add(line.data() + begin, line.size() - begin);
+    hash_.add("\n", 1);
+    file_.end_line();
+  }
+  note();
+}
+
+}  // namespace freeplay

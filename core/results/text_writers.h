@@ -1,0 +1,59 @@
+// TextWriters: results.csv and events.csv.
+#pragma once
+
+#include <filesystem>
+
+#include "base/growing_file.h"
+#include "base/sha256.h"
+#include "results/record.h"
+
+namespace freeplay {
+
+/// UTF-8, LF, comma, one header row, no quoting; a value that is NaN is an empty field.
+class TextWriter : public RecordWriter {
+ public:
+  void flush() override { file_.flush(), note(); }
+  void sync() override { file_.sync(), note(); }
+  void close() override;
+  void look_after() override { file_.look_after(), note(); }
+  const std::string& failure() const override { return failure_; }
+
+ protected:
+  /// Throws Error{file}.
+  TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns);
+  void note();
+
+  std::size_t width_;
+  std::string header_;
+  GrowingFile file_;
+
+ private:
+  std::string failure_;
+};
+
+/// results.csv, one line per row.
+class RowTextWriter : public TextWriter {
+ public:
+  /// Throws Error{file}.
+  RowTextWriter(const std::filesystem::path& path, const RecordLayout& layout) : TextWriter(path, layout.columns) {}
+  void write(const RecordBlock& block) override;
+};
+
+/// events.csv, one line per event. `layout` outlives it.
+class EventTextWriter : public TextWriter {
+ public:
+  /// Throws Error{file}.
+  EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout)
+      : TextWriter(path, layout.events), layout_(layout) {
+    hash_.add(header_.data(), header_.size());
+  }
+  void write(const RecordBlock& block) override;
+  /// SHA-256 of the file's text so far.
+  std::string digits() const { return hash_.digits(); }
+
+ private:
+  const RecordLayout& layout_;
+  Sha256 hash_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,180 @@
+"""Files of a result, read by other programs and exported."""
+import hashlib
+import importlib.util
+import json
+import math
+import os
+import shutil
+import struct
+import subprocess
+import unittest
+
+from program import ProgramTest, mechanism
+
+MODEL = mechanism("slider-crank")
+
+
+def needs(module):
+    return unittest.skipUnless(importlib.util.find_spec(module), "no " + module)
+
+
+def table(text):
+    lines = text.splitlines()
+    rows = [line.split(",") for line in lines[1:]]
+    return {name: [row[i] for row in rows] for i, name in enumerate(lines[0].split(","))}
+
+
+def numbers(cells):
+    return [float(cell) if cell else math.nan for cell in cells]
+
+
+def bits(values):
+    return struct.pack("<%dd" % len(values), *values)
+
+
+class Results(ProgramTest):
+    def run_model(self, *options, out="r", end="5 ms"):
+        self.freeplay("run", MODEL, "--quiet", "--end", end, "--out", out, *options)
+        return out
+
+    def test_the_format_says_which_files_there_are(self):
+        for word, files in (("csv", {"results.csv"}), ("hdf5", {"results.h5"}), ("both", {"results.csv", "results.h5"})):
+            self.run_model("--format", word, out=word, end="1 ms")
+            self.assertEqual(files, {"results.csv", "results.h5"} & set(os.listdir(self.path(word))))
+            summary = json.loads(self.read(word, "summary.json"))
+            self.assertEqual(sorted(os.listdir(self.path(word))), summary["files"])
+        _, stderr = self.freeplay("run", MODEL, "--format", "xml", "--out", "x", code=2)
+        self.assertIn("it must be csv, hdf5 or both", stderr)
+        hashes = [json.loads(self.read(word, "summary.json"))["hashes"] for word in ("csv", "hdf5", "both")]
+        self.assertEqual(hashes[0], hashes[1])
+        columns = [numbers(cells) for cells in table(self.read("csv", "results.csv")).values()]
+        rows = b"".join(bits(row) for row in zip(*columns))
+        self.assertEqual(hashlib.sha256(rows).hexdigest(), hashes[0]["rows"])
+        events = self.read("csv", "events.csv").encode()
+        self.assertEqual(hashlib.sha256(events).hexdigest(), hashes[0]["events"])
+
+    @needs("h5py")
+    def test_every_column_is_a_dataset_with_the_same_bits(self):
+        import h5py
+        self.run_model()
+        columns = table(self.read("r", "results.csv"))
+        with h5py.File(self.path("r", "results.h5"), "r") as file:
+            self.assertEqual([name.replace("/", ":") for name in columns],
+                             [name for name in file["/"] if name in {c.replace("/", ":") for c in columns}])
+            for name, cells in columns.items():
+                dataset = file[name.replace("/", ":")]
+                self.assertEqual(bits(numbers(cells)), bits(dataset[:].tolist()), name)
+                for attribute in ("units", "long_name", "source"):
+                    self.assertTrue(dataset.attrs[attribute].decode().strip(), name)
+            self.assertEqual(self.read("r", "summary.json").encode(), file["summary"][:].tobytes())
+            self.assertEqual(self.read("r", "model.yaml"), file.attrs["model"].decode())
+
+    @needs("xarray")
+    @needs("netCDF4")
+    def test_xarray_opens_rows_and_events(self):
+        import xarray
+        self.run_model()
+        columns = table(self.read("r", "results.csv"))
+        with xarray.open_dataset(self.path("r", "results.h5")) as data:
+            self.assertLessEqual({name.replace("/", ":") for name in columns}, set(data.variables))
+            self.assertEqual("float64", str(data["time"].dtype))
+            self.assertEqual("completed", json.loads(data["summary"].item())["status"])
+        with xarray.open_dataset(self.path("r", "results.h5"), group="events") as events:
+            self.assertEqual(len(table(self.read("r", "events.csv"))["time"]), events.sizes["event"])
+
+    @unittest.skipUnless(shutil.which("ncdump"), "no ncdump")
+    def test_ncdump_knows_all_dimensions(self):
+        self.run_model()
+        done = subprocess.run(["ncdump", "-h", self.path("r", "results.h5")], capture_output=True, text=True)
+        self.assertEqual(0, done.returncode, done.stderr)
+        self.assertIn("time = UNLIMITED", done.stdout)
+        self.assertNotIn("phony_dim", done.stdout)
+
+    def test_export_of_everything_is_the_file_itself(self):
+        self.run_model()
+        for source in ("r", "r/results.csv", "r/results.h5"):
+            self.assertEqual(self.read("r", "results.csv"), self.freeplay("export", source, "--to", "csv")[0])
+            self.assertEqual(self.read("r", "events.csv"),
+                             self.freeplay("export", source, "--to", "csv", "--table", "events")[0])
+
+    def test_export_picks_channels_and_rows(self):
+        self.run_model()
+        whole = table(self.read("r", "results.csv"))
+        picked = table(self.freeplay("export", "r", "--to", "csv", "--channels", "energy.*", "--from", "1 ms",
+                                     "--until", "3 ms", "--every", "7")[0])
+        self.assertEqual(["time"] + [name for name in whole if name.startswith("energy.")], list(picked))
+        rows = [i for i, t in enumerate(numbers(whole["time"])) if 1e-3 - 1e-12 <= t <= 3e-3 + 1e-12][::7]
+        self.assertGreater(len(rows), 5)
+        for name, cells in picked.items():
+            self.assertEqual([whole[name][i] for i in rows], cells)
+
+    def test_export_lists_impacts(self):
+        self.run_model()
+        events = table(self.read("r", "events.csv"))
+        ended = [i for i, kind in enumerate(events["kind"]) if kind == "contact_end"]
+        impacts = table(self.freeplay("export", "r", "--to", "csv", "--table", "impacts")[0])
+        self.assertGreater(len(ended), 0)
+        self.assertEqual([events["max_fn"][i] for i in ended], impacts["max_fn"])
+        self.assertEqual([events["joint"][i] for i in ended], impacts["joint"])
+
+    def test_export_to_json_has_null_where_there_is_nothing(self):
+        self.run_model()
+        printed = json.loads(self.freeplay("export", "r", "--to", "json", "--table", "events")[0])
+        events = table(self.read("r", "events.csv"))
+        self.assertEqual(list(events), printed["columns"])
+        self.assertEqual(len(events["time"]), len(printed["rows"]))
+        column = list(events).index("duration")
+        self.assertIn(None, [row[column] for row in printed["rows"]])
+        self.assertEqual(self.read("r", "model.yaml"), printed["provenance"]["model"]["text"])
+
+    @needs("h5py")
+    @needs("scipy")
+    def test_exported_files_read_back_bit_by_bit(self):
+        import h5py
+        import scipy.io
+        self.run_model()
+        columns = table(self.read("r", "results.csv"))
+        self.freeplay("export", "r", "--to", "hdf5", "--out", "x.h5")
+        self.freeplay("export", "r", "--to", "mat", "--out", "x.mat")
+        mat = scipy.io.loadmat(self.path("x.mat"))
+        channels = [str(cell[0]) for cell in mat["channels"].ravel()]
+        self.assertEqual(list(columns)[1:], channels)
+        self.assertEqual(bits(numbers(columns["time"])), bits(mat["time"].ravel().tolist()))
+        with h5py.File(self.path("x.h5"), "r") as file:
+            for k, name in enumerate(channels):
+                self.assertEqual(bits(numbers(columns[name])), bits(file[name.replace("/", ":")][:].tolist()))
+                self.assertEqual(bits(numbers(columns[name])), bits(mat["data"][:, k].tolist()))
+            self.assertEqual("gzip", file["energy.work"].compression)
+        self.assertLess(os.path.getsize(self.path("x.h5")), os.path.getsize(self.path("r", "results.h5")))
+
+    def test_export_replaces_nothing_without_force(self):
+        self.run_model(end="1 ms")
+        self.freeplay("export", "r", "--to", "csv", "--out", "x.csv")
+        self.assertEqual(self.read("r", "results.csv"), self.read("x.csv"))
+        record = json.loads(self.read("x.csv.provenance.json"))
+        self.assertEqual(self.read("r", "model.yaml"), record["model"]["text"])
+        self.assertEqual(hashlib.sha256(self.read("x.csv").encode()).hexdigest(), record["data_sha256"])
+        _, stderr = self.freeplay("export", "r", "--to", "csv", "--out", "x.csv", code=6)
+        self.assertIn("x.csv", stderr)
+        self.freeplay("export", "r", "--to", "csv", "--out", "x.csv", "--force")
+
+    def test_export_says_what_is_wrong(self):
+        self.run_model(end="1 ms")
+        for words, code, message in (
+                (("r", "--to", "csv", "--channels", "energy.wrk"), 2, "did you mean 'energy.work'?"),
+                (("r", "--to", "xml"), 2, "xml"), (("r", "--to", "hdf5"), 2, "--out"), (("r",), 2, "--to"),
+                (("nowhere", "--to", "csv"), 6, "unreadable-result"),
+                (("r", "--to", "csv", "--every", "0"), 2, "--every"),
+                (("r", "--to", "csv", "--table", "result"), 2, "did you mean 'results'?"),
+                (("r", "--to", "csv", "--from", "2 ms", "--until", "1 ms"), 2, "--from")):
+            with self.subTest(words=words):
+                self.assertIn(message, self.freeplay("export", *words, code=code)[1])
+
+    def test_compare_takes_either_file(self):
+        self.run_model(end="1 ms")
+        self.freeplay("compare", "r/results.csv", "r/results.h5", "--tolerance", "0", "--absolute", "0")
+        self.freeplay("compare", "r", "r/results.csv", "--tolerance", "0", "--absolute", "0")
+
+
+if __name__ == "__main__":
+    unittest.main()
