@@ -64,8 +64,8 @@ inline ContactForce normal_force(const ContactLawRef& law, const Approach& gap, 
 }
 /// Power that goes into the stored energy of the contact [W].
 inline double storing_power(const ContactLawRef& law, const Approach& gap, const ContactForce& f) {
-  const bool told = !std::isnan(f.elastic);
-  return gap.rate * (told ? f.elastic : law.evaluate({gap.penetration, 0.0, 0.0}).normal);
+  const bool given = !std::isnan(f.elastic);
+  return gap.rate * (given ? f.elastic : law.evaluate({gap.penetration, 0.0, 0.0}).normal);
 }
 
 /// Smallest root s > 0 of delta + delta' s + delta'' s^2/2 from flight, delta < 0; unbounded without one.

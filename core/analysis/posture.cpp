@@ -347,7 +347,7 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
   Posture posture = from.q.empty() ? blank() : from;
   const bool whole_pose = is_whole(demand);
   int legs = 0;
-  bool told = false;
+  bool explained = false;
   for (const Limb& part : mechanism_.parts()) {
     if (!whole_pose && part.inputs.empty()) continue;
     Unreachable reason;
@@ -382,9 +382,9 @@ int PostureSolver::legs_in_reach(const Demand& demand, const Posture& from, Unre
           moved, reason);
     }
     legs += reached ? static_cast<int>(part.inputs.size()) : 0;
-    if (!reached && !told) {
+    if (!reached && !explained) {
       why = reason;
-      told = true;
+      explained = true;
     }
   }
   return legs;

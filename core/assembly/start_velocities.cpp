@@ -20,11 +20,11 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Eigen::Index most_told_columns = 200;  // beyond, what is chosen costs more to list than to find
-constexpr double of_racing = 0.1;                // of velocities: less by this is worth what blocks then do not keep
-constexpr double share_in_play = 1e-2;           // share of a journal's motion that constraints must leave to it
-constexpr double part_free = 1e-6;               // of a direction of unit length: less is rounding
-constexpr double kept_part = 1e-9;               // of the largest velocity: a given one that differs by less is kept
+constexpr Eigen::Index most_listed_velocities = 200;  // beyond, what is chosen costs more to list than to find
+constexpr double of_racing = 0.1;       // of velocities: less by this is worth what blocks then do not keep
+constexpr double share_in_play = 1e-2;  // share of a journal's motion that constraints must leave to it
+constexpr double part_free = 1e-6;      // of a direction of unit length: less is rounding
+constexpr double kept_part = 1e-9;      // of the largest velocity: a given one that differs by less is kept
 
 class Velocities {
  public:
@@ -44,7 +44,7 @@ class Velocities {
     solve_least_change(given);
     if (system_.layout().nv() > most_dense_columns) return {};
     if (gives_any() && !keeps(given)) keep_what_can_be_kept(given);
-    return system_.layout().nv() <= most_told_columns ? chosen() : std::vector<ChosenSpeed>{};
+    return system_.layout().nv() <= most_listed_velocities ? chosen() : std::vector<ChosenSpeed>{};
   }
 
  private:

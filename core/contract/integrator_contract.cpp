@@ -136,10 +136,10 @@ class IntegratorCheck {
       }
       const std::size_t now = before << halvings, stride = std::size_t{1} << (halvings - i);
       double truth = 0.0;
-      const double told = drive.estimate(dt, tolerance, truth, known[now], known[now + stride]);
-      if (i > 0) slope = std::log2(last / told);
-      last = told;
-      if (truth > 1e-3) least_ratio = std::min(least_ratio, told / truth);
+      const double estimate = drive.estimate(dt, tolerance, truth, known[now], known[now + stride]);
+      if (i > 0) slope = std::log2(last / estimate);
+      last = estimate;
+      if (truth > 1e-3) least_ratio = std::min(least_ratio, estimate / truth);
     }
     findings_.expect("estimate-order", std::abs(slope - power) <= 0.5, [&] {
       return fmt::format("{}: the error estimate falls with the power {:.2f} of the step, declared {}",

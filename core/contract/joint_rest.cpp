@@ -49,10 +49,10 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
         expect(!(sign * events.g[e] > 0.0), "an event is past its zero");
       }
       expect(!probe.warns(there), "it warns");
-      JointMoment behind = there;
-      probe.begin_step(there, random_twelve(probe.space(), random, 10.0), 1e-4, behind);
-      probe.commit(behind);
-      expect(same_bits(probe.all(there), probe.all(behind)), "begin_step() and commit() change what it answers");
+      JointMoment later = there;
+      probe.begin_step(there, random_twelve(probe.space(), random, 10.0), 1e-4, later);
+      probe.commit(later);
+      expect(same_bits(probe.all(there), probe.all(later)), "begin_step() and commit() change what it answers");
     }
   }
 }

@@ -105,7 +105,7 @@ std::string simulation_text(const Json& simulation) {
                                      : fmt::format("in steps of {}", words(step));
   if (step.is_object()) {
     Json rest = step;
-    for (const char* told : {"size", "adaptive"}) rest.erase(told);
+    for (const char* shown : {"size", "adaptive"}) rest.erase(shown);
     steps = fmt::format("in adaptive steps, the first of {}  {}", words(step["size"]), map_text(rest));
   }
   std::string out =

@@ -188,7 +188,7 @@ class MotionDoubts {
     return true;
   }
 
-  /// A cubic that leaves its points far on one side, as behind a short pulse.
+  /// A cubic that leaves its points far on one side, as after a short pulse.
   void judge_overshoot(const TimeTable& table, const CheckedValue& written) const {
     if (table.is_straight()) return;
     const std::span<const double> times = table.times(), values = table.values();

@@ -63,7 +63,7 @@ bool StepAcceptance::apply_events(const StepEvents::Passage& located, double lat
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   Fault fault;
   if (run_.events.apply(run_.accepted, run_.e_accepted, run_.trial, run_.e_trial, mobility, &run_, fault) &&
-      run_.events.tell_at_end(located, late, run_.trial, run_.e_trial, mobility, &run_, fault)) {
+      run_.events.apply_at_end(located, late, run_.trial, run_.e_trial, mobility, &run_, fault)) {
     return true;
   }
   return failure_.fail_with(fault, run_.trial.t());

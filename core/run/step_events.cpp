@@ -110,8 +110,8 @@ bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault
   const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
   const double dt = step.end.t - step.start.t;
   double reached = 0.0;
-  const std::span told = std::span(happening_).first(events.size);  // at `reached`
-  std::ranges::fill(told, 0);
+  const std::span handled = std::span(happening_).first(events.size);  // at `reached`
+  std::ranges::fill(handled, 0);
   for (int count = 0; count < most_per_step; ++count) {
     if (!functions(joint, step.start, step.e_before, g0, r0, fault)) return false;
     if (!functions(joint, step.end, step.e_after, g1, r1, fault)) return false;
@@ -124,21 +124,21 @@ bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault
       if (armed[i] == 0) continue;
       const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
       // Others may happen at the same instant, as at both ends of a bearing.
-      const double from = told[i] != 0 ? reached : std::max(0.0, reached - same_instant);
+      const double from = handled[i] != 0 ? reached : std::max(0.0, reached - same_instant);
       auto s = first_rise({sign * g0[i], sign * r0[i] * dt, sign * g1[i], sign * r1[i] * dt}, from);
       if (!s && !known && sign * g1[i] > 0.0) s = reached;  // armed when it was past its zero
       if (s && *s < earliest) earliest = *s, next = static_cast<int>(i);
     }
     if (next < 0) return true;
-    if (earliest > reached + same_instant) std::ranges::fill(told, 0);
+    if (earliest > reached + same_instant) std::ranges::fill(handled, 0);
     reached = std::max(reached, earliest);
-    told[at(next)] = 1;
-    if (!tell_inside(joint, next, earliest, step, fault)) return false;
+    handled[at(next)] = 1;
+    if (!handle_inside(joint, next, earliest, step, fault)) return false;
   }
   return true;
 }
 
-bool StepEvents::tell_inside(int joint, int event, double s, const Step& step, Fault& fault) {
+bool StepEvents::handle_inside(int joint, int event, double s, const Step& step, Fault& fault) {
   const State& before = step.before;
   State& after = step.after;
   const double dt = after.t() - before.t();
@@ -163,7 +163,7 @@ bool StepEvents::tell_inside(int joint, int event, double s, const Step& step, F
     fault = e_between_->fault;
     return false;
   }
-  return tell(joint, event, point(between_), e_between_, after, fault, moves ? mobility : nullptr);
+  return handle(joint, event, point(between_), e_between_, after, fault, moves ? mobility : nullptr);
 }
 
 bool StepEvents::functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g,
@@ -185,17 +185,17 @@ bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault&
   earlier_by_ = happenings_.empty() ? start.t() - start_time_ : 0.0;
   start_time_ = start.t();
   if (!functions_of_all(point(start), e_start, start_, start_rate_, fault)) return false;
-  for (const Happening& told : happenings_) leave_zero(told.joint, told.event);
+  for (const Happening& handled : happenings_) leave_zero(handled.joint, handled.event);
   return true;
 }
 
 // An event that was passed on at its very zero lies before the state, and not at the start of the step to come.
 void StepEvents::leave_zero(int joint, int event) {
-  const Event& told = system_.joint_layout(joint).events[at(event)];
-  if (told.locate == 0) return;
+  const Event& layout = system_.joint_layout(joint).events[at(event)];
+  if (layout.locate == 0) return;
   const auto w = static_cast<std::size_t>(std::ranges::lower_bound(watched_, joint) - watched_.begin());
   double& value = start_[first_event_[w] + at(event)];
-  if (std::abs(value) <= tolerance) value = std::copysign(tolerance, told.crossing == Crossing::rising ? 1.0 : -1.0);
+  if (std::abs(value) <= tolerance) value = std::copysign(tolerance, layout.crossing == Crossing::rising ? 1.0 : -1.0);
 }
 
 StepEvents::Passage StepEvents::expected_within(double dt) const {
@@ -313,8 +313,8 @@ bool StepEvents::at_end(const State& after, const Evaluation& e_after, Passage& 
   return true;
 }
 
-bool StepEvents::tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after,
-                             Mobility mobility, void* self, Fault& fault) {
+bool StepEvents::apply_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after,
+                              Mobility mobility, void* self, Fault& fault) {
   if (hunted.joint < 0) return true;
   for (const int joint : watched_) {
     const Span<const Event> events = system_.joint_layout(joint).events;
@@ -335,7 +335,7 @@ bool StepEvents::tell_at_end(const Passage& hunted, double late, State& after, c
       if (changed && !functions(joint, point(after), e_after, g, r, fault)) return false;
       if (changed && !happens(i)) continue;
       double numbers[9];
-      if (!mobility(self, joint, numbers) || !tell(joint, i, point(after), e_after, after, fault, numbers)) {
+      if (!mobility(self, joint, numbers) || !handle(joint, i, point(after), e_after, after, fault, numbers)) {
         return false;
       }
       changed = true;
@@ -344,8 +344,8 @@ bool StepEvents::tell_at_end(const Passage& hunted, double late, State& after, c
   return true;
 }
 
-bool StepEvents::tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
-                      const double* mobility) {
+bool StepEvents::handle(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
+                        const double* mobility) {
   const Slice z = system_.layout().internal(joint), h = system_.layout().history(joint);
   const std::size_t first = values_.size(), count = system_.joint_layout(joint).events[at(event)].fields.size;
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
@@ -376,7 +376,7 @@ bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
     for (std::size_t i = 0; i < events.size; ++i) {
       armed_[first_event_[w] + i] = seen_[first_event_[w] + i] = std::isnan(g[i]) ? 0 : 1;
       if (events[i].crossing != Crossing::rising || !(g[i] > 0.0)) continue;
-      if (!tell(joint, static_cast<int>(i), point(start), e, start, fault)) return false;
+      if (!handle(joint, static_cast<int>(i), point(start), e, start, fault)) return false;
     }
   }
   return true;

@@ -14,14 +14,15 @@ inline constexpr double event_rounding = 1e-15;
 
 /// Fixed-step runs shorten nothing for events: after a step is accepted every crossing is found on the cubic of
 /// (g, g') and the joint's on_event() is called with the state interpolated there (cubic in q, cubic in v).
-/// Runs that locate events ask first_crossing() and end their step there; tell_at_end() then tells with exact states.
+/// Runs that locate events ask first_crossing() and end their step there; apply_at_end() then handles them at exact
+/// states.
 class StepEvents {
  public:
   /// Gives the mobility of a joint at the end of a located step (JointInput::mobility); false when it fails.
   using Mobility = bool (*)(void* self, int joint, double* mobility);
 
-  /// `located`: events that ask for it are told by tell_at_end() and left alone by apply(). `between` and `e_between`
-  /// are lent for each call: what they hold does not matter, and is lost.
+  /// `located`: events that are located are handled by apply_at_end() and left alone by apply(). `between` and
+  /// `e_between` are lent for each call: what they hold does not matter, and is lost.
   StepEvents(const System& system, const EvaluationContext& context, bool located, State& between,
              KeptEvaluation& e_between);
 
@@ -47,8 +48,8 @@ class StepEvents {
   /// After apply(): passes on `hunted` and every other located event that grows at the end of the step, within
   /// `tolerance` of its zero or past it by no more than `late`, by which the step may have gone past `hunted`. Nothing
   /// when hunted.joint is -1.
-  bool tell_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
-                   void* self, Fault& fault);
+  bool apply_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
+                    void* self, Fault& fault);
   static constexpr double tolerance = 1e-12;  ///< of a located event function, in its unit
   static constexpr int most_per_step = 8;     ///< of one joint inside a step; more are rounding, not motion
 
@@ -101,8 +102,8 @@ class StepEvents {
   bool could_cross(std::size_t event, double sign, double dt) const;
   bool sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                Passage& found, Fault& fault);
-  bool tell_inside(int joint, int event, double s, const Step& step, Fault& fault);
-  bool tell(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
+  bool handle_inside(int joint, int event, double s, const Step& step, Fault& fault);
+  bool handle(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
             const double* mobility = nullptr);
 
   const System& system_;

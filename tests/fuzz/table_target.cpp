@@ -16,7 +16,7 @@ void read_all(const std::string& text) {
       const auto field = table.field(row, column);
       freeplay::fuzz::require(field.location.line > 0 && field.location.column > 0, "a field has a place");
       const auto number = freeplay::csv_number(field.text);
-      freeplay::fuzz::require(!number || !std::isnan(*number), "what is no number is told");
+      freeplay::fuzz::require(!number || !std::isnan(*number), "what is no number is reported");
     }
   }
 }

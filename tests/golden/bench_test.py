@@ -1,4 +1,4 @@
-"""./dev bench: its parts run, mistyped words are told, the page has a table for each part. No time is judged."""
+"""./dev bench: its parts run, mistyped words are reported, the page has a table for each part. No time is judged."""
 import json
 import os
 import re
