@@ -72,7 +72,7 @@ class Lint(unittest.TestCase):
         self.assertEqual("a.cpp: 451 lines, at most 450", str(sizes.too_large("a.cpp", "\n" * 451)[0]))
 
     def test_every_exception_of_size_is_still_needed(self):
-        for key in sizes.EXCEPTIONS:
+        for key in list(sizes.EXCEPTIONS):
             path = key.partition(" ")[0]
             with open(os.path.join(sizes.ROOT, path), encoding="utf-8") as file:
                 text = file.read()
