@@ -104,7 +104,7 @@ class StepEvents {
                Passage& found, Fault& fault);
   bool handle_inside(int joint, int event, double s, const Step& step, Fault& fault);
   bool handle(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
-            const double* mobility = nullptr);
+              const double* mobility = nullptr);
 
   const System& system_;
   const EvaluationContext& context_;

@@ -3,6 +3,7 @@
 
 #include "analysis/inverse_dynamics.h"
 #include "analysis/mobility.h"
+#include "analysis/station.h"
 #include "platforms.h"
 
 namespace freeplay {
