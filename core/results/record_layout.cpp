@@ -70,7 +70,7 @@ std::string long_name(const std::string& name) {
                         : fmt::format("{} of {} {}", phrase, kind, element);
 }
 
-/// "revolute-clearance, contact lankarani-nikravesh: F = ..., friction ambrosio: ...".
+/// Type and formula of a joint, then of each of its laws.
 std::string source_of(const JointElement& joint) {
   std::string text = joint.component != nullptr ? joint.component->description.name : "gear";
   if (joint.component != nullptr && *joint.component->description.formula != '\0') {

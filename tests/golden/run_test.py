@@ -260,7 +260,11 @@ simulation: {end: 10 ms, step: 1 ms}
         summary = self.summary("results", "3-rrr")
         self.assertEqual({None}, set(summary["residuals"].values()))
         for joint in summary["joints"].values():
-            self.assertEqual({None}, {value for key, value in joint.items() if key != "type"})
+            play = joint["play"] or {"impacts": 0}
+            self.assertEqual(0, play.pop("impacts"))
+            self.assertLessEqual(set(play.values()), {None})
+            described = ("type", "clearance", "play")
+            self.assertEqual({None}, {value for key, value in joint.items() if key not in described})
 
     def test_dry_run_writes_nothing(self):
         out, _ = self.freeplay("run", self.pendulum(), "--dry-run")
