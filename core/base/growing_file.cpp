@@ -20,10 +20,11 @@ std::string words(const std::filesystem::path& path, const char* reason) {
   return fmt::format("cannot write '{}': {}", path.string(), reason);
 }
 
-/// Whether no folder names the file any more: it was removed, or another took its place.
-bool has_no_name(int descriptor) {
-  struct stat status {};
-  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
+/// Whether the path does not lead to the open file any more: it was removed, or another took its place.
+bool was_replaced(int descriptor, const std::filesystem::path& path) {
+  struct stat open {}, there {};
+  if (::fstat(descriptor, &open) != 0 || !S_ISREG(open.st_mode)) return false;
+  return ::stat(path.c_str(), &there) != 0 || there.st_ino != open.st_ino || there.st_dev != open.st_dev;
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ void GrowingFile::sync() {
 }
 
 void GrowingFile::look_after() {
-  if (descriptor_ >= 0 && !removed_) removed_ = has_no_name(descriptor_);
+  if (descriptor_ >= 0 && !removed_) removed_ = was_replaced(descriptor_, path_);
 }
 
 std::string GrowingFile::failure() const {

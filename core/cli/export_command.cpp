@@ -1,6 +1,5 @@
 #include "cli/export_command.h"
 
-#include <charconv>
 #include <filesystem>
 #include <memory>
 
@@ -27,14 +26,6 @@ struct ExportOptions {
   bool force = false;
 };
 
-std::size_t whole_number(const std::string& option, const std::string& text) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size() && number > 0) return number;
-  throw Error(Error::Category::usage, "bad-value",
-              fmt::format("bad value '{}' of {}: it must be a whole number from 1 on", text, option));
-}
-
 TableRequest request_of(const ExportOptions& options) {
   TableRequest request;
   if (!options.table.empty()) {
@@ -46,7 +37,7 @@ TableRequest request_of(const ExportOptions& options) {
   RowWindow& window = request.window;
   if (!options.from.empty()) window.from = signed_quantity("--from", options.from, dimension::time);
   if (!options.until.empty()) window.until = signed_quantity("--until", options.until, dimension::time);
-  if (!options.every.empty()) window.every = whole_number("--every", options.every);
+  if (!options.every.empty()) window.every = static_cast<std::size_t>(whole_number("--every", options.every, 1));
   if (window.from > window.until) {
     throw Error(Error::Category::usage, "bad-value",
                 fmt::format("--from {} is after --until {}", options.from, options.until));

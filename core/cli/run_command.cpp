@@ -130,6 +130,10 @@ class RunJob {
   int execute() {
     note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
                      settings().start, settings().end));
+    if (!recording_.guarded()) {
+      warn(fmt::format("the file system of '{}' has no locks: let no other run write into it meanwhile",
+                       path_.string()));
+    }
     for (const RegisteredLibrary& library : loaded_.model->instances.libraries()) {
       if (library.path == "built-in") continue;
       note(fmt::format("plugin {} {}, compiler {}, from {}", library.table->name(), library.table->version(),

@@ -16,8 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* own_files[] = {"results.csv", "results.h5", "summary.json",   "events.csv", "model.yaml",
-                                     "model.urdf",  "inputs",     "checkpoint.bin", "run.log"};
+constexpr const char* own_files[] = {"results.csv", "results.h5",  "summary.json", "events.csv",
+                                     "model.yaml",  "model.urdf",  "inputs",       "checkpoint.bin",
+                                     "run.log",     "report.html", "twin"};
 
 [[noreturn]] void fail(std::string message, std::string hint = {}) {
   throw Error(Error::Category::file, "cannot-write", std::move(message), {}, std::move(hint));
@@ -48,6 +49,14 @@ bool holds_unfinished_result(const fs::path& path) {
   return log && !error;
 }
 
+const fs::path& made(const fs::path& path, bool force) {
+  check_result_directory(path, force);
+  std::error_code error;
+  fs::create_directories(path, error);
+  require(error, "make the directory", path);
+  return path;
+}
+
 }  // namespace
 
 std::string result_name(std::string_view model_name, bool ideal) {
@@ -76,6 +85,7 @@ void check_result_directory(const fs::path& path, bool force) {
   if (status.type() != fs::file_type::directory) fail(fmt::format("'{}' is not a directory", path.string()));
   const bool empty = fs::is_empty(path, error);
   require(error, "read", path);
+  require_no_owner(path);
   if (empty || force || holds_result(path)) return;
   if (holds_unfinished_result(path)) {
     fail(fmt::format("'{}' holds the result of a run that did not end: it has no summary.json", path.string()),
@@ -85,14 +95,14 @@ void check_result_directory(const fs::path& path, bool force) {
        "choose another directory with --out, or write beside them with --force");
 }
 
-ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(path)) {
-  check_result_directory(path_, force);
+ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(path)), owner_(made(path_, force)) {
   std::error_code error;
-  fs::create_directories(path_, error);
-  require(error, "make the directory", path_);
-  for (const char* name : own_files) {
-    fs::remove_all(path_ / name, error);
-    require(error, "remove", path_ / name);
+  for (const std::string_view name : own_files) {
+    if (name == "run.log") continue;  // others look at its lock
+    for (const fs::path& file : {path_ / name, path_ / fmt::format(".{}.part", name)}) {
+      fs::remove_all(file, error);
+      require(error, "remove", file);
+    }
   }
 }
 

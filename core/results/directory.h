@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/model.h"
+#include "results/owner.h"
 
 namespace freeplay {
 
@@ -19,13 +20,15 @@ std::string result_name(std::string_view model_name, bool ideal);
 std::string model_copy_name(const Model& model);
 
 /// Throws Error{file} unless a result may go to `path`: it does not exist, is empty, holds an earlier result (a
-/// summary.json of this program), or `force` allows to write beside other files. Changes nothing.
+/// summary.json of this program), or `force` allows to write beside other files; and no process writes into it. Changes
+/// nothing.
 void check_result_directory(const std::filesystem::path& path, bool force);
 
-/// A directory that is ready for a new result.
+/// A directory that this process alone writes a result into.
 class ResultDirectory {
  public:
-  /// Checks, makes the directory and removes the files of an earlier result, and only these. Throws Error{file}.
+  /// Checks, makes the directory and removes the files of an earlier result, and only these; its run.log stays as it is
+  /// until it is written anew. Throws Error{file}.
   ResultDirectory(std::filesystem::path path, bool force);
 
   const std::filesystem::path& path() const { return path_; }
@@ -39,8 +42,12 @@ class ResultDirectory {
   /// Sorted names of what is there.
   std::vector<std::string> files() const;
 
+  /// False where nothing keeps other processes away.
+  bool guarded() const { return owner_.guarded(); }
+
  private:
   std::filesystem::path path_;
+  Owner owner_;
 };
 
 }  // namespace freeplay

@@ -149,6 +149,8 @@ struct Hdf5Writer::File {
   const RecordLayout& layout;
   const bool grows;
   const hsize_t chunk;
+  ino_t inode = 0;  // of a file that grows
+  dev_t device = 0;
   hid_t file = -1;
   std::vector<hid_t> columns, event_columns;
   hid_t event = -1;
@@ -193,6 +195,10 @@ Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& 
   if (grows) checked(H5Fstart_swmr_write(file));
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
   if (grows) {
+    struct stat made {};
+    if (::stat(part.c_str(), &made) != 0) throw Hdf5Failure(std::strerror(errno));
+    inode = made.st_ino;
+    device = made.st_dev;
     if (::rename(part.c_str(), path.c_str()) != 0) throw Hdf5Failure(std::strerror(errno));
     sync_folder(path.parent_path());
   }
@@ -473,7 +479,7 @@ void Hdf5Writer::sync() {
 void Hdf5Writer::look_after() {
   struct stat there {};
   if (file_ == nullptr || !options_.grows || !failure_.empty()) return;
-  if (::stat(path_.c_str(), &there) == 0) return;
+  if (::stat(path_.c_str(), &there) == 0 && there.st_ino == file_->inode && there.st_dev == file_->device) return;
   failure_ = fmt::format("cannot write '{}': it was removed or replaced while it was written", path_.string());
 }
 

@@ -66,6 +66,13 @@ void RecordThread::each(Act&& act) {
   }
 }
 
+/// What a file took of a flush that another one refused does not count.
+void RecordThread::note_safe() {
+  if (!good_) return;
+  rows_ = given_;
+  last_time_ = time_given_;
+}
+
 void RecordThread::write_all() {
   const auto flush_every = flush_again * static_cast<int>(1 + width_ / often_up_to);
   Clock::time_point flushed = Clock::now();
@@ -81,7 +88,14 @@ void RecordThread::write_all() {
     }
     changed_.notify_all();
     each([this](RecordWriter& writer) { writer.write(writing_); });
-    if (!asking_.empty()) each([](RecordWriter& writer) { writer.sync(); });
+    if (!writing_.rows.empty()) {
+      given_ += static_cast<long>(writing_.rows.size() / width_);
+      time_given_ = writing_.rows[writing_.rows.size() - width_];
+    }
+    if (!asking_.empty()) {
+      each([](RecordWriter& writer) { writer.sync(); });
+      note_safe();
+    }
     for (const auto& then : asking_) {
       if (good_) then();
     }
@@ -89,10 +103,7 @@ void RecordThread::write_all() {
       flushed = Clock::now();
       each([](RecordWriter& writer) { writer.look_after(); });
       each([](RecordWriter& writer) { writer.flush(); });
-    }
-    if (good_ && !writing_.rows.empty()) {
-      rows_ += static_cast<long>(writing_.rows.size() / width_);
-      last_time_ = writing_.rows[writing_.rows.size() - width_];
+      note_safe();
     }
     writing_.rows.clear();
     writing_.events.clear();

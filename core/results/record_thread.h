@@ -37,7 +37,8 @@ class RecordThread {
   bool ok() const { return good_.load(std::memory_order_relaxed); }
   /// Writes the rest, ends the thread and closes the files. Returns the first failure, empty without.
   std::string close();
-  /// After close(): rows that all files hold, and processor time that the thread took [s].
+  /// After close(): rows up to the last flush that every file took, the time of the last one, and processor time that
+  /// the thread took [s].
   long rows() const { return rows_; }
   double last_time() const { return last_time_; }
   double thread_seconds() const { return thread_seconds_; }
@@ -45,6 +46,7 @@ class RecordThread {
  private:
   void serve();
   void write_all();
+  void note_safe();
   template <class Act>
   void each(Act&& act);
 
@@ -57,8 +59,8 @@ class RecordThread {
   bool ending_ = false;
   std::atomic<bool> good_ = true;
   std::string failure_;  // of the thread, until it ended
-  long rows_ = 0;
-  double last_time_ = 0.0, thread_seconds_ = 0.0;
+  long given_ = 0, rows_ = 0;  // to the writers; flushed by all of them
+  double time_given_ = 0.0, last_time_ = 0.0, thread_seconds_ = 0.0;
   std::thread thread_;
 };
 

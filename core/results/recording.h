@@ -37,6 +37,8 @@ class Recording {
   bool ok() const { return thread_.ok(); }
   /// Once all rows and events so far are safe on the disk, calls `then` in the thread that writes; does not wait.
   void when_safe(std::function<void()> then);
+  /// False where nothing keeps other processes out of the directory.
+  bool guarded() const { return directory_.guarded(); }
   RunLog& log() { return log_; }
   const ContactAdvice& advice() const { return advice_; }
   /// Tables of /bearing, for seal().

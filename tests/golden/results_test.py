@@ -5,11 +5,13 @@ import json
 import math
 import os
 import shutil
+import signal
 import struct
 import subprocess
+import time
 import unittest
 
-from program import ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, mechanism
 
 MODEL = mechanism("slider-crank")
 
@@ -36,6 +38,23 @@ class Results(ProgramTest):
     def run_model(self, *options, out="r", end="5 ms"):
         self.freeplay("run", MODEL, "--quiet", "--end", end, "--out", out, *options)
         return out
+
+    def test_a_result_has_one_owner_at_a_time(self):
+        command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.DEVNULL) as first:
+            try:
+                while not os.path.exists(self.path("r", "results.h5")):
+                    time.sleep(0.02)
+                log = self.read("r", "run.log")
+                for force in ([], ["--force"]):
+                    _, stderr = self.freeplay("run", MODEL, "--end", "1 ms", "--out", "r", *force, code=6)
+                    self.assertIn("'r' is in use: process %d writes into it" % first.pid, stderr)
+                    self.assertIn("[result-in-use]", stderr)
+                self.assertTrue(self.read("r", "run.log").startswith(log))
+            finally:
+                first.send_signal(signal.SIGINT)
+        self.assertEqual(130, first.returncode)
+        self.run_model(end="1 ms")
 
     def test_the_format_says_which_files_there_are(self):
         for word, files in (("csv", {"results.csv"}), ("hdf5", {"results.h5"}), ("both", {"results.csv", "results.h5"})):

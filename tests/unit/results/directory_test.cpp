@@ -1,6 +1,9 @@
 #include "results/directory.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "base/sha256.h"
@@ -24,7 +27,7 @@ TEST(ResultDirectory, RemovesAnEarlierResultAndNothingElse) {
   folder.write("results.csv", "old");
   folder.write("notes.txt", "mine");
   const ResultDirectory directory(folder.path(), false);
-  EXPECT_EQ(std::vector<std::string>{"notes.txt"}, directory.files());
+  EXPECT_EQ((std::vector<std::string>{"notes.txt", "run.log"}), directory.files());
 }
 
 TEST(ResultDirectory, RefusesOtherContentUnlessForced) {
@@ -40,7 +43,7 @@ TEST(ResultDirectory, WritesWholeFiles) {
   const ResultDirectory directory(folder.file("a/b"), false);
   directory.write("summary.json", "text");
   EXPECT_EQ("text", folder.read("a/b/summary.json"));
-  EXPECT_EQ(std::vector<std::string>{"summary.json"}, directory.files());
+  EXPECT_EQ((std::vector<std::string>{"run.log", "summary.json"}), directory.files());
 }
 
 TEST(ResultDirectory, WritesIntoAFolderOfItsOwn) {
@@ -48,7 +51,31 @@ TEST(ResultDirectory, WritesIntoAFolderOfItsOwn) {
   const ResultDirectory directory(folder.file("a"), false);
   directory.write("inputs/motor.csv", "t,x");
   EXPECT_EQ("t,x", folder.read("a/inputs/motor.csv"));
-  EXPECT_EQ(std::vector<std::string>{"inputs"}, directory.files());
+  EXPECT_EQ((std::vector<std::string>{"inputs", "run.log"}), directory.files());
+}
+
+TEST(ResultDirectory, BelongsToOneAtATime) {
+  const ScratchFolder folder;
+  folder.write("run.log", "old\n");
+  const auto refused = [&](bool force) {
+    try {
+      check_result_directory(folder.path(), force);
+    } catch (const Error& error) {
+      EXPECT_EQ("result-in-use", error.id());
+      EXPECT_NE(std::string::npos, error.message().find("process " + std::to_string(::getpid()))) << error.message();
+      return true;
+    }
+    return false;
+  };
+  {
+    const ResultDirectory first(folder.path(), true);
+    EXPECT_TRUE(first.guarded());
+    EXPECT_TRUE(refused(false));
+    EXPECT_TRUE(refused(true));
+    EXPECT_THROW(ResultDirectory(folder.path(), true), Error);
+    EXPECT_EQ("old\n", folder.read("run.log"));
+  }
+  EXPECT_FALSE(refused(true));
 }
 
 // FIPS 180-2, appendix B.1.
