@@ -22,16 +22,18 @@ std::string words(const std::filesystem::path& path, const char* reason) {
 
 /// Whether the path does not lead to the open file any more: it was removed, or another took its place.
 bool was_replaced(int descriptor, const std::filesystem::path& path) {
-  struct stat open {}, there {};
+  struct stat open {
+  }, there{};
   if (::fstat(descriptor, &open) != 0 || !S_ISREG(open.st_mode)) return false;
   return ::stat(path.c_str(), &there) != 0 || there.st_ino != open.st_ino || there.st_dev != open.st_dev;
 }
 
 }  // namespace
 
-GrowingFile::GrowingFile(std::filesystem::path path)
+GrowingFile::GrowingFile(std::filesystem::path path, Begin begin)
     : path_(std::move(path)),
-      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
+      descriptor_(
+          ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (begin == Begin::empty ? O_TRUNC : O_APPEND), 0666)),
       last_flush_(std::chrono::steady_clock::now()) {
   if (descriptor_ < 0) throw Error(Error::Category::file, "cannot-write", words(path_, std::strerror(errno)));
   text_.reserve(2 * many);

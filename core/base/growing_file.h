@@ -13,8 +13,9 @@ namespace freeplay {
 /// failure to write is kept; what was written before it stays, cut to whole lines.
 class GrowingFile {
  public:
-  /// Makes the file, or empties it. Throws Error{file} "cannot-write".
-  explicit GrowingFile(std::filesystem::path path);
+  enum class Begin { empty, append };
+  /// Makes the file where there is none; else empties it, or goes on at its end. Throws Error{file} "cannot-write".
+  explicit GrowingFile(std::filesystem::path path, Begin begin = Begin::empty);
   ~GrowingFile();
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;

@@ -33,6 +33,11 @@ class ContactAdvice : public Sink {
   /// Step that gives every contact so many steps [s]; NaN when all have them.
   double step() const { return step_; }
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.joints_, self.under_resolved_, self.ended_, self.fewest_steps_, self.step_);
+  }
+
  private:
   struct Fields {
     int duration = -1, steps = -1, force = -1, speed = -1;
@@ -41,6 +46,10 @@ class ContactAdvice : public Sink {
   struct OfJoint {
     std::array<double, decades> fewest_steps;  // by the decade of an impact's largest force
     double speed = 0.0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.fewest_steps, self.speed);
+    }
   };
   double from_, per_contact_;
   std::vector<std::vector<Fields>> fields_;  // joint, event

@@ -110,6 +110,12 @@ void ResultDirectory::write(std::string_view name, std::string_view text) const 
   write_whole_file(path_ / name, text);
 }
 
+void ResultDirectory::remove(std::string_view name) const {
+  std::error_code error;
+  fs::remove(path_ / name, error);
+  require(error, "remove", path_ / name);
+}
+
 void ResultDirectory::require_all(std::span<const std::string> names) const {
   for (const std::string& name : names) {
     std::error_code error;

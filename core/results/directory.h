@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "model/model.h"
@@ -30,6 +31,8 @@ class ResultDirectory {
   /// Checks, makes the directory and removes the files of an earlier result, and only these; its run.log stays as it is
   /// until it is written anew. Throws Error{file}.
   ResultDirectory(std::filesystem::path path, bool force);
+  /// That of a result that goes on: every file stays. Throws Error{file} "result-in-use", "cannot-write".
+  explicit ResultDirectory(std::filesystem::path path) : path_(std::move(path)), owner_(path_) {}
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(std::string_view name) const { return path_ / name; }
@@ -37,6 +40,8 @@ class ResultDirectory {
   /// as "inputs/motor.csv" stands in a folder of the directory.
   /// Throws Error{file}.
   void write(std::string_view name, std::string_view text) const;
+  /// Removes a file where there is one. Throws Error{file}.
+  void remove(std::string_view name) const;
   /// Throws Error{file} for the first of these files that is not there any more.
   void require_all(std::span<const std::string> names) const;
   /// Sorted names of what is there.

@@ -33,6 +33,12 @@ class EventSink : public Sink {
   /// Gives what still waits.
   void finish();
 
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive.list(self.waiting_);
+    archive.list(self.fields_);
+  }
+
  private:
   /// What the run itself says of a contact that ended: the columns from `of_contact` on, whatever the joint tells.
   static constexpr std::size_t of_contact = 10, contact_numbers = 5;
@@ -41,6 +47,10 @@ class EventSink : public Sink {
     double time;
     std::size_t joint, event, first_field, order;
     ContactNumbers contact;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.time, self.joint, self.event, self.first_field, self.order, self.contact);
+    }
   };
   struct OfEvent {
     std::size_t kind;

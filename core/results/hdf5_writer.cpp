@@ -143,7 +143,8 @@ struct Hdf5Writer::File {
   void write(const RecordBlock& block);
   void flush();
   void finish(const BearingTables& tables, const std::string& summary);
-  void sync();
+  void sync() const;
+  void put_in_place();
 
   const fs::path path, part;
   const RecordLayout& layout;
@@ -194,16 +195,18 @@ Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& 
   make();
   if (grows) checked(H5Fstart_swmr_write(file));
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
-  if (grows) {
-    struct stat made {};
-    if (::stat(part.c_str(), &made) != 0) throw Hdf5Failure(std::strerror(errno));
-    inode = made.st_ino;
-    device = made.st_dev;
-    if (::rename(part.c_str(), path.c_str()) != 0) throw Hdf5Failure(std::strerror(errno));
-    sync_folder(path.parent_path());
-  }
+  if (grows && !options.named_later) put_in_place();
   open_datasets();
   waiting.resize(layout.columns.size() * chunk);
+}
+
+void Hdf5Writer::File::put_in_place() {
+  struct stat made {};
+  if (::stat(part.c_str(), &made) != 0) throw Hdf5Failure(std::strerror(errno));
+  inode = made.st_ino;
+  device = made.st_dev;
+  if (::rename(part.c_str(), path.c_str()) != 0) throw Hdf5Failure(std::strerror(errno));
+  sync_folder(path.parent_path());
 }
 
 Hdf5Id Hdf5Writer::File::make_dataset(hid_t group, const std::string& name, hid_t type, std::vector<hsize_t> size,
@@ -401,8 +404,8 @@ void Hdf5Writer::File::flush() {
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
 }
 
-void Hdf5Writer::File::sync() {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+void Hdf5Writer::File::sync() const {
+  const int descriptor = ::open((inode != 0 || !grows ? path : part).c_str(), O_RDONLY | O_CLOEXEC);
   const bool good = descriptor >= 0 && (::fdatasync(descriptor) == 0 || errno == EINVAL || errno == EROFS);
   const int reason = errno;
   if (descriptor >= 0) ::close(descriptor);
@@ -445,6 +448,8 @@ Hdf5Writer::~Hdf5Writer() {
     const Hdf5Lock lock;
     H5Fclose(file_->file);
   }
+  std::error_code ignored;
+  if (options_.named_later && file_ != nullptr && file_->inode == 0) fs::remove(file_->part, ignored);
 }
 
 template <class Act>
@@ -476,9 +481,17 @@ void Hdf5Writer::sync() {
   });
 }
 
+void Hdf5Writer::put_in_place() {
+  attempt([](File& file) {
+    file.flush();
+    file.sync();
+    file.put_in_place();
+  });
+}
+
 void Hdf5Writer::look_after() {
   struct stat there {};
-  if (file_ == nullptr || !options_.grows || !failure_.empty()) return;
+  if (file_ == nullptr || file_->inode == 0 || !failure_.empty()) return;
   if (::stat(path_.c_str(), &there) == 0 && there.st_ino == file_->inode && there.st_dev == file_->device) return;
   failure_ = fmt::format("cannot write '{}': it was removed or replaced while it was written", path_.string());
 }

@@ -30,6 +30,7 @@ class Hdf5Writer : public RecordWriter {
   struct Options {
     std::size_t expected_rows = 1024;  ///< sets the size of chunks
     bool grows = true;                 ///< else a file for any reader, compressed
+    bool named_later = false;          ///< a file that grows takes the place of another one by put_in_place()
   };
   /// `layout` outlives it. Nothing is done before the first call.
   Hdf5Writer(std::filesystem::path path, const RecordLayout& layout, const Options& options);
@@ -42,6 +43,8 @@ class Hdf5Writer : public RecordWriter {
   void close() override { flush(); }
   void look_after() override;
   const std::string& failure() const override { return failure_; }
+  /// Gives the file its name, with what was written so far.
+  void put_in_place();
 
   /// Writes the tables and the text of the summary and closes the file: any reader opens it then. A quantity that
   /// `tables` does not have is left empty.

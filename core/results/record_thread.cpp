@@ -16,8 +16,13 @@ constexpr std::size_t often_up_to = 2000;  // columns; with more, flushes take l
 
 }  // namespace
 
-RecordThread::RecordThread(std::size_t width, std::vector<std::unique_ptr<RecordWriter>> writers)
-    : width_(width), writers_(std::move(writers)) {
+RecordThread::RecordThread(std::size_t width, Start start)
+    : width_(width),
+      writers_(std::move(start.writers)),
+      given_(start.rows),
+      rows_(start.rows),
+      time_given_(start.last_time),
+      last_time_(start.last_time) {
   for (RecordBlock* block : {&waiting_, &writing_}) {
     block->rows.reserve(2 * worth_waking + width_);
     block->events.reserve(worth_waking);

@@ -21,8 +21,15 @@ namespace freeplay {
 /// to the system at least once a second, and sees within two that a file was removed.
 class RecordThread {
  public:
+  /// Writers, and the rows that they hold already.
+  struct Start {
+    std::vector<std::unique_ptr<RecordWriter>> writers;
+    long rows = 0;
+    double last_time = 0.0;
+  };
+
   /// `width`: numbers of a row.
-  RecordThread(std::size_t width, std::vector<std::unique_ptr<RecordWriter>> writers);
+  RecordThread(std::size_t width, Start start);
   ~RecordThread();
   RecordThread(const RecordThread&) = delete;
   RecordThread& operator=(const RecordThread&) = delete;
@@ -59,8 +66,8 @@ class RecordThread {
   bool ending_ = false;
   std::atomic<bool> good_ = true;
   std::string failure_;  // of the thread, until it ended
-  long given_ = 0, rows_ = 0;  // to the writers; flushed by all of them
-  double time_given_ = 0.0, last_time_ = 0.0, thread_seconds_ = 0.0;
+  long given_, rows_;    // to the writers; flushed by all of them
+  double time_given_, last_time_, thread_seconds_ = 0.0;
   std::thread thread_;
 };
 

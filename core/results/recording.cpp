@@ -45,19 +45,50 @@ std::size_t expected_rows(const Settings& settings) {
 
 Recording::Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels,
                      const Making& making)
-    : directory_(path, force),
-      log_(directory_.file("run.log")),
+    : Recording(ResultDirectory(path, force), model, channels, making, nullptr) {}
+
+Recording::Recording(ResultDirectory directory, const Model& model, const Channels& channels, const Making& making,
+                     const KeptPart* kept)
+    : directory_(std::move(directory)),
+      log_(directory_.file("run.log"), kept == nullptr ? GrowingFile::Begin::empty : GrowingFile::Begin::append),
       provenance_(freeplay::provenance(model, making)),
       picked_(select_channels(channels, model.settings.channels)),
       layout_(layout_of(model, channels, picked_, provenance_)),
-      thread_(picked_.size(), make_writers(model)),
-      events_(model, layout_, [this](std::span<const double> numbers) { thread_.add_event(numbers); }),
+      events_given_(kept == nullptr ? 0 : kept->events),
+      thread_(picked_.size(), kept == nullptr ? start_writers(model) : continued_writers(model, *kept)),
+      events_(model, layout_,
+              [this](std::span<const double> numbers) {
+                ++events_given_;
+                thread_.add_event(numbers);
+              }),
       advice_(model) {
+  if (kept != nullptr) return;
   directory_.write(model_copy_name(model), model.text);
   for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
 }
 
-std::vector<std::unique_ptr<RecordWriter>> Recording::make_writers(const Model& model) {
+RecordThread::Start Recording::continued_writers(const Model& model, const KeptPart& part) {
+  const ResultFormat format = model.settings.format;
+  KeptFiles kept =
+      read_kept(directory_.path(), part, format, layout_, {.expected_rows = expected_rows(model.settings)});
+  cut_back(directory_.path(), kept, format);
+  directory_.remove("summary.json");
+  RecordThread::Start start{.writers = {}, .rows = static_cast<long>(part.rows), .last_time = kept.last_time};
+  auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_, kept.event_text);
+  row_hash_ = kept.row_hash.get();
+  event_text_ = events.get();
+  hdf5_ = kept.hdf5.get();
+  start.writers.push_back(std::move(kept.row_hash));
+  start.writers.push_back(std::move(events));
+  if (format != ResultFormat::hdf5) {
+    start.writers.push_back(
+        std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_, GrowingFile::Begin::append));
+  }
+  if (hdf5_ != nullptr) start.writers.push_back(std::move(kept.hdf5));
+  return start;
+}
+
+RecordThread::Start Recording::start_writers(const Model& model) {
   std::vector<std::unique_ptr<RecordWriter>> writers;
   const ResultFormat format = model.settings.format;
   auto hash = std::make_unique<RowHash>();
@@ -75,7 +106,7 @@ std::vector<std::unique_ptr<RecordWriter>> Recording::make_writers(const Model& 
     hdf5_ = hdf5.get();
     writers.push_back(std::move(hdf5));
   }
-  return writers;
+  return {.writers = std::move(writers)};
 }
 
 void Recording::when_safe(std::function<void()> then) { thread_.when_safe(std::move(then)); }

@@ -1,18 +1,21 @@
 // Recording: the files of one run.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/json_text.h"
 #include "model/channel.h"
 #include "results/contact_advice.h"
 #include "results/directory.h"
 #include "results/event_sink.h"
 #include "results/hdf5_writer.h"
+#include "results/kept_part.h"
 #include "results/provenance.h"
 #include "results/record.h"
 #include "results/record_thread.h"
@@ -30,6 +33,23 @@ class Recording {
   /// inputs. `model` outlives the recording. Throws Error{file}.
   Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels,
             const Making& making);
+  /// Goes on in the result of the same model that is in `path`: cuts rows and events to those kept, removes the summary
+  /// and continues the log. Throws Error{file}: "bad-checkpoint" where a file holds fewer, before anything is changed.
+  static Recording go_on(const std::filesystem::path& path, const Model& model, const Channels& channels,
+                         const Making& making, const KeptPart& kept) {
+    return Recording(ResultDirectory(path), model, channels, making, &kept);
+  }
+  Recording(const Recording&) = delete;
+
+  /// What waits to be written, and what was counted, for a checkpoint between two steps; restored before the first.
+  void save(Archive& archive) const { ArchiveWriter{archive}(events_, advice_); }
+  void restore(const Archive& archive) {
+    ArchiveReader reader(archive);
+    reader(events_, advice_);
+    reader.finish();
+  }
+  /// Events given to the files so far.
+  std::int64_t events() const { return events_given_; }
 
   /// Where rows and events of the run go.
   std::vector<Sink*> sinks() { return {&rows_, &events_, &advice_}; }
@@ -73,13 +93,17 @@ class Recording {
    private:
     Recording& recording_;
   };
-  std::vector<std::unique_ptr<RecordWriter>> make_writers(const Model& model);
+  Recording(ResultDirectory directory, const Model& model, const Channels& channels, const Making& making,
+            const KeptPart* kept);
+  RecordThread::Start start_writers(const Model& model);
+  RecordThread::Start continued_writers(const Model& model, const KeptPart& kept);
 
   ResultDirectory directory_;
   RunLog log_;
   Json provenance_;
   std::vector<std::size_t> picked_;
   RecordLayout layout_;
+  std::int64_t events_given_;
   // Of the thread, which owns them.
   RowHash* row_hash_ = nullptr;
   EventTextWriter* event_text_ = nullptr;

@@ -12,7 +12,8 @@ namespace freeplay {
 class RunLog {
  public:
   /// Throws Error{file}.
-  explicit RunLog(const std::filesystem::path& path) : file_(path) {}
+  explicit RunLog(const std::filesystem::path& path, GrowingFile::Begin begin = GrowingFile::Begin::empty)
+      : file_(path, begin) {}
 
   /// `kind`: note, warning or error.
   void write(std::string_view kind, std::string_view message);

@@ -7,8 +7,10 @@
 
 namespace freeplay {
 
-TextWriter::TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns)
-    : width_(columns.size()), file_(path) {
+TextWriter::TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns,
+                       GrowingFile::Begin begin)
+    : width_(columns.size()), file_(path, begin) {
+  if (begin == GrowingFile::Begin::append) return;
   for (const RecordColumn& column : columns) (header_ += column.name) += ',';
   header_.back() = '\n';
   file_.line() += std::string_view(header_).substr(0, header_.size() - 1);

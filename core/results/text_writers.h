@@ -20,7 +20,7 @@ class TextWriter : public RecordWriter {
 
  protected:
   /// Throws Error{file}.
-  TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns);
+  TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns, GrowingFile::Begin begin);
   void note();
 
   std::size_t width_;
@@ -35,7 +35,9 @@ class TextWriter : public RecordWriter {
 class RowTextWriter : public TextWriter {
  public:
   /// Throws Error{file}.
-  RowTextWriter(const std::filesystem::path& path, const RecordLayout& layout) : TextWriter(path, layout.columns) {}
+  RowTextWriter(const std::filesystem::path& path, const RecordLayout& layout,
+                GrowingFile::Begin begin = GrowingFile::Begin::empty)
+      : TextWriter(path, layout.columns, begin) {}
   void write(const RecordBlock& block) override;
 };
 
@@ -44,9 +46,12 @@ class EventTextWriter : public TextWriter {
  public:
   /// Throws Error{file}.
   EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout)
-      : TextWriter(path, layout.events), layout_(layout) {
+      : TextWriter(path, layout.events, GrowingFile::Begin::empty), layout_(layout) {
     hash_.add(header_.data(), header_.size());
   }
+  /// Goes on in a file that has `kept` as its text.
+  EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout, const Sha256& kept)
+      : TextWriter(path, layout.events, GrowingFile::Begin::append), layout_(layout), hash_(kept) {}
   void write(const RecordBlock& block) override;
   /// SHA-256 of the file's text so far.
   std::string digits() const { return hash_.digits(); }

@@ -39,7 +39,7 @@ void row(benchmark::State& state, const std::string& name, int windows) {
   const RecordLayout layout = record_layout(*model, channels, columns);
   std::vector<std::unique_ptr<RecordWriter>> writers;
   writers.push_back(std::make_unique<RowTextWriter>("/dev/null", layout));
-  RecordThread thread(columns.size(), std::move(writers));
+  RecordThread thread(columns.size(), {.writers = std::move(writers)});
   for (auto _ : state) thread.add_row(values, columns);
   thread.close();
   state.counters["per_number"] = benchmark::Counter(

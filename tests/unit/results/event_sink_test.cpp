@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/archive.h"
 #include "base/sha256.h"
 #include "results/contact_advice.h"
 #include "results/text_writers.h"
@@ -54,6 +55,7 @@ class EventFile {
     EXPECT_EQ(sha256(folder_.read("events.csv")), file_->digits());
     return folder_.read("events.csv");
   }
+  const RecordLayout& layout() const { return layout_; }
   std::optional<EventSink> sink;
 
  private:
@@ -69,8 +71,7 @@ TEST(EventSink, FillsColumnsByNameAndAppendsOthers) {
   const std::array<double, 4> fields{2.5, 12.0, none, 0.25};
   sink.event(record(1.5, 0, 0, fields));
   sink.event(record(2.0, 1, 1));
-  EXPECT_EQ(std::string(header) + "1.5,first,hit,0.25,,,,,,12,,,,,,2.5\n2,second,turn,,,,,,,,,,,,,\n",
-            file.text());
+  EXPECT_EQ(std::string(header) + "1.5,first,hit,0.25,,,,,,12,,,,,,2.5\n2,second,turn,,,,,,,,,,,,,\n", file.text());
 }
 
 TEST(EventSink, SortsByTimeThenJointAcrossRows) {
@@ -88,6 +89,28 @@ TEST(EventSink, SortsByTimeThenJointAcrossRows) {
                 "1.5,first,turn,,,,,,,,,,,,,\n1.5,second,turn,,,,,,,,,,,,,\n1.75,second,turn,,,,,,,,,,,,,\n"
                 "2.125,first,turn,,,,,,,,,,,,,\n2.25,second,turn,,,,,,,,,,,,,\n",
             file.text());
+}
+
+TEST(EventSink, WhatWaitsIsSavedAndRestored) {
+  const Model model = two_joints();
+  EventFile whole(model), second(model);
+  const std::array<double, 4> fields{2.5, 12.0, none, 0.25};
+  const std::array<double, 1> at{1.0};
+  Archive archive;
+  {
+    EventSink first(model, second.layout(), [](std::span<const double>) {});
+    for (EventSink* sink : {&first, &*whole.sink}) {
+      sink->event(record(1.5, 1, 1));
+      sink->event(record(1.25, 0, 0, fields));
+      sink->row(at);
+    }
+    ArchiveWriter{archive}(first);
+  }
+  ArchiveReader reader(archive);
+  reader(*second.sink);
+  reader.finish();
+  for (EventSink* sink : {&*second.sink, &*whole.sink}) sink->event(record(1.375, 0, 1));
+  EXPECT_EQ(whole.text(), second.text());
 }
 
 TEST(ContactAdvice, CountsContactsWithTooFewSteps) {

@@ -1,0 +1,170 @@
+#include "results/kept_part.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "results/reader.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& what) {
+  throw Error(Error::Category::file, "bad-checkpoint",
+              fmt::format("'{}' does not fit its checkpoint: {}", file.string(), what), {}, "run the model again");
+}
+
+void require_enough(const fs::path& file, const char* things, std::int64_t there, std::int64_t kept) {
+  if (there < kept) refuse(file, fmt::format("it holds {} {}, the checkpoint counts {}", there, things, kept));
+}
+
+void require_columns(const fs::path& file, const RecordLayout& there, const RecordLayout& layout) {
+  if (!std::ranges::equal(there.columns, layout.columns, {}, &RecordColumn::name, &RecordColumn::name)) {
+    refuse(file, "it has other columns");
+  }
+}
+
+/// The first rows of a result, in blocks; gives how many there are.
+template <class Take>
+std::int64_t first_rows(ResultReader& reader, std::int64_t count, Take&& take) {
+  const std::size_t width = reader.layout().columns.size();
+  std::vector<std::size_t> all(width);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::int64_t given = 0;
+  reader.rows(all, {}, [&](std::span<const double> rows) {
+    const auto some = std::min<std::int64_t>(count - given, static_cast<std::int64_t>(rows.size() / width));
+    if (some > 0) take(rows.first(static_cast<std::size_t>(some) * width));
+    given += some;
+  });
+  return given;
+}
+
+template <class Take>
+std::int64_t first_events(ResultReader& reader, std::int64_t count, Take&& take) {
+  const std::size_t width = reader.layout().events.size();
+  std::int64_t given = 0;
+  if (width == 0) return given;
+  reader.events([&](std::span<const double> events) {
+    const auto some = std::min<std::int64_t>(count - given, static_cast<std::int64_t>(events.size() / width));
+    if (some > 0) take(events.first(static_cast<std::size_t>(some) * width));
+    given += some;
+  });
+  return given;
+}
+
+template <class Note>
+void copy_hdf5(const fs::path& file, const KeptPart& part, const RecordLayout& layout, KeptFiles& kept, Note&& note) {
+  if (part.rows == 0 && part.events == 0) return kept.hdf5->flush();
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) require_enough(file, "rows", 0, std::max<std::int64_t>(part.rows, 1));
+  const auto reader = ResultReader::open(file);
+  require_columns(file, reader->layout(), layout);
+  if (reader->layout().events.size() != layout.events.size()) refuse(file, "it has other columns of events");
+  RecordBlock block;
+  const std::int64_t rows = first_rows(*reader, part.rows, [&](std::span<const double> some) {
+    block.rows.assign(some.begin(), some.end());
+    kept.hdf5->write(block);
+    note(some);
+  });
+  block.rows.clear();
+  const std::int64_t events = first_events(*reader, part.events, [&](std::span<const double> some) {
+    block.events.assign(some.begin(), some.end());
+    kept.hdf5->write(block);
+  });
+  require_enough(file, "rows", rows, part.rows);
+  require_enough(file, "events", events, part.events);
+  kept.hdf5->flush();
+}
+
+}  // namespace
+
+WholeLines whole_lines(const fs::path& file, std::int64_t most, Sha256* hash) {
+  WholeLines found;
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> piece(1 << 16);
+  std::uintmax_t before = 0;
+  std::string open;  // of a line that has not ended
+  while (stream && !found.more) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const char *at = piece.data(), *const end = at + stream.gcount();
+    while (at != end && found.lines < most) {
+      const void* feed = std::memchr(at, '\n', static_cast<std::size_t>(end - at));
+      if (feed == nullptr) break;
+      const char* const next = static_cast<const char*>(feed) + 1;
+      if (hash != nullptr) {
+        hash->add(open.data(), open.size());
+        hash->add(at, static_cast<std::size_t>(next - at));
+      }
+      open.clear();
+      at = next;
+      ++found.lines;
+      found.bytes = before + static_cast<std::uintmax_t>(at - piece.data());
+    }
+    found.more = at != end && found.lines == most;
+    if (hash != nullptr) open.append(at, end);
+    before += static_cast<std::uintmax_t>(end - piece.data());
+  }
+  found.more = before > found.bytes;
+  return found;
+}
+
+void cut_file(const fs::path& file, std::uintmax_t bytes) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  const bool good = descriptor >= 0 && ::ftruncate(descriptor, static_cast<off_t>(bytes)) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (good) return;
+  throw Error(Error::Category::file, "cannot-write",
+              fmt::format("cannot write '{}': {}", file.string(), std::strerror(reason)));
+}
+
+KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultFormat format, const RecordLayout& layout,
+                    const Hdf5Writer::Options& options) {
+  KeptFiles kept;
+  kept.row_hash = std::make_unique<RowHash>();
+  const fs::path events = directory / "events.csv", rows = directory / "results.csv";
+  const WholeLines event_lines = whole_lines(events, part.events + 1, &kept.event_text);
+  require_enough(events, "events", event_lines.lines - 1, part.events);
+  kept.event_bytes = event_lines.bytes;
+  const auto note = [&](std::span<const double> some) {
+    kept.row_hash->write({.rows = {some.begin(), some.end()}, .events = {}});
+    kept.last_time = some[some.size() - layout.columns.size()];
+  };
+  if (format != ResultFormat::hdf5) {
+    const WholeLines lines = whole_lines(rows, part.rows + 1);
+    require_enough(rows, "rows", lines.lines - 1, part.rows);
+    kept.row_bytes = lines.bytes;
+    const auto reader = ResultReader::open(rows);
+    require_columns(rows, reader->layout(), layout);
+    if (format == ResultFormat::csv) first_rows(*reader, part.rows, note);
+  }
+  if (format == ResultFormat::csv) return kept;
+  const fs::path file = directory / "results.h5";
+  Hdf5Writer::Options later = options;
+  later.named_later = true;
+  kept.hdf5 = std::make_unique<Hdf5Writer>(file, layout, later);
+  copy_hdf5(file, part, layout, kept, note);
+  if (!kept.hdf5->failure().empty()) throw Error(Error::Category::file, "cannot-write", kept.hdf5->failure());
+  return kept;
+}
+
+void cut_back(const fs::path& directory, const KeptFiles& kept, ResultFormat format) {
+  cut_file(directory / "events.csv", kept.event_bytes);
+  if (format != ResultFormat::hdf5) cut_file(directory / "results.csv", kept.row_bytes);
+  if (kept.hdf5 == nullptr) return;
+  kept.hdf5->put_in_place();
+  if (!kept.hdf5->failure().empty()) throw Error(Error::Category::file, "cannot-write", kept.hdf5->failure());
+}
+
+}  // namespace freeplay
