@@ -20,6 +20,7 @@
 #include "cli/repeat_runs.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
+#include "cli/twin_run.h"
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "load/load.h"
@@ -38,15 +39,23 @@ constexpr int runs_disagree = 7;  // exit code of --verify
 struct RunOptions {
   std::string model, end, step, accuracy, integrator, out, format, repeat, seed;
   ModelOptions model_options;
-  bool force = false, dry_run = false, verify = false, profile = false, resume = false;
+  bool force = false, dry_run = false, verify = false, profile = false, resume = false, twin = false;
+  int twin_pipe = -1;  // this run is the twin of another, which compares
 };
 
 void refuse_idle_options(const RunOptions& options) {
   if (options.resume) not_in_this_release("--resume");
-  if (options.dry_run && (options.verify || options.profile || !options.repeat.empty())) {
-    const char* idle = options.verify ? "--verify" : options.profile ? "--profile" : "--repeat";
+  if (options.dry_run && (options.verify || options.profile || options.twin || !options.repeat.empty())) {
+    const char* idle = options.verify    ? "--verify"
+                       : options.profile ? "--profile"
+                       : options.twin    ? "--twin"
+                                         : "--repeat";
     throw Error(Error::Category::usage, "usage",
                 fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
+  }
+  if (options.twin && !options.repeat.empty()) {
+    throw Error(Error::Category::usage, "usage",
+                "--twin and --repeat exclude each other: a twin without play has one start only");
   }
 }
 
@@ -115,12 +124,13 @@ void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
 class RunJob {
  public:
   RunJob(const LoadedModel& loaded, AssembledModel& assembled, std::filesystem::path path, const RunOptions& options,
-         const CommonOptions& common, RepeatRuns* repeats)
+         const CommonOptions& common, RepeatRuns* repeats, TwinRun* twin)
       : loaded_(loaded),
         assembled_(assembled),
         options_(options),
         common_(common),
         repeats_(repeats),
+        twin_(twin),
         path_(std::move(path)),
         channels_(*loaded.model),
         recording_(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model)),
@@ -142,7 +152,8 @@ class RunJob {
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
     for (const MovedStart& moved : assembled_.start.report.moved) note(sentence(moved));
     Outcome outcome = run();
-    const Ended ended = end();
+    Ended ended = end();
+    if (twin_ != nullptr) compare_with_twin(ended);
     for (const std::string& text : ended.warnings) warn(text);
     note(fmt::format("{} at {:g} s after {} steps, {} rows", status_word(outcome.status), outcome.time, outcome.steps,
                      outcome.rows));
@@ -168,6 +179,7 @@ class RunJob {
     RunExtremes extremes;
     std::vector<double> last_row;
     std::vector<std::string> warnings;
+    Json twin = nullptr;
   };
 
   const Settings& settings() const { return loaded_.model->settings; }
@@ -184,6 +196,10 @@ class RunJob {
 
   std::span<Sink* const> all_sinks() {
     if (options_.verify) sinks_.push_back(&rows_.emplace(channels_));
+    if (options_.twin_pipe >= 0) {
+      sinks_.push_back(&twin_rows_.emplace(options_.twin_pipe, *loaded_.model, channels_));
+    }
+    if (twin_ != nullptr) sinks_.push_back(&twin_->start(*loaded_.model, channels_));
     return sinks_;
   }
 
@@ -198,6 +214,13 @@ class RunJob {
       warn("--verify: " + agreement_text(*verification));
     }
     return verification;
+  }
+
+  void compare_with_twin(Ended& ended) {
+    std::string trouble;
+    ended.twin = twin_->finish(trouble);
+    if (trouble.empty()) return;
+    ended.warnings.push_back("--twin: the run without clearances failed: " + trouble);
   }
 
   Outcome run() {
@@ -233,6 +256,7 @@ class RunJob {
                 {row.begin(), row.end()},
                 {warnings.begin(), warnings.end()}};
     simulation_.reset();
+    twin_rows_.reset();
     return ended;
   }
 
@@ -265,6 +289,7 @@ class RunJob {
     record.provenance = recording_.provenance();
     record.provenance["hashes"] = record.hashes;
     record.extremes = ended.extremes;
+    record.twin = ended.twin;
     record.trust.add(outcome.doubts);
     doubt_input(loaded_.diagnostics, record.trust);
     judge(record, record.trust);
@@ -314,10 +339,12 @@ class RunJob {
   const RunOptions& options_;
   const CommonOptions& common_;
   RepeatRuns* repeats_;  // null: the run is not repeated
+  TwinRun* twin_;        // null: it has no twin
   std::filesystem::path path_;
   Channels channels_;
   Recording recording_;
-  std::optional<RowMemory> rows_;  // to verify
+  std::optional<RowMemory> rows_;      // to verify
+  std::optional<TwinRows> twin_rows_;  // of a twin
   std::vector<Sink*> sinks_;
   std::optional<Simulation> simulation_;  // until it is over
   Profile profile_;
@@ -339,6 +366,19 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
   return 0;
 }
 
+int run(const RunOptions& options, const CommonOptions& common);
+
+/// The same run with every clearance closed, into the folder `twin` of the result.
+int run_twin(RunOptions options, CommonOptions common, const std::filesystem::path& path, int pipe) {
+  options.model_options.ideal = {"all"};
+  options.out = (path / "twin").string();
+  options.verify = options.profile = options.twin = false;
+  options.twin_pipe = pipe;
+  common.quiet = true;
+  common.verbose = common.json = false;
+  return run(options, common);
+}
+
 int run(const RunOptions& options, const CommonOptions& common) {
   if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
   refuse_idle_options(options);
@@ -347,6 +387,11 @@ int run(const RunOptions& options, const CommonOptions& common) {
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (!options.dry_run) check_result_directory(path, options.force);
+  if (options.twin && loaded.model->clearance_joints() == 0) {
+    throw Error(
+        Error::Category::usage, "no-clearance",
+        "--twin runs the model with every clearance closed alongside, and no joint of this model has a clearance");
+  }
   const auto assembled = assemble_model(loaded);
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
@@ -355,7 +400,11 @@ int run(const RunOptions& options, const CommonOptions& common) {
   loaded.document.reset();  // nothing asks for it any more, and that of a large model is large
   if (options.dry_run) return dry_run(loaded, *assembled, common);
   const auto repeats = plan.runs > 0 ? std::make_unique<RepeatRuns>(*loaded.model, plan, processor_count()) : nullptr;
-  return RunJob(loaded, *assembled, path, options, common, repeats.get()).execute();
+  std::unique_ptr<TwinRun> twin;
+  if (options.twin) {
+    twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
+  }
+  return RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get()).execute();
 }
 
 }  // namespace
@@ -373,6 +422,7 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--repeat", options->repeat, "Run N times, from starts moved in the play: median and range of peaks",
              "N");
   add_option(*app, "--seed", options->seed, "Of the starts of --repeat (1)", "S");
+  add_flag(*app, "--twin", options->twin, "Run the model with every clearance closed alongside, and compare both");
   add_flag(*app, "--profile", options->profile,
            "Print where the time went: assembly, factorization, joints, events, output");
   add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");

@@ -399,6 +399,7 @@ Json summary(const RunRecord& record) {
           {"repeat", record.repeat},
           {"hashes", record.hashes},
           {"provenance", record.provenance},
+          {"twin", record.twin},
           {"performance", performance_part(outcome)},
           {"files", record.files},
           {"warnings", record.warnings}};

@@ -140,6 +140,14 @@ Json repeat_part() {
   return part;
 }
 
+/// Null in a run without a twin.
+Json twin_part() {
+  Json part = record({{"bodies", by_name(numbers({"max_position", "rms_position", "max_angle", "rms_angle"}))},
+                      {"drivers", by_name(numbers({"max", "rms", "ripple"}))}});
+  part["type"] = {"object", "null"};
+  return part;
+}
+
 Json driver_part() {
   return record({{"kind", {{"enum", {"angle", "position", "velocity", "torque", "force"}}}},
                  {"max_abs", number_or_null()},
@@ -212,6 +220,7 @@ Json summary_schema() {
        {"repeat", repeat_part()},
        {"hashes", record({{"rows", digits()}, {"events", digits()}})},
        {"provenance", provenance_part()},
+       {"twin", twin_part()},
        {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
        {"files", list_of(text())},
        {"warnings", list_of(text())}});
