@@ -37,7 +37,8 @@ namespace {
 constexpr int runs_disagree = 7;  // exit code of --verify
 
 struct RunOptions {
-  std::string model, end, step, accuracy, integrator, out, format, repeat, seed;
+  std::string model, end, step, accuracy, interval, integrator, out, format, repeat, seed;
+  std::vector<std::string> channels;
   ModelOptions model_options;
   bool force = false, dry_run = false, verify = false, profile = false, resume = false, twin = false;
   int twin_pipe = -1;  // this run is the twin of another, which compares
@@ -75,6 +76,8 @@ BuildOptions build_options(const RunOptions& options) {
   if (build.step && build.accuracy) {
     throw Error(Error::Category::usage, "usage", "--step and --accuracy exclude each other");
   }
+  if (!options.interval.empty()) build.interval = positive_quantity("--interval", options.interval, dimension::time);
+  build.channels = options.channels;
   if (!options.integrator.empty()) build.integrator = options.integrator;
   build.format = result_format(options.format);
   return build;
@@ -416,6 +419,9 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--end", options->end, "End time: \"0.5 s\"", "T");
   add_option(*app, "--step", options->step, "Step: 2us", "H");
   add_option(*app, "--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um", "L");
+  add_option(*app, "--interval", options->interval, "Between output rows, in place of the file's: 0.1ms", "T");
+  add_repeatable(*app, "--channels", options->channels,
+                 "Channels to write, a name or pattern with *, in place of the file's; repeatable", "PATTERN");
   add_option(*app, "--integrator", options->integrator, "Integrator, with its default parameters", "NAME");
   add_flag(*app, "--verify", options->verify,
            "Run again by a method of another kind and print the observed errors; exit code 7 when both disagree");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ranges>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -134,6 +136,45 @@ void add_joints(const RunRecord& record, TextTable& table) {
   }
 }
 
+/// What joints with play go through in the time that counts, of the run that is written.
+void add_play(const RunRecord& record, TextTable& table) {
+  const auto share = [](double part) { return fmt::format("{:.1f} %", 100.0 * part); };
+  const auto prefixed_text = [](double value, const char* unit) {
+    return std::isfinite(value) ? figure_text(value, unit, 0.0, {.digits = 3, .prefixed = true}) : "-";
+  };
+  table.add_row({heading(record, "play"), "in flight", "in impact", "lasting", "impacts", "max impulse", "sliding",
+                 "friction work"});
+  for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
+    if (!is_listed(record.model.joints[i]) || !record.clearances.has(static_cast<int>(i))) continue;
+    const PlayFigures seen = record.clearances.figures(static_cast<int>(i));
+    table.add_row({record.model.joints[i].name, share(seen.flight), share(seen.impact), share(seen.lasting),
+                   std::to_string(seen.impacts), prefixed_text(seen.max_impulse, "N*s"),
+                   prefixed_text(seen.sliding, "m"), prefixed_text(seen.work, "J")});
+  }
+}
+
+/// "  twin: bodies up to 0.41 mm (slider) from those of the ideal one, efforts up to 12.3 % (motor)"
+std::string twin_line(const Json& twin) {
+  if (twin.is_null()) return {};
+  const auto largest = [](const Json& part, const char* figure) {
+    std::pair<double, std::string> most{-1.0, ""};
+    for (const auto& [name, figures] : part.items()) {
+      if (!figures[figure].is_number() || figures[figure].get<double>() <= most.first) continue;
+      most = {figures[figure].get<double>(), name};
+    }
+    return most;
+  };
+  const auto [distance, body] = largest(twin["bodies"], "max_position");
+  const auto [ripple, driver] = largest(twin["drivers"], "ripple");
+  std::string text = "  against the ideal twin:";
+  if (distance >= 0.0)
+    text += fmt::format(" bodies up to {} off ({})", figure_text(distance, "m", 0.0, {.digits = 3, .prefixed = true}),
+                        body);
+  if (distance >= 0.0 && ripple >= 0.0) text += ",";
+  if (ripple >= 0.0) text += fmt::format(" ripple of efforts up to {:.3g} % ({})", 100.0 * ripple, driver);
+  return text + "\n";
+}
+
 /// A gear between turns passes a torque, one to a slide a force.
 void add_gears(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "gear"), "max |force|", "max |torque|"});
@@ -259,15 +300,20 @@ std::string run_table(const RunRecord& record) {
   std::string text = first_line(record);
   if (!record.outcome.reason.empty()) text += fmt::format("  {}\n", record.outcome.reason);
   TextTable joints({Align::left, Align::left, Align::right, Align::right, Align::left}), drivers, paths, gears, forces;
+  TextTable play({Align::left, Align::right, Align::right, Align::right, Align::right});
   if (std::ranges::any_of(record.model.joints, is_listed)) add_joints(record, joints);
+  const auto loose = [&](int joint) { return record.clearances.has(joint); };
+  const bool plays = std::ranges::any_of(std::views::iota(0, static_cast<int>(record.model.joints.size())), loose);
+  if (plays && record.repeat.is_null() && record.statistics.any()) add_play(record, play);
   if (!record.model.drivers.empty()) add_drivers(record, drivers);
   if (!record.model.kinematics.empty()) add_paths(record, paths);
   if (!record.model.gears.empty()) add_gears(record, gears);
   if (!record.model.force_elements.empty()) add_forces(record, forces);
-  const std::string tables =
-      joints.text("  ") + gears.text("  ") + drivers.text("  ") + forces.text("  ") + paths.text("  ");
+  const std::string tables = joints.text("  ") + play.text("  ") + gears.text("  ") + drivers.text("  ") +
+                             forces.text("  ") + paths.text("  ");
   text += tables + noise_line(tables) + window_lines(record);
   if (!record.model.gears.empty()) text += gear_sentence;
+  text += twin_line(record.twin);
   text += repeat_lines(record.repeat);
   const bool any = record.statistics.any();
   text += steps_per_impact(record);

@@ -21,6 +21,8 @@ struct BuildOptions {
   std::optional<ResultFormat> format = std::nullopt;     ///< of the results
   Readout* readout = nullptr;                            ///< receives what values and names came to
   std::optional<double> largest_step = std::nullopt;     ///< of runs with an accuracy [s]
+  std::optional<double> interval = std::nullopt;         ///< of output rows [s]
+  std::vector<std::string> channels{};                   ///< patterns, in place of those of the file
 };
 
 }  // namespace freeplay

@@ -52,6 +52,8 @@ class SimulationSection {
       settings_.end = options.end.value_or(settings_.end);
       settings_.interval = (settings_.end - settings_.start) / 1000.0;
     }
+    settings_.interval = options.interval.value_or(settings_.interval);
+    if (!options.channels.empty()) settings_.channels = options.channels;
     create_integrator();
     complete_steps();
     doubt_discard();
@@ -176,7 +178,7 @@ class SimulationSection {
     discard_ = map.find("discard");
     if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
     const double span = settings_.end - settings_.start;
-    if (interval) doubt_interval(*interval, settings_.interval, span);
+    if (interval && !draft_.options.interval) doubt_interval(*interval, settings_.interval, span);
     if (channels) read_channels(*channels);
     if (frames) read_frames(*frames);
     if (format) read_format(*format);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "base/name_pattern.h"
 #include "base/suggestion.h"
 #include "base/text.h"
@@ -81,10 +82,15 @@ std::string nearest_channel(const std::string& name, const std::vector<std::stri
   return meant.empty() ? "" : meant + name.substr(dot);
 }
 
+[[noreturn]] void refuse_pattern(const std::string& pattern, const std::string& meant) {
+  throw Error(Error::Category::usage, "unknown-channel", fmt::format("--channels: no channel fits '{}'", pattern), {},
+              meant.empty() ? "freeplay list channels MODEL names them" : fmt::format("did you mean '{}'?", meant));
+}
+
 }  // namespace
 
 void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
-                    Diagnostics& diagnostics) {
+                    bool by_option, Diagnostics& diagnostics) {
   const Channels channels(model);
   const std::vector<std::string> names = channel_names(channels), kinds = kinds_of(names);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
@@ -115,6 +121,7 @@ void check_channels(const Model& model, const Document& document, const std::vec
     const std::string& pattern = model.settings.channels[i];
     if (!is_pattern(pattern) && by_name.contains(pattern)) continue;
     if (is_pattern(pattern) && matches_channel(pattern, channels)) continue;
+    if (by_option) refuse_pattern(pattern, nearest_channel(pattern, names, kinds));
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
   }
   for (const Node* channel : reduced_channels(document)) {

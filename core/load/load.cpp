@@ -39,10 +39,11 @@ LoadedModel load(const Read& read, const BuildOptions& build, const LoadOptions&
     loaded.document = read(loaded.diagnostics);
     if (loaded.document) {
       const Registry registry = types(*loaded.document);
-      loaded.model = build_model(*loaded.document, registry, build, loaded.diagnostics,
-                                 [&](const Model& model, const std::vector<std::string>& unsure) {
-                                   check_channels(model, *loaded.document, unsure, loaded.diagnostics);
-                                 });
+      loaded.model =
+          build_model(*loaded.document, registry, build, loaded.diagnostics,
+                      [&](const Model& model, const std::vector<std::string>& unsure) {
+                        check_channels(model, *loaded.document, unsure, !build.channels.empty(), loaded.diagnostics);
+                      });
     }
   } catch (const Error& error) {
     keep(error, loaded, options.strict);

@@ -24,12 +24,9 @@ class Area {
     ++known_;
     if (known_ < 3) return;
     if (open_) close();
-    if (known_ == 3) {
-      before_ = under_parabola(points_[0], points_[1]);
-    } else {
-      before_ += 0.5 * (last_ + under_parabola(points_[0], points_[1]));
-    }
-    last_ = under_parabola(points_[1], points_[2]);
+    const double curvature = bend(), first = under_parabola(points_[0], points_[1], curvature);
+    before_ = known_ == 3 ? first : before_ + 0.5 * (last_ + first);
+    last_ = under_parabola(points_[1], points_[2], curvature);
   }
   double value() const {
     return known_ < 2 ? 0.0 : before_ + (known_ == 2 ? trapezoid(points_[1], points_[2]) : last_);
@@ -48,12 +45,15 @@ class Area {
     double t = 0.0, value = 0.0;
   };
   static double trapezoid(const Point& a, const Point& b) { return 0.5 * (b.t - a.t) * (a.value + b.value); }
-  double under_parabola(const Point& a, const Point& b) const {
-    const double first = points_[1].t - points_[0].t, second = points_[2].t - points_[1].t, length = b.t - a.t;
-    if (!(first > 0.0) || !(second > 0.0)) return trapezoid(a, b);
-    const double bend =
-        ((points_[2].value - points_[1].value) / second - (points_[1].value - points_[0].value) / first) /
-        (first + second);
+  /// Half the second derivative of the parabola through the points; 0 where two are at one instant.
+  double bend() const {
+    const double first = points_[1].t - points_[0].t, second = points_[2].t - points_[1].t;
+    if (!(first > 0.0) || !(second > 0.0)) return 0.0;
+    return ((points_[2].value - points_[1].value) / second - (points_[1].value - points_[0].value) / first) /
+           (first + second);
+  }
+  static double under_parabola(const Point& a, const Point& b, double bend) {
+    const double length = b.t - a.t;
     return trapezoid(a, b) - bend * length * length * length / 6.0;
   }
   void close() {

@@ -30,7 +30,12 @@ ContactLedger::ContactLedger(const System& system, const Channels& channels) : s
     const JointLayout& layout = system.joint_layout(j);
     const std::size_t contacts = contact_count(layout);
     if (contacts == 0) continue;
-    OfJoint& joint = joints_.emplace_back(OfJoint{.joint = j, .contacts = std::vector<Contact>(contacts), .kinds = {}});
+    const JointColumns& columns = channels.joints[at(j)];
+    OfJoint& joint = joints_.emplace_back(OfJoint{.joint = j,
+                                                  .normal = columns.normal_force,
+                                                  .friction = columns.friction_force,
+                                                  .contacts = std::vector<Contact>(contacts),
+                                                  .kinds = {}});
     for (std::size_t i = 0; i < layout.events.size; ++i) {
       EventRole role = event_role(layout, i);
       const std::size_t contact = contact_of(layout, i);
@@ -45,6 +50,25 @@ ContactLedger::ContactLedger(const System& system, const Channels& channels) : s
   const std::size_t most_events = at(StepEvents::most_per_step) + 2;
   stretches_.reserve(most_contacts + 2 * most_events);
   ended_.reserve(most_events * joints_.size());
+}
+
+// A step without an event: a single contact is on all the time, or off. False where it is neither.
+bool ContactLedger::go_on(OfJoint& joint, std::span<const double> row, double lost, double t) const {
+  if (joint.contacts.size() != 1 || joint.normal < 0) return false;
+  Contact& contact = joint.contacts.front();
+  const double normal = row[at(joint.normal)];
+  if (!contact.on && normal != 0.0) return false;
+  const double friction = joint.friction < 0 ? 0.0 : row[at(joint.friction)];
+  contact.at_end = {normal, friction, normal};
+  if (contact.on) {
+    if (t > contact.normal.last_time()) {
+      contact.normal.add(t, normal);
+      contact.tangential.add(t, friction);
+    }
+    contact.lost += lost - joint.lost;
+  }
+  joint.lost = lost;
+  return true;
 }
 
 // The forces of every contact at the accepted state. A single contact has those of the joint's channels.
@@ -150,7 +174,10 @@ bool ContactLedger::take_step(std::span<const double> row, std::span<const doubl
                               const Point& point, const Evaluation& e, Fault& fault) {
   ended_.clear();
   if (!started_) time_ = point.t;
+  const bool quiet = started_ && events.happenings().empty();
   for (OfJoint& joint : joints_) {
+    const double lost = joint_loss[at(joint.joint)];
+    if (quiet && go_on(joint, row, lost, point.t)) continue;
     if (!look(joint, row, point, e, fault)) return false;
     stretches_.clear();
     for (std::size_t c = 0; c < joint.contacts.size(); ++c) {
@@ -175,7 +202,6 @@ bool ContactLedger::take_step(std::span<const double> row, std::span<const doubl
       }
       close(joint, c, point.t);
     }
-    const double lost = joint_loss[at(joint.joint)];
     share(joint, lost - joint.lost, point.t);
     joint.lost = lost;
   }

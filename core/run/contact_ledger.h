@@ -64,7 +64,7 @@ class ContactLedger {
     int speed, duration, depth, impact;  // indices of fields, or -1
   };
   struct OfJoint {
-    int joint;
+    int joint, normal, friction;  // the columns are those of a single contact, or -1
     std::vector<Contact> contacts;
     std::vector<EventKind> kinds;
     double lost = 0.0;
@@ -78,6 +78,7 @@ class ContactLedger {
     ContactRecord record;
   };
 
+  bool go_on(OfJoint& joint, std::span<const double> row, double lost, double t) const;
   bool look(OfJoint& joint, std::span<const double> row, const Point& point, const Evaluation& e, Fault& fault);
   void open(OfJoint& joint, std::size_t contact, double t);
   void close(OfJoint& joint, std::size_t contact, double t);

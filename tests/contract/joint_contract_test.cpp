@@ -175,6 +175,67 @@ TEST(JointContract, FindsWrongCalls) {
                       {Flaw::offset_nowhere, "initial-offset"}});
 }
 
+/// What a joint says of its contact: distance of the origins along x, how hard they press, and events.
+struct Roles {
+  ChannelRole first = ChannelRole::eccentricity_x, second = ChannelRole::normal_force;
+  const char* unit = "N";
+  double pressed = 1.0, shift = 0.0, contact = 1.0;
+  EventRole left = EventRole::contact_end;
+};
+
+/// A joint without forces that declares roles.
+class Touching final : public Joint {
+ public:
+  explicit Touching(const Roles& roles)
+      : roles_(roles),
+        channels_{{"along", "m"}, {"press", roles.unit}, {"on", "1"}},
+        channel_roles_{roles.first, roles.second, ChannelRole::in_contact},
+        event_roles_{EventRole::contact_begin, roles.left} {}
+  void declare(JointLayout& layout) const override {
+    static constexpr Event events[] = {{"met", Crossing::rising, 0, {}}, {"left", Crossing::falling, 0, {}}};
+    layout.events = events;
+    layout.channels = channels_;
+    layout.channel_roles = channel_roles_;
+    layout.event_roles = event_roles_;
+    layout.time_scale = unbounded;
+  }
+  void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
+    g[0] = g[1] = in.b->position[0] - in.a->position[0];
+    rate[0] = rate[1] = in.b->velocity[0] - in.a->velocity[0];
+  }
+  void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
+    channels[0] = in.b->position[0] - in.a->position[0] + roles_.shift;
+    channels[1] = roles_.pressed;
+    channels[2] = roles_.contact;
+  }
+
+ private:
+  Roles roles_;
+  Channel channels_[3];
+  ChannelRole channel_roles_[3];
+  EventRole event_roles_[2];
+};
+
+TEST(JointContract, FindsChannelsAndEventsThatAreNotWhatTheirRolesSay) {
+  const auto findings = [](const Roles& roles) {
+    const Touching joint(roles);
+    return judge(joint, joint);
+  };
+  EXPECT_TRUE(findings({}).held()) << broken_rules(findings({}));
+  const Roles wrong[] = {{.unit = "mN"},
+                         {.second = ChannelRole::penetration},
+                         {.pressed = -1.0},
+                         {.shift = 1e-6},
+                         {.first = ChannelRole::eccentricity_y},
+                         {.contact = 0.5},
+                         {.left = EventRole::none},
+                         {.left = EventRole::contact_begin}};
+  for (const Roles& roles : wrong) {
+    EXPECT_TRUE(findings(roles).broken("roles")) << &roles - wrong << "\n" << broken_rules(findings(roles));
+  }
+  EXPECT_TRUE(findings({.second = ChannelRole::none, .pressed = -1.0}).held()) << "no role says nothing";
+}
+
 TEST(JointContract, LetsDrivenJointsBringEnergy) {
   const Cage cage(Flaw::negative_damping);
   const Findings findings = check_joint({handle(cage), handle(cage), Space::planar, false}, conditions);
