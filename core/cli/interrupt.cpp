@@ -27,6 +27,7 @@ void handle_signals() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is a failed write, which is reported
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGHUP, on_interrupt);
 }
 
 const std::atomic<int>& watch_interrupts() {

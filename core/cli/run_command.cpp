@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/number_text.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/facts.h"
@@ -18,12 +17,15 @@
 #include "cli/profile_table.h"
 #include "cli/progress_line.h"
 #include "cli/repeat_runs.h"
+#include "cli/resumption.h"
+#include "cli/run_options.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
 #include "cli/twin_run.h"
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "load/load.h"
+#include "results/checkpoints.h"
 #include "results/directory.h"
 #include "results/judgement.h"
 #include "results/recording.h"
@@ -35,71 +37,6 @@ namespace freeplay {
 namespace {
 
 constexpr int runs_disagree = 7;  // exit code of --verify
-
-struct RunOptions {
-  std::string model, end, step, accuracy, interval, integrator, out, format, repeat, seed;
-  std::vector<std::string> channels;
-  ModelOptions model_options;
-  bool force = false, dry_run = false, verify = false, profile = false, resume = false, twin = false;
-  int twin_pipe = -1;  // this run is the twin of another, which compares
-};
-
-void refuse_idle_options(const RunOptions& options) {
-  if (options.resume) not_in_this_release("--resume");
-  if (options.dry_run && (options.verify || options.profile || options.twin || !options.repeat.empty())) {
-    const char* idle = options.verify    ? "--verify"
-                       : options.profile ? "--profile"
-                       : options.twin    ? "--twin"
-                                         : "--repeat";
-    throw Error(Error::Category::usage, "usage",
-                fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
-  }
-  if (options.twin && !options.repeat.empty()) {
-    throw Error(Error::Category::usage, "usage",
-                "--twin and --repeat exclude each other: a twin without play has one start only");
-  }
-}
-
-std::optional<ResultFormat> result_format(const std::string& word) {
-  if (word.empty()) return std::nullopt;
-  const auto found = std::ranges::find(result_formats, word, [](const char* format) { return std::string(format); });
-  if (found != std::end(result_formats)) return static_cast<ResultFormat>(found - std::begin(result_formats));
-  throw Error(Error::Category::usage, "bad-value",
-              fmt::format("bad value '{}' of --format: it must be csv, hdf5 or both", word));
-}
-
-BuildOptions build_options(const RunOptions& options) {
-  BuildOptions build = freeplay::build_options(options.model_options);
-  if (!options.end.empty()) build.end = positive_quantity("--end", options.end, dimension::time);
-  if (!options.step.empty()) build.step = positive_quantity("--step", options.step, dimension::time);
-  if (!options.accuracy.empty()) build.accuracy = positive_quantity("--accuracy", options.accuracy, dimension::length);
-  if (build.step && build.accuracy) {
-    throw Error(Error::Category::usage, "usage", "--step and --accuracy exclude each other");
-  }
-  if (!options.interval.empty()) build.interval = positive_quantity("--interval", options.interval, dimension::time);
-  build.channels = options.channels;
-  if (!options.integrator.empty()) build.integrator = options.integrator;
-  build.format = result_format(options.format);
-  return build;
-}
-
-/// Its arguments make the same run of the same model file, in whatever words this one was asked for.
-Making making(const RunOptions& options, const CommonOptions& common, const Model& model) {
-  Making making{.made = "run", .command = common.command, .arguments = {}, .build = FREEPLAY_BUILD};
-  const auto add = [&](const char* option, const std::string& value) {
-    if (value.empty()) return;
-    making.arguments.emplace_back(option);
-    making.arguments.push_back(value);
-  };
-  add("--end", fmt::format("{} s", number_text(model.settings.end)));
-  for (const auto& [name, text] : model.overrides) add("--set", fmt::format("{}={}", name, text));
-  for (const std::string& joint : model.ideal) add("--ideal", joint);
-  add("--step", options.step);
-  add("--accuracy", options.accuracy);
-  add("--integrator", options.integrator);
-  for (const std::string& plugin : common.plugins) add("--plugin", plugin);
-  return making;
-}
 
 std::filesystem::path result_path(const RunOptions& options, const Model& model) {
   if (!options.out.empty()) return options.out;
@@ -123,11 +60,21 @@ void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
   }
 }
 
+/// What the run is made from and with, for its checkpoints.
+Json made(const RunOptions& options, const CommonOptions& common, const Model& model) {
+  return {{"program", program_of_checkpoints()},
+          {"options", kept_options(options, common)},
+          {"settings", settings_json(model)},
+          {"model_copy", model_copy_name(model)},
+          {"provenance", provenance(model, making(options, common, model))}};
+}
+
 /// Runs to the end and returns it as a record.
 class RunJob {
  public:
+  /// `from`: where an earlier run ended that this one goes on with, or null.
   RunJob(const LoadedModel& loaded, AssembledModel& assembled, std::filesystem::path path, const RunOptions& options,
-         const CommonOptions& common, RepeatRuns* repeats, TwinRun* twin)
+         const CommonOptions& common, RepeatRuns* repeats, TwinRun* twin, const Checkpoint* from)
       : loaded_(loaded),
         assembled_(assembled),
         options_(options),
@@ -136,9 +83,20 @@ class RunJob {
         twin_(twin),
         path_(std::move(path)),
         channels_(*loaded.model),
-        recording_(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model)),
+        recording_(
+            from == nullptr
+                ? Recording(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model))
+                : Recording::go_on(path_, *loaded.model, channels_, making(options, common, *loaded.model),
+                                   {.rows = from->rows(), .events = from->events})),
         sinks_(recording_.sinks()),
-        simulation_(std::in_place, assembled.system, assembled.start, channels_, all_sinks()) {}
+        checkpoints_(recording_, path_, made(options, common, *loaded.model), checkpoint_period(options)) {
+    if (from == nullptr || !from->state) {
+      simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks());
+    } else {
+      simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks(), *from->state);
+    }
+    from == nullptr ? checkpoints_.begin() : checkpoints_.go_on(*from);
+  }
 
   int execute() {
     note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
@@ -152,6 +110,7 @@ class RunJob {
       note(fmt::format("plugin {} {}, compiler {}, from {}", library.table->name(), library.table->version(),
                        library.table->compiler(), library.path));
     }
+    if (checkpoints_.resumed() > 0) note(checkpoints_.resumed_words());
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
     for (const MovedStart& moved : assembled_.start.report.moved) note(sentence(moved));
     Outcome outcome = run();
@@ -232,10 +191,15 @@ class RunJob {
     const std::atomic<int>& interrupt = watch_interrupts();
     std::atomic<int> stop{0};
     hooks.interrupt = &stop;
+    hooks.stepped = [&] {
+      const bool interrupted = interrupt != 0;
+      if (interrupted || checkpoints_.due()) checkpoints_.add(simulation_->save());
+      if (interrupted) stop = 1;
+    };
     if (options_.profile) hooks.profile = &profile_;
     hooks.progress = [&](double t, long steps) {
       progress.update(t, steps);
-      if (interrupt != 0 || !recording_.ok()) stop = 1;
+      if (!recording_.ok()) stop = 1;
     };
     return simulation_->run(hooks);
   }
@@ -297,6 +261,8 @@ class RunJob {
     doubt_input(loaded_.diagnostics, record.trust);
     judge(record, record.trust);
     Json json = summary(record);
+    json["performance"]["resumed"] = checkpoints_.resumed();
+    json["performance"]["resumed_from"] = checkpoints_.resumed_from();
     const int exit_code = repeats_ ? add_repeats(record, outcome, json) : outcome.exit_code;
     recording_.seal(json);
     if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
@@ -350,6 +316,7 @@ class RunJob {
   std::optional<TwinRows> twin_rows_;  // of a twin
   std::vector<Sink*> sinks_;
   std::optional<Simulation> simulation_;  // until it is over
+  Checkpoints checkpoints_;
   Profile profile_;
 };
 
@@ -369,7 +336,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
   return 0;
 }
 
-int run(const RunOptions& options, const CommonOptions& common);
+int run(const RunOptions& options, const CommonOptions& common, const Resumption* resumed);
 
 /// The same run with every clearance closed, into the folder `twin` of the result.
 int run_twin(RunOptions options, CommonOptions common, const std::filesystem::path& path, int pipe) {
@@ -379,17 +346,18 @@ int run_twin(RunOptions options, CommonOptions common, const std::filesystem::pa
   options.twin_pipe = pipe;
   common.quiet = true;
   common.verbose = common.json = false;
-  return run(options, common);
+  return run(options, common, nullptr);
 }
 
-int run(const RunOptions& options, const CommonOptions& common) {
+int run(const RunOptions& options, const CommonOptions& common, const Resumption* resumed) {
   if (options.model.empty()) throw Error(Error::Category::usage, "missing-argument", "run needs a model file");
   refuse_idle_options(options);
   const RepeatPlan plan = repeat_plan(options.repeat, options.seed);
   LoadedModel loaded = load_model(options.model, build_options(options), loading(common));
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
-  if (!options.dry_run) check_result_directory(path, options.force);
+  if (resumed != nullptr) require_same_making(*resumed, *loaded.model);
+  if (!options.dry_run && resumed == nullptr) check_result_directory(path, options.force);
   if (options.twin && loaded.model->clearance_joints() == 0) {
     throw Error(
         Error::Category::usage, "no-clearance",
@@ -407,7 +375,17 @@ int run(const RunOptions& options, const CommonOptions& common) {
   if (options.twin) {
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
-  return RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get()).execute();
+  const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
+  return RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from).execute();
+}
+
+int resume(const CLI::App& app, const RunOptions& asked, CommonOptions& common) {
+  const Resumption resumption = read_resumption(app, asked, common);
+  if (resumption.nothing_to_do.empty()) return run(resumption.options, common, &resumption);
+  const std::string text = "nothing to do: " + resumption.nothing_to_do;
+  common.json ? print_json(Json{{"directory", asked.resume}, {"resumed", false}, {"reason", text}})
+              : print(text + "\n");
+  return 0;
 }
 
 }  // namespace
@@ -415,30 +393,11 @@ int run(const RunOptions& options, const CommonOptions& common) {
 Command add_run_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "run", "Simulate a model and write its results");
   const auto options = std::make_shared<RunOptions>();
-  add_option(*app, "MODEL", options->model, "Model file");
-  add_option(*app, "--end", options->end, "End time: \"0.5 s\"", "T");
-  add_option(*app, "--step", options->step, "Step: 2us", "H");
-  add_option(*app, "--accuracy", options->accuracy, "Accuracy of positions instead of a step: 1um", "L");
-  add_option(*app, "--interval", options->interval, "Between output rows, in place of the file's: 0.1ms", "T");
-  add_repeatable(*app, "--channels", options->channels,
-                 "Channels to write, a name or pattern with *, in place of the file's; repeatable", "PATTERN");
-  add_option(*app, "--integrator", options->integrator, "Integrator, with its default parameters", "NAME");
-  add_flag(*app, "--verify", options->verify,
-           "Run again by a method of another kind and print the observed errors; exit code 7 when both disagree");
-  add_option(*app, "--repeat", options->repeat, "Run N times, from starts moved in the play: median and range of peaks",
-             "N");
-  add_option(*app, "--seed", options->seed, "Of the starts of --repeat (1)", "S");
-  add_flag(*app, "--twin", options->twin, "Run the model with every clearance closed alongside, and compare both");
-  add_flag(*app, "--profile", options->profile,
-           "Print where the time went: assembly, factorization, joints, events, output");
-  add_file_option(*app, "--out", options->out, "Result directory (results/NAME)", "DIR");
-  add_flag(*app, "--force", options->force, "Write into a directory that holds other files");
-  add_option(*app, "--format", options->format, "Of the results: csv, hdf5, both (both)", "FORMAT");
-  add_later_flag(*app, "--resume", options->resume);
-  add_flag(*app, "--dry-run", options->dry_run, "Load, assemble, print the facts, write nothing");
-  add_model_options(*app, options->model_options);
+  add_run_options(*app, *options);
   add_common_options(*app, common);
-  return {app, [options, &common] { return run(*options, common); }};
+  return {app, [app, options, &common] {
+            return options->resume.empty() ? run(*options, common, nullptr) : resume(*app, *options, common);
+          }};
 }
 
 }  // namespace freeplay

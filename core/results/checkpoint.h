@@ -24,10 +24,10 @@ namespace freeplay {
 
 /// A run at the end of an accepted step, and how far its files go there.
 struct Checkpoint {
-  Json made;                      ///< what the run was made from and with (Recording::provenance)
-  std::optional<RunState> state;  ///< none: the run had not begun
-  std::int64_t events = 0;        ///< rows of events.csv
-  Archive files{};                ///< what waits to be written, and what is counted besides (Recording::save)
+  Json made;                        ///< what the run was made from and with (Recording::provenance)
+  std::optional<RunState> state{};  ///< none: the run had not begun
+  std::int64_t events = 0;          ///< rows of events.csv
+  Archive files{};                  ///< what waits to be written, and what is counted besides (Recording::save)
 
   std::int64_t rows() const { return state ? state->rows : 0; }
 };

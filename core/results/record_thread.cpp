@@ -4,6 +4,8 @@
 #include <ctime>
 #include <utility>
 
+#include "base/error.h"
+
 namespace freeplay {
 namespace {
 
@@ -78,6 +80,15 @@ void RecordThread::note_safe() {
   last_time_ = time_given_;
 }
 
+void RecordThread::attempt(const std::function<void()>& then) {
+  try {
+    then();
+  } catch (const Error& error) {
+    failure_ = error.message();
+    good_ = false;
+  }
+}
+
 void RecordThread::write_all() {
   const auto flush_every = flush_again * static_cast<int>(1 + width_ / often_up_to);
   Clock::time_point flushed = Clock::now();
@@ -102,7 +113,7 @@ void RecordThread::write_all() {
       note_safe();
     }
     for (const auto& then : asking_) {
-      if (good_) then();
+      if (good_) attempt(then);
     }
     if (last || Clock::now() - flushed >= flush_every) {
       flushed = Clock::now();

@@ -38,7 +38,7 @@ class RecordThread {
   void add_row(std::span<const double> values, std::span<const std::size_t> picked);
   void add_event(std::span<const double> numbers);
   /// Once all that was added is safe on the disk, calls `then` in the thread. Does not wait; `then` is not called after
-  /// a failure of a writer.
+  /// a failure of a writer; an Error that it throws is one.
   void when_safe(std::function<void()> then);
 
   bool ok() const { return good_.load(std::memory_order_relaxed); }
@@ -53,6 +53,7 @@ class RecordThread {
  private:
   void serve();
   void write_all();
+  void attempt(const std::function<void()>& then);
   void note_safe();
   template <class Act>
   void each(Act&& act);

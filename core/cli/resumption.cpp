@@ -1,0 +1,128 @@
+#include "cli/resumption.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/number_text.h"
+#include "results/checkpoints.h"
+
+namespace freeplay {
+namespace {
+
+// What the numbers of a run that goes on may differ in; the rest of its options stays as it was.
+constexpr std::array may_change{"--resume", "--end", "--checkpoint", "--profile"};
+constexpr std::array of_every_command{"--quiet", "--verbose", "--json", "--no-color", "--max-errors"};
+
+void refuse_other_options(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::ranges::find(may_change, name) != may_change.end() ||
+        std::ranges::find(of_every_command, name) != of_every_command.end()) {
+      continue;
+    }
+    throw Error(
+        Error::Category::usage, "usage", fmt::format("{} does not go with --resume", name), {},
+        "model and settings are those of the run that goes on; only --end, --checkpoint and --profile may change");
+  }
+}
+
+[[noreturn]] void mismatch(const std::string& what, const std::string& then, const std::string& now) {
+  throw Error(Error::Category::input, "resume-mismatch",
+              fmt::format("{} is not that of the run: {} then, {} now", what, then, now), {},
+              "the rest would not fit what is there: run the model again from its start");
+}
+
+std::string words_of(const Json& value) {
+  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  const bool digest = text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return digest ? text.substr(0, 12) : text;
+}
+
+void require_same(const std::string& what, const Json& then, const Json& now) {
+  if (then != now) mismatch(what, words_of(then), words_of(now));
+}
+
+Json summary_of(const std::filesystem::path& directory) {
+  std::ifstream file(directory / "summary.json");
+  Json json = Json::parse(file, nullptr, false);
+  return json.is_object() ? json : Json::object();
+}
+
+/// Settings that the run had, as results.h5 and summary.json keep them.
+double number_at(const Json& json, const char* pointer) {
+  const Json::json_pointer path(pointer);
+  return json.contains(path) && json.at(path).is_number() ? json.at(path).get<double>() : 0.0;
+}
+
+void require_same_program(const Checkpoint& checkpoint) {
+  const Json now = program_of_checkpoints();
+  for (const auto& [name, value] : now.items()) {
+    require_same(fmt::format("the program's {}", name), checkpoint.made["program"].value(name, Json()), value);
+  }
+}
+
+}  // namespace
+
+Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonOptions& common) {
+  refuse_other_options(app);
+  const std::filesystem::path directory = asked.resume;
+  Resumption out;
+  out.checkpoint = read_checkpoint(directory);
+  const Json& made = out.checkpoint.made;
+  if (!keep_options(made.value("options", Json()), out.options, common)) {
+    throw Error(Error::Category::file, "bad-checkpoint",
+                fmt::format("'{}' does not say how the run was made", (directory / checkpoint_name).string()));
+  }
+  require_same_program(out.checkpoint);
+  out.options.checkpoint = asked.checkpoint;
+  out.options.profile = asked.profile;
+  out.options.out = asked.resume;
+  out.options.model = (directory / made.value("model_copy", "model.yaml")).string();
+  const double end = number_at(made, "/settings/end"), interval = number_at(made, "/settings/interval");
+  const Json summary = summary_of(directory);
+  const std::string status = summary.value("status", "");
+  const double reached = status.empty() ? 0.0 : number_at(summary, "/time/reached");
+  const double later = asked.end.empty() ? end : positive_quantity("--end", asked.end, dimension::time);
+  if (!asked.end.empty() && later < end) {
+    const double at = std::max(reached, out.checkpoint.state ? out.checkpoint.state->time : 0.0);
+    if (later <= at || later < end) {
+      bad_value("--end", asked.end,
+                fmt::format("the run went to {:g} s of {:g} s: a later end than that is needed", at, end));
+    }
+  }
+  if (status == "stopped" || (status == "completed" && later == end)) {
+    out.nothing_to_do = fmt::format("{} at {:g} s", status, reached);
+    return out;
+  }
+  if (later != end) {
+    out.goes_on = false;
+    out.options.end = asked.end;
+    out.options.interval = fmt::format("{} s", number_text(interval));
+    out.options.force = true;
+  }
+  // Those beside it need every channel of all rows.
+  if (out.options.verify || out.options.twin) out.checkpoint = Checkpoint{.made = Json(made)};
+  return out;
+}
+
+void require_same_making(const Resumption& resumption, const Model& model) {
+  const Json& then = resumption.checkpoint.made["provenance"];
+  const Json now = provenance(model, {});
+  require_same("the model", then["model"]["sha256"], now["model"]["sha256"]);
+  for (const char* kind : {"inputs", "plugins"}) {
+    const Json &before = then[kind], &after = now[kind];
+    if (before.size() != after.size())
+      mismatch(fmt::format("the number of {}", kind), words_of(before.size()), words_of(after.size()));
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      require_same(fmt::format("'{}' of the {}", words_of(before[i]["name"]), kind), before[i]["sha256"],
+                   after[i]["sha256"]);
+    }
+  }
+}
+
+}  // namespace freeplay
