@@ -52,9 +52,9 @@ class Area {
     return ((points_[2].value - points_[1].value) / second - (points_[1].value - points_[0].value) / first) /
            (first + second);
   }
-  static double under_parabola(const Point& a, const Point& b, double bend) {
+  static double under_parabola(const Point& a, const Point& b, double curvature) {
     const double length = b.t - a.t;
-    return trapezoid(a, b) - bend * length * length * length / 6.0;
+    return trapezoid(a, b) - curvature * length * length * length / 6.0;
   }
   void close() {
     open_ = false;
