@@ -143,7 +143,7 @@ void add_play(const RunRecord& record, TextTable& table) {
     return std::isfinite(value) ? figure_text(value, unit, 0.0, {.digits = 3, .prefixed = true}) : "-";
   };
   table.add_row({heading(record, "play"), "in flight", "in impact", "lasting", "impacts", "max impulse", "sliding",
-                 "friction work"});
+                 "load x slip"});
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     if (!is_listed(record.model.joints[i]) || !record.clearances.has(static_cast<int>(i))) continue;
     const PlayFigures seen = record.clearances.figures(static_cast<int>(i));
