@@ -11,6 +11,7 @@
 #include "cli/list_command.h"
 #include "cli/run_command.h"
 #include "cli/schema_command.h"
+#include "cli/seal_command.h"
 #include "cli/show_command.h"
 #include "cli/validate_command.h"
 
@@ -24,6 +25,7 @@ std::span<const CommandEntry> all_commands() {
       {"analyze", add_analyze_command},
       {"compare", add_compare_command},
       {"export", add_export_command},
+      {"seal", add_seal_command},
       {"show", add_show_command},
       {"convert", add_convert_command},
       {"doctor", add_doctor_command},

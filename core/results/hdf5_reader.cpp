@@ -62,6 +62,8 @@ class Hdf5Reader : public ResultReader {
     Hdf5Id last = std::move(id_);
   }
 
+  bool sealed() const override { return sealed_; }
+
   void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) override {
     RowPicker picker(window, columns.size(), take);
     guarded([&] {
@@ -105,6 +107,7 @@ class Hdf5Reader : public ResultReader {
     checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
     checked(H5Pset_file_locking(access, 0, 1));
     const hid_t plain = H5Fopen(file_.c_str(), H5F_ACC_RDONLY, access);
+    sealed_ = plain >= 0;
     id_ = Hdf5Id(plain >= 0 ? plain : H5Fopen(file_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access), H5Fclose);
   }
 
@@ -143,6 +146,9 @@ class Hdf5Reader : public ResultReader {
     const auto time = std::ranges::find(layout_.columns, "time", &RecordColumn::name);
     if (time == layout_.columns.end()) throw Hdf5Failure("'time' is no list of numbers");
     std::rotate(layout_.columns.begin(), time, time + 1);
+    if (H5Lexists(id_, "bearing", H5P_DEFAULT) > 0 && H5Lexists(id_, "bearing/joint", H5P_DEFAULT) > 0) {
+      layout_.bearings = words(text_attribute(open("/bearing/joint"), "flag_meanings"));
+    }
     const Hdf5Id root(H5Gopen2(id_, "/", H5P_DEFAULT), H5Gclose);
     for (const char* name :
          {"Conventions", "title", "freeplay_version", "model", "model_sha256", "inputs", "settings", "provenance"}) {
@@ -194,6 +200,7 @@ class Hdf5Reader : public ResultReader {
   }
 
   Hdf5Id id_;
+  bool sealed_ = false;
   hsize_t row_count_ = 0, event_count_ = 0;
 };
 

@@ -34,6 +34,8 @@ class ResultReader {
   const std::string& file() const { return file_; }
   /// Names of the columns, the first is time; units and sources where the file has them.
   const RecordLayout& layout() const { return layout_; }
+  /// False for an HDF5 file that is still written, or whose writer was killed: not every program opens it.
+  virtual bool sealed() const { return true; }
   /// Index of a column in the layout, or its size.
   std::size_t find(std::string_view name) const;
   /// Numbers of some columns, row after row, in blocks of whole rows. Only these are read; `columns` begins with time.

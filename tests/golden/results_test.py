@@ -56,6 +56,50 @@ class Results(ProgramTest):
         self.assertEqual(130, first.returncode)
         self.run_model(end="1 ms")
 
+    def test_a_killed_result_is_sealed(self):
+        command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.DEVNULL) as run:
+            until = time.time() + 30
+            while not os.path.exists(self.path("r", "results.csv")) or self.read("r", "results.csv").count("\n") < 50:
+                self.assertLess(time.time(), until)
+                time.sleep(0.05)
+            time.sleep(1.5)
+            _, stderr = self.freeplay("seal", "r", code=6)
+            self.assertIn("[result-in-use]", stderr)
+            run.kill()
+        with open(self.path("r", "results.csv"), "a", encoding="utf-8") as file:
+            file.write("0.1,half a li")
+        out, _ = self.freeplay("seal", "r")
+        self.assertRegex(out, r"^r: sealed, [0-9]+ rows to t = \S+ s\n$")
+        summary = json.loads(self.read("r", "summary.json"))
+        self.assertEqual(("interrupted", "killed", int(out.split()[2])),
+                         (summary["status"], summary["stop_reason"], summary["counts"]["rows"]))
+        self.assertTrue(self.read("r", "results.csv").endswith("\n"))
+        files = {name: os.stat(self.path("r", name)).st_mtime_ns for name in os.listdir(self.path("r"))}
+        self.assertEqual("r: nothing to do\n", self.freeplay("seal", "r")[0])
+        self.assertEqual(files, {name: os.stat(self.path("r", name)).st_mtime_ns for name in os.listdir(self.path("r"))})
+        rows = table(self.freeplay("export", os.path.join("r", "results.h5"), "--to", "csv")[0])
+        self.assertEqual(summary["counts"]["rows"], len(rows["time"]))
+        os.mkdir(self.path("empty"))
+        _, stderr = self.freeplay("seal", "empty", code=6)
+        self.assertIn("[unreadable-result]", stderr)
+
+    @needs("h5py")
+    def test_a_sealed_file_opens_plainly(self):
+        import h5py
+        command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r", "--format", "hdf5"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.DEVNULL) as run:
+            time.sleep(2.5)
+            run.kill()
+        with self.assertRaises(OSError):
+            h5py.File(self.path("r", "results.h5"), "r")
+        self.freeplay("seal", "r")
+        with h5py.File(self.path("r", "results.h5"), "r") as file:
+            self.assertEqual(self.read("r", "summary.json"), file["summary"][...].tobytes().decode())
+            self.assertGreater(len(file["time"]), 0)
+            for name in ("body.slider.x", "events/speed", "bearing/joint"):
+                self.assertIn(name, file)
+
     def test_the_format_says_which_files_there_are(self):
         for word, files in (("csv", {"results.csv"}), ("hdf5", {"results.h5"}), ("both", {"results.csv", "results.h5"})):
             self.run_model("--format", word, out=word, end="1 ms")
