@@ -209,8 +209,12 @@ class RunJob {
     outcome.status = RunStatus::failed;
     outcome.exit_code = 6;
     outcome.rows = recording_.rows();
-    outcome.reason =
-        outcome.rows > 0 ? fmt::format("{}; rows up to t = {:g} s are safe", failure, recording_.last_time()) : failure;
+    outcome.reason = failure;
+    if (outcome.rows == 0) return;
+    outcome.reason += fmt::format(
+        "; rows up to t = {:g} s are safe; free some space and go on with "
+        "freeplay run --resume {}",
+        recording_.last_time(), path_.string());
   }
 
   /// The summary of a large model takes memory, and a second run as much as this one did: matrices go first.
@@ -264,9 +268,10 @@ class RunJob {
     json["performance"]["resumed"] = checkpoints_.resumed();
     json["performance"]["resumed_from"] = checkpoints_.resumed_from();
     const int exit_code = repeats_ ? add_repeats(record, outcome, json) : outcome.exit_code;
-    recording_.seal(json);
+    seal(json, outcome);
     if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
-      print_messages(fmt::format("freeplay: error: {}\n", outcome.reason), common_.no_color);
+      const char* id = outcome.exit_code == 6 ? " [cannot-write]" : "";
+      print_messages(fmt::format("freeplay: error: {}{}\n", outcome.reason, id), common_.no_color);
     }
     if (common_.json) {
       print_json(json);
@@ -279,6 +284,15 @@ class RunJob {
       common_.json ? print_messages(table, common_.no_color) : print(table);
     }
     return exit_code;
+  }
+
+  /// Where a file could not be written, that is what is reported, and no later failure.
+  void seal(const Json& json, const Outcome& outcome) {
+    try {
+      recording_.seal(json);
+    } catch (const Error&) {
+      if (outcome.exit_code != 6) throw;
+    }
   }
 
   /// Waits for the other runs of a repeated one. Returns the exit code of all together.

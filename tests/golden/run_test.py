@@ -372,7 +372,7 @@ simulation: {end: 10 ms, step: 1 ms}
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
         out, err = self.freeplay("run", self.pendulum(end="20 s"), "--out", "r", code=6, preexec_fn=shrink)
-        self.assertIn("cannot write", err)
+        self.assertRegex(err, r"error: cannot write '.*': File too large.* \[cannot-write\]\n")
         text = self.read("r", "results.csv")
         self.assertTrue(text.endswith("\n") and len(text) <= limit)
         rows = self.rows("r", "results.csv")
@@ -383,6 +383,10 @@ simulation: {end: 10 ms, step: 1 ms}
         limit = (20000, 20000)
         self.freeplay("run", model, "--out", "r", code=6,
                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+        summary = self.summary("r")
+        self.assertEqual(("failed", 6), (summary["status"], summary["exit_code"]))
+        self.assertLess(summary["counts"]["rows"], 20000)
+        os.remove(self.path("r", "summary.json"))
         _, err = self.freeplay("run", model, "--out", "r", code=6)
         self.assertIn("error: 'r' holds the result of a run that did not end: it has no summary.json", err)
         self.freeplay("run", model, "--out", "r", "--end", "1 ms", "--force")
