@@ -12,7 +12,17 @@
 namespace freeplay {
 namespace {
 
-constexpr double lost_rank = 1e-4;  // by singular values of the rows, of what it is beside a dead point
+constexpr double lost_rank = 1e-4;    // by singular values of the rows, of what it is beside a dead point
+constexpr double nearly_lost = 1e-2;  // the same for a run that ends close to one
+
+// The state of stress without load that is `here` and not beside it.
+std::vector<int> joints_in_line(const RowSvd& here, const RowSvd& beside, const ClosedMechanism::Rows& rows,
+                                const ClosedMechanism& mechanism) {
+  Eigen::VectorXd stress = here.svd.matrixU().col(beside.rank - 1);
+  const auto always = beside.svd.matrixU().rightCols(beside.svd.matrixU().cols() - beside.rank);
+  stress -= always * (always.transpose() * stress);
+  return joints_under(stress, rows, mechanism);
+}
 
 }  // namespace
 
@@ -48,16 +58,53 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
       const RowSvd there(mechanism.position_rows());
       const Eigen::Index last = there.rank - 1;
       if (last < 0 || !(values[last] < lost_rank * there.svd.singularValues()[last])) continue;
-      DeadStart found{drivers[i], {}};
-      // The state of stress without load that is there and not beside it.
-      Eigen::VectorXd stress = here.svd.matrixU().col(last);
-      const auto always = there.svd.matrixU().rightCols(there.svd.matrixU().cols() - there.rank);
-      stress -= always * (always.transpose() * stress);
-      found.joints = joints_under(stress, rows, mechanism);
-      return found;
+      return DeadStart{drivers[i], joints_in_line(here, there, rows, mechanism)};
     }
   }
   return std::nullopt;
+}
+
+std::optional<SingularPosition> singular_position(const System& system, const State& now) {
+  ClosedMechanism mechanism(system);
+  const Model& model = mechanism.model();
+  if (mechanism.system.layout().nv() > most_followed_velocities) return std::nullopt;
+  if (mechanism.state.q().size() != now.q().size()) return std::nullopt;
+  mechanism.stand_at(system, now);
+  mechanism.state.t() = now.t();
+  const ClosedMechanism::Rows rows = mechanism.position_rows();
+  if (!mechanism.holds(rows)) return std::nullopt;  // with play there are no rows to lose
+  const RowSvd here(rows);
+  const Eigen::VectorXd& values = here.svd.singularValues();
+  if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > nearly_lost * values[0]) return std::nullopt;
+  const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    if (model.joints[at(j)].gear >= 0 || mechanism.system.joint_layout(j).coordinate == Coordinate::none) continue;
+    for (const double sign : {1.0, -1.0}) {
+      std::ranges::copy(q, mechanism.state.q().begin());
+      mechanism.evaluate(term_position);
+      mechanism.leads = {{j, mechanism.e.coordinate[at(j)]}};
+      const bool left = leave_dead_point(mechanism, sign);
+      mechanism.leads.clear();
+      if (!left) continue;
+      const RowSvd there(mechanism.position_rows());
+      const Eigen::Index last = there.rank - 1;
+      if (last < 0) continue;
+      const double part = values[last] / there.svd.singularValues()[last];
+      if (!(part < nearly_lost)) continue;
+      return SingularPosition{j, part, joints_in_line(here, there, rows, mechanism)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string words(const SingularPosition& position, const Model& model) {
+  const std::string joints = joint_names(position.joints, model);
+  return fmt::format(
+      "a singular position{}: there its constraints are {:.1g} times as independent as a little beside it, where joint "
+      "'{}' has moved, and nothing says which of two ways the mechanism goes on; steps of another length do not change "
+      "that: start beside it, or let a driver lead through",
+      joints.empty() ? std::string{} : fmt::format(", where {} hold links in line", joints), position.part,
+      model.joints[at(position.lead)].name);
 }
 
 std::string words(const DeadStart& start, const Model& model) {

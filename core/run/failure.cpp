@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "assembly/dead_point.h"
 #include "assembly/out_of_reach.h"
 #include "base/index.h"
 #include "component/own_types.h"
@@ -190,13 +192,28 @@ bool RunFailure::fail_in_storm(const StepEvents::Happening& last, const EventSto
 void RunFailure::explain_dead_point() {
   if (run_.outcome.status != RunStatus::failed || run_.outcome.exit_code != 4) return;
   auto why = why_out_of_reach(run_.equations->whole(), run_.equations->start().state, run_.outcome.time);
-  if (!why) return;
+  if (!why) return explain_singular_position();
   run_.outcome.reason = std::move(*why);
   for (TrustReason& reason : run_.outcome.doubts) {
     const bool locked = run_.outcome.reason.ends_with("[locked]");
     reason.message = reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
                      (locked ? "the mechanism is locked" : "the mechanism comes to a dead point");
   }
+}
+
+// Where constraints have lost rank no step is short enough.
+void RunFailure::explain_singular_position() {
+  if (!run_.outcome.reason.ends_with(advice::smaller_step) && !run_.outcome.reason.ends_with(advice::error)) return;
+  std::optional<SingularPosition> position;
+  try {
+    position = singular_position(run_.system, run_.accepted);
+  } catch (const Error&) {
+    return;  // a joint or a driver that cannot answer there has been reported already
+  }
+  if (!position) return;
+  const bool at_start = !(run_.accepted.t() > run_.model.settings.start);
+  run_.outcome.reason = fmt::format("t = {:.9g} s: the mechanism {} {} [dead-point]", run_.accepted.t(),
+                                    at_start ? "stands in" : "comes to", words(*position, run_.model));
 }
 
 // A number of the model that no machine has is worth more than any advice about steps.

@@ -40,6 +40,23 @@ drivers: {push: {joint: guide, kind: position, value: "-0.3 m - 1 m/s*t"}}
 simulation: {end: 1 s, step: 1 ms}
 """
 
+# A parallelogram that lies flat, under a torque.
+FLAT = """freeplay: 1
+bodies:
+  crank: {mass: 0.3, inertia: 1e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}}
+  coupler: {mass: 0.9, inertia: 6.75e-3, com: [0.15, 0], frames: {tip: [0.4, 0]}}
+  rocker: {mass: 0.8, inertia: 4.5e-3, com: [0.125, 0], frames: {tip: [0.1, 0]}}
+frames: {ground/D: [0.4, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+drivers: {motor: {joint: %s, kind: torque, value: 1}}
+initial: {joints: {A: 0}}
+simulation: {end: 2 s, step: 1 ms}
+"""
+
 # A slider-crank whose links lie in line with what pushes its slider.
 IN_LINE = """freeplay: 1
 bodies:
@@ -123,6 +140,13 @@ class DeadPoint(ProgramTest):
         self.assertIn("'head'", line)
         _, err = self.freeplay("validate", self.write("m.yaml", flat.replace("initial: {joints: {rail: 0}}", "initial: {joints: {guide: -0.5}}") % "velocity, value: 0.1"), code=3)
         self.assertRegex(err, r"error: driver 'push' starts joint 'guide' at a dead point, where joints .*\[dead-point\]")
+
+    def test_a_flat_parallelogram_that_nothing_leads_is_named(self):
+        for joint in "AB":
+            with self.subTest(joint):
+                line = self.reason(FLAT % joint)
+                self.assertRegex(line, "(stands in|comes to) a singular position, where joints 'A', 'B', 'C', 'D' hold links in line")
+                self.assertRegex(line, r"are \de-\d+ times as independent as a little beside it, where joint '\w' has moved")
 
     def test_links_in_line_with_a_load_stay(self):
         for push in PUSHES:

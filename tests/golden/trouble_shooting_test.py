@@ -60,6 +60,21 @@ IN_LINE = SHORT_ROD.replace("drivers: {motor: {joint: pivot, kind: angle, value:
     "frames: {tip: [1 m, 0]}", "frames: {tip: [1 m, 0]}, pose: {angle: 0}")
 with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
     PARALLELOGRAMS = chain.read()
+FLAT = """freeplay: 1
+bodies:
+  crank: {mass: 0.3, inertia: 1e-3, com: [0.05, 0], frames: {tip: [0.1, 0]}}
+  coupler: {mass: 0.9, inertia: 6.75e-3, com: [0.15, 0], frames: {tip: [0.4, 0]}}
+  rocker: {mass: 0.8, inertia: 4.5e-3, com: [0.125, 0], frames: {tip: [0.1, 0]}}
+frames: {ground/D: [0.4, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+drivers: {motor: {joint: A, kind: torque, value: 1}}
+initial: {joints: {A: 0}}
+simulation: {end: 2 s, step: 1 ms}
+"""
 LOCKED = """freeplay: 1
 bodies:
   crank: {mass: 0.3, inertia: 1e-4, frames: {tip: [50 mm, 0]}, pose: {angle: 70 deg}}
@@ -183,6 +198,7 @@ CASES = {
         (4, pendulum("step: 1 ms", "step: {adaptive: true, size: 50 ms, min: 50 ms, tolerance: 1e-9}"), RUN),
     "the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding hides how; ...":
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
+    "the mechanism ... a singular position, where ... hold links in line: ... [dead-point]": (4, FLAT, RUN),
     "driver '...' asks for a position that the mechanism cannot take: ... [dead-point]":
         (4, SHORT_ROD, RUN),
     "driver '...' cannot move joint '...' beyond the play: ... hold it at ...; ... [locked]": (4, LOCKED, RUN),
