@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "assembly/assembly_failure.h"
 #include "assembly/closed_mechanism.h"
 #include "assembly/dead_point.h"
+#include "assembly/failure.h"
 #include "assembly/force_turns.h"
 #include "assembly/gear_turn_choice.h"
 #include "assembly/leg_modes.h"

@@ -16,10 +16,9 @@ struct RoleWords {
   const char *name, *unit;
 };
 RoleWords words_of_role(ChannelRole role) {
-  constexpr RoleWords words[] = {
-      {"none", ""},          {"penetration", "m"},    {"normal_force", "N"},   {"friction_force", "N"},
-      {"slip_speed", "m/s"}, {"eccentricity_x", "m"}, {"eccentricity_y", "m"}, {"eccentricity_z", "m"},
-      {"in_contact", "1"}};
+  constexpr RoleWords words[] = {{"no role", ""},         {"penetration", "m"},    {"normal_force", "N"},
+                                 {"friction_force", "N"}, {"slip_speed", "m/s"},   {"eccentricity_x", "m"},
+                                 {"eccentricity_y", "m"}, {"eccentricity_z", "m"}, {"in_contact", "1"}};
   return words[static_cast<std::size_t>(role)];
 }
 

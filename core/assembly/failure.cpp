@@ -1,4 +1,4 @@
-#include "assembly/assembly_failure.h"
+#include "assembly/failure.h"
 
 #include <algorithm>
 #include <cmath>
