@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/number_text.h"
 #include "results/checkpoints.h"
+#include "results/kept_part.h"
 
 namespace freeplay {
 namespace {
@@ -66,6 +66,19 @@ void require_same_program(const Checkpoint& checkpoint) {
   }
 }
 
+/// A result that is replaced is one: what the end of its run counted is there.
+void require_rows(const std::filesystem::path& directory, const Json& made) {
+  const std::filesystem::path file = directory / "results.csv";
+  std::error_code error;
+  const std::int64_t rows = made.value("rows", std::int64_t{0});
+  if (rows == 0 || !std::filesystem::exists(file, error)) return;
+  const std::int64_t there = whole_lines(file, rows + 1).lines - 1;
+  if (there >= rows) return;
+  throw Error(Error::Category::file, "bad-checkpoint",
+              fmt::format("'{}' has {} rows, and the checkpoint counts {}", file.string(),
+                          std::max<std::int64_t>(there, 0), rows));
+}
+
 }  // namespace
 
 Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonOptions& common) {
@@ -83,7 +96,8 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
   out.options.profile = asked.profile;
   out.options.out = asked.resume;
   out.options.model = (directory / made.value("model_copy", "model.yaml")).string();
-  const double end = number_at(made, "/settings/end"), interval = number_at(made, "/settings/interval");
+  const double end = number_at(made, "/settings/end");
+  out.interval = number_at(made, "/settings/interval");
   const Json summary = summary_of(directory);
   const std::string status = summary.value("status", "");
   const double reached = status.empty() ? 0.0 : number_at(summary, "/time/reached");
@@ -99,10 +113,10 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
     out.nothing_to_do = fmt::format("{} at {:g} s", status, reached);
     return out;
   }
+  require_rows(directory, made);
   if (later != end) {
     out.goes_on = false;
     out.options.end = asked.end;
-    out.options.interval = fmt::format("{} s", number_text(interval));
     out.options.force = true;
   }
   // Those beside it need every channel of all rows.

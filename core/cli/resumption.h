@@ -13,6 +13,7 @@ struct Resumption {
   RunOptions options;  ///< of that run, with what may change
   Checkpoint checkpoint;
   bool goes_on = true;        ///< else it is made again from its start, with a later end
+  double interval = 0.0;      ///< between rows, of that run [s]
   std::string nothing_to_do;  ///< why not; empty where there is something
 };
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/number_text.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/facts.h"
@@ -129,7 +130,7 @@ class RunJob {
       outcome.reason = "interrupted during the second run of --verify: this one had come to its end";
       recording_.log().write("note", outcome.reason);
     }
-    if (const std::string failure = recording_.close(); !failure.empty()) fail_writing(failure, outcome);
+    close(outcome);
     return finish(outcome, ended, verification);
   }
 
@@ -287,6 +288,17 @@ class RunJob {
   }
 
   /// Where a file could not be written, that is what is reported, and no later failure.
+  void close(Outcome& outcome) {
+    std::string failure = recording_.close();
+    try {
+      const bool ended = outcome.status == RunStatus::completed || outcome.status == RunStatus::stopped;
+      if (failure.empty() && ended) checkpoints_.end(outcome.rows);
+    } catch (const Error& error) {
+      failure = error.message();
+    }
+    if (!failure.empty()) fail_writing(failure, outcome);
+  }
+
   void seal(const Json& json, const Outcome& outcome) {
     try {
       recording_.seal(json);
@@ -368,6 +380,13 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   refuse_idle_options(options);
   const RepeatPlan plan = repeat_plan(options.repeat, options.seed);
   LoadedModel loaded = load_model(options.model, build_options(options), loading(common));
+  if (resumed != nullptr && options.interval.empty() && loaded.model &&
+      loaded.model->settings.interval != resumed->interval) {
+    // It follows from the end, which is a later one.
+    RunOptions with_interval = options;
+    with_interval.interval = fmt::format("{} s", number_text(resumed->interval));
+    return run(with_interval, common, resumed);
+  }
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (resumed != nullptr) require_same_making(*resumed, *loaded.model);

@@ -38,6 +38,11 @@ void Checkpoints::go_on(const Checkpoint& from) {
   if (!from.files.reals.empty() || !from.files.integers.empty()) recording_.restore(from.files);
 }
 
+void Checkpoints::end(std::int64_t rows) {
+  made_["rows"] = rows;
+  begin();
+}
+
 void Checkpoints::add(RunState state) {
   last_ = std::chrono::steady_clock::now();
   const auto checkpoint =

@@ -32,6 +32,8 @@ class Checkpoints {
   Json resumed_from() const { return made_.value("resumed_from", Json()); }
   /// "resumed from t = 0.31 s, row 3100".
   const std::string& resumed_words() const { return resumed_words_; }
+  /// The last one of a run that came to its end, after its files: what they hold.
+  void end(std::int64_t rows);
   /// One more. A failure to write it is one of the recording.
   void add(RunState state);
 

@@ -34,7 +34,7 @@ struct RunRecord {
   Verdict trust{};
   Json hashes = nullptr, provenance = nullptr;  ///< of Recording
   Json repeat = nullptr;                        ///< of RepeatSummary, of a repeated run
-  Json twin = nullptr;    ///< of TwinComparison, of a run beside its ideal twin
+  Json twin = nullptr;                          ///< of TwinComparison, of a run beside its ideal twin
 };
 
 /// completed, stopped, failed or interrupted.
