@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string path, to, table, from, until, every, out;
+  std::string path, to, table, from, until, every, period, phase, out;
   std::vector<std::string> channels;
   bool force = false;
 };
@@ -33,7 +33,13 @@ TableRequest request_of(const ExportOptions& options) {
     require_word("table", options.table, {words.begin(), words.end()});
     request.table = options.table;
   }
-  if (!options.channels.empty()) request.channels = options.channels;
+  request.channels = options.channels;
+  if (!options.period.empty()) request.period = positive_quantity("--period", options.period, dimension::time);
+  if (!options.phase.empty()) request.phase = signed_quantity("--phase", options.phase, dimension::time);
+  if (request.period == 0.0 && (request.table == "poincare" || request.table == "lyapunov")) {
+    throw Error(Error::Category::usage, "missing-argument",
+                fmt::format("--table {} needs --period T, the time of one turn", request.table));
+  }
   RowWindow& window = request.window;
   if (!options.from.empty()) window.from = signed_quantity("--from", options.from, dimension::time);
   if (!options.until.empty()) window.until = signed_quantity("--until", options.until, dimension::time);
@@ -57,6 +63,8 @@ std::vector<std::string> arguments_of(const ExportOptions& options) {
   add("--from", options.from);
   add("--until", options.until);
   add("--every", options.every);
+  add("--period", options.period);
+  add("--phase", options.phase);
   return arguments;
 }
 
@@ -94,7 +102,7 @@ class Export {
 
  private:
   void give(const TakeText& take) {
-    options_.to == "csv" ? give_csv(table_, take) : give_json(table_, name_, nullptr, provenance_, take);
+    options_.to == "csv" ? give_csv(table_, take) : give_json(table_, name_, table_.summary(), provenance_, take);
   }
 
   const ExportOptions& options_;
@@ -131,12 +139,15 @@ Command add_export_command(CLI::App& program, CommonOptions& common) {
   const auto options = std::make_shared<ExportOptions>();
   add_option(*app, "RESULT", options->path, "Result directory, results.csv or results.h5");
   add_option(*app, "--to", options->to, "csv, hdf5, mat or json", "FORMAT");
-  add_option(*app, "--table", options->table, "results, events or impacts (results)", "NAME");
+  add_option(*app, "--table", options->table,
+             "results, events, impacts, bearing, spectra, poincare or lyapunov (results)", "NAME");
   add_repeatable(*app, "--channels", options->channels, "Channels to write, a name or pattern with *; repeatable",
                  "PATTERN");
   add_option(*app, "--from", options->from, "First time: \"10 ms\"", "T");
   add_option(*app, "--until", options->until, "Last time", "T");
   add_option(*app, "--every", options->every, "Every N-th row of these", "N");
+  add_option(*app, "--period", options->period, "Of poincare and lyapunov: the time of one turn", "T");
+  add_option(*app, "--phase", options->phase, "Of poincare: the first instant (where counting begins)", "T");
   add_file_option(*app, "--out", options->out, "File (stdout, for csv and json)", "FILE");
   add_flag(*app, "--force", options->force, "Replace a file that is there already");
   add_common_options(*app, common);

@@ -90,6 +90,17 @@ class Hdf5Reader : public ResultReader {
     });
   }
 
+  std::vector<double> bearing(const std::string& quantity) override {
+    std::vector<double> numbers;
+    guarded([&] {
+      const Hdf5Id table = open("/bearing/" + quantity), space(H5Dget_space(table), H5Sclose);
+      numbers.resize(static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0)));
+      if (numbers.empty()) return;
+      checked(H5Dread(table, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()));
+    });
+    return numbers;
+  }
+
  private:
   template <class Act>
   void guarded(Act&& act) {

@@ -14,7 +14,14 @@
 namespace freeplay {
 namespace {
 
-constexpr const char* tables[] = {"results", "events", "impacts"};
+constexpr const char* tables[] = {"results", "events", "impacts", "bearing", "spectra", "poincare", "lyapunov"};
+
+/// What a table is made of where nothing else is asked for.
+std::vector<std::string> usual_channels(const std::string& table) {
+  if (table == "results") return {"*"};
+  if (table == "spectra") return {"driver.*.torque", "driver.*.force", "joint.*.fn"};
+  return {"joint.*.ex", "joint.*.ey"};
+}
 
 /// One row per contact that ended: names of its columns, and of those of events that they come from.
 constexpr struct {
@@ -45,8 +52,16 @@ std::size_t place_of(const std::vector<RecordColumn>& columns, std::string_view 
 std::span<const char* const> table_words() { return tables; }
 
 TableView::TableView(ResultReader& reader, const TableRequest& request) : reader_(reader), request_(request) {
-  if (request_.table == "results") {
+  const bool of_rows = request_.table == "results" || request_.table == "spectra" || request_.table == "poincare" ||
+                       request_.table == "lyapunov";
+  if (of_rows) {
     pick_channels(request_.channels);
+    if (request_.table == "results") return;
+    derived_ = derived_table(reader_, request_.table, picked_, request_.window, request_.period, request_.phase);
+    columns_ = derived_.columns;
+  } else if (request_.table == "bearing") {
+    derived_ = bearing_table(reader_);
+    columns_ = derived_.columns;
   } else if (request_.table == "impacts") {
     list_impacts();
   } else {
@@ -58,8 +73,9 @@ void TableView::pick_channels(const std::vector<std::string>& patterns) {
   const std::vector<RecordColumn>& all = reader_.layout().columns;
   std::vector<char> wanted(all.size(), 0);
   wanted[0] = 1;
-  for (const std::string& pattern : patterns) {
-    bool fits = false;
+  const bool usual = patterns.empty();
+  for (const std::string& pattern : usual ? usual_channels(request_.table) : patterns) {
+    bool fits = usual;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!matches(pattern, all[i].name)) continue;
       wanted[i] = 1;
@@ -72,6 +88,12 @@ void TableView::pick_channels(const std::vector<std::string>& patterns) {
     throw Error(Error::Category::usage, "unknown-channel",
                 fmt::format("'{}' has no channel '{}'", reader_.file(), pattern), {},
                 nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+  }
+  if (usual && all.size() > 1 && std::ranges::count(wanted, 1) < 2) {
+    throw Error(Error::Category::usage, "unknown-channel",
+                fmt::format("'{}' has none of the channels that {} are usually made of: {}", reader_.file(),
+                            request_.table, fmt::join(usual_channels(request_.table), ", ")),
+                {}, "name others with --channels");
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (wanted[i] == 0) continue;
@@ -91,6 +113,10 @@ void TableView::list_impacts() {
 
 void TableView::rows(const ResultReader::Take& take) {
   if (request_.table == "results") return reader_.rows(picked_, request_.window, take);
+  if (is_derived()) {
+    if (!derived_.rows.empty()) take(derived_.rows);
+    return;
+  }
   const std::vector<RecordColumn>& events = reader_.layout().events;
   const std::size_t width = events.size();
   const bool impacts = request_.table == "impacts";
@@ -126,7 +152,8 @@ const std::string* TableView::word(std::size_t column, double number) const {
   if (request_.table == "results") return nullptr;
   const std::string& name = columns_[column].name;
   const RecordLayout& layout = reader_.layout();
-  const std::vector<std::string>* words = name == "joint" ? &layout.joints : name == "kind" ? &layout.kinds : nullptr;
+  const std::vector<std::string>& joints = is_derived() ? layout.bearings : layout.joints;
+  const std::vector<std::string>* words = name == "joint" ? &joints : name == "kind" ? &layout.kinds : nullptr;
   if (words == nullptr || !(number >= 0.0) || static_cast<std::size_t>(number) >= words->size()) return nullptr;
   return &(*words)[static_cast<std::size_t>(number)];
 }
