@@ -89,7 +89,7 @@ void check_result_directory(const fs::path& path, bool force) {
   if (empty || force || holds_result(path)) return;
   if (holds_unfinished_result(path)) {
     fail(fmt::format("'{}' holds the result of a run that did not end: it has no summary.json", path.string()),
-         "if that run is not going on, replace it with --force, or choose another directory with --out");
+         "go on with freeplay run --resume, replace it with --force, or choose another directory with --out");
   }
   fail(fmt::format("'{}' holds other files than a result", path.string()),
        "choose another directory with --out, or write beside them with --force");

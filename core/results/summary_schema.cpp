@@ -221,7 +221,10 @@ Json summary_schema() {
        {"hashes", record({{"rows", digits()}, {"events", digits()}})},
        {"provenance", provenance_part()},
        {"twin", twin_part()},
-       {"performance", record({{"wall_seconds", number()}, {"steps_per_second", number()}})},
+       {"performance", record({{"wall_seconds", number()},
+                               {"steps_per_second", number()},
+                               {"resumed", integer()},
+                               {"resumed_from", number_or_null()}})},
        {"files", list_of(text())},
        {"warnings", list_of(text())}});
   Json head = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Freeplay summary.json"}};

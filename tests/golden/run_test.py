@@ -19,7 +19,7 @@ SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code"
            "verification",
            "trust", "noise", "repeat",
            "hashes", "provenance", "performance", "files", "warnings"]
-FILES = ["events.csv", "model.yaml", "results.csv", "results.h5", "run.log", "summary.json"]
+FILES = ["checkpoint.bin", "events.csv", "model.yaml", "results.csv", "results.h5", "run.log", "summary.json"]
 EVENTS = ("time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,"
           "approach_speed,impulse,tangential_impulse,energy_lost,impact")
 

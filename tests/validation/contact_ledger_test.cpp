@@ -59,20 +59,23 @@ INSTANTIATE_TEST_SUITE_P(Laws, PuckImpact,
                          [](const auto& made) { return std::string(made.param.name); });
 
 /// A puck that falls and bounces until it lies.
-std::string bouncing(const std::string& step) {
+std::string bouncing(const std::string& step, double end = 0.05) {
   Puck puck;
   puck.contact = "{law: lankarani-nikravesh, restitution: 0.5}";
   puck.more = ", friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}, length: 8 mm";
   puck.x = 0.02e-3;
   puck.vx = 0.02;
-  puck.end = 0.05;
+  puck.end = end;
   puck.sections = "gravity: [0, -9.81]\n";
   return replaced(puck.text(), "step: " + number(puck.step), step);
 }
 
 TEST(ContactLedger, ContactsLoseTogetherWhatTheAccountSays) {
   for (const char* step : {"step: 2 us", "step: 20 us", "accuracy: 1e-9"}) {
-    const ModelRun run(bouncing(step));
+    // Up to the middle of a flight: what a contact has lost that goes on is not in the list.
+    const auto bounces = contacts(ModelRun(bouncing(step)));
+    ASSERT_GE(bounces.size(), 6u);
+    const ModelRun run(bouncing(step, 0.5 * (bounces[4].end.time + bounces[5].begin.time)));
     double lost = 0.0;
     int ended = 0;
     for (const Event& event : run.events()) {
@@ -80,12 +83,9 @@ TEST(ContactLedger, ContactsLoseTogetherWhatTheAccountSays) {
       lost += event.contact->energy_lost;
       ++ended;
     }
-    const auto all = contacts(run);
-    // What the last one has not ended yet is not in the list.
     const double account = run.last("energy.dissipated");
-    EXPECT_GE(ended, 5) << step;
-    const bool open = all.back().end.kind.empty();
-    EXPECT_NEAR(lost, account, (open ? 1e-3 : 1e-12) * account) << step;
+    EXPECT_EQ(ended, 5) << step;
+    EXPECT_NEAR(lost, account, 1e-12 * account) << step;
     EXPECT_EQ(run.statistics().joint(0).dissipated, account);
   }
 }
@@ -121,16 +121,17 @@ TEST(ClearanceStatistics, SectorsAddUpToTheJoint) {
 TEST(ClearanceStatistics, JournalThatTurnsAtRestHasTheFiguresOfItsLoad) {
   const ModelRun run(
       "freeplay: 1\ngravity: [0, -9.81]\n"
-      "bodies: {ground: {frames: {ring: [0, 0, 30 deg]}}, shaft: {mass: 0.2, inertia: 1e-4}}\n"
+      "bodies: {ground: {frames: {ring: {position: [0, 0], angle: 30 deg}}}, shaft: {mass: 0.2, inertia: 1e-4}}\n"
       "joints: {pin: {type: revolute, between: [ground/ring, shaft], clearance: {bearing_radius: 5 mm, "
       "radial_clearance: 0.1 mm, length: 8 mm, material: {E: 207 GPa, nu: 0.3}, contact: hertz, initial: loaded}}}\n"
       "initial: {speeds: {pin: 10 rad/s}}\n"
       "simulation: {end: 10 ms, step: 10 us, integrator: bathe, output: {interval: 1 ms, discard: 2 ms}}\n");
   const double load = 0.2 * 9.81, slip = 4.9e-3 * 10.0, time = 8e-3, pressure = load / (2.0 * 5e-3 * 8e-3);
   const PlayFigures play = run.clearances().figures(0);
-  EXPECT_NEAR(play.flight, 0.0, 1e-15);
+  constexpr double rounding_of_steps = 1e-13;  // of the sum of a thousand of them
+  EXPECT_NEAR(play.flight, 0.0, rounding_of_steps);
   EXPECT_NEAR(play.impact, 0.0, 1e-15);
-  EXPECT_NEAR(play.lasting, 1.0, 1e-15);
+  EXPECT_NEAR(play.lasting, 1.0, rounding_of_steps);
   EXPECT_EQ(play.impacts, 0);
   EXPECT_TRUE(std::isnan(play.max_approach_speed));
   EXPECT_NEAR(play.mean_normal_force, load, 1e-9 * load);

@@ -1,0 +1,119 @@
+"""Runs that are killed, interrupted or refused, and what `run --resume` makes of them."""
+import json
+import os
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ProgramTest, mechanism
+
+CRANK = mechanism("slider-crank")
+
+
+class Resume(ProgramTest):
+    def run_model(self, name, *options):
+        return self.freeplay("run", CRANK, "--quiet", "--out", name, *options)
+
+    def whole(self, *options):
+        """Not disturbed; how long it took [s]."""
+        began = time.monotonic()
+        self.run_model("whole", *options, "--force")
+        return time.monotonic() - began
+
+    def ended_early(self, name, number, after, *options):
+        with subprocess.Popen([PROGRAM, "run", CRANK, "--quiet", "--out", name, "--force", *options], cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            time.sleep(after)
+            process.send_signal(number)
+        return process.returncode
+
+    def assert_same(self, a, b):
+        for name in ("results.csv", "events.csv"):
+            self.assertTrue(self.read(a, name) == self.read(b, name), name)
+        summaries = []
+        for folder in (a, b):
+            summary = json.loads(self.read(folder, "summary.json"))
+            del summary["performance"], summary["model"]["file"], summary["provenance"]["command"]
+            summaries.append(summary)
+        self.assertEqual(*summaries)
+
+    def test_a_killed_run_goes_on_to_the_same_bytes(self):
+        draw = random.Random(1)
+        for options in (("--end", "0.3 s"), ("--end", "2 s", "--accuracy", "1um")):
+            options += ("--checkpoint", "50 ms")
+            seconds = self.whole(*options)
+            for again in range(3):
+                with self.subTest(options=options, again=again):
+                    self.ended_early("killed", signal.SIGKILL, draw.uniform(0.2, 0.9) * seconds, *options)
+                    self.freeplay("run", "--resume", "killed", "--quiet")
+                    self.assert_same("killed", "whole")
+
+    def test_an_interrupted_run_has_a_checkpoint_and_rows_of_the_whole_one(self):
+        options = ("--end", "0.3 s", "--checkpoint", "0")
+        seconds = self.whole(*options)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number):
+                self.assertEqual(130, self.ended_early("cut", number, 0.5 * seconds, *options))
+                part = self.read("cut", "results.csv")
+                self.assertTrue(self.read("whole", "results.csv").startswith(part))
+                self.freeplay("run", "--resume", "cut", "--quiet")
+                self.assert_same("cut", "whole")
+                self.assertIn("resumed from t = ", self.read("cut", "run.log"))
+
+    def test_a_later_end_gives_the_run_to_that_end(self):
+        self.run_model("whole", "--end", "24 ms", "--interval", "0.1 ms")
+        for first in ("10.00037 ms", "12 ms"):
+            self.run_model("longer", "--end", first, "--interval", "0.1 ms")
+            self.freeplay("run", "--resume", "longer", "--end", "24 ms", "--quiet")
+            self.assert_same("longer", "whole")
+
+    def test_what_does_not_fit_is_refused_and_nothing_is_changed(self):
+        self.run_model("done", "--end", "5 ms", "--interval", "0.1 ms")
+
+        def change(name, edit):
+            path = self.path("done", name)
+            with open(path, "rb") as file:
+                data = file.read()
+            with open(path, "wb") as file:
+                file.write(edit(data))
+            return path, data
+
+        def files():
+            found = {}
+            for name in sorted(os.listdir(self.path("done"))):
+                if name != "run.log":
+                    with open(self.path("done", name), "rb") as file:
+                        found[name] = file.read()
+            return found
+
+        cases = [
+            (0, "nothing to do", (), None),
+            (2, "--set does not go with --resume", ("--set", "c=1mm"), None),
+            (2, "MODEL does not go with --resume", (CRANK,), None),
+            (2, "bad-value", ("--end", "1 ms"), None),
+            (3, "resume-mismatch", ("--end", "9 ms"), ("model.yaml", lambda d: d + b"# another\n")),
+            (6, "bad-checkpoint", ("--end", "9 ms"), ("checkpoint.bin", lambda d: d[:-70] + b"x" + d[-69:])),
+            (6, "bad-checkpoint", ("--end", "9 ms"), ("checkpoint.bin", lambda d: d[:100])),
+            (6, "bad-checkpoint", ("--end", "9 ms"), ("results.csv", lambda d: d[:len(d) // 2])),
+        ]
+        for code, words, options, spoiled in cases:
+            with self.subTest(words=words, options=options):
+                kept = change(*spoiled) if spoiled else None
+                before = files()
+                out, err = self.freeplay("run", "--resume", "done", *options, code=code)
+                self.assertIn(words, out + err)
+                self.assertEqual(files(), before)
+                if kept:
+                    with open(kept[0], "wb") as file:
+                        file.write(kept[1])
+        os.remove(self.path("done", "checkpoint.bin"))
+        for folder, words in (("done", "no-checkpoint"), ("nowhere", "unreadable-result")):
+            _, err = self.freeplay("run", "--resume", folder, code=6)
+            self.assertIn(words, err)
+        self.freeplay("run", CRANK, "--checkpoint", "often", code=2)
+
+
+if __name__ == "__main__":
+    unittest.main()
