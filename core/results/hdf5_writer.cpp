@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "results/hdf5_attributes.h"
 #include "results/hdf5_call.h"
 
 namespace freeplay {
@@ -31,98 +32,6 @@ constexpr BearingQuantity quantities[] = {
     {"pv_mean", "Pa*m/s", "mean pressure-velocity product by bearing sector"},
     {"pv_max", "Pa*m/s", "largest pressure-velocity product by bearing sector"},
 };
-
-Hdf5Id string_type(std::size_t size, H5T_cset_t set) {
-  Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
-  checked(H5Tset_size(type, size));
-  checked(H5Tset_cset(type, set));
-  return type;
-}
-
-void put_attribute(hid_t object, const char* name, hid_t type, hid_t space, const void* value) {
-  Hdf5Id attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  checked(H5Awrite(attribute, type, value));
-  attribute.close();
-}
-
-/// Fixed length, as long as its bytes; an empty one is left out.
-void put_text(hid_t object, const char* name, const std::string& text) {
-  if (text.empty()) return;
-  const Hdf5Id type = string_type(text.size(), H5T_CSET_UTF8), space(H5Screate(H5S_SCALAR), H5Sclose);
-  put_attribute(object, name, type, space, text.data());
-}
-
-void put_numbers(hid_t object, const char* name, const std::vector<std::int32_t>& numbers) {
-  const hsize_t count = numbers.size();
-  const Hdf5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  put_attribute(object, name, H5T_NATIVE_INT32, space, numbers.data());
-}
-
-/// What makes a dataset a dimension for HDF5 and netCDF: with a null at the end.
-void put_scale(hid_t dataset, const std::string& name) {
-  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  const std::string scale = "DIMENSION_SCALE";
-  put_attribute(dataset, "CLASS", string_type(scale.size() + 1, H5T_CSET_ASCII), space, scale.c_str());
-  put_attribute(dataset, "NAME", string_type(name.size() + 1, H5T_CSET_ASCII), space, name.c_str());
-}
-
-void put_words(hid_t dataset, const std::vector<std::string>& words) {
-  if (words.empty()) return;
-  std::vector<std::int32_t> values(words.size());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int32_t>(i);
-  put_numbers(dataset, "flag_values", values);
-  put_text(dataset, "flag_meanings", fmt::format("{}", fmt::join(words, " ")));
-}
-
-void put_column(hid_t dataset, const RecordColumn& column) {
-  put_text(dataset, "units", column.unit);
-  put_text(dataset, "long_name", column.long_name);
-  put_text(dataset, "source", column.source);
-}
-
-/// What netCDF calls a dimension that is no variable; `number` tells those of one file apart.
-std::string bare_dimension(int number) {
-  return fmt::format("This is a netCDF dimension but not a netCDF variable.{:>10}", number);
-}
-
-/// A dimension and the datasets along it.
-struct Scale {
-  hobj_ref_t self;
-  struct User {
-    hobj_ref_t dataset;
-    std::int32_t dimension;
-  };
-  std::vector<User> users;
-};
-
-hobj_ref_t reference(hid_t group, const std::string& name) {
-  hobj_ref_t result{};
-  checked(H5Rcreate(&result, group, name.c_str(), H5R_OBJECT, -1));
-  return result;
-}
-
-/// Lists on both sides, each in one go.
-void put_along(hid_t dataset, hobj_ref_t self, const std::vector<Scale*>& scales) {
-  const Hdf5Id type(H5Tvlen_create(H5T_STD_REF_OBJ), H5Tclose);
-  const hsize_t count = scales.size();
-  const Hdf5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  std::vector<hvl_t> list;
-  for (std::size_t i = 0; i < scales.size(); ++i) {
-    list.push_back({1, &scales[i]->self});
-    scales[i]->users.push_back({self, static_cast<std::int32_t>(i)});
-  }
-  put_attribute(dataset, "DIMENSION_LIST", type, space, list.data());
-}
-
-void put_users(hid_t dataset, const Scale& scale) {
-  if (scale.users.empty()) return;
-  const Hdf5Id type(H5Tcreate(H5T_COMPOUND, sizeof(Scale::User)), H5Tclose);
-  checked(H5Tinsert(type, "dataset", offsetof(Scale::User, dataset), H5T_STD_REF_OBJ));
-  checked(H5Tinsert(type, "dimension", offsetof(Scale::User, dimension), H5T_NATIVE_INT32));
-  const hsize_t count = scale.users.size();
-  const Hdf5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  put_attribute(dataset, "REFERENCE_LIST", type, space, scale.users.data());
-}
 
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -163,7 +72,7 @@ struct Hdf5Writer::File {
   void open_datasets();
   Hdf5Id make_dataset(hid_t group, const std::string& name, hid_t type, std::vector<hsize_t> size, hsize_t per_chunk,
                       const void* fill) const;
-  Hdf5Id make_column(hid_t group, const RecordColumn& column, hsize_t per_chunk, Scale* scale);
+  Hdf5Id make_column(hid_t group, const RecordColumn& column, hsize_t per_chunk, DimensionScale* scale);
   static hid_t open_dataset(hid_t group, const std::string& name, hsize_t per_chunk);
   void write_columns();
   void write_events();
@@ -229,12 +138,13 @@ Hdf5Id Hdf5Writer::File::make_dataset(hid_t group, const std::string& name, hid_
   return Hdf5Id(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
 }
 
-Hdf5Id Hdf5Writer::File::make_column(hid_t group, const RecordColumn& column, hsize_t per_chunk, Scale* scale) {
+Hdf5Id Hdf5Writer::File::make_column(hid_t group, const RecordColumn& column, hsize_t per_chunk,
+                                     DimensionScale* scale) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const std::string name = dataset_name(column.name);
   Hdf5Id dataset = make_dataset(group, name, H5T_NATIVE_DOUBLE, {0}, per_chunk, &none);
   put_column(dataset, column);
-  if (scale != nullptr) put_along(dataset, reference(group, name), {scale});
+  if (scale != nullptr) put_along(dataset, object_reference(group, name), {scale});
   return dataset;
 }
 
@@ -243,7 +153,7 @@ void Hdf5Writer::File::make() {
   for (const auto& [name, text] : layout.attributes) put_text(root, name.c_str(), text);
   Hdf5Id time = make_column(root, layout.columns.front(), chunk, nullptr);
   put_scale(time, "time");
-  Scale along_time{reference(root, "time"), {}};
+  DimensionScale along_time{object_reference(root, "time"), {}};
   for (const RecordColumn& column : std::span(layout.columns).subspan(1)) {
     make_column(root, column, chunk, &along_time).close();
   }
@@ -252,10 +162,10 @@ void Hdf5Writer::File::make() {
 
   Hdf5Id length = make_dataset(root, "summary_length", H5T_IEEE_F32BE, {0}, summary_chunk, nullptr);
   put_scale(length, bare_dimension(0));
-  Scale along_length{reference(root, "summary_length"), {}};
+  DimensionScale along_length{object_reference(root, "summary_length"), {}};
   const Hdf5Id letter = string_type(1, H5T_CSET_ASCII);
   Hdf5Id summary = make_dataset(root, "summary", letter, {0}, summary_chunk, nullptr);
-  put_along(summary, reference(root, "summary"), {&along_length});
+  put_along(summary, object_reference(root, "summary"), {&along_length});
   put_users(length, along_length);
   length.close();
   summary.close();
@@ -274,7 +184,7 @@ void Hdf5Writer::File::make() {
 void Hdf5Writer::File::make_events(hid_t group) {
   Hdf5Id counter = make_dataset(group, "event", H5T_IEEE_F32BE, {0}, event_chunk, nullptr);
   put_scale(counter, bare_dimension(0));
-  Scale along_event{reference(group, "event"), {}};
+  DimensionScale along_event{object_reference(group, "event"), {}};
   constexpr std::int32_t none = -1;
   for (std::size_t i = 0; i < layout.events.size(); ++i) {
     const RecordColumn& column = layout.events[i];
@@ -285,7 +195,7 @@ void Hdf5Writer::File::make_events(hid_t group) {
     Hdf5Id dataset = make_dataset(group, column.name, H5T_NATIVE_INT32, {0}, event_chunk, &none);
     put_column(dataset, column);
     put_words(dataset, i == 1 ? layout.joints : layout.kinds);
-    put_along(dataset, reference(group, column.name), {&along_event});
+    put_along(dataset, object_reference(group, column.name), {&along_event});
     dataset.close();
   }
   put_users(counter, along_event);
@@ -311,12 +221,12 @@ void Hdf5Writer::File::make_bearing(hid_t group) {
   put_column(joint, {"joint", "1", "joint with play", "the model"});
   put_words(joint, layout.bearings);
   put_scale(joint, "joint");
-  Scale along_joint{reference(group, "joint"), {}}, along_angle{reference(group, "angle"), {}};
+  DimensionScale along_joint{object_reference(group, "joint"), {}}, along_angle{object_reference(group, "angle"), {}};
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const BearingQuantity& quantity : quantities) {
     Hdf5Id table = make_dataset(group, quantity.name, H5T_NATIVE_DOUBLE, {0, bearing_sectors}, bearing_chunk, &none);
     put_column(table, {quantity.name, quantity.unit, quantity.long_name, "integrals over accepted steps"});
-    put_along(table, reference(group, quantity.name), {&along_joint, &along_angle});
+    put_along(table, object_reference(group, quantity.name), {&along_joint, &along_angle});
     table.close();
   }
   put_users(joint, along_joint);

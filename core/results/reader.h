@@ -42,8 +42,8 @@ class ResultReader {
   virtual void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) = 0;
   /// Numbers of all events as RecordLayout says, in blocks of whole events.
   virtual void events(const Take& take) = 0;
-  /// Numbers of a table by bearing sector (BearingQuantity), 72 for each of RecordLayout::bearings; empty where the file
-  /// has none.
+  /// Numbers of a table by bearing sector (BearingQuantity), 72 for each of RecordLayout::bearings; empty where the
+  /// file has none.
   virtual std::vector<double> bearing(const std::string&) { return {}; }
 
  protected:

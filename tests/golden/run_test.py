@@ -18,7 +18,7 @@ SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code"
            "residuals", "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until",
            "verification",
            "trust", "noise", "repeat",
-           "hashes", "provenance", "performance", "files", "warnings"]
+           "hashes", "provenance", "twin", "performance", "files", "warnings"]
 FILES = ["checkpoint.bin", "events.csv", "model.yaml", "results.csv", "results.h5", "run.log", "summary.json"]
 EVENTS = ("time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,"
           "approach_speed,impulse,tangential_impulse,energy_lost,impact")
