@@ -142,14 +142,12 @@ void add_play(const RunRecord& record, TextTable& table) {
   const auto prefixed_text = [](double value, const char* unit) {
     return std::isfinite(value) ? figure_text(value, unit, 0.0, {.digits = 3, .prefixed = true}) : "-";
   };
-  table.add_row({heading(record, "play"), "in flight", "in impact", "lasting", "impacts", "max impulse", "sliding",
-                 "load x slip"});
+  table.add_row({heading(record, "play"), "in flight", "in impact", "lasting", "impacts", "sliding", "load x slip"});
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     if (!is_listed(record.model.joints[i]) || !record.clearances.has(static_cast<int>(i))) continue;
     const PlayFigures seen = record.clearances.figures(static_cast<int>(i));
     table.add_row({record.model.joints[i].name, share(seen.flight), share(seen.impact), share(seen.lasting),
-                   std::to_string(seen.impacts), prefixed_text(seen.max_impulse, "N*s"),
-                   prefixed_text(seen.sliding, "m"), prefixed_text(seen.work, "J")});
+                   std::to_string(seen.impacts), prefixed_text(seen.sliding, "m"), prefixed_text(seen.work, "J")});
   }
 }
 
