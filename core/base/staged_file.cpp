@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/whole_file.h"
 
 namespace freeplay {
 namespace {
@@ -17,8 +18,7 @@ namespace {
 
 }  // namespace
 
-StagedFile::StagedFile(std::filesystem::path path, bool replace)
-    : path_(std::move(path)), temporary_(path_.parent_path() / fmt::format(".{}.part", path_.filename().string())) {
+StagedFile::StagedFile(std::filesystem::path path, bool replace) : path_(std::move(path)), temporary_(part_of(path_)) {
   std::error_code error;
   const auto status = std::filesystem::symlink_status(path_, error);
   if (std::filesystem::exists(status)) {

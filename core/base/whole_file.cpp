@@ -28,7 +28,7 @@ std::filesystem::path part_of(const std::filesystem::path& path) {
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool good = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const bool good = descriptor >= 0 && (::fsync(descriptor) == 0 || errno == EINVAL);  // some cannot
   const std::error_code error(good ? 0 : errno, std::system_category());
   if (descriptor >= 0) ::close(descriptor);
   require(error, "write", path);

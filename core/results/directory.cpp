@@ -99,7 +99,7 @@ ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(pa
   std::error_code error;
   for (const std::string_view name : own_files) {
     if (name == "run.log") continue;  // others look at its lock
-    for (const fs::path& file : {path_ / name, path_ / fmt::format(".{}.part", name)}) {
+    for (const fs::path& file : {path_ / name, part_of(path_ / name)}) {
       fs::remove_all(file, error);
       require(error, "remove", file);
     }

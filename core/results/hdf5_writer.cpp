@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/whole_file.h"
 #include "results/hdf5_attributes.h"
 #include "results/hdf5_call.h"
 
@@ -89,7 +90,7 @@ struct Hdf5Writer::File {
 
 Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& options)
     : path(p),
-      part(options.grows ? p.parent_path() / fmt::format(".{}.part", p.filename().string()) : p),
+      part(options.grows ? part_of(p) : p),
       layout(l),
       grows(options.grows),
       chunk(std::clamp<hsize_t>(std::bit_ceil(options.expected_rows), least_chunk, largest_chunk)) {
@@ -372,7 +373,7 @@ void Hdf5Writer::attempt(Act&& act) {
   } catch (const Hdf5Failure& failure) {
     failure_ = fmt::format("cannot write '{}': {}", path_.string(), failure.what());
     std::error_code ignored;
-    fs::remove(path_.parent_path() / fmt::format(".{}.part", path_.filename().string()), ignored);
+    fs::remove(part_of(path_), ignored);
   }
 }
 
