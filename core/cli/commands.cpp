@@ -9,6 +9,7 @@
 #include "cli/export_command.h"
 #include "cli/init_command.h"
 #include "cli/list_command.h"
+#include "cli/plot_command.h"
 #include "cli/run_command.h"
 #include "cli/schema_command.h"
 #include "cli/seal_command.h"
@@ -26,6 +27,7 @@ std::span<const CommandEntry> all_commands() {
       {"compare", add_compare_command},
       {"export", add_export_command},
       {"seal", add_seal_command},
+      {"plot", add_plot_command},
       {"show", add_show_command},
       {"convert", add_convert_command},
       {"doctor", add_doctor_command},

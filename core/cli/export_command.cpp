@@ -75,7 +75,7 @@ class Export {
         name_(request.table),
         reader_(ResultReader::open(options.path)),
         table_(*reader_, request),
-        provenance_(record_of_export(options.path, *reader_, common.command, arguments_of(options))) {}
+        provenance_(record_of(options.path, *reader_, {"export", common.command, arguments_of(options)})) {}
 
   void execute() {
     if (options_.out.empty()) return give(print_data);

@@ -26,6 +26,7 @@
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "load/load.h"
+#include "plot/sparkline.h"
 #include "results/checkpoints.h"
 #include "results/directory.h"
 #include "results/judgement.h"
@@ -278,13 +279,24 @@ class RunJob {
       print_json(json);
     } else if (!common_.quiet) {
       print(run_table(record) + moved_text(*loaded_.model, assembled_.start.report) +
-            (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()));
+            (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()) +
+            glance());
     }
     if (options_.profile) {
       const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
       common_.json ? print_messages(table, common_.no_color) : print(table);
     }
     return exit_code;
+  }
+
+  /// On a terminal: how the main channels went.
+  std::string glance() const {
+    if (!stdout_is_terminal() || !stdout_takes_unicode()) return "";
+    try {
+      return plot::sparklines(*ResultReader::open(path_));
+    } catch (const Error&) {
+      return "";  // the files were reported, and a picture is no reason to fail
+    }
   }
 
   /// Where a file could not be written, that is what is reported, and no later failure.

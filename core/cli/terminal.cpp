@@ -1,6 +1,7 @@
 #include "cli/terminal.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "base/text.h"
@@ -89,5 +91,25 @@ void print_messages(std::string_view messages, bool no_color) {
 }
 
 bool stderr_is_terminal() { return ::isatty(STDERR_FILENO) != 0; }
+
+bool stdout_is_terminal() { return ::isatty(STDOUT_FILENO) != 0; }
+
+int stdout_columns() {
+  winsize size{};
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+bool stdout_takes_unicode() {
+  const char* kind = std::getenv("TERM");
+  if (kind != nullptr && std::strcmp(kind, "dumb") == 0) return false;
+  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    const char* value = std::getenv(name);
+    if (value == nullptr || *value == '\0') continue;
+    std::string locale = value;
+    for (char& c : locale) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return locale.find("utf-8") != std::string::npos || locale.find("utf8") != std::string::npos;
+  }
+  return false;
+}
 
 }  // namespace freeplay

@@ -27,5 +27,10 @@ std::string stdout_failure();
 void print_messages(std::string_view messages, bool no_color);
 
 bool stderr_is_terminal();
+bool stdout_is_terminal();
+/// Characters in a line of the terminal on stdout; 80 where it is none.
+int stdout_columns();
+/// Whether what reads stdout is to be given more than ASCII, by the locale and the kind of terminal.
+bool stdout_takes_unicode();
 
 }  // namespace freeplay

@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "base/text.h"
+#include "svg/axis.h"
+#include "svg/page.h"
 
 namespace freeplay {
 namespace {
@@ -15,19 +16,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double wide_range = 50.0;  // of values whose levels are powers
 constexpr double plot = 620.0, left = 80.0, top = 50.0, legend = 210.0, bottom = 60.0;
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return out;
-}
-
-std::string px(double value) { return fmt::format("{:.1f}", std::round(value * 10.0) / 10.0 + 0.0); }
-
-struct Point {
-  double x, y;
-};
+using svg::escaped, svg::Point, svg::px;
 
 /// Pieces strung together where their ends meet.
 std::vector<std::vector<Point>> joined(const std::vector<std::array<double, 4>>& pieces) {
@@ -322,11 +311,7 @@ std::vector<double> contour_levels(double least, double most, bool logarithmic) 
     }
     return levels;
   }
-  const double rough = (most - least) / 7.0, power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double digit = rough / power < 1.5 ? 1.0 : rough / power < 3.5 ? 2.0 : rough / power < 7.5 ? 5.0 : 10.0;
-  const double step = digit * power;
-  for (double k = std::ceil(least / step); k * step <= most; ++k) levels.push_back(k * step);
-  return levels;
+  return svg::round_numbers(least, most, 7.0);
 }
 
 std::vector<std::array<double, 4>> contour(const std::vector<double>& x, const std::vector<double>& y,

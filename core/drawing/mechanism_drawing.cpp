@@ -8,7 +8,7 @@
 
 #include "drawing/given_start.h"
 #include "drawing/spatial_drawing.h"
-#include "drawing/svg_page.h"
+#include "svg/page.h"
 
 namespace freeplay {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "drawing/svg_page.h"
+#include "svg/page.h"
 
 namespace freeplay {
 

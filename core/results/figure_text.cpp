@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/unit_prefix.h"
+
 namespace freeplay {
 namespace {
 
@@ -15,21 +17,6 @@ constexpr int most_digits = 4, fewest_digits = 3;
 int magnitude(double value) {
   const double size = std::abs(value);
   return size > 0.0 && std::isfinite(size) ? static_cast<int>(std::floor(std::log10(size) + 1e-12)) : 0;
-}
-
-struct Prefixed {
-  double factor;
-  std::string unit;
-};
-
-/// The unit with the prefix that leaves one to three digits before the point.
-Prefixed prefix_for(double value, const char* unit) {
-  constexpr std::pair<double, const char*> prefixes[] = {{1e9, "G"},  {1e6, "M"},  {1e3, "k"}, {1.0, ""},
-                                                         {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
-  for (const auto& [factor, prefix] : prefixes) {
-    if (std::abs(value) >= factor) return {factor, std::string(prefix) + unit};
-  }
-  return {1.0, unit};
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
@@ -51,10 +38,10 @@ std::string figure_text(double value, const char* unit, double noise, FigureStyl
   if (!(part >= shown_noise)) {
     int digits = style.digits;
     if (part > 0.0) digits = std::min(digits, std::max(fewest_digits, static_cast<int>(-std::log10(part))));
-    const Prefixed to = style.prefixed ? prefix_for(value, unit) : Prefixed{1.0, unit};
+    const PrefixedUnit to = style.prefixed ? prefixed_unit(value, unit) : PrefixedUnit{1.0, unit};
     return with_unit(fmt::format("{:.{}g}", value / to.factor, digits), to.unit);
   }
-  const Prefixed to = prefix_for(value, unit);
+  const PrefixedUnit to = prefixed_unit(value, unit);
   const double uncertain = noise / to.factor;
   // One digit of the noise, two where the first is a 1 that rounding would change much.
   int decimals = -magnitude(uncertain);
@@ -68,7 +55,7 @@ std::string range_text(const Json& spread, const char* unit) {
   if (!median.is_number()) return "-";
   const double middle = median, low = spread["min"], high = spread["max"];
   const auto runs = std::ranges::count_if(spread["values"], [](const Json& value) { return value.is_number(); });
-  const Prefixed to = *unit == '\0' ? Prefixed{1.0, ""} : prefix_for(middle, unit);
+  const PrefixedUnit to = *unit == '\0' ? PrefixedUnit{1.0, ""} : prefixed_unit(middle, unit);
   const double part = middle != 0.0 ? (high - low) / std::abs(middle) : 0.0;
   const int digits = part < 0.01 ? most_digits : fewest_digits;
   const bool count = *unit == '\0';

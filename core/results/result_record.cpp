@@ -46,8 +46,7 @@ Json record_beside(const fs::path& folder) {
 
 }  // namespace
 
-Json record_of_export(const fs::path& path, const ResultReader& reader, const std::string& command,
-                      const std::vector<std::string>& arguments) {
+Json record_of(const fs::path& path, const ResultReader& reader, const MadeOfResult& made) {
   Json record = parsed(attribute(reader, "provenance"));
   if (record.is_object()) {
     record["model"]["text"] = attribute(reader, "model");
@@ -60,9 +59,9 @@ Json record_of_export(const fs::path& path, const ResultReader& reader, const st
   if (record.value("made", "") == "run") {
     record["run"] = {{"command", record.value("command", "")}, {"arguments", record.value("arguments", Json::array())}};
   }
-  record["made"] = "export";
-  record["command"] = command;
-  record["arguments"] = arguments;
+  record["made"] = made.made;
+  record["command"] = made.command;
+  record["arguments"] = made.arguments;
   return record;
 }
 

@@ -10,9 +10,15 @@
 
 namespace freeplay {
 
-/// The record of the run with texts of model and inputs, `made` by export; null where the result has none. How the run
-/// was started stands in `run`.
-Json record_of_export(const std::filesystem::path& path, const ResultReader& reader, const std::string& command,
-                      const std::vector<std::string>& arguments);
+/// How something was made from a result.
+struct MadeOfResult {
+  std::string made;                    ///< the command: "export"
+  std::string command;                 ///< the command line as typed
+  std::vector<std::string> arguments;  ///< what is needed to make it again, without output paths
+};
+
+/// The record of the run with texts of model and inputs, of what was made from it; null where the result has none. How
+/// the run was started stands in `run`.
+Json record_of(const std::filesystem::path& path, const ResultReader& reader, const MadeOfResult& made);
 
 }  // namespace freeplay

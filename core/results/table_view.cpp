@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/name_pattern.h"
-#include "base/suggestion.h"
+#include "results/channel_choice.h"
 
 namespace freeplay {
 namespace {
@@ -74,20 +74,14 @@ void TableView::pick_channels(const std::vector<std::string>& patterns) {
   std::vector<char> wanted(all.size(), 0);
   wanted[0] = 1;
   const bool usual = patterns.empty();
-  for (const std::string& pattern : usual ? usual_channels(request_.table) : patterns) {
-    bool fits = usual;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!matches(pattern, all[i].name)) continue;
-      wanted[i] = 1;
-      fits = true;
+  if (usual) {
+    for (const std::string& pattern : usual_channels(request_.table)) {
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        if (matches(pattern, all[i].name)) wanted[i] = 1;
+      }
     }
-    if (fits) continue;
-    std::vector<std::string> names;
-    for (const RecordColumn& column : all) names.push_back(column.name);
-    const auto nearest = suggestion(pattern, names);
-    throw Error(Error::Category::usage, "unknown-channel",
-                fmt::format("'{}' has no channel '{}'", reader_.file(), pattern), {},
-                nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+  } else {
+    for (const std::size_t i : chosen_channels(reader_, patterns)) wanted[i] = 1;
   }
   if (usual && all.size() > 1 && std::ranges::count(wanted, 1) < 2) {
     throw Error(Error::Category::usage, "unknown-channel",

@@ -72,6 +72,11 @@ class Documentation(ProgramTest):
         super().setUp()
         os.symlink(os.path.join(ROOT, "mechanisms"), self.path("mechanisms"))
 
+    @staticmethod
+    def read_file(*names):
+        with open(os.path.join(ROOT, *names), encoding="utf-8") as file:
+            return file.read()
+
     def run_page(self, page):
         lines = commands(page)
         self.assertTrue(lines)
@@ -151,6 +156,17 @@ class Documentation(ProgramTest):
         self.assertGreater(shown, 4)
         with open(os.path.join(ROOT, "docs", "images", "4-rrr-error.svg"), encoding="utf-8") as file:
             self.assertEqual(self.read("map.svg"), file.read())
+
+    def test_pictures_are_those_that_their_commands_draw(self):
+        self.run_page(os.path.join("docs", "pictures.md"))
+        for name in ("forces", "orbit"):
+            shown, drawn = (re.sub(r"<metadata>.*</metadata>", "", text, flags=re.S) for text in (
+                self.read_file("docs", "images", "plot-%s.svg" % name), self.read(name + ".svg")))
+            words, numbers = words_and_numbers(drawn)
+            expected_words, expected = words_and_numbers(shown)
+            self.assertEqual(expected_words, words)
+            for x, y in zip(expected, numbers, strict=True):
+                self.assertAlmostEqual(x, y, delta=0.1)
 
     def test_check_plugin_page(self):
         page = os.path.join("docs", "check-plugin.md")

@@ -25,13 +25,15 @@ STANDS_ON = {
     "assembly": ["stage"],
     "run": ["assembly"],
     "results": ["run"],
-    "drawing": ["assembly"],
+    "svg": ["base"],
+    "plot": ["results", "svg"],
+    "drawing": ["assembly", "svg"],
     "analysis": ["assembly"],
     "load": ["yaml", "urdf", "run"],
     "contract": ["format", "stage"],
-    "cli": ["load", "convert", "results", "drawing", "analysis", "contract"],
+    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract"],
 }
-WITHOUT_SDK = {"base", "linear"}
+WITHOUT_SDK = {"base", "linear", "svg"}
 
 
 def rooms_below():
@@ -62,13 +64,13 @@ LIBRARIES = {
     "nlohmann": {"base"},
     "CLI": {"cli"},
     "fmt": EVERY_ROOM,
-    "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "load", "cli"},
+    "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "cli"},
 }
 # Libraries that may be missing: the files that are built only where they are.
 OPTIONAL_LIBRARIES = {"solvers/sundials_": {"arkode", "nvector"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 STANDARD = re.compile(r"^[a-z_0-9]+$")
-SYSTEM = {"unistd.h", "fcntl.h", "poll.h", "sched.h", "sys/file.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/stat.h", "sys/sysmacros.h", "sys/types.h", "sys/utsname.h", "sys/wait.h"}
+SYSTEM = {"unistd.h", "fcntl.h", "poll.h", "sched.h", "sys/file.h", "sys/ioctl.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/stat.h", "sys/sysmacros.h", "sys/types.h", "sys/utsname.h", "sys/wait.h"}
 
 
 def sources(*folders):

@@ -1,4 +1,4 @@
-#include "drawing/svg_page.h"
+#include "svg/page.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// SvgPage: a picture that is put together on a page, and names that find room in it.
+// Page: a picture that is put together on a page, and names that find room in it.
 #pragma once
 
 #include <string>

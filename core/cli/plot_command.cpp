@@ -1,0 +1,276 @@
+#include "cli/plot_command.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/input_text.h"
+#include "cli/output_file.h"
+#include "cli/terminal.h"
+#include "plot/channel_figure.h"
+#include "results/result_record.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double px_per_metre = 96.0 / 0.0254, least_px = 200.0, most_px = 10000.0;
+constexpr double usual_width = 900.0, usual_height = 240.0, plane_part = 0.75;  // of the width: height of an orbit
+constexpr int most_columns = 100;
+
+struct PlotOptions {
+  std::string path, from, until, over, orbit, polar, width, height, out;
+  std::vector<std::string> channels, against;
+  bool xy = false, spectrum = false, histogram = false, text = false;
+};
+
+/// Pixels, or a length on paper: "84 mm".
+struct Extent {
+  double px = 0.0;
+  bool is_length = false;
+};
+
+Extent extent(const std::string& option, const std::string& text, double usual) {
+  if (text.empty()) return {usual, false};
+  Extent extent;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), extent.px);
+  if (fault != std::errc() || end != text.data() + text.size()) {
+    extent = {positive_quantity(option, text, dimension::length) * px_per_metre, true};
+  }
+  if (extent.px >= least_px && extent.px <= most_px) return extent;
+  bad_value(option, text, fmt::format("a picture has {:g} to {:g} pixels, 96 to an inch", least_px, most_px));
+}
+
+[[noreturn]] void refuse(const std::string& why, const std::string& hint = {}) {
+  throw Error(Error::Category::usage, "bad-value", why, {}, hint);
+}
+
+plot::View view_of(const PlotOptions& options) {
+  using plot::View;
+  struct Choice {
+    bool chosen;
+    const char* option;
+    View view;
+  };
+  const Choice choices[] = {{options.xy, "--xy", View::orbit},
+                            {!options.over.empty(), "--x", View::over},
+                            {!options.orbit.empty(), "--orbit", View::orbit},
+                            {!options.polar.empty(), "--polar", View::polar},
+                            {options.spectrum, "--fft", View::spectrum},
+                            {options.histogram, "--histogram", View::histogram}};
+  const Choice* found = nullptr;
+  for (const Choice& choice : choices) {
+    if (!choice.chosen) continue;
+    if (found != nullptr) refuse(fmt::format("{} and {} exclude each other", found->option, choice.option));
+    found = &choice;
+  }
+  return found == nullptr ? View::time : found->view;
+}
+
+/// What makes the same picture of the same results.
+std::vector<std::string> arguments_of(const PlotOptions& options) {
+  std::vector<std::string> arguments = options.channels;
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+  };
+  const auto flag = [&](const char* option, bool given) {
+    if (given) arguments.emplace_back(option);
+  };
+  flag("--xy", options.xy);
+  add("--x", options.over);
+  add("--orbit", options.orbit);
+  add("--polar", options.polar);
+  flag("--fft", options.spectrum);
+  flag("--histogram", options.histogram);
+  add("--from", options.from);
+  add("--until", options.until);
+  for (const std::string& other : options.against) add("--against", other);
+  add("--width", options.width);
+  add("--height", options.height);
+  return arguments;
+}
+
+fs::path folder_of(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? fs::path(path) : fs::path(path).parent_path();
+}
+
+Json summary_beside(const std::string& path) {
+  std::string text;
+  if (!read_input((folder_of(path) / "summary.json").string(), text).empty()) return nullptr;
+  Json json = Json::parse(text, nullptr, false);
+  return json.is_discarded() ? Json(nullptr) : json;
+}
+
+/// Radial clearance of a joint [m]; 0 where the result does not say.
+double clearance_of(const Json& summary, const std::string& joint) {
+  const auto number = summary.is_object()
+                          ? summary.value(Json::json_pointer("/joints"), Json::object()).value(joint, Json::object())
+                          : Json::object();
+  const Json clearance = number.value("clearance", Json(nullptr));
+  if (!clearance.is_object() || !clearance.value("radial_clearance", Json(nullptr)).is_number()) return 0.0;
+  return clearance["radial_clearance"];
+}
+
+std::string name_of_result(const std::string& path, const Json& summary) {
+  const std::string folder = fs::path(folder_of(path)).lexically_normal().filename().string();
+  if (!summary.is_object() || !summary.contains("model") || !summary["model"].is_object()) return folder;
+  return summary["model"].value("name", folder);
+}
+
+class Plot {
+ public:
+  Plot(PlotOptions options, const CommonOptions& common) : options_(std::move(options)), common_(common) {
+    if (options_.path.empty()) throw Error(Error::Category::usage, "missing-argument", "plot needs a result");
+    request_.view = view_of(options_);
+    size_of_page();
+    set_window();
+    readers_.push_back(ResultReader::open(options_.path));
+    for (const std::string& other : options_.against) readers_.push_back(ResultReader::open(other));
+    set_channels();
+  }
+
+  int execute() {
+    const bool as_text = options_.text || (options_.out.empty() && stdout_is_terminal());
+    const int columns = std::min(stdout_columns(), most_columns);
+    if (as_text) request_.across = 2.0 * columns;
+    std::vector<plot::Source> sources{{options_.path, readers_[0].get()}};
+    for (std::size_t i = 1; i < readers_.size(); ++i) sources.push_back({options_.against[i - 1], readers_[i].get()});
+    plot::Figure figure = plot::channel_figure(sources, request_);
+    figure.title = name_of_result(options_.path, summary_);
+    if (common_.json) {
+      print_json(extremes(figure));
+      if (options_.out.empty()) return 0;
+    }
+    if (as_text && options_.out.empty()) {
+      print_data(plot::figure_text(figure, columns, stdout_takes_unicode()));
+      return 0;
+    }
+    // How it was typed would make the bytes depend on where the picture goes.
+    const Json record = record_of(options_.path, *readers_[0], {"plot", "freeplay plot", arguments_of(options_)});
+    figure.provenance = record.dump(-1, ' ', false, Json::error_handler_t::replace);
+    write_output(options_.out, figure_svg(figure, size_));
+    return 0;
+  }
+
+ private:
+  void size_of_page() {
+    if (options_.text && (!options_.out.empty() || !options_.width.empty() || !options_.height.empty())) {
+      refuse("--text goes to the terminal and has no --out, --width or --height");
+    }
+    const bool plane = request_.view == plot::View::orbit || request_.view == plot::View::polar;
+    const Extent width = extent("--width", options_.width, usual_width);
+    const Extent height = extent("--height", options_.height, plane ? plane_part * width.px : usual_height);
+    size_ = {width.px, height.px, width.is_length};
+    request_.across = plot::line_room(size_);
+    request_.down = size_.panel_height - 60.0;
+  }
+
+  void set_window() {
+    RowWindow& window = request_.window;
+    if (!options_.from.empty()) window.from = signed_quantity("--from", options_.from, dimension::time);
+    if (!options_.until.empty()) window.until = signed_quantity("--until", options_.until, dimension::time);
+    if (window.from > window.until) refuse(fmt::format("--from {} is after --until {}", options_.from, options_.until));
+  }
+
+  void set_channels() {
+    summary_ = summary_beside(options_.path);
+    request_.over = options_.over;
+    request_.channels = options_.channels;
+    if (request_.view == plot::View::polar) {
+      request_.joint = options_.polar;
+      if (!options_.from.empty() || !options_.until.empty()) {
+        refuse("tables by bearing sector are of the whole time that counts: --polar has no --from or --until");
+      }
+      if (common_.json) refuse("--polar has no --json", "export --table bearing --to json has the numbers");
+      if (request_.channels.empty()) request_.channels = {"impulse", "work"};
+      return;
+    }
+    if (request_.view == plot::View::spectrum && common_.json) {
+      refuse("--fft has no --json", "export --table spectra --to json has the numbers");
+    }
+    if (!options_.orbit.empty()) {
+      if (!request_.channels.empty()) refuse("--orbit JOINT has its channels: name no others");
+      request_.channels = {fmt::format("joint.{}.ex", options_.orbit), fmt::format("joint.{}.ey", options_.orbit)};
+      request_.clearance = clearance_of(summary_, options_.orbit);
+      if (request_.clearance == 0.0) {
+        print_messages("freeplay: note: no summary.json says how large the clearance is: its circle is left out\n",
+                       common_.no_color);
+      }
+    }
+    if (!request_.channels.empty()) return;
+    throw Error(Error::Category::usage, "missing-argument", "plot needs a channel, such as 'joint.*.fn'", {},
+                fmt::format("'{}' has {} channels: {} ...", readers_[0]->file(), readers_[0]->layout().columns.size(),
+                            some_channels()));
+  }
+
+  std::string some_channels() const {
+    std::string names;
+    const std::vector<RecordColumn>& columns = readers_[0]->layout().columns;
+    for (std::size_t i = 1; i < std::min(columns.size(), std::size_t{6}); ++i) {
+      names += (i == 1 ? "" : ", ") + columns[i].name;
+    }
+    return names;
+  }
+
+  Json extremes(const plot::Figure& figure) const {
+    Json channels = Json::array();
+    for (const plot::Panel& panel : figure.panels) {
+      for (std::size_t i = 0; i < panel.lines.size(); ++i) {
+        const plot::Extremes& seen = panel.lines[i].seen;
+        Json one = {{"name", panel.channel},
+                    {"unit", panel.channel_unit},
+                    {"rows", panel.lines[i].rows},
+                    {"min", seen.any() ? Json(seen.least) : Json(nullptr)},
+                    {"min_time", seen.any() ? Json(seen.least_at) : Json(nullptr)},
+                    {"max", seen.any() ? Json(seen.most) : Json(nullptr)},
+                    {"max_time", seen.any() ? Json(seen.most_at) : Json(nullptr)}};
+        if (panel.lines.size() > 1) one["result"] = figure.names[i];
+        channels.push_back(std::move(one));
+      }
+    }
+    return {{"channels", std::move(channels)}};
+  }
+
+  PlotOptions options_;
+  const CommonOptions& common_;
+  plot::FigureRequest request_;
+  plot::PageSize size_;
+  std::vector<std::unique_ptr<ResultReader>> readers_;
+  Json summary_;
+};
+
+}  // namespace
+
+Command add_plot_command(CLI::App& program, CommonOptions& common) {
+  CLI::App* app = add_command(program, "plot", "Draw channels of a result, as SVG or on the terminal");
+  const auto options = std::make_shared<PlotOptions>();
+  add_option(*app, "RESULT", options->path, "Result directory, results.csv or results.h5");
+  add_arguments(*app, "CHANNELS", options->channels, "Channels, names or patterns with *: a panel each");
+  add_option(*app, "--from", options->from, "First time: \"10 ms\"", "T");
+  add_option(*app, "--until", options->until, "Last time", "T");
+  add_option(*app, "--x", options->over, "Draw over another channel in place of time", "CHANNEL");
+  add_flag(*app, "--xy", options->xy, "Draw the second of two channels over the first, with equal scales");
+  add_option(*app, "--orbit", options->orbit, "Path of a journal in its clearance circle", "JOINT");
+  add_option(*app, "--polar", options->polar,
+             "Tables by bearing sector around a joint; CHANNELS are impulse, work, sliding, contact_time, pv_mean or "
+             "pv_max",
+             "JOINT");
+  add_flag(*app, "--fft", options->spectrum, "Amplitudes over frequency");
+  add_flag(*app, "--histogram", options->histogram, "Parts of the time over values");
+  add_repeatable(*app, "--against", options->against, "The same channels of another result; repeatable", "RESULT");
+  add_option(*app, "--width", options->width, "Width in pixels, or on paper: \"84 mm\" (900)", "SIZE");
+  add_option(*app, "--height", options->height, "Height of a panel in the same way (240)", "SIZE");
+  add_flag(*app, "--text", options->text, "Draw with characters, as on a terminal");
+  add_file_option(*app, "--out", options->out, "SVG file (stdout, where it is no terminal)", "FILE");
+  add_common_options(*app, common);
+  return {app, [options, &common] { return Plot(*options, common).execute(); }};
+}
+
+}  // namespace freeplay

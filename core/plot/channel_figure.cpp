@@ -1,0 +1,331 @@
+#include "plot/channel_figure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "plot/flights.h"
+#include "plot/polar_figure.h"
+#include "results/channel_choice.h"
+#include "results/table_view.h"
+
+namespace freeplay::plot {
+namespace {
+
+constexpr double px_per_x_tick = 90.0, px_per_y_tick = 40.0, orbit_room = 1.05;
+constexpr double most_bins = 60.0, px_per_bin = 8.0, percent = 100.0;
+
+/// What the first reading of a result tells.
+struct Ranges {
+  Extremes time;
+  std::vector<Extremes> channels;  ///< over time
+  Extremes over;
+  std::int64_t rows = 0;
+};
+
+class ChannelFigure {
+ public:
+  ChannelFigure(const std::vector<Source>& sources, const FigureRequest& request)
+      : sources_(sources), request_(request) {
+    for (const Source& source : sources) {
+      figure_.names.push_back(source.name);
+      columns_.push_back(columns_of(*source.reader));
+    }
+    require_same_channels();
+  }
+
+  Figure make() {
+    if (request_.view == View::spectrum) {
+      draw_spectra();
+      return std::move(figure_);
+    }
+    for (std::size_t s = 0; s < sources_.size(); ++s) ranges_.push_back(read_ranges(s));
+    switch (request_.view) {
+      case View::orbit:
+        draw_orbit();
+        break;
+      case View::over:
+        draw_over();
+        break;
+      case View::histogram:
+        draw_histograms();
+        break;
+      default:
+        draw_over_time();
+    }
+    return std::move(figure_);
+  }
+
+ private:
+  const std::vector<RecordColumn>& layout(std::size_t source) const {
+    return sources_[source].reader->layout().columns;
+  }
+  std::size_t channels() const { return columns_[0].size() - first_channel(); }
+  /// Columns that are read begin with time, and the one that others are drawn over.
+  std::size_t first_channel() const { return request_.view == View::over ? 2 : 1; }
+  const RecordColumn& column(std::size_t channel) const { return layout(0)[columns_[0][first_channel() + channel]]; }
+  double x_ticks() const { return std::max(2.0, request_.across / px_per_x_tick); }
+  double y_ticks() const { return std::max(2.0, request_.down / px_per_y_tick); }
+
+  std::vector<std::size_t> columns_of(const ResultReader& reader) const {
+    std::vector<std::size_t> columns{0};
+    if (request_.view == View::over) {
+      const std::vector<std::size_t> over = chosen_channels(reader, {request_.over});
+      if (over.size() != 1) {
+        throw Error(
+            Error::Category::usage, "bad-value",
+            fmt::format("'{}' stands for {} channels, and others are drawn over one", request_.over, over.size()));
+      }
+      columns.push_back(over[0]);
+    }
+    for (const std::size_t channel : chosen_channels(reader, request_.channels)) columns.push_back(channel);
+    if (request_.view == View::orbit && columns.size() != 3) {
+      throw Error(Error::Category::usage, "bad-value",
+                  fmt::format("--xy draws one channel over another, and {} are given", columns.size() - 1));
+    }
+    return columns;
+  }
+
+  void require_same_channels() const {
+    for (std::size_t s = 1; s < sources_.size(); ++s) {
+      bool same = columns_[s].size() == columns_[0].size();
+      for (std::size_t c = 0; same && c < columns_[0].size(); ++c) {
+        same = layout(s)[columns_[s][c]].name == layout(0)[columns_[0][c]].name;
+      }
+      if (same) continue;
+      throw Error(Error::Category::usage, "unknown-channel",
+                  fmt::format("'{}' and '{}' do not have the same channels of these names", sources_[0].reader->file(),
+                              sources_[s].reader->file()));
+    }
+  }
+
+  template <class Take>
+  void each_row(std::size_t source, const Take& take) const {
+    const std::size_t width = columns_[source].size();
+    sources_[source].reader->rows(columns_[source], request_.window, [&](std::span<const double> block) {
+      for (; !block.empty(); block = block.subspan(width)) take(block.first(width));
+    });
+  }
+
+  /// Time alone where no more is needed, which is quicker.
+  Ranges read_ranges(std::size_t source) const {
+    Ranges ranges;
+    if (request_.view == View::time) {
+      sources_[source].reader->rows(std::vector<std::size_t>{0}, request_.window, [&](std::span<const double> block) {
+        for (const double time : block) ranges.time.add(time, time);
+        ranges.rows += static_cast<std::int64_t>(block.size());
+      });
+    } else {
+      ranges.channels.resize(channels());
+      each_row(source, [&](std::span<const double> row) {
+        ++ranges.rows;
+        ranges.time.add(row[0], row[0]);
+        if (request_.view == View::over) ranges.over.add(row[0], row[1]);
+        for (std::size_t c = 0; c < channels(); ++c) ranges.channels[c].add(row[0], row[first_channel() + c]);
+      });
+    }
+    if (ranges.rows > 0) return ranges;
+    throw Error(Error::Category::usage, "no-rows",
+                fmt::format("'{}' has no rows in this window", sources_[source].reader->file()));
+  }
+
+  template <class Of>
+  Extremes common(const Of& of) const {
+    Extremes all;
+    for (const Ranges& ranges : ranges_) {
+      const Extremes& one = of(ranges);
+      all.add(one.least_at, one.least);
+      all.add(one.most_at, one.most);
+    }
+    return all;
+  }
+
+  Panel panel(std::size_t channel, svg::Axis x, const std::string& x_unit) const {
+    Panel panel;
+    panel.channel = panel.title = column(channel).name;
+    panel.unit = panel.channel_unit = column(channel).unit;
+    panel.x = std::move(x);
+    panel.x_unit = x_unit;
+    return panel;
+  }
+
+  void add_panel(Panel panel, const Extremes& values) {
+    panel.y = svg::make_axis(values.least, values.most, panel.unit, y_ticks(), svg::Fit::round);
+    figure_.panels.push_back(std::move(panel));
+  }
+
+  void draw_over_time() {
+    const Extremes time = common([](const Ranges& ranges) -> const Extremes& { return ranges.time; });
+    const svg::Axis x = svg::make_axis(time.least, time.most, "s", x_ticks(), svg::Fit::exact);
+    std::vector<Panel> panels;
+    for (std::size_t c = 0; c < channels(); ++c) panels.push_back(panel(c, x, "s"));
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      std::vector<ColumnCurve> curves(channels(), ColumnCurve(x.from, x.until, static_cast<int>(request_.across)));
+      std::vector<Extremes> seen(channels());
+      each_row(s, [&](std::span<const double> row) {
+        for (std::size_t c = 0; c < channels(); ++c) {
+          curves[c].add({row[0], row[1 + c]});
+          seen[c].add(row[0], row[1 + c]);
+        }
+      });
+      for (std::size_t c = 0; c < channels(); ++c) {
+        panels[c].lines.push_back({curves[c].points(), seen[c], ranges_[s].rows});
+      }
+    }
+    const Flights flights(*sources_[0].reader, x.from, x.until, (x.until - x.from) / request_.across);
+    for (Panel& one : panels) {
+      one.shaded = flights.of_channel(one.channel);
+      Extremes values;
+      for (const Line& line : one.lines) {
+        values.add(line.seen.least_at, line.seen.least);
+        values.add(line.seen.most_at, line.seen.most);
+      }
+      add_panel(std::move(one), values);
+    }
+    figure_.panels.back().x_label = "time";
+    figure_.shading = "shaded: the joint's surfaces do not touch";
+  }
+
+  void draw_over() {
+    const RecordColumn& over = layout(0)[columns_[0][1]];
+    const Extremes range = common([](const Ranges& ranges) -> const Extremes& { return ranges.over; });
+    const svg::Axis x = svg::make_axis(range.least, range.most, over.unit, x_ticks(), svg::Fit::exact);
+    for (std::size_t c = 0; c < channels(); ++c) {
+      const Extremes values = common([&](const Ranges& ranges) -> const Extremes& { return ranges.channels[c]; });
+      Panel one = panel(c, x, over.unit);
+      add_trails(one, c, 1, (x.until - x.from) / request_.across,
+                 std::max(values.most - values.least, 1e-300) / request_.down);
+      add_panel(std::move(one), values);
+    }
+    figure_.panels.back().x_label = over.name;
+  }
+
+  /// The channel over the column read as number `x`.
+  void add_trails(Panel& panel, std::size_t channel, std::size_t x, double pixel_x, double pixel_y) const {
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      Trail trail(pixel_x, pixel_y);
+      each_row(s, [&](std::span<const double> row) { trail.add({row[x], row[first_channel() + channel]}); });
+      panel.lines.push_back({trail.points(), ranges_[s].channels[channel], ranges_[s].rows});
+    }
+  }
+
+  void draw_orbit() {
+    const auto range = [&](std::size_t c) {
+      Extremes values = common([&](const Ranges& ranges) -> const Extremes& { return ranges.channels[c]; });
+      if (request_.clearance > 0.0) {
+        for (const double side : {-orbit_room, orbit_room}) values.add(0.0, side * request_.clearance);
+      }
+      return values;
+    };
+    const Extremes wide = range(0), high = range(1);
+    const RecordColumn& over = column(0);
+    const double ticks = std::max(3.0, std::min(request_.across, request_.down) / px_per_x_tick);
+    const double longest = std::max(wide.most - wide.least, high.most - high.least);
+    const auto axis = [&](const Extremes& of, const std::string& unit) {
+      return svg::make_axis(of.least, of.most, unit, ticks * (of.most - of.least) / longest, svg::Fit::exact);
+    };
+    Panel one = panel(1, axis(wide, over.unit), over.unit);
+    one.y = axis(high, one.unit);
+    one.equal_scales = true;
+    one.x_label = over.name;
+    const double pixel = std::max(longest / std::max(1.0, std::min(request_.across, request_.down)), 1e-300);
+    add_trails(one, 1, 1, pixel, pixel);
+    if (request_.clearance > 0.0) one.circles.push_back({request_.clearance, "clearance", true});
+    figure_.panels.push_back(std::move(one));
+  }
+
+  /// Rows count by the time to their neighbours.
+  void draw_histograms() {
+    const double bins = std::floor(std::clamp(request_.across / px_per_bin, 4.0, most_bins));
+    for (std::size_t c = 0; c < channels(); ++c) {
+      const Extremes values = common([&](const Ranges& ranges) -> const Extremes& { return ranges.channels[c]; });
+      Panel one = panel(c, svg::make_axis(values.least, values.most, column(c).unit, x_ticks(), svg::Fit::exact),
+                        column(c).unit);
+      one.unit = "%";
+      one.x_label = one.title;
+      one.title = "part of the time";
+      Extremes parts;
+      parts.add(0.0, 0.0);
+      for (std::size_t s = 0; s < sources_.size(); ++s) {
+        const std::vector<double> share = shares(s, c, one.x, static_cast<std::size_t>(bins));
+        Line line{{}, ranges_[s].channels[c], ranges_[s].rows};
+        const double width = (one.x.until - one.x.from) / bins;
+        for (std::size_t i = 0; i < share.size(); ++i) {
+          const double begin = one.x.from + static_cast<double>(i) * width;
+          line.points.push_back({begin, share[i]});
+          line.points.push_back({begin + width, share[i]});
+          parts.add(begin, share[i]);
+        }
+        one.lines.push_back(std::move(line));
+      }
+      add_panel(std::move(one), parts);
+    }
+  }
+
+  std::vector<double> shares(std::size_t source, std::size_t channel, const svg::Axis& x, std::size_t bins) const {
+    std::vector<double> share(bins, 0.0);
+    const auto place = [&](double value) {
+      const double at = (value - x.from) / (x.until - x.from) * static_cast<double>(bins);
+      return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bins) - 1.0));
+    };
+    const auto add = [&](double value, double time) {
+      if (!std::isnan(value)) share[place(value)] += time;
+    };
+    double last_time = std::nan(""), last = 0.0, sum = 0.0;
+    each_row(source, [&](std::span<const double> row) {
+      const double value = row[first_channel() + channel];
+      if (!std::isnan(last_time)) {
+        add(last, 0.5 * (row[0] - last_time));
+        add(value, 0.5 * (row[0] - last_time));
+      }
+      last_time = row[0];
+      last = value;
+    });
+    for (const double part : share) sum += part;
+    for (double& part : share) part *= sum > 0.0 ? percent / sum : 0.0;
+    return share;
+  }
+
+  void draw_spectra() {
+    std::vector<Panel> panels;
+    std::vector<Extremes> values(channels());
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      const DerivedTable table = derived_table(*sources_[s].reader, "spectra", columns_[s], request_.window, 0.0, {});
+      const std::size_t width = table.columns.size(), lines = table.rows.size() / width;
+      const double last = table.rows[(lines - 1) * width];
+      for (std::size_t c = 0; c < channels(); ++c) {
+        if (s == 0) {
+          panels.push_back(panel(c, svg::make_axis(0.0, last, "Hz", x_ticks(), svg::Fit::exact), "Hz"));
+          panels[c].title = "amplitude of " + panels[c].title;
+        }
+        ColumnCurve curve(panels[c].x.from, panels[c].x.until, static_cast<int>(request_.across));
+        Extremes seen;
+        for (std::size_t k = 0; k < lines; ++k) {
+          const double amplitude = table.rows[k * width + 1 + c];
+          curve.add({table.rows[k * width], amplitude});
+          seen.add(table.rows[k * width], amplitude);
+          values[c].add(0.0, amplitude);
+        }
+        panels[c].lines.push_back({curve.points(), seen, static_cast<std::int64_t>(lines)});
+      }
+    }
+    for (std::size_t c = 0; c < channels(); ++c) add_panel(std::move(panels[c]), values[c]);
+    figure_.panels.back().x_label = "frequency";
+  }
+
+  const std::vector<Source>& sources_;
+  const FigureRequest& request_;
+  std::vector<std::vector<std::size_t>> columns_;  // by source
+  std::vector<Ranges> ranges_;
+  Figure figure_;
+};
+
+}  // namespace
+
+Figure channel_figure(const std::vector<Source>& sources, const FigureRequest& request) {
+  return request.view == View::polar ? polar_figure(sources, request) : ChannelFigure(sources, request).make();
+}
+
+}  // namespace freeplay::plot

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "plot/figure.h"
+#include "svg/page.h"
+
+namespace freeplay::plot {
+namespace {
+
+using svg::escaped, svg::px;
+
+constexpr double left = 72.0, right = 16.0, page_top = 28.0, legend_line = 16.0;
+constexpr double panel_top = 22.0, axis_room = 38.0, gap = 10.0;  // of a panel, with and without an axis below
+constexpr double px_per_mm = 96.0 / 25.4;
+constexpr double letter_width = 6.0;  // of 11 px
+
+struct Style {
+  const char *colour, *dashes;
+};
+constexpr Style styles[] = {{"#0072B2", ""},        {"#D55E00", "6 3"},  {"#009E73", "2 2"},
+                            {"#CC79A7", "8 2 2 2"}, {"#E69F00", "12 4"}, {"#000000", "1 3"}};
+
+std::string stroke(std::size_t line) {
+  const Style& style = styles[line % std::size(styles)];
+  const std::string dashes = *style.dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", style.dashes);
+  return fmt::format(
+      "fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\" stroke-linejoin=\"round\" stroke-linecap=\"round\"{}",
+      style.colour, dashes);
+}
+
+std::string with_unit(const std::string& words, const std::string& unit) {
+  return unit.empty() ? words : fmt::format("{} [{}]", words, unit);
+}
+
+/// The place of a panel's lines on the page.
+struct Area {
+  double left, right, top, bottom;
+};
+
+class PanelDrawing {
+ public:
+  PanelDrawing(const Panel& panel, const Area& area) : panel_(panel), area_(area) {}
+
+  std::string text() {
+    out_ = fmt::format(
+        "<g class=\"panel\" data-channel=\"{}\" data-unit=\"{}\" data-left=\"{}\" data-right=\"{}\" data-top=\"{}\" "
+        "data-bottom=\"{}\" data-x-from=\"{}\" data-x-until=\"{}\" data-y-from=\"{}\" data-y-until=\"{}\">\n",
+        escaped(panel_.channel), escaped(panel_.unit), area_.left, area_.right, area_.top, area_.bottom, panel_.x.from,
+        panel_.x.until, panel_.y.from, panel_.y.until);
+    draw_shades();
+    draw_axes();
+    draw_circles();
+    for (std::size_t i = 0; i < panel_.lines.size(); ++i) draw_line(i);
+    out_ += fmt::format(
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\" stroke-width=\"0.8\"/>\n",
+        px(area_.left), px(area_.top), px(area_.right - area_.left), px(area_.bottom - area_.top));
+    return out_ + "</g>\n";
+  }
+
+ private:
+  double at_x(double x) const {
+    return area_.left + (x - panel_.x.from) / (panel_.x.until - panel_.x.from) * (area_.right - area_.left);
+  }
+  double at_y(double y) const {
+    return area_.bottom - (y - panel_.y.from) / (panel_.y.until - panel_.y.from) * (area_.bottom - area_.top);
+  }
+
+  void draw_shades() {
+    for (const auto& [from, until] : panel_.shaded) {
+      const double begin = std::clamp(at_x(from), area_.left, area_.right);
+      const double end = std::clamp(at_x(until), area_.left, area_.right);
+      out_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#e9e9e9\"/>\n", px(begin),
+                          px(area_.top), px(end - begin), px(area_.bottom - area_.top));
+    }
+  }
+
+  void draw_axes() {
+    out_ += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", px(area_.left), px(area_.top - 6.0),
+                        escaped(with_unit(panel_.title, panel_.y.unit)));
+    for (std::size_t i = 0; i < panel_.y.ticks.size(); ++i) {
+      const double y = at_y(panel_.y.ticks[i]);
+      out_ += fmt::format(
+          "<path d=\"M{0} {1}H{2}\" stroke=\"#d4d4d4\" stroke-width=\"0.6\"/>\n<text x=\"{3}\" y=\"{4}\" "
+          "text-anchor=\"end\">{5}</text>\n",
+          px(area_.left), px(y), px(area_.right), px(area_.left - 6.0), px(y + 4.0), panel_.y.labels[i]);
+    }
+    double taken = -1e9;
+    for (std::size_t i = 0; i < panel_.x.ticks.size(); ++i) {
+      const double x = at_x(panel_.x.ticks[i]);
+      out_ += fmt::format("<path d=\"M{0} {1}V{2}\" stroke=\"#d4d4d4\" stroke-width=\"0.6\"/>\n", px(x), px(area_.top),
+                          px(area_.bottom));
+      const double half = 0.5 * letter_width * static_cast<double>(panel_.x.labels[i].size());
+      if (panel_.x_label.empty() || x - half < taken + letter_width) continue;
+      taken = x + half;
+      out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", px(x), px(area_.bottom + 15.0),
+                          panel_.x.labels[i]);
+    }
+    if (panel_.x_label.empty()) return;
+    out_ +=
+        fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", px(0.5 * (area_.left + area_.right)),
+                    px(area_.bottom + 31.0), escaped(with_unit(panel_.x_label, panel_.x.unit)));
+  }
+
+  void draw_circles() {
+    for (const Circle& circle : panel_.circles) {
+      const double radius = circle.radius / (panel_.x.until - panel_.x.from) * (area_.right - area_.left);
+      out_ +=
+          fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"#555\" stroke-width=\"0.8\"{}/>\n",
+                      px(at_x(0.0)), px(at_y(0.0)), px(radius), circle.dashed ? " stroke-dasharray=\"5 3\"" : "");
+      if (circle.label.empty()) continue;
+      out_ += fmt::format(
+          "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#333\" paint-order=\"stroke\" stroke=\"white\" "
+          "stroke-width=\"3\">{}</text>\n",
+          px(at_x(0.0)), px(at_y(0.0) - radius + 12.0), escaped(circle.label));
+    }
+  }
+
+  void draw_line(std::size_t i) {
+    const std::vector<Point>& points = panel_.lines[i].points;
+    std::string d;
+    bool down = false;
+    for (const Point& point : points) {
+      if (std::isnan(point.y)) {
+        down = false;
+        continue;
+      }
+      d += fmt::format("{}{:.2f} {:.2f}", down ? "L" : "M", at_x(point.x) + 0.0, at_y(point.y) + 0.0);
+      down = true;
+    }
+    // A point alone is a line back to itself, which its round ends make a dot.
+    if (d.find('L') == std::string::npos && !d.empty()) d += "L" + d.substr(1);
+    if (!d.empty()) out_ += fmt::format("<path class=\"line\" d=\"{}\" {}/>\n", d, stroke(i));
+    if (!d.empty()) return;
+    out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">no numbers</text>\n",
+                        px(0.5 * (area_.left + area_.right)), px(0.5 * (area_.top + area_.bottom)));
+  }
+
+  const Panel& panel_;
+  Area area_;
+  std::string out_;
+};
+
+/// Below `top`, as high as `height` at most.
+Area area_of(const Panel& panel, const PageSize& size, double top) {
+  const double below = panel.x_label.empty() ? gap : axis_room;
+  const Area whole{left, size.width - right, top + panel_top, top + size.panel_height - below};
+  if (!panel.equal_scales) return whole;
+  const double wide = panel.x.until - panel.x.from, high = panel.y.until - panel.y.from;
+  const double scale = std::min((whole.right - whole.left) / wide, (whole.bottom - whole.top) / high);
+  const double begin = std::max(left, 0.5 * (size.width - scale * wide));
+  return {begin, begin + scale * wide, whole.top, whole.top + scale * high};
+}
+
+}  // namespace
+
+double line_room(const PageSize& size) { return size.width - left - right; }
+
+std::string figure_svg(const Figure& figure, const PageSize& size) {
+  std::string body;
+  double y = page_top;
+  body += fmt::format("<text x=\"{}\" y=\"18\" font-size=\"13\">{}</text>\n", px(left), escaped(figure.title));
+  const auto legend = [&](const std::string& sign, const std::string& words) {
+    body += fmt::format("{}<text x=\"{}\" y=\"{}\">{}</text>\n", sign, px(left + 36.0), px(y + 9.0), escaped(words));
+    y += legend_line;
+  };
+  if (figure.names.size() > 1) {
+    for (std::size_t i = 0; i < figure.names.size(); ++i) {
+      legend(fmt::format("<path d=\"M{} {}h28\" {}/>\n", px(left), px(y + 5.0), stroke(i)), figure.names[i]);
+    }
+  }
+  const bool shaded = std::ranges::any_of(figure.panels, [](const Panel& panel) { return !panel.shaded.empty(); });
+  if (shaded) {
+    legend(fmt::format("<rect x=\"{}\" y=\"{}\" width=\"28\" height=\"10\" fill=\"#e9e9e9\" stroke=\"#999\" "
+                       "stroke-width=\"0.5\"/>\n",
+                       px(left), px(y)),
+           figure.shading);
+  }
+  for (const Panel& panel : figure.panels) {
+    const Area area = area_of(panel, size, y);
+    body += PanelDrawing(panel, area).text();
+    y = area.bottom + (panel.x_label.empty() ? gap : axis_room);
+  }
+  const double scale = size.in_millimetres ? 1.0 / px_per_mm : 1.0;
+  const char* unit = size.in_millimetres ? "mm" : "";
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2}{4}\" height=\"{3}{4}\" viewBox=\"0 0 {0} {1}\" "
+             "font-family=\"sans-serif\" font-size=\"11\">\n<title>{5}</title>\n<metadata>{6}</metadata>\n"
+             "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+             px(size.width), px(y), fmt::format("{:g}", std::round(size.width * scale * 1e3) / 1e3),
+             fmt::format("{:g}", std::round(y * scale * 1e3) / 1e3), unit, escaped(figure.title),
+             escaped(figure.provenance)) +
+         body + "</svg>\n";
+}
+
+}  // namespace freeplay::plot

@@ -1,0 +1,207 @@
+"""Channels of a result as pictures and as characters."""
+import errno
+import json
+import math
+import os
+import pty
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as ET
+
+from program import PROGRAM, ProgramTest, mechanism
+
+SVG = "{http://www.w3.org/2000/svg}"
+BARS = "▁▂▃▄▅▆▇█"
+
+
+class Panel:
+    """Lines of a panel in the values of its axes."""
+
+    def __init__(self, group):
+        self.channel = group.get("data-channel")
+        at = {key: float(group.get("data-" + key)) for key in (
+            "left", "right", "top", "bottom", "x-from", "x-until", "y-from", "y-until")}
+        self.pixel = ((at["x-until"] - at["x-from"]) / (at["right"] - at["left"]),
+                      (at["y-until"] - at["y-from"]) / (at["bottom"] - at["top"]))
+        self.from_, self.until = at["x-from"], at["x-until"]
+        self.lines = []
+        for path in group.iter(SVG + "path"):
+            if path.get("class") != "line":
+                continue
+            self.lines.append([(at["x-from"] + (x - at["left"]) * self.pixel[0], at["y-from"] + (at["bottom"] - y) * self.pixel[1])
+                               for x, y in (map(float, pair.split()) for pair in re.findall(r"[ML]([^ML]+)", path.get("d")))])
+        self.shades = len([rect for rect in group.iter(SVG + "rect") if rect.get("fill") == "#e9e9e9"])
+        self.circles = [float(circle.get("r")) * self.pixel[0] for circle in group.iter(SVG + "circle")]
+
+
+def panels(text):
+    return [Panel(group) for group in ET.fromstring(text).iter(SVG + "g") if group.get("class") == "panel"]
+
+
+class Plot(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.made = os.path.join(folder.name, "r")
+        subprocess.run([PROGRAM, "run", mechanism("slider-crank"), "--quiet", "--end", "14 ms", "--out", cls.made], check=True,
+                       capture_output=True)
+        with open(os.path.join(cls.made, "results.csv"), encoding="utf-8") as file:
+            lines = [line.rstrip("\n").split(",") for line in file]
+        cls.columns = {name: [float(line[i]) for line in lines[1:]] for i, name in enumerate(lines[0])}
+
+    def setUp(self):
+        super().setUp()
+        os.symlink(self.made, self.path("r"))
+
+    def plot(self, *arguments):
+        return panels(self.freeplay("plot", "r", *arguments)[0])
+
+    def test_each_channel_has_a_panel_with_the_extremes_of_all_rows_where_they_are(self):
+        found = self.plot("joint.wrist.fn", "driver.motor.*")
+        self.assertEqual(["joint.wrist.fn", "driver.motor.value", "driver.motor.torque", "driver.motor.power"],
+                         [panel.channel for panel in found])
+        for panel in found:
+            values = self.columns[panel.channel]
+            xs, ys = zip(*panel.lines[0])
+            self.assertEqual(sorted(xs), list(xs))
+            for extreme in (max, min):
+                self.assertAlmostEqual(extreme(values), extreme(ys), delta=panel.pixel[1])
+            if panel.channel == "joint.wrist.fn":
+                when = self.columns["time"][values.index(max(values))]
+                self.assertAlmostEqual(when, xs[ys.index(max(ys))], delta=1.5 * panel.pixel[0])
+                self.assertGreater(panel.shades, 3)
+
+    def test_a_window_of_time_is_drawn_alone(self):
+        panel = self.plot("joint.wrist.fn", "--from", "4 ms", "--until", "6 ms")[0]
+        self.assertAlmostEqual(0.004, panel.from_, delta=1e-9)
+        self.assertAlmostEqual(0.006, panel.until, delta=1e-9)
+        inside = [f for t, f in zip(self.columns["time"], self.columns["joint.wrist.fn"]) if 0.003999 < t < 0.006001]
+        self.assertAlmostEqual(max(inside), max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
+        _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--from", "1 s", code=2)
+        self.assertIn("has no rows in this window", err)
+
+    def test_an_orbit_lies_in_the_circle_of_its_clearance(self):
+        panel = self.plot("--orbit", "wrist")[0]
+        self.assertAlmostEqual(panel.pixel[0], panel.pixel[1], delta=1e-6 * panel.pixel[0])
+        self.assertAlmostEqual(0.5e-3, panel.circles[0], delta=2 * panel.pixel[0])
+        self.assertAlmostEqual(max(self.columns["joint.wrist.ex"]), max(x for x, _ in panel.lines[0]), delta=panel.pixel[0])
+        same = self.plot("joint.wrist.ex", "joint.wrist.ey", "--xy")[0]
+        self.assertAlmostEqual(min(self.columns["joint.wrist.ey"]), min(y for _, y in same.lines[0]), delta=same.pixel[1])
+
+    def test_a_channel_is_drawn_over_another_one(self):
+        panel = self.plot("joint.wrist.fn", "--x", "joint.main.angle")[0]
+        peak = self.columns["joint.wrist.fn"].index(max(self.columns["joint.wrist.fn"]))
+        self.assertAlmostEqual(self.columns["joint.main.angle"][peak], max(panel.lines[0], key=lambda p: p[1])[0],
+                               delta=panel.pixel[0])
+
+    def test_parts_of_a_histogram_make_the_whole_time(self):
+        panel = self.plot("body.slider.x", "--histogram")[0]
+        bins = [y for _, y in panel.lines[0][::2]]
+        self.assertAlmostEqual(100.0, sum(bins), delta=len(bins) * panel.pixel[1])
+
+    def test_a_spectrum_has_the_amplitudes_of_the_exported_one(self):
+        panel = self.plot("driver.motor.torque", "--fft")[0]
+        table = json.loads(self.freeplay("export", "r", "--to", "json", "--table", "spectra", "--channels", "driver.motor.torque")[0])
+        self.assertAlmostEqual(max(row[1] for row in table["rows"]), max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
+        self.assertEqual(table["rows"][-1][0], panel.until)
+
+    def test_tables_by_sector_stand_around_their_joint(self):
+        panel = self.plot("--polar", "wrist", "work")[0]
+        table = json.loads(self.freeplay("export", "r", "--to", "json", "--table", "bearing")[0])
+        place = table["columns"].index("work")
+        largest = max(table["rows"], key=lambda row: row[place])
+        x, y = max(panel.lines[0], key=lambda p: math.hypot(*p))
+        self.assertAlmostEqual(largest[place], math.hypot(x, y), delta=2 * panel.pixel[0])
+        self.assertLess(abs(math.remainder(math.atan2(y, x) - largest[1], 2 * math.pi)), math.radians(3))
+
+    def test_another_result_is_drawn_beside(self):
+        shutil.copytree(self.made, self.path("other"))
+        panel = self.plot("joint.wrist.fn", "--against", "other")[0]
+        self.assertEqual(2, len(panel.lines))
+        self.assertEqual(panel.lines[0], panel.lines[1])
+        self.freeplay("run", mechanism("pendulum"), "--quiet", "--end", "10 ms", "--out", "pendulum")
+        _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", "pendulum", code=2)
+        self.assertIn("[unknown-channel]", err)
+
+    def test_a_picture_has_the_same_bytes_in_a_file_and_its_provenance(self):
+        out, _ = self.freeplay("plot", "r", "joint.wrist.fn", "--width", "84 mm")
+        self.freeplay("plot", "r", "joint.wrist.fn", "--width", "84 mm", "--out", "p.svg")
+        self.assertEqual(out, self.read("p.svg"))
+        root = ET.fromstring(out)
+        self.assertEqual("84mm", root.get("width"))
+        record = json.loads(root.find(SVG + "metadata").text)
+        self.assertEqual(("plot", ["joint.wrist.fn", "--width", "84 mm"]), (record["made"], record["arguments"]))
+        self.assertIn("freeplay: 1", record["model"]["text"])
+
+    def test_extremes_as_json(self):
+        out, _ = self.freeplay("plot", "r", "joint.wrist.fn", "--json")
+        channel = json.loads(out)["channels"][0]
+        values = self.columns["joint.wrist.fn"]
+        self.assertEqual((max(values), self.columns["time"][values.index(max(values))], len(values), "N"),
+                         (channel["max"], channel["max_time"], channel["rows"], channel["unit"]))
+
+    def test_characters_are_braille_or_asterisks_by_the_locale(self):
+        out, _ = self.freeplay("plot", "r", "joint.wrist.fn", "--text", environment={"LC_ALL": "C.UTF-8", "TERM": "xterm"})
+        self.assertEqual(12, sum(any("\u2800" <= c <= "\u28ff" for c in line) for line in out.splitlines()))
+        self.assertRegex(out, r"^joint\.wrist\.fn \[N\]  0 … \S+  \(%d rows\)\n" % len(self.columns["time"]))
+        plain, _ = self.freeplay("plot", "r", "joint.wrist.fn", "--text", environment={"LC_ALL": "C"})
+        self.assertTrue(plain.isascii())
+        self.assertIn("*", plain)
+
+    def test_what_cannot_be_drawn_is_refused(self):
+        for arguments, code, words in (
+                (["r", "joint.wrst.fn"], 2, "did you mean 'joint.wrist.fn'?"),
+                (["nowhere", "x"], 6, "[unreadable-result]"),
+                (["r"], 2, "plot needs a channel"),
+                ([], 2, "plot needs a result"),
+                (["r", "joint.wrist.fn", "--xy"], 2, "--xy draws one channel over another, and 1 are given"),
+                (["r", "joint.wrist.fn", "--xy", "--fft"], 2, "--xy and --fft exclude each other"),
+                (["r", "joint.wrist.fn", "--x", "joint.*"], 2, "channels, and others are drawn over one"),
+                (["r", "--polar", "wirst"], 2, "did you mean 'wrist'?"),
+                (["r", "--polar", "wrist", "wrok"], 2, "did you mean 'work'?"),
+                (["r", "--orbit", "wrst"], 2, "did you mean 'joint.wrist.ex'?"),
+                (["r", "joint.wrist.fn", "--width", "3"], 2, "a picture has 200 to 10000 pixels"),
+                (["r", "joint.wrist.fn", "--width", "wide"], 2, "bad value 'wide' of --width"),
+                (["r", "joint.wrist.fn", "--from", "2 ms", "--until", "1 ms"], 2, "--from 2 ms is after --until 1 ms"),
+                (["r", "joint.wrist.fn", "--out", "r/results.csv/p.svg"], 6, "[cannot-write]")):
+            with self.subTest(arguments):
+                out, err = self.freeplay("plot", *arguments, code=code)
+                self.assertIn(words, err)
+                self.assertEqual("", out)
+
+    def on_terminal(self, *arguments):
+        main, other = pty.openpty()
+        with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=other, stderr=subprocess.DEVNULL,
+                              env={**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm"}) as run:
+            os.close(other)
+            data = b""
+            while True:
+                try:
+                    part = os.read(main, 65536)
+                except OSError as error:
+                    self.assertEqual(errno.EIO, error.errno)
+                    break
+                if not part:
+                    break
+                data += part
+        os.close(main)
+        self.assertEqual(0, run.returncode)
+        return data.decode()
+
+    def test_a_run_on_a_terminal_ends_with_its_main_channels_at_a_glance(self):
+        shown = self.on_terminal("run", mechanism("slider-crank"), "--end", "5 ms", "--out", "s")
+        lines = [line for line in shown.splitlines() if sum(c in BARS for c in line) == 40]
+        self.assertEqual(["motor torque", "wrist fn"], [re.match(r"  (\S+ \S+)", line)[1] for line in lines])
+        self.assertTrue(all(len({c for c in line if c in BARS}) > 2 for line in lines))
+        piped, _ = self.freeplay("run", mechanism("slider-crank"), "--end", "5 ms", "--out", "s", "--force")
+        self.assertFalse(any(c in BARS for c in piped))
+        self.assertIn("⠀", self.on_terminal("plot", "s", "joint.wrist.fn"))
+
+
+if __name__ == "__main__":
+    unittest.main()
