@@ -88,7 +88,7 @@ AnalysisRequest request_of(const IdealMechanism& mechanism, const AnalyzeOptions
 
 /// The map of a table over a grid of x and y.
 std::string drawing(const IdealMechanism& mechanism, const AnalysisRequest& request, const RequestedStations& stations,
-                    const AnalysisTable& table, const TickOf& tick_of) {
+                    const AnalysisTable& table, bool coloured, const TickOf& tick_of) {
   const Model& model = mechanism.model();
   const PoseForm& form = mechanism.form();
   const auto* grid = stations.grid();
@@ -108,6 +108,7 @@ std::string drawing(const IdealMechanism& mechanism, const AnalysisRequest& requ
     if (!stations.given()[i] || (*grid)[i].value(0) == 0.0) continue;
     map.title += fmt::format(", {} {:.6g} {}", form.words[i], (*grid)[i].value(0), form.is_turn(i) ? "rad" : "m");
   }
+  map.coloured = coloured;
   map.quantity = of_errors ? "position error [um]" : "condition number";
   const double unit = of_errors ? 1e6 : 1.0;
   for (long i = 0; i < (*grid)[0].count; ++i) map.x.push_back((*grid)[0].value(i));
@@ -147,6 +148,9 @@ void refuse_idle_options(const AnalyzeOptions& options) {
   only(!options.distribution.empty(), "--distribution", "error");
   only(!options.preload.empty(), "--preload", "inverse-dynamics");
   only(options.branches, "--branches", "ik");
+  if (options.coloured && options.svg.empty()) {
+    throw Error(Error::Category::usage, "bad-value", "--colours is given without --svg", {}, "--svg FILE draws a map");
+  }
   for (const auto& [text, option] : {std::pair{&options.seed, "--seed"}, {&options.distribution, "--distribution"}}) {
     if (text->empty() || !options.samples.empty()) continue;
     throw Error(Error::Category::usage, "bad-value", fmt::format("{} is given without --samples", option), {},
@@ -175,7 +179,7 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
     const AnalysisRequest request = request_of(mechanism, options);
     const RequestedStations stations(mechanism, request, tick_of);
     result = analyse(mechanism, request, stations, tick_of);
-    if (!options.svg.empty()) map = drawing(mechanism, request, stations, result.table, tick_of);
+    if (!options.svg.empty()) map = drawing(mechanism, request, stations, result.table, options.coloured, tick_of);
   } catch (const Interrupted&) {
     Diagnostic diagnostic;
     diagnostic.id = "interrupted";
@@ -225,6 +229,7 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--preload", options->preload, "inverse-dynamics: inner tension of redundant drivers", "VALUE");
   add_file_option(*app, "--out", options->out, "Write the CSV into a file instead of stdout", "FILE");
   add_file_option(*app, "--svg", options->svg, "Draw the map of a grid of x and y into a file", "FILE");
+  add_flag(*app, "--colours", options->coloured, "The map in colours in place of greys");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return analyze(*options, common); }};

@@ -14,7 +14,7 @@ namespace freeplay {
 struct AnalyzeOptions {
   std::string kind, model, frame, time, elbow, out, svg, samples, seed, distribution, preload;
   std::vector<std::string> grid, pose, input;
-  bool sensitivity = false, branches = false;
+  bool sensitivity = false, branches = false, coloured = false;
   ModelOptions build;
 };
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include "drawing/contours.h"
 #include "svg/axis.h"
 #include "svg/page.h"
 
@@ -17,40 +19,6 @@ constexpr double wide_range = 50.0;  // of values whose levels are powers
 constexpr double plot = 620.0, left = 80.0, top = 50.0, legend = 210.0, bottom = 60.0;
 
 using svg::escaped, svg::Point, svg::px;
-
-/// Pieces strung together where their ends meet.
-std::vector<std::vector<Point>> joined(const std::vector<std::array<double, 4>>& pieces) {
-  std::vector<std::vector<Point>> lines;
-  std::vector<char> used(pieces.size(), 0);
-  const auto same = [](const Point& a, const Point& b) { return a.x == b.x && a.y == b.y; };
-  for (std::size_t first = 0; first < pieces.size(); ++first) {
-    if (used[first]) continue;
-    used[first] = 1;
-    std::vector<Point> line{{pieces[first][0], pieces[first][1]}, {pieces[first][2], pieces[first][3]}};
-    for (bool grew = true; grew;) {
-      grew = false;
-      for (std::size_t i = first + 1; i < pieces.size(); ++i) {
-        if (used[i]) continue;
-        const Point a{pieces[i][0], pieces[i][1]}, b{pieces[i][2], pieces[i][3]};
-        if (same(line.back(), a)) {
-          line.push_back(b);
-        } else if (same(line.back(), b)) {
-          line.push_back(a);
-        } else if (same(line.front(), a)) {
-          line.insert(line.begin(), b);
-        } else if (same(line.front(), b)) {
-          line.insert(line.begin(), a);
-        } else {
-          continue;
-        }
-        used[i] = 1;
-        grew = true;
-      }
-    }
-    lines.push_back(std::move(line));
-  }
-  return lines;
-}
 
 class Drawing {
  public:
@@ -72,7 +40,7 @@ class Drawing {
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
         "<text x=\"{3}\" y=\"{4}\" font-size=\"14\">{2}</text>\n",
         px(page_width), px(page_height), escaped(map_.title), px(left), px(top - 20.0));
-    draw_cells();
+    draw_ground();
     draw_contours();
     draw_singular();
     draw_path();
@@ -103,41 +71,75 @@ class Drawing {
     levels_ = contour_levels(least_, bulk, least_ > 0.0 && most_ > wide_range * least_);
   }
 
-  /// Light for small values, dark for large ones, with room for black lines.
-  std::string grey(double v) const {
-    const auto above = std::ranges::upper_bound(levels_, v) - levels_.begin();
-    const double share = levels_.empty() ? 0.0 : static_cast<double>(above) / static_cast<double>(levels_.size());
-    const int tone = static_cast<int>(std::lround(250.0 - 110.0 * share));
-    return fmt::format("#{0:02x}{0:02x}{0:02x}", tone);
+  /// Light for small values, dark for large ones, with room for black lines: grey, or along cividis, which colour-blind
+  /// readers see the same (Nunez, Anderton and Renslow 2018).
+  std::string tone(std::size_t step) const {
+    const double share = levels_.empty() ? 0.0 : static_cast<double>(step) / static_cast<double>(levels_.size());
+    if (!map_.coloured) return fmt::format("#{0:02x}{0:02x}{0:02x}", std::lround(250.0 - 110.0 * share));
+    constexpr double scale[][3] = {{254, 232, 56}, {188, 174, 108}, {125, 124, 120}, {67, 78, 108}};
+    const double at = 0.85 * share * (std::size(scale) - 1.0);
+    const auto from = std::min(static_cast<std::size_t>(at), std::size(scale) - 2);
+    const double part = at - static_cast<double>(from);
+    const auto mixed = [&](std::size_t k) {
+      return std::lround(scale[from][k] * (1.0 - part) + scale[from + 1][k] * part);
+    };
+    return fmt::format("#{:02x}{:02x}{:02x}", mixed(0), mixed(1), mixed(2));
+  }
+  std::size_t step_of(double v) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(levels_, v) - levels_.begin());
   }
 
-  // Each point colours the ground around it; rows of one tone are one rectangle.
-  void draw_cells() {
-    const auto edges = [](const std::vector<double>& axis) {
-      std::vector<double> out{axis.front()};
-      for (std::size_t i = 1; i < axis.size(); ++i) out.push_back(0.5 * (axis[i - 1] + axis[i]));
-      out.push_back(axis.back());
-      return out;
+  // Around points at the edge of what is reached the ground has their own tone; between four good ones the steps are
+  // those of the contours. All of one tone is one path, so that no seams show between its parts.
+  void draw_ground() {
+    body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", px(left), px(top),
+                         px(width_), px(height_), all_good() ? "white" : "url(#out)");
+    draw_points("white", [&](std::size_t k) { return map_.points[k] == MapPoint::singular; });
+    for (std::size_t step = 0; step <= levels_.size(); ++step) {
+      draw_points(tone(step).c_str(),
+                  [&](std::size_t k) { return map_.points[k] == MapPoint::good && step_of(map_.values[k]) == step; });
+    }
+    const std::vector<double> field = good_values();
+    for (std::size_t step = 0; step <= levels_.size(); ++step) {
+      const double level = step == 0 ? least_ : levels_[step - 1];
+      const double next = step < levels_.size() ? levels_[step] : std::numeric_limits<double>::infinity();
+      std::string d;
+      for (const std::vector<Point>& polygon : region(map_.x, map_.y, field, level, next)) d += line_of(polygon) + "Z";
+      if (!d.empty()) body_ += fmt::format("<path d=\"{}\" fill=\"{}\"/>\n", d, tone(step));
+    }
+  }
+
+  bool all_good() const { return std::ranges::count(map_.points, MapPoint::good) == std::ssize(map_.points); }
+
+  std::vector<double> good_values() const {
+    std::vector<double> field(map_.values.size(), nan);
+    for (std::size_t k = 0; k < field.size(); ++k) {
+      if (map_.points[k] == MapPoint::good) field[k] = map_.values[k];
+    }
+    return field;
+  }
+
+  /// Rectangles half way to the neighbours about chosen points.
+  template <class Chosen>
+  void draw_points(const char* fill, const Chosen& chosen) {
+    const auto edge = [](const std::vector<double>& axis, std::size_t i) {
+      if (i == 0) return axis.front();
+      return i == axis.size() ? axis.back() : 0.5 * (axis[i - 1] + axis[i]);
     };
-    const std::vector<double> ex = edges(map_.x), ey = edges(map_.y);
-    body_ += "<g shape-rendering=\"crispEdges\">\n";
+    std::string d;
     for (std::size_t i = 0; i < map_.x.size(); ++i) {
       for (std::size_t j = 0; j < map_.y.size();) {
-        const std::string fill = fill_of(i, j);
-        std::size_t end = j + 1;
-        while (end < map_.y.size() && fill_of(i, end) == fill) ++end;
-        body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", px(at_x(ex[i])),
-                             px(at_y(ey[end])), px(scale_ * (ex[i + 1] - ex[i])), px(scale_ * (ey[end] - ey[j])), fill);
-        j = end;
+        std::size_t end = j;
+        while (end < map_.y.size() && chosen(i * map_.y.size() + end)) ++end;
+        if (end > j) {
+          const double low = edge(map_.x, i), high = edge(map_.x, i + 1);
+          const double from = edge(map_.y, j), until = edge(map_.y, end);
+          d += line_of({{low, from}, {high, from}, {high, until}, {low, until}}) + "Z";
+        }
+        j = std::max(end, j + 1);
       }
     }
-    body_ += "</g>\n";
-  }
-
-  std::string fill_of(std::size_t i, std::size_t j) const {
-    const MapPoint point = map_.points[i * map_.y.size() + j];
-    if (point == MapPoint::unreachable) return "url(#out)";
-    return point == MapPoint::singular ? "white" : grey(value(i, j));
+    if (!d.empty()) body_ += fmt::format("<path d=\"{}\" fill=\"{}\"/>\n", d, fill);
   }
 
   std::string line_of(const std::vector<Point>& points) const {
@@ -149,10 +151,7 @@ class Drawing {
   }
 
   void draw_contours() {
-    std::vector<double> field(map_.values.size(), nan);
-    for (std::size_t k = 0; k < field.size(); ++k) {
-      if (map_.points[k] == MapPoint::good) field[k] = map_.values[k];
-    }
+    const std::vector<double> field = good_values();
     std::string labels;
     for (const double level : levels_) {
       for (const std::vector<Point>& line : joined(contour(map_.x, map_.y, field, level))) {
@@ -222,20 +221,22 @@ class Drawing {
   void draw_axes() {
     body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"black\"/>\n",
                          px(left), px(top), px(width_), px(height_));
-    for (const double x : contour_levels(map_.x.front(), map_.x.back(), false)) {
+    const svg::Axis x = svg::make_axis(map_.x.front(), map_.x.back(), "m", 7.0, svg::Fit::exact);
+    const svg::Axis y = svg::make_axis(map_.y.front(), map_.y.back(), "m", 7.0, svg::Fit::exact);
+    for (std::size_t i = 0; i < x.ticks.size(); ++i) {
       body_ += fmt::format(
-          "<path d=\"M{0},{1}v5\" stroke=\"black\"/><text x=\"{0}\" y=\"{2}\" text-anchor=\"middle\">{3:.4g}</text>\n",
-          px(at_x(x)), px(top + height_), px(top + height_ + 18.0), x + 0.0);
+          "<path d=\"M{0},{1}v5\" stroke=\"black\"/><text x=\"{0}\" y=\"{2}\" text-anchor=\"middle\">{3}</text>\n",
+          px(at_x(x.ticks[i])), px(top + height_), px(top + height_ + 18.0), x.labels[i]);
     }
-    for (const double y : contour_levels(map_.y.front(), map_.y.back(), false)) {
+    for (std::size_t i = 0; i < y.ticks.size(); ++i) {
       body_ += fmt::format(
-          "<path d=\"M{0},{1}h-5\" stroke=\"black\"/><text x=\"{2}\" y=\"{3}\" text-anchor=\"end\">{4:.4g}</text>\n",
-          px(left), px(at_y(y)), px(left - 9.0), px(at_y(y) + 4.0), y + 0.0);
+          "<path d=\"M{0},{1}h-5\" stroke=\"black\"/><text x=\"{2}\" y=\"{3}\" text-anchor=\"end\">{4}</text>\n",
+          px(left), px(at_y(y.ticks[i])), px(left - 9.0), px(at_y(y.ticks[i]) + 4.0), y.labels[i]);
     }
     body_ += fmt::format(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">x [m]</text>\n<text transform=\"translate({},{}) "
-        "rotate(-90)\" text-anchor=\"middle\">y [m]</text>\n",
-        px(left + 0.5 * width_), px(top + height_ + 38.0), px(24.0), px(top + 0.5 * height_));
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">x [{}]</text>\n<text transform=\"translate({},{}) "
+        "rotate(-90)\" text-anchor=\"middle\">y [{}]</text>\n",
+        px(left + 0.5 * width_), px(top + height_ + 38.0), x.unit, px(24.0), px(top + 0.5 * height_), y.unit);
   }
 
   void draw_legend() {
@@ -251,9 +252,8 @@ class Drawing {
     if (std::isfinite(least_)) {
       std::vector<double> ends = levels_;
       for (std::size_t i = ends.size() + 1; i-- > 0;) {
-        const double tone = i == 0 ? -std::numeric_limits<double>::infinity() : ends[i - 1];
         body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"22\" height=\"14\" fill=\"{}\" stroke=\"#444\"/>\n",
-                             px(x), px(y - 7.0), grey(tone));
+                             px(x), px(y - 7.0), tone(i));
         words(ends.empty() ? fmt::format("{:.4g}", least_)
               : i == 0     ? fmt::format("below {:.4g}", ends[0])
                            : fmt::format("from {:.4g}", ends[i - 1]));
@@ -293,57 +293,5 @@ class Drawing {
 }  // namespace
 
 std::string map_svg(const PositionMap& map) { return Drawing(map).text(); }
-
-std::vector<double> contour_levels(double least, double most, bool logarithmic) {
-  std::vector<double> levels;
-  if (!(most > least) || !std::isfinite(least) || !std::isfinite(most)) return levels;
-  if (logarithmic) {
-    for (double power = std::floor(std::log10(least)); power <= std::log10(most); ++power) {
-      for (const double digit : {1.0, 2.0, 5.0}) {
-        const double level = digit * std::pow(10.0, power);
-        if (level > least && level < most) levels.push_back(level);
-      }
-    }
-    while (levels.size() > 12) {
-      std::vector<double> fewer;
-      for (std::size_t i = 0; i < levels.size(); i += 3) fewer.push_back(levels[i]);
-      levels = std::move(fewer);
-    }
-    return levels;
-  }
-  return svg::round_numbers(least, most, 7.0);
-}
-
-std::vector<std::array<double, 4>> contour(const std::vector<double>& x, const std::vector<double>& y,
-                                           const std::vector<double>& values, double level) {
-  std::vector<std::array<double, 4>> pieces;
-  const auto at = [&](std::size_t i, std::size_t j) { return values[i * y.size() + j] - level; };
-  // On an edge the crossing is found from the same end by both cells, so that their pieces meet exactly.
-  const auto cross = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
-    const double a = at(i, j), b = at(k, l), s = a / (a - b);
-    return Point{x[i] + s * (x[k] - x[i]), y[j] + s * (y[l] - y[j])};
-  };
-  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-    for (std::size_t j = 0; j + 1 < y.size(); ++j) {
-      const double corner[4] = {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
-      if (std::ranges::any_of(corner, [](double v) { return !std::isfinite(v); })) continue;
-      const bool up[4] = {corner[0] >= 0.0, corner[1] >= 0.0, corner[2] >= 0.0, corner[3] >= 0.0};
-      std::vector<Point> ends;
-      if (up[0] != up[1]) ends.push_back(cross(i, j, i + 1, j));
-      if (up[1] != up[2]) ends.push_back(cross(i + 1, j, i + 1, j + 1));
-      if (up[3] != up[2]) ends.push_back(cross(i, j + 1, i + 1, j + 1));
-      if (up[0] != up[3]) ends.push_back(cross(i, j, i, j + 1));
-      if (ends.size() == 4) {  // a saddle: the mean decides which corners are connected
-        const bool middle = corner[0] + corner[1] + corner[2] + corner[3] >= 0.0;
-        // With the first corner's side in the middle, lines cut off corners 1 and 3, else 0 and 2.
-        if (middle != up[0]) std::swap(ends[1], ends[3]);
-      }
-      for (std::size_t k = 0; k + 1 < ends.size(); k += 2) {
-        pieces.push_back({ends[k].x, ends[k].y, ends[k + 1].x, ends[k + 1].y});
-      }
-    }
-  }
-  return pieces;
-}
 
 }  // namespace freeplay

@@ -14,6 +14,8 @@ namespace freeplay {
 namespace {
 
 constexpr double width = 900.0, most_height = 1400.0, least_height = 260.0, margin = 70.0;
+constexpr double inset_width = 262.0, inset_height = 274.0;
+constexpr double rim = 12.0, least_rim = 8.0;  // radii of gears
 
 using svg::length;
 using svg::Point;
@@ -21,19 +23,27 @@ using svg::px;
 
 class Drawing {
  public:
-  Drawing(const System& system, std::span<const double> q) : model_(system.model()), q_(q), given_(system, q) {}
+  Drawing(const System& system, const MechanismPicture& picture)
+      : model_(system.model()), picture_(picture), q_(picture.q), given_(system, picture.q) {
+    if (picture.at_start) moved_ = given_.moved();
+  }
 
   std::string text() {
     fit();
-    for (const BodyId id : given_.moved()) draw_as_given(id);
+    for (const BodyId id : moved_) draw_as_given(id);
+    for (const std::vector<double>& q : picture_.others) draw_pale(q);
+    for (const Trace& trace : picture_.traces) draw_trace(trace);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) draw_body(static_cast<BodyId>(b));
     for (const JointElement& joint : model_.joints) draw_joint(joint);
     for (const AppliedForce& force : model_.forces) draw_force(force);
     draw_frames();
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) out_.centre(page({q_[3 * b], q_[3 * b + 1]}));
     out_.place_labels({0.0, 0.0, width, height_});
-    return svg::head(width, height_, model_.name) + out_.text() +
-           svg::scale_bar(scale_, width / 6.0, 20.0, height_ - 14.0) + "</svg>\n";
+    std::string insets;
+    for (std::size_t i = 0; i < picture_.magnified.size(); ++i) insets += inset(picture_.magnified[i], i);
+    const double high = std::max(height_, inset_height * static_cast<double>(picture_.magnified.size()));
+    return svg::head(width + (picture_.magnified.empty() ? 0.0 : inset_width), high, model_.name) + out_.text() +
+           insets + caption() + svg::scale_bar(scale_, width / 6.0, 20.0, height_ - 14.0) + "</svg>\n";
   }
 
  private:
@@ -80,9 +90,16 @@ class Drawing {
       if (!is_origin(one) || one.body != ground) all.push_back(world(one));
     }
     for (const Marker& one : model_.markers) all.push_back(world(one));
-    for (const BodyId id : given_.moved()) {
-      const std::vector<Point> points = points_of(id, given_.q());
+    const auto add = [&](BodyId id, std::span<const double> q) {
+      const std::vector<Point> points = points_of(id, q);
       all.insert(all.end(), points.begin(), points.end());
+    };
+    for (const BodyId id : moved_) add(id, given_.q());
+    for (const std::vector<double>& q : picture_.others) {
+      for (std::size_t b = 0; b < model_.bodies.size(); ++b) add(static_cast<BodyId>(b), q);
+    }
+    for (const Trace& trace : picture_.traces) {
+      for (const auto& p : trace.points) all.push_back({p[0], p[1]});
     }
     Point low{0.0, 0.0}, high{0.0, 0.0};
     if (!all.empty()) low = high = all.front();
@@ -125,6 +142,78 @@ class Drawing {
         svg::path(svg::hull(points)), svg::tint(id));
   }
 
+  /// At another instant.
+  void draw_pale(std::span<const double> q) {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      const BodyId id = static_cast<BodyId>(b);
+      std::vector<Point> points = points_of(id, q);
+      for (Point& p : points) p = page(p);
+      out_.shape(
+          "<path class=\"other\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-opacity=\"0.3\" "
+          "stroke-linejoin=\"round\"/>\n",
+          svg::path(svg::hull(points)), svg::tint(id));
+    }
+  }
+
+  void draw_trace(const Trace& trace) {
+    std::vector<Point> points;
+    for (const auto& p : trace.points) points.push_back(page({p[0], p[1]}));
+    draw_way(out_, points, "trace");
+    out_.label(trace.name, points.back(), "fill=\"#0072B2\"");
+  }
+
+  /// A line, without points that move it less than a part of a pixel.
+  static void draw_way(svg::Page& to, const std::vector<Point>& points, const char* kind) {
+    std::vector<Point> kept;
+    for (const Point& p : points) {
+      if (kept.empty() || length(p - kept.back()) > 0.3) kept.push_back(p);
+    }
+    if (kept.size() == 1) kept.push_back(kept.front());
+    to.shape(
+        "<path class=\"{}\" d=\"{}\" fill=\"none\" stroke=\"#0072B2\" stroke-width=\"1.2\" "
+        "stroke-linejoin=\"round\"/>\n",
+        kind, svg::path(kept));
+  }
+
+  /// The clearance circle of a joint with the way of its journal's centre, in a box right of the mechanism.
+  std::string inset(const MagnifiedJoint& magnified, std::size_t index) const {
+    const JointElement& joint = model_.joints[static_cast<std::size_t>(magnified.joint)];
+    const double top = inset_height * static_cast<double>(index) + 12.0, left = width, side = inset_width - 12.0;
+    const double bottom = top + inset_height - 24.0, scale = scale_ * magnified.factor;
+    const Point middle{left + 0.5 * side, 0.5 * (top + bottom) + 6.0};
+    const auto place = [&](const std::array<double, 2>& e) {
+      return Point{middle.x + scale * e[0], middle.y - scale * e[1]};
+    };
+    svg::Page box;
+    box.shape(
+        "<clipPath id=\"inset{0}\"><rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\"/></clipPath>\n"
+        "<path d=\"M{5} {6} L{1} {2}\" stroke=\"#999999\" stroke-width=\"0.8\" stroke-dasharray=\"3 3\"/>\n"
+        "<rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"white\" stroke=\"#999999\"/>\n"
+        "<g class=\"inset\" clip-path=\"url(#inset{0})\">\n",
+        index, px(left), px(top), px(side), px(bottom - top), px(page(world(marker(joint.marker_b))).x),
+        px(page(world(marker(joint.marker_b))).y));
+    box.circle(middle, scale * joint.layout.clearance,
+               "class=\"clearance\" fill=\"none\" stroke=\"#cc3311\" stroke-dasharray=\"5 3\"");
+    box.shape("<path d=\"M{0} {1}m-4 0h8m-4 -4v8\" stroke=\"#cc3311\" stroke-width=\"0.8\"/>\n", px(middle.x),
+              px(middle.y));
+    std::vector<Point> points;
+    for (const auto& e : magnified.orbit) points.push_back(place(e));
+    if (!points.empty()) {
+      draw_way(box, points, "orbit");
+      box.circle(points.back(), 4.0, "class=\"journal\" fill=\"black\"");
+    }
+    box.shape(
+        "</g>\n<text x=\"{}\" y=\"{}\" font-weight=\"bold\" paint-order=\"stroke\" stroke=\"white\" "
+        "stroke-width=\"4\">{}, {:g} times</text>\n",
+        px(left + 8.0), px(top + 16.0), svg::escaped(joint.name), magnified.factor);
+    return box.text() + svg::scale_bar(scale, side / 4.0, left + 8.0, bottom - 10.0);
+  }
+
+  std::string caption() const {
+    if (picture_.caption.empty()) return "";
+    return fmt::format("<text x=\"20\" y=\"22\" font-size=\"13\">{}</text>\n", svg::escaped(picture_.caption));
+  }
+
   void draw_joint(const JointElement& joint) {
     if (joint.gear >= 0) return draw_gear(joint);
     const Marker &a = marker(joint.marker_a), &b = marker(joint.marker_b);
@@ -149,15 +238,29 @@ class Drawing {
     }
   }
 
-  /// A toothed rim about each of the two joints, and a line between them.
+  /// Pitch circles about the two joints, which touch, and a line between them.
   void draw_gear(const JointElement& joint) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
     const Point from = place(gear.first), to = place(gear.second);
-    for (const Point& at : {from, to}) {
-      out_.circle(at, 12.0, "fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" stroke-dasharray=\"2 2\"");
+    // Teeth of both wheels pass equally fast: r_2 = r_1/|ratio|, outside of each other where they turn against it.
+    double second = length(to - from) / std::abs(1.0 - gear.ratio), first = second * std::abs(gear.ratio);
+    if (!turns(gear.first) || !turns(gear.second) || !(second > least_rim) || !(first > least_rim) ||
+        !(std::max(first, second) < 3.0 * width)) {
+      first = second = rim;
+    }
+    for (const auto& [at, radius] : {std::pair(from, first), std::pair(to, second)}) {
+      out_.shape(
+          "<circle class=\"pitch\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" "
+          "stroke-dasharray=\"2 2\"/>\n",
+          px(at.x), px(at.y), px(radius));
     }
     out_.line(from, to, "stroke=\"#aa3377\" stroke-dasharray=\"6 2 1 2\"");
     out_.label(joint.name, 0.5 * (from + to), "font-style=\"italic\"");
+  }
+
+  bool turns(int joint) const {
+    const JointElement& one = model_.joints[static_cast<std::size_t>(joint)];
+    return one.gear < 0 && one.ideal_layout.coordinate == Coordinate::angle;
   }
 
   /// On the page: where a joint moves its second body.
@@ -218,8 +321,10 @@ class Drawing {
   }
 
   const Model& model_;
+  const MechanismPicture& picture_;
   std::span<const double> q_;
   GivenStart given_;
+  std::span<const BodyId> moved_;
   double scale_ = 1.0, height_ = least_height;
   Point middle_;
   svg::Page out_;
@@ -227,9 +332,20 @@ class Drawing {
 
 }  // namespace
 
-std::string mechanism_svg(const System& system, std::span<const double> q) {
-  if (system.model().space == Space::spatial) return spatial_svg(system, q);
-  return Drawing(system, q).text();
+std::array<double, 3> world_position(const System& system, const Marker& marker, std::span<const double> q) {
+  if (marker.body == ground) return {marker.position[0], marker.position[1], marker.position[2]};
+  const Pose pose = system.coordinates().frame_pose(marker.body, q);
+  std::array<double, 3> at{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double* row = &pose.rotation[3 * i];
+    at[i] = pose.position[i] + row[0] * marker.position[0] + row[1] * marker.position[1] + row[2] * marker.position[2];
+  }
+  return at;
+}
+
+std::string mechanism_svg(const System& system, const MechanismPicture& picture) {
+  if (system.model().space == Space::spatial) return spatial_svg(system, picture);
+  return Drawing(system, picture).text();
 }
 
 }  // namespace freeplay

@@ -46,14 +46,26 @@ std::string axis_word(const Vector& axis) {
 
 class Drawing {
  public:
-  Drawing(const System& system, std::span<const double> q)
-      : scene_(system, q), given_(system, q), given_scene_(system, given_.q()), model_(system.model()) {}
+  Drawing(const System& system, const MechanismPicture& picture)
+      : picture_(picture),
+        scene_(system, picture.q),
+        given_(system, picture.q),
+        given_scene_(system, given_.q()),
+        model_(system.model()) {
+    if (picture.at_start) moved_ = given_.moved();
+    others_.reserve(picture.others.size());
+    for (const std::vector<double>& q : picture.others) others_.emplace_back(system, q);
+  }
 
   std::string text() {
     choose_views();
     lay_out();
     std::string out = svg::head(2 * panel_width, top_height_ + front_height_, model_.name);
     for (std::size_t i = 0; i < views_.size(); ++i) out += panel(views_[i], bounds_[i]);
+    if (!picture_.caption.empty()) {
+      out += fmt::format("<text x=\"{}\" y=\"18\" text-anchor=\"end\" font-size=\"13\">{}</text>\n",
+                         svg::px(2 * panel_width - 10), svg::escaped(picture_.caption));
+    }
     return out + "</svg>\n";
   }
 
@@ -79,10 +91,17 @@ class Drawing {
     for (const Vector& p : scene_.points()) {
       for (std::size_t i = 0; i < views_.size(); ++i) extents[i].add(views_[i].flat(p));
     }
-    for (const BodyId id : given_.moved()) {
-      for (const Vector& p : given_scene_.points_of(id)) {
-        for (std::size_t i = 0; i < views_.size(); ++i) extents[i].add(views_[i].flat(p));
-      }
+    const auto add = [&](const Vector& p) {
+      for (std::size_t i = 0; i < views_.size(); ++i) extents[i].add(views_[i].flat(p));
+    };
+    for (const BodyId id : moved_) {
+      for (const Vector& p : given_scene_.points_of(id)) add(p);
+    }
+    for (const SpatialScene& other : others_) {
+      for (const Vector& p : other.points()) add(p);
+    }
+    for (const Trace& trace : picture_.traces) {
+      for (const auto& p : trace.points) add(Vector(p.data()));
     }
     const auto size = [&](std::size_t i) { return extents[i].size(); };
     const double largest = std::max({size(0).x, size(0).y, size(2).y, 1e-9}), least = 1e-6 * largest;
@@ -105,8 +124,10 @@ class Drawing {
   std::string panel(const View& view, const svg::Box& box) {
     page_ = svg::Page();
     view_ = &view;
-    for (const BodyId id : given_.moved()) draw_as_given(id);
+    for (const BodyId id : moved_) draw_as_given(id);
+    for (const SpatialScene& other : others_) draw_pale(other);
     draw_items();
+    for (const Trace& trace : picture_.traces) draw_trace(trace);
     for (const AppliedForce& force : model_.forces) draw_force(force);
     draw_frames();
     page_.place_labels({box.left + axes_width, box.top + title_height, box.right, box.bottom});
@@ -177,6 +198,30 @@ class Drawing {
         "<path class=\"given\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\" stroke-opacity=\"0.35\" "
         "stroke-dasharray=\"9 6\" stroke-linejoin=\"round\"/>\n",
         svg::path(svg::hull(points)), svg::tint(id));
+  }
+
+  /// At another instant.
+  void draw_pale(const SpatialScene& other) {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      std::vector<Point> points;
+      for (const Vector& p : other.points_of(static_cast<BodyId>(b))) points.push_back(view_->page(p));
+      page_.shape(
+          "<path class=\"other\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-opacity=\"0.25\" "
+          "stroke-linejoin=\"round\"/>\n",
+          svg::path(svg::hull(points)), svg::tint(static_cast<BodyId>(b)));
+    }
+  }
+
+  void draw_trace(const Trace& trace) {
+    std::vector<Point> points;
+    for (const auto& p : trace.points) {
+      const Point at = view_->page(Vector(p.data()));
+      if (points.empty() || svg::length(at - points.back()) > 0.3) points.push_back(at);
+    }
+    if (points.size() == 1) points.push_back(points.front());
+    page_.shape("<path class=\"trace\" d=\"{}\" fill=\"none\" stroke=\"#0072B2\" stroke-width=\"1.2\"/>\n",
+                svg::path(points));
+    if (isometric()) page_.label(trace.name, points.back(), "fill=\"#0072B2\"");
   }
 
   /// `nearness` is 0 for the furthest and 1 for the nearest.
@@ -306,9 +351,12 @@ class Drawing {
     }
   }
 
+  const MechanismPicture& picture_;
   SpatialScene scene_;
   GivenStart given_;
   SpatialScene given_scene_;
+  std::span<const BodyId> moved_;
+  std::vector<SpatialScene> others_;
   const Model& model_;
   std::vector<View> views_;
   std::array<svg::Box, 4> bounds_{};
@@ -319,6 +367,8 @@ class Drawing {
 
 }  // namespace
 
-std::string spatial_svg(const System& system, std::span<const double> q) { return Drawing(system, q).text(); }
+std::string spatial_svg(const System& system, const MechanismPicture& picture) {
+  return Drawing(system, picture).text();
+}
 
 }  // namespace freeplay

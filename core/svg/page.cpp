@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "base/unit_prefix.h"
 
 namespace freeplay::svg {
 namespace {
@@ -165,9 +166,10 @@ std::string scale_bar(double scale, double wanted_px, double left, double y) {
   const double wanted = wanted_px / scale, decade = std::pow(10.0, std::floor(std::log10(wanted)));
   const double bar = wanted >= 5 * decade ? 5 * decade : wanted >= 2 * decade ? 2 * decade : decade;
   const double right = left + bar * scale;
+  const PrefixedUnit to = prefixed_unit(bar * (1.0 + 1e-9), "m");
   return fmt::format(
-      "<path d=\"M{4} {0} v6 H{1} v-6\" fill=\"none\" stroke=\"black\"/>\n<text x=\"{2}\" y=\"{3}\">{5:g} m</text>\n",
-      px(y - 3), px(right), px(right + 6), px(y + 4), fmt::format("{:g}", left), bar);
+      "<path d=\"M{4} {0} v6 H{1} v-6\" fill=\"none\" stroke=\"black\"/>\n<text x=\"{2}\" y=\"{3}\">{5:g} {6}</text>\n",
+      px(y - 3), px(right), px(right + 6), px(y + 4), fmt::format("{:g}", left), bar / to.factor, to.unit);
 }
 
 }  // namespace freeplay::svg

@@ -343,7 +343,7 @@ class Analyze(ProgramTest):
                       "--grid", "angle=-0.6:-0.6:1", "--svg", "m.svg", "--out", "m.csv")
         text = self.read("m.svg")
         labels = [e.text for e in xml.fromstring(text).iter("{http://www.w3.org/2000/svg}text")]
-        for label in ("condition number", "out of reach", "singular (points: x)", "path, from the dot on", "x [m]"):
+        for label in ("condition number", "out of reach", "singular (points: x)", "path, from the dot on", "x [mm]"):
             self.assertIn(label, labels)
         self.assertIn("url(#out)", text)
         self.assertRegex(text, r'stroke-dasharray="8,4"/>\n<path')  # singular curves, and the legend's piece

@@ -1,11 +1,14 @@
 """freeplay show: text, JSON, graph, drawing."""
 import json
+import math
 import os
 import re
 import unittest
 import xml.etree.ElementTree as xml
 
 from program import ROOT, ProgramTest, mechanism
+
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 class Show(ProgramTest):
@@ -128,11 +131,97 @@ simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], o
         out, _ = self.freeplay("show", mechanism("3-rrr"), "--format", "svg")
         self.assertEqual(self.read("a.svg"), out)
         labels = [e.text for e in xml.fromstring(out).iter("{http://www.w3.org/2000/svg}text")]
-        for name in ("platform", "leg1.crank", "leg3.C", "leg2.coupler/B", "0.1 m"):
+        for name in ("platform", "leg1.crank", "leg3.C", "leg2.coupler/B", "100 mm"):
             self.assertIn(name, labels)
         self.assertEqual(6, out.count("#cc3311\" stroke-width=\"1.5\""))  # rings: six joints have clearance
         texts = re.findall(r'<text x="([-0-9.]+)" y="([-0-9.]+)"', out)
         self.assertTrue(all(0 <= float(x) <= 900 and 0 <= float(y) <= 1400 for x, y in texts))
+
+    def test_a_result_is_drawn_at_an_instant_with_what_came_before(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "10 ms", "--interval", "0.1 ms", "--out", "r")
+        rows = [dict(zip(*pair)) for pair in self.rows("r")]
+        out, _ = self.freeplay("show", "r", "--format", "svg", "--at", "5.04 ms", "--every", "45 deg", "--trace", "crank/tip",
+                               "--magnify", "wrist=60")
+        picture = xml.fromstring(out)
+        texts = [e.text for e in picture.iter(SVG + "text")]
+        self.assertIn("t = 5 ms", texts)
+        self.assertIn("wrist, 60 times", texts)
+        bodies = 3
+        passed = 1 + int(float(rows[50]["joint.main.angle"]) / (math.pi / 4))
+        self.assertEqual(passed * bodies, len(self.kind(picture, "path", "other")))
+        # All in one scale: the crank's tip goes about its pin at 50 mm, the clearance is 0.5 mm sixty times larger.
+        clearance = float(self.kind(picture, "circle", "clearance")[0].get("r"))
+        trace = self.points(self.kind(picture, "path", "trace")[0])
+        width = max(x for x, _ in trace) - min(x for x, _ in trace)
+        turned = 0.05 * (1 - math.cos(float(rows[50]["joint.main.angle"])))
+        self.assertAlmostEqual(60 * 0.5e-3 / turned, clearance / width, delta=1e-3)
+        journal = self.kind(picture, "circle", "journal")[0]
+        middle = self.kind(picture, "circle", "clearance")[0]
+        scale = clearance / 0.5e-3
+        angle = float(rows[50]["body.coupler.angle"])
+        tip = (float(rows[50]["body.coupler.x"]) + 0.06 * math.cos(angle), float(rows[50]["body.coupler.y"]) + 0.06 * math.sin(angle))
+        journal_at = (float(rows[50]["body.slider.x"]), float(rows[50]["body.slider.y"]))
+        self.assertAlmostEqual(journal_at[0] - tip[0], (float(journal.get("cx")) - float(middle.get("cx"))) / scale, delta=0.2 / scale)
+        self.assertAlmostEqual(journal_at[1] - tip[1], (float(middle.get("cy")) - float(journal.get("cy"))) / scale, delta=0.2 / scale)
+
+    def test_a_spatial_result_is_drawn_where_its_rows_put_it(self):
+        self.freeplay("run", mechanism("spatial/bennett"), "--quiet", "--out", "r")
+        start, _ = self.freeplay("show", "r", "--format", "svg", "--at", "0 s")
+        drawn, _ = self.freeplay("show", mechanism("spatial/bennett"), "--format", "svg")
+        # Things as near as each other may be drawn in another order, by rounding.
+        points = [[(float(e.get("cx")), float(e.get("cy"))) for e in xml.fromstring(text).iter(SVG + "circle")]
+                  for text in (start, drawn)]
+        self.assertGreater(len(points[0]), 12)
+        for some, others in (points, points[::-1]):
+            self.assertLess(max(min(math.dist(a, b) for b in others) for a in some), 0.3)
+        later, _ = self.freeplay("show", "r", "--format", "svg", "--every", "100 ms")
+        self.assertGreater(len(self.kind(xml.fromstring(later), "path", "other")), 3)
+
+    def rows(self, folder):
+        lines = [line.split(",") for line in self.read(folder, "results.csv").splitlines()]
+        return [(lines[0], line) for line in lines[1:]]
+
+    @staticmethod
+    def kind(picture, shape, name):
+        return [e for e in picture.iter(SVG + shape) if e.get("class") == name]
+
+    @staticmethod
+    def points(path):
+        return [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([-\d. ]+)", path.get("d"))]
+
+    def test_an_instant_that_is_not_there_is_refused(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--interval", "1 us", "--out", "r")
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "few", "--channels", "joint.*")
+        svg = ("--format", "svg")
+        for arguments, words in ((("r", *svg, "--at", "2 ms"), "the last row is at 0.001 s"),
+                                 (("r", *svg, "--at", "-1 s"), "the result has no row so early"),
+                                 (("r", *svg, "--every", "1 kg"), "a time (\"1 ms\") or an angle (\"30 deg\") is needed"),
+                                 (("r", *svg, "--every", "1 ns"), "more than 200 instants cover each other"),
+                                 (("r", *svg, "--trace", "coupler/tp"), "did you mean 'coupler/tip'?"),
+                                 (("r", *svg, "--magnify", "main=3"), "joint 'main' has no clearance"),
+                                 (("r", *svg, "--magnify", "wrst=3"), "did you mean 'wrist'?"),
+                                 (("r", *svg, "--magnify", "wrist"), "JOINT=FACTOR is needed"),
+                                 (("few", *svg, "--at", "0 s"), "has no channel 'body.crank.x'"),
+                                 (("r", "--at", "0 s"), "need --format svg"),
+                                 ((mechanism("slider-crank"), *svg, "--at", "0 s"), "need a result directory")):
+            with self.subTest(arguments):
+                self.assertIn(words, self.freeplay("show", *arguments, code=2)[1])
+
+    def test_gears_are_drawn_by_their_pitch_circles(self):
+        model = """freeplay: 1
+bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  B: {type: revolute, between: [ground/far, b]}
+  mesh: {type: gear, of: [A, B], ratio: %s}
+frames: {ground/far: [1, 0]}
+"""
+        for ratio, first in ((-2, 2 / 3), (-0.25, 0.2), (2, 2)):
+            out, _ = self.freeplay("show", self.write("m.yaml", model % ratio), "--format", "svg")
+            a, b = self.kind(xml.fromstring(out), "circle", "pitch")
+            apart = float(b.get("cx")) - float(a.get("cx"))
+            self.assertAlmostEqual(first, float(a.get("r")) / apart, delta=1e-3)
+            self.assertAlmostEqual(first / abs(ratio), float(b.get("r")) / apart, delta=1e-3)
 
     def test_drawing_shows_gears_with_their_names(self):
         self.write("m.yaml", """freeplay: 1
@@ -148,7 +237,7 @@ frames: {ground/far: [1, 0]}
         out, _ = self.freeplay("show", "m.yaml", "--format", "svg")
         labels = [e.text for e in xml.fromstring(out).iter("{http://www.w3.org/2000/svg}text")]
         self.assertIn("mesh", labels)
-        self.assertEqual(2, out.count('stroke-width="3" stroke-dasharray="2 2"'))
+        self.assertEqual(2, out.count('class="pitch"'))
 
     def test_drawing_in_the_readme_is_the_program_s(self):
         with open(os.path.join(ROOT, "docs", "images", "3-rrr.svg"), encoding="utf-8") as file:

@@ -43,8 +43,8 @@ class SpatialDrawing(ProgramTest):
         """Pixels per metre by the bar."""
         bars = [re.fullmatch(r"M([-0-9.]+) [-0-9.]+ v6 H([-0-9.]+) v-6", path.get("d")) for path in group.iter(SVG + "path")]
         (bar,) = [one for one in bars if one]
-        (length,) = [text.text for text in group.iter(SVG + "text") if text.text.endswith(" m")]
-        return (float(bar[2]) - float(bar[1])) / float(length.split()[0])
+        (length,) = [found for found in (re.fullmatch(r"([0-9.]+) (m|mm|um)", text.text) for text in group.iter(SVG + "text")) if found]
+        return (float(bar[2]) - float(bar[1])) / (float(length[1]) * {"m": 1, "mm": 1e-3, "um": 1e-6}[length[2]])
 
     def assert_apart(self, group, across, down):
         """The second ball from the first [px], whichever is drawn first."""

@@ -8,49 +8,10 @@
 namespace freeplay {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-TEST(Contour, OfAPlaneIsItsLine) {
-  // z = x + 2 y at level 1.25.
-  const std::vector<double> x{0.0, 0.5, 1.0}, y{0.0, 0.4, 1.0};
-  std::vector<double> z;
-  for (const double a : x) {
-    for (const double b : y) z.push_back(a + 2.0 * b);
-  }
-  const auto pieces = contour(x, y, z, 1.25);
-  EXPECT_FALSE(pieces.empty());
-  double length = 0.0;
-  for (const auto& [x0, y0, x1, y1] : pieces) {
-    EXPECT_NEAR(x0 + 2.0 * y0, 1.25, 1e-14);
-    EXPECT_NEAR(x1 + 2.0 * y1, 1.25, 1e-14);
-    length += std::hypot(x1 - x0, y1 - y0);
-  }
-  EXPECT_NEAR(length, std::hypot(1.0, 0.5), 1e-14);
-}
-
-TEST(Contour, OfASaddleDoesNotCross) {
-  // Corners 1 and -1 crosswise; the mean decides which hang together.
-  const auto low = contour({0.0, 1.0}, {0.0, 1.0}, {1.0, -2.0, -2.0, 1.0}, 0.0);
-  ASSERT_EQ(low.size(), 2u);
-  for (const auto& [x0, y0, x1, y1] : low) EXPECT_NEAR(std::hypot(x1 - x0, y1 - y0), std::sqrt(2.0) / 3.0, 1e-14);
-  const auto high = contour({0.0, 1.0}, {0.0, 1.0}, {2.0, -1.0, -1.0, 2.0}, 0.0);
-  ASSERT_EQ(high.size(), 2u);
-  for (const auto& [x0, y0, x1, y1] : high) EXPECT_NEAR(std::hypot(x1 - x0, y1 - y0), std::sqrt(2.0) / 3.0, 1e-14);
-}
-
-TEST(Contour, LeavesOutCellsWithoutValues) {
-  EXPECT_TRUE(contour({0.0, 1.0}, {0.0, 1.0}, {1.0, -1.0, nan, 1.0}, 0.0).empty());
-}
-
-TEST(ContourLevels, AreRoundNumbers) {
-  EXPECT_THAT(contour_levels(0.3, 7.4, false), ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0));
-  EXPECT_THAT(contour_levels(3.0, 150.0, true), ElementsAre(5.0, 10.0, 20.0, 50.0, 100.0));
-  EXPECT_TRUE(contour_levels(1.0, 1.0, false).empty());
-}
 
 PositionMap small_map() {
   PositionMap map;
@@ -72,6 +33,17 @@ TEST(MapDrawing, SaysWhatItsMarksMean) {
   EXPECT_THAT(text, Not(HasSubstr("path, from")));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
   EXPECT_EQ(text, map_svg(small_map()));
+}
+
+TEST(MapDrawing, HasOnePathForEachToneSoThatNoSeamsShow) {
+  PositionMap map = small_map();
+  map.points.assign(6, MapPoint::good);
+  map.values = {0.0, 1.0, 2.0, 1.0, 2.0, 3.0};
+  const std::string text = map_svg(map);
+  EXPECT_THAT(text, Not(HasSubstr("crispEdges")));
+  EXPECT_THAT(text, HasSubstr("x [mm]"));
+  map.coloured = true;
+  EXPECT_THAT(map_svg(map), HasSubstr("#fee838"));
 }
 
 TEST(MapDrawing, OfNothingReachableIsAllHatched) {
