@@ -46,33 +46,50 @@ ComparisonRules rules_of(const CompareOptions& options) {
   return rules;
 }
 
+std::string row_text(const Difference& d) {
+  return fmt::format("{},{},{},{},{},{}\n", d.name, number_text(d.largest), number_text(d.relative), number_text(d.rms),
+                     number_text(d.at_time), d.agrees ? "1" : "0");
+}
+
+std::string place_of(const std::string& distance) { return distance.substr(0, distance.rfind('.')); }
+
 std::string table_text(const Comparison& comparison, bool all) {
   std::string text = "channel,max_abs,max_rel,rms,at_time,ok\n";
-  const std::size_t shown = all ? comparison.channels.size() : std::min(comparison.channels.size(), rows_shown);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const ChannelDifference& d = comparison.channels[i];
-    text += fmt::format("{},{},{},{},{},{}\n", d.name, number_text(d.largest), number_text(d.relative),
-                        number_text(d.rms), number_text(d.at_time), d.agrees ? "1" : "0");
+  const std::span<const Difference> channels = comparison.channels;
+  const std::size_t shown = all ? channels.size() : std::min(channels.size(), rows_shown);
+  for (const Difference& d : channels.first(shown)) text += row_text(d);
+  if (all) {
+    for (const Difference& d : comparison.distances) text += row_text(d);
   }
-  if (shown < comparison.channels.size()) {
-    const auto rest = std::span(comparison.channels).subspan(shown);
-    const auto differ = std::ranges::count_if(rest, [](const ChannelDifference& d) { return !d.agrees; });
+  const auto differing = [](std::span<const Difference> list) {
+    return std::ranges::count_if(list, [](const Difference& d) { return !d.agrees; });
+  };
+  if (const auto rest = channels.subspan(shown); !rest.empty()) {
+    const auto differ = differing(rest);
     text += fmt::format("# {} more channels, {}; all with --verbose, some with --channels\n", rest.size(),
                         differ == 0 ? "which agree" : fmt::format("of which {} differ", differ));
   }
-  return text;
+  text += fmt::format("# {} channels in {} rows: {} differ\n", channels.size(), comparison.rows, differing(channels));
+  if (comparison.distances.empty() || comparison.rows == 0) return text;
+  return text + fmt::format("# distance of bodies and frames, {} in all: {} m rms\n# farthest: {}, {} m at t = {} s\n",
+                            comparison.distances.size(), number_text(comparison.distance.rms),
+                            place_of(comparison.farthest), number_text(comparison.distance.largest),
+                            number_text(comparison.distance.at_time));
 }
 
 Json table_json(const Comparison& comparison) {
   Json list = Json::array();
-  for (const ChannelDifference& d : comparison.channels) {
+  const auto put = [&](const Difference& d) {
     list.push_back({{"channel", d.name},
                     {"max_abs", json_number(d.largest)},
                     {"max_rel", json_number(d.relative)},
                     {"rms", json_number(d.rms)},
                     {"at_time", json_number(d.at_time)},
                     {"ok", d.agrees}});
-  }
+  };
+  for (const Difference& d : comparison.channels) put(d);
+  for (const Difference& d : comparison.distances) put(d);
+  if (!comparison.distances.empty()) put(comparison.distance);
   return list;
 }
 
@@ -81,8 +98,8 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
     throw Error(Error::Category::usage, "missing-argument", "compare needs two results");
   }
   const ComparisonRules rules = rules_of(options);
-  const ResultTable a = read_result(options.a, rules.channels), b = read_result(options.b, rules.channels);
-  const Comparison comparison = compare(a, b, rules);
+  const std::unique_ptr<ResultReader> a = ResultReader::open(options.a), b = ResultReader::open(options.b);
+  const Comparison comparison = compare(*a, *b, rules);
   if (common.json) {
     print_json(table_json(comparison));
   } else {
@@ -90,7 +107,8 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
   }
   for (const std::string& text : comparison.missing) print_messages("freeplay: note: " + text + "\n", common.no_color);
   if (comparison.interpolated && !common.quiet) {
-    print_messages(fmt::format("freeplay: note: times differ: {} is interpolated linearly\n", b.file), common.no_color);
+    print_messages(fmt::format("freeplay: note: times differ: {} is interpolated linearly\n", b->file()),
+                   common.no_color);
   }
   return comparison.agree() ? 0 : 7;
 }

@@ -88,6 +88,46 @@ double index_of(std::string_view word, std::vector<std::string>& words) {
   return static_cast<double>(index);
 }
 
+class CsvRows : public RowSource {
+ public:
+  CsvRows(const std::string& file, std::span<const std::size_t> columns, std::size_t fields)
+      : file_(file), lines_(file), place_(fields, columns.size()), row_(columns.size()) {
+    for (std::size_t i = 0; i < columns.size(); ++i) place_[columns[i]] = i;
+    std::string_view header;
+    lines_.next(header);
+  }
+
+  std::span<const double> next() override {
+    block_.clear();
+    std::string_view line;
+    while (block_.size() < block_numbers && lines_.next(line)) {
+      read(line);
+      block_.insert(block_.end(), row_.begin(), row_.end());
+    }
+    return block_;
+  }
+
+ private:
+  void read(std::string_view line) {
+    std::size_t field = 0;
+    for_each_field(line, [&](std::string_view text) {
+      if (field < place_.size() && place_[field] < row_.size())
+        row_[place_[field]] = number(text, file_, lines_.number());
+      ++field;
+    });
+    require_fields(field, place_.size(), file_, lines_.number());
+    if (!(row_[0] > last_))
+      unreadable_result(file_, fmt::format("line {}: time does not grow", lines_.number()), lines_.number());
+    last_ = row_[0];
+  }
+
+  const std::string file_;
+  Lines lines_;
+  std::vector<std::size_t> place_;  // of each field in a row that is given
+  std::vector<double> block_, row_;
+  double last_ = -std::numeric_limits<double>::infinity();
+};
+
 class CsvReader : public ResultReader {
  public:
   explicit CsvReader(const fs::path& path) : ResultReader(path.string()), events_(path.parent_path() / "events.csv") {
@@ -99,31 +139,8 @@ class CsvReader : public ResultReader {
     read_event_header();
   }
 
-  void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) override {
-    std::vector<std::size_t> place(layout_.columns.size(), columns.size());  // of each field in a row that is given
-    for (std::size_t i = 0; i < columns.size(); ++i) place[columns[i]] = i;
-    RowPicker picker(window, columns.size(), take);
-    std::vector<double> block, row(columns.size());
-    Lines lines(file_);
-    std::string_view line;
-    double last = -std::numeric_limits<double>::infinity();
-    for (lines.next(line); !picker.over() && lines.next(line);) {
-      std::size_t field = 0;
-      for_each_field(line, [&](std::string_view text) {
-        if (field < place.size() && place[field] < row.size()) row[place[field]] = number(text, file_, lines.number());
-        ++field;
-      });
-      require_fields(field, place.size(), file_, lines.number());
-      if (!(row[0] > last))
-        unreadable_result(file_, fmt::format("line {}: time does not grow", lines.number()), lines.number());
-      last = row[0];
-      block.insert(block.end(), row.begin(), row.end());
-      if (block.size() < block_numbers) continue;
-      picker.add(block);
-      block.clear();
-    }
-    picker.add(block);
-    picker.finish();
+  std::unique_ptr<RowSource> open_rows(std::span<const std::size_t> columns) override {
+    return std::make_unique<CsvRows>(file_, columns, layout_.columns.size());
   }
 
   void events(const Take& take) override {

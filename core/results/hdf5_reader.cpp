@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr hsize_t block_rows = 4096;                        // a multiple of any chunk
-constexpr std::size_t most_numbers = std::size_t{1} << 22;  // of a block
+constexpr std::size_t most_numbers = std::size_t{1} << 20;  // of a block
 
 herr_t note_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
@@ -49,10 +49,67 @@ std::vector<std::string> words(const std::string& text) {
   return list;
 }
 
+template <class Act>
+auto guarded(const std::string& file, Act&& act) {
+  const Hdf5Lock lock;
+  try {
+    return act();
+  } catch (const Hdf5Failure& failure) {
+    unreadable_result(file, failure.what());
+  }
+}
+
+hsize_t length(hid_t dataset) {
+  const Hdf5Id space(H5Dget_space(dataset), H5Sclose);
+  hsize_t size[H5S_MAX_RANK] = {0};
+  return checked(H5Sget_simple_extent_dims(space, size, nullptr)) == 1 ? size[0] : 0;
+}
+
+/// The first `count` numbers of each of some datasets.
+class Hdf5Rows : public RowSource {
+ public:
+  Hdf5Rows(std::string file, std::vector<Hdf5Id> datasets, hsize_t count)
+      : file_(std::move(file)), datasets_(std::move(datasets)), count_(count) {
+    const hsize_t most = std::max<hsize_t>(most_numbers / datasets_.size() / block_rows, 1) * block_rows;
+    column_.resize(std::min(most, count_));
+    block_.resize(column_.size() * datasets_.size());
+  }
+  ~Hdf5Rows() override {
+    const Hdf5Lock lock;
+    datasets_.clear();
+  }
+
+  std::span<const double> next() override {
+    const hsize_t some = std::min<hsize_t>(column_.size(), count_ - first_);
+    if (some > 0) guarded(file_, [&] { read(some); });
+    first_ += some;
+    return std::span<const double>(block_).first(some * datasets_.size());
+  }
+
+ private:
+  void read(hsize_t some) {
+    const std::size_t width = datasets_.size();
+    const Hdf5Id memory(H5Screate_simple(1, &some, nullptr), H5Sclose);
+    for (std::size_t c = 0; c < width; ++c) {
+      const Hdf5Id space(H5Dget_space(datasets_[c]), H5Sclose);
+      if (length(datasets_[c]) < first_ + some) throw Hdf5Failure("a dataset is shorter than 'time'");
+      checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, &first_, nullptr, &some, nullptr));
+      checked(H5Dread(datasets_[c], H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, column_.data()));
+      for (hsize_t r = 0; r < some; ++r) block_[r * width + c] = column_[r];
+    }
+  }
+
+  const std::string file_;
+  std::vector<Hdf5Id> datasets_;
+  const hsize_t count_;
+  hsize_t first_ = 0;  // row of the next block
+  std::vector<double> column_, block_;
+};
+
 class Hdf5Reader : public ResultReader {
  public:
   explicit Hdf5Reader(const fs::path& path) : ResultReader(path.string()) {
-    guarded([&] {
+    guarded(file_, [&] {
       open_file();
       read_layout();
     });
@@ -64,35 +121,28 @@ class Hdf5Reader : public ResultReader {
 
   bool sealed() const override { return sealed_; }
 
-  void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) override {
-    RowPicker picker(window, columns.size(), take);
-    guarded([&] {
+  std::unique_ptr<RowSource> open_rows(std::span<const std::size_t> columns) override {
+    return guarded(file_, [&] {
       std::vector<Hdf5Id> datasets;
       for (const std::size_t column : columns)
         datasets.push_back(open("/" + dataset_name(layout_.columns[column].name)));
-      read(datasets, row_count_, [&](std::span<const double> block) {
-        picker.add(block);
-        return !picker.over();
-      });
-      picker.finish();
+      return std::make_unique<Hdf5Rows>(file_, std::move(datasets), row_count_);
     });
   }
 
   void events(const Take& take) override {
     if (layout_.events.empty()) unreadable_result(file_, "it has no events");
-    guarded([&] {
+    const std::unique_ptr<RowSource> source = guarded(file_, [&] {
       std::vector<Hdf5Id> datasets;
       for (const RecordColumn& column : layout_.events) datasets.push_back(open("/events/" + column.name));
-      read(datasets, event_count_, [&](std::span<const double> block) {
-        take(block);
-        return true;
-      });
+      return std::make_unique<Hdf5Rows>(file_, std::move(datasets), event_count_);
     });
+    for (auto block = source->next(); !block.empty(); block = source->next()) take(block);
   }
 
   std::vector<double> bearing(const std::string& quantity) override {
     std::vector<double> numbers;
-    guarded([&] {
+    guarded(file_, [&] {
       const Hdf5Id table = open("/bearing/" + quantity), space(H5Dget_space(table), H5Sclose);
       numbers.resize(static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0)));
       if (numbers.empty()) return;
@@ -102,16 +152,6 @@ class Hdf5Reader : public ResultReader {
   }
 
  private:
-  template <class Act>
-  void guarded(Act&& act) {
-    const Hdf5Lock lock;
-    try {
-      act();
-    } catch (const Hdf5Failure& failure) {
-      unreadable_result(file_, failure.what());
-    }
-  }
-
   // A file that is written, or whose writer was killed, is open for one that reads along with it.
   void open_file() {
     const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -126,12 +166,6 @@ class Hdf5Reader : public ResultReader {
     const Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     checked(H5Pset_chunk_cache(access, 1, block_rows * sizeof(double), 1.0));
     return Hdf5Id(H5Dopen2(id_, name.c_str(), access), H5Dclose);
-  }
-
-  static hsize_t length(hid_t dataset) {
-    const Hdf5Id space(H5Dget_space(dataset), H5Sclose);
-    hsize_t size[H5S_MAX_RANK] = {0};
-    return checked(H5Sget_simple_extent_dims(space, size, nullptr)) == 1 ? size[0] : 0;
   }
 
   std::vector<std::string> names(const char* group_name) const {
@@ -187,26 +221,6 @@ class Hdf5Reader : public ResultReader {
       if (group != "/events") continue;
       if (name == "joint") layout_.joints = words(text_attribute(dataset, "flag_meanings"));
       if (name == "kind") layout_.kinds = words(text_attribute(dataset, "flag_meanings"));
-    }
-  }
-
-  template <class Take>
-  void read(const std::vector<Hdf5Id>& datasets, hsize_t count, Take&& take) {
-    const std::size_t width = datasets.size();
-    const hsize_t most = std::max<hsize_t>(most_numbers / width / block_rows, 1) * block_rows;
-    const hsize_t step = std::min(most, std::max<hsize_t>(count, 1));
-    std::vector<double> column(step), block(step * width);
-    for (hsize_t first = 0; first < count; first += step) {
-      const hsize_t some = std::min(step, count - first);
-      const Hdf5Id memory(H5Screate_simple(1, &some, nullptr), H5Sclose);
-      for (std::size_t c = 0; c < width; ++c) {
-        const Hdf5Id space(H5Dget_space(datasets[c]), H5Sclose);
-        if (length(datasets[c]) < first + some) throw Hdf5Failure("a dataset is shorter than 'time'");
-        checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &some, nullptr));
-        checked(H5Dread(datasets[c], H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, column.data()));
-        for (hsize_t r = 0; r < some; ++r) block[r * width + c] = column[r];
-      }
-      if (!take(std::span<const double>(block).first(some * width))) return;
     }
   }
 

@@ -37,6 +37,17 @@ std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   return open_csv(path / "results.csv");
 }
 
+void ResultReader::rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) {
+  RowPicker picker(window, columns.size(), take);
+  const std::unique_ptr<RowSource> source = open_rows(columns);
+  while (!picker.over()) {
+    const std::span<const double> block = source->next();
+    if (block.empty()) break;
+    picker.add(block);
+  }
+  picker.finish();
+}
+
 bool RowPicker::inside(double time) const { return time >= window_.from - same_ && time <= window_.until + same_; }
 
 void RowPicker::add(std::span<const double> rows) {

@@ -20,6 +20,14 @@ struct RowWindow {
   std::size_t every = 1;
 };
 
+/// Rows that are read as they are asked for.
+class RowSource {
+ public:
+  virtual ~RowSource() = default;
+  /// The next block of whole rows, valid until the next call; empty at the end.
+  virtual std::span<const double> next() = 0;
+};
+
 /// Reads what is complete of a result that may belong to a run that goes on or was killed.
 class ResultReader {
  public:
@@ -38,8 +46,11 @@ class ResultReader {
   virtual bool sealed() const { return true; }
   /// Index of a column in the layout, or its size.
   std::size_t find(std::string_view name) const;
-  /// Numbers of some columns, row after row, in blocks of whole rows. Only these are read; `columns` begins with time.
-  virtual void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) = 0;
+  /// Numbers of some columns, row after row. Only these are read; `columns` begins with time. The reader must outlive
+  /// what it gives.
+  virtual std::unique_ptr<RowSource> open_rows(std::span<const std::size_t> columns) = 0;
+  /// The same of the rows in a window, in blocks of whole rows.
+  void rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take);
   /// Numbers of all events as RecordLayout says, in blocks of whole events.
   virtual void events(const Take& take) = 0;
   /// Numbers of a table by bearing sector (BearingQuantity), 72 for each of RecordLayout::bearings; empty where the

@@ -6,7 +6,7 @@ import os
 import re
 import unittest
 
-from program import ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, mechanism
 
 
 class Accuracy(ProgramTest):
@@ -161,18 +161,56 @@ class Compare(ProgramTest):
     def test_json_is_a_list_also_when_results_differ(self):
         out, _ = self.freeplay("compare", "a", "b", "--json", "--channels", "body.*", "--tolerance", "1e-13", code=7)
         rows = json.loads(out)
-        self.assertEqual(6, len(rows))
+        self.assertEqual(6 + 2, len(rows))
         self.assertEqual({"channel", "max_abs", "max_rel", "rms", "at_time", "ok"}, set(rows[0]))
+
+    def test_distance_of_bodies_is_one_number(self):
+        folder = {name: csv.DictReader(self.read(name, "results.csv").splitlines()) for name in "ab"}
+        apart = [(math.hypot(*(float(a["body.rod." + k]) - float(b["body.rod." + k]) for k in "xy")), float(a["time"]))
+                 for a, b in zip(folder["a"], folder["b"], strict=True)]
+        rms = math.sqrt(sum(d * d for d, _ in apart) / len(apart))
+        out, _ = self.freeplay("compare", "a", "b", "--json", code=7)
+        *_, body, total = json.loads(out)
+        self.assertEqual(["body.rod.distance", "distance"], [body["channel"], total["channel"]])
+        for row in (body, total):
+            self.assertAlmostEqual(rms, row["rms"], delta=1e-12 * rms)
+            self.assertAlmostEqual(max(apart)[0], row["max_abs"], delta=1e-12 * rms)
+            self.assertEqual(max(apart)[1], row["at_time"])
+            self.assertEqual(all(one["ok"] for one in json.loads(out) if one["channel"] in ("body.rod.x", "body.rod.y")), row["ok"])
+        out, _ = self.freeplay("compare", "a", "b", code=7)
+        number = r"(\S+)"
+        pattern = "# distance of bodies and frames, 1 in all: %s m rms\n# farthest: body.rod, %s m at t = %s s\n$" % ((number,) * 3)
+        self.assertRegex(out, pattern)
+        self.assertEqual([body[name] for name in ("rms", "max_abs", "at_time")],
+                         [float(text) for text in re.search(pattern, out).groups()])
+        out, _ = self.freeplay("compare", "a", "b", "--channels", "body.rod.x")
+        self.assertNotIn("distance", out)
+
+    def test_memory_does_not_grow_with_the_rows(self):
+        def peak(rows):
+            with open(self.path("long.csv"), "w", encoding="utf-8") as file:
+                file.write("time,body.a.x,body.a.y,b,c,d,e,f,g,h\n")
+                file.writelines("%d,0,0,0,0,0,0,0,0,0\n" % row for row in range(rows))
+            pid = os.posix_spawn(PROGRAM, [PROGRAM, "compare", self.path("long.csv"), self.path("long.csv"), "--quiet"],
+                                 os.environ, file_actions=[(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)])
+            _, status, usage = os.wait4(pid, 0)
+            self.assertEqual(0, status)
+            return usage.ru_maxrss * 1024
+        # Kept whole, each of the two would be 200 000 rows of 10 numbers of 8 bytes.
+        self.assertLess(peak(220000) - peak(20000), 4e6)
 
     def test_requested_channels_are_all_shown_and_others_counted(self):
         names = self.read("a", "results.csv").split("\n")[0].split(",")[1:]
         self.assertGreater(len(names), 10)
         everything, err = self.freeplay("compare", "a", "c", "--channels", "*")
-        self.assertEqual((len(names), ""), (len(everything.splitlines()) - 1, err))
+        table = [line for line in everything.splitlines()[1:] if line[0] != "#"]
+        self.assertEqual((sorted(names + ["body.rod.distance"]), ""), (sorted(line.split(",")[0] for line in table), err))
+        counted = "# %d channels in %d rows: 0 differ" % (len(names), self.read("a", "results.csv").count("\n") - 1)
+        self.assertIn(counted, everything)
         self.assertEqual(everything, self.freeplay("compare", "a", "c", "--verbose")[0])
         some, err = self.freeplay("compare", "a", "c")
         left = "# %d more channels, which agree; all with --verbose, some with --channels" % (len(names) - 10)
-        self.assertEqual((everything.splitlines()[:11] + [left], ""), (some.splitlines(), err))
+        self.assertEqual((everything.splitlines()[:11] + [left, counted], ""), (some.splitlines()[:13], err))
         self.assertIn("of which 3 differ;", self.freeplay("compare", "a", "b", "--tolerance", "0", "--absolute", "0",
                                                           code=7)[0])
 
@@ -197,7 +235,7 @@ class Compare(ProgramTest):
         self.freeplay("compare", "a", "b", "--tolerance", "-1", code=2)
         self.freeplay("compare", "a", "nothing", code=6)
         with open(self.path("broken.csv"), "w", encoding="utf-8") as file:
-            file.write("time,x\n0,1\n1,two\n")
+            file.write("time,body.rod.x\n0,1\n1,two\n")
         _, err = self.freeplay("compare", "a", "broken.csv", code=6)
         self.assertIn("'two' is not a number", err)
 

@@ -82,7 +82,7 @@ TEST(InputActivity, ABlindRunGoesOverThePulse) {
 }
 
 ResultTable table_of(const ModelRun& run) {
-  ResultTable table{"", run.kept().names(), {}};
+  ResultTable table{run.kept().names(), {}};
   table.values.resize(table.names.size());
   for (std::size_t r = 0; r < run.rows(); ++r) {
     for (std::size_t c = 0; c < table.names.size(); ++c) table.values[c].push_back(run.at(r, table.names[c]));

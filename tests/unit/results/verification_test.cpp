@@ -13,7 +13,7 @@ const double no_value = std::nan("");
 
 /// Rows of 10 s, ten in each second.
 ResultTable moving(const std::function<double(double)>& x) {
-  ResultTable t{"", {"time", "body.a.x"}, {{}, {}}};
+  ResultTable t{{"time", "body.a.x"}, {{}, {}}};
   for (int i = 0; i <= 100; ++i) {
     t.values[0].push_back(0.1 * i);
     t.values[1].push_back(x(0.1 * i));
@@ -34,8 +34,8 @@ Agreement judged(const ResultTable& first, const ResultTable& second, const Resu
 double smooth_motion(double t) { return std::sin(t); }
 
 TEST(Verification, ErrorsAreOfTheTimeOfAgreementAndStatisticsOfTheRest) {
-  const ResultTable a{"", {"time", "body.a.x", "body.a.y"}, {{0, 1, 2, 3}, {0, 0, 3, -4}, {1, 1, 1, 1}}};
-  const ResultTable b{"", {"time", "body.a.x", "body.a.y"}, {{0, 1, 2, 3}, {0, 0.1, -3, 4}, {1, 1.5, 2, 2}}};
+  const ResultTable a{{"time", "body.a.x", "body.a.y"}, {{0, 1, 2, 3}, {0, 0, 3, -4}, {1, 1, 1, 1}}};
+  const ResultTable b{{"time", "body.a.x", "body.a.y"}, {{0, 1, 2, 3}, {0, 0.1, -3, 4}, {1, 1.5, 2, 2}}};
   const Verification v = compare_runs({&a, {}}, {&b, {}}, rules(0.2));
   EXPECT_EQ(v.agree_until, 1.0);
   EXPECT_EQ(v.agreement, Agreement::err);
