@@ -150,7 +150,12 @@ LoadedModel load_flat(const FlatModel& flat, const std::string& file, Readout& r
 /// What --set says becomes the text of the parameter.
 void write_overrides(const BuildOptions& build, Document& document) {
   const Node* parameters = document.root().find("parameters");
-  for (const auto& [name, text] : build.set) document.replace_value(*parameters, name, "--set " + name, text);
+  for (const auto& [name, text] : build.set) {
+    if (parameters == nullptr || parameters->find(name) == nullptr) {
+      not_in_this_release(fmt::format("--set {} of convert, which is no parameter", name));
+    }
+    document.replace_value(*parameters, name, "--set " + name, text);
+  }
 }
 
 int convert(const ConvertOptions& options, const CommonOptions& common) {

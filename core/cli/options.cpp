@@ -93,7 +93,9 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
 }
 
 void add_model_options(CLI::App& app, ModelOptions& options) {
-  repeatable(app, "--set", options.set, "Replace a parameter: --set c=\"50 um\"; repeatable")
+  repeatable(app, "--set", options.set,
+             "Replace a parameter or any value by its path: c=\"50 um\", joints.tip.clearance.radial_clearance=0.1mm; "
+             "repeatable")
       ->type_name("NAME=VALUE")
       ->group(model_group);
   repeatable(app, "--ideal", options.ideal, "Close the clearance of a joint: name, pattern with * or all; repeatable")
@@ -110,7 +112,8 @@ BuildOptions build_options(const ModelOptions& options) {
   BuildOptions build;
   for (const std::string& text : options.set) {
     const std::size_t sign = text.find('=');
-    if (sign == std::string::npos || sign == 0) bad_value("--set", text, "NAME=VALUE is needed");
+    if (sign == std::string::npos || sign == 0)
+      bad_value("--set", text, "NAME=VALUE is needed: a parameter, or a path such as joints.tip.clearance.contact.law");
     build.set.emplace_back(text.substr(0, sign), text.substr(sign + 1));
   }
   build.ideal = options.ideal;

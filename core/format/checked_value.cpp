@@ -8,6 +8,7 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "format/parameter_scope.h"
+#include "format/path_override.h"
 #include "format/readout.h"
 
 namespace freeplay {
@@ -167,8 +168,15 @@ std::optional<int> CheckedValue::word(const std::vector<std::string>& words) con
 }
 
 CheckedValue CheckedValue::item(std::size_t index) const {
-  CheckedValue value(*reading_, *node_->items[index], nullptr, fmt::format("{}[{}]", path_, index));
+  return below(*node_->items[index], nullptr, fmt::format("{}[{}]", path_, index), fmt::format("{}", index));
+}
+
+CheckedValue CheckedValue::below(const Node& node, const Node* key, std::string path, const std::string& name) const {
+  PathOverrides* const paths = reading_->paths;
+  const std::string address = paths == nullptr ? std::string() : address_of(name);
+  CheckedValue value(*reading_, paths == nullptr ? node : paths->replace(address, node), key, std::move(path));
   value.set_user(user());
+  value.set_address(address);
   return value;
 }
 

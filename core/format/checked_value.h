@@ -46,6 +46,8 @@ class CheckedValue : public LocatedValue {
   std::optional<std::string> key_reference() const;
 
   CheckedValue item(std::size_t index) const;
+  /// A value of this map or list, or what takes its place; `name` is its key or number.
+  CheckedValue below(const Node& node, const Node* key, std::string path, const std::string& name) const;
 
  private:
   std::optional<Expression> compile(const Node& text_node, std::string_view text, int offset, bool time_allowed) const;

@@ -27,6 +27,12 @@ class LocatedValue {
   Location key_location() const { return key_ == nullptr ? node_->location() : key_->location(); }
   Location location() const { return node_->location(); }
 
+  /// The path in the expanded model; kept only where values take the place of others (Reading::paths).
+  void set_address(std::string address) { address_ = std::move(address); }
+  const std::string& address() const { return address_; }
+  /// Of what stands below.
+  std::string address_of(const std::string& key) const { return address_.empty() ? key : address_ + "." + key; }
+
   /// The value stands in a preset that is used for `user`.
   void set_user(std::string user) { user_ = std::move(user); }
   const std::string& user() const { return user_; }
@@ -58,6 +64,7 @@ class LocatedValue {
   const Node* key_;
   std::string path_;
   std::string user_{};
+  std::string address_{};
 };
 
 }  // namespace freeplay

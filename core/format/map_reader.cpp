@@ -60,7 +60,7 @@ std::optional<MapReader::Hit> MapReader::look_up(std::string_view key) const {
 CheckedValue MapReader::value_of(const Hit& hit) const {
   const std::string& path = hit.layer->path;
   const std::string& key = hit.entry->key->text;
-  CheckedValue value(owner_.reading(), *hit.entry->value, hit.entry->key, path.empty() ? key : path + "." + key);
+  CheckedValue value = owner_.below(*hit.entry->value, hit.entry->key, path.empty() ? key : path + "." + key, key);
   value.set_user(hit.layer->user);
   return value;
 }
@@ -135,8 +135,7 @@ std::vector<CheckedValue> entries_of(const CheckedValue& map) {
   for (const Node::Entry& entry : map.node().entries) {
     if (is_note(entry.key->text)) continue;
     const std::string path = map.path().empty() ? entry.key->text : map.path() + "." + entry.key->text;
-    entries.emplace_back(map.reading(), *entry.value, entry.key, path);
-    entries.back().set_user(map.user());
+    entries.push_back(map.below(*entry.value, entry.key, path, entry.key->text));
   }
   return entries;
 }

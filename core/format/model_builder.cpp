@@ -20,6 +20,8 @@
 #include "format/joint_section.h"
 #include "format/name_rule.h"
 #include "format/parameter_override.h"
+#include "format/path_override.h"
+#include "format/run_override.h"
 #include "format/simulation_section.h"
 #include "format/sweep_section.h"
 #include "format/template.h"
@@ -37,13 +39,15 @@ class ModelBuilder {
       : document_(document),
         diagnostics_(diagnostics),
         check_columns_(check_columns),
-        draft_(registry, options, diagnostics),
+        options_(options),
+        draft_(registry, options_, diagnostics),
         overrides_(options, diagnostics),
+        paths_(options, diagnostics),
         parameters_(used_),
         presets_(used_),
         reading_{&diagnostics, &parameters_, &presets_, options.readout} {
     draft_.top = &reading_;
-    draft_.ideal_matched.assign(options.ideal.size(), false);
+    if (!paths_.empty()) reading_.paths = &paths_;
     for (const RegisteredLibrary& library : registry.libraries()) draft_.model.instances.keep(library);
   }
 
@@ -65,6 +69,7 @@ class ModelBuilder {
     judge_columns(diagnostics_.errors() > errors);
     if (templates_) judge_unused_templates();
     if (!diagnostics_.has_errors()) require_ideal_matches(draft_);
+    if (!diagnostics_.has_errors()) paths_.require_found();
     if (!diagnostics_.has_errors()) warn_ignored_elbows(draft_);
     warn_unused();
     if (diagnostics_.has_errors()) return nullptr;
@@ -150,6 +155,8 @@ class ModelBuilder {
     }
     overrides_.require_declared(parameters_);
     parameters_.evaluate();
+    apply_run_overrides(options_, parameters_);
+    draft_.ideal_matched.assign(options_.ideal.size(), false);
   }
 
   // --- sections --------------------------------------------------------------------------------------------------
@@ -258,7 +265,8 @@ class ModelBuilder {
     // What an error kept from being read may well use it.
     if (diagnostics_.has_errors()) return;
     const Node& root = document_.root();
-    warn_unused_in(root.find("parameters"), "parameter");
+    // A value in the place of another may leave a parameter without use, and that is meant so.
+    if (paths_.empty()) warn_unused_in(root.find("parameters"), "parameter");
     warn_unused_in(root.find("presets"), "preset");
     const Node* templates = root.find("templates");
     warn_unused_in(templates, "template");
@@ -281,8 +289,10 @@ class ModelBuilder {
   Diagnostics& diagnostics_;
   const ColumnCheck& check_columns_;
   bool sections_read_ = false;
+  BuildOptions options_;
   Draft draft_;
   ParameterOverrides overrides_;
+  PathOverrides paths_;
   UsedKeys used_;
   ParameterScope parameters_;
   PresetTable presets_;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "format/checked_value.h"
+#include "format/path_override.h"
 
 namespace freeplay {
 namespace {
@@ -22,6 +23,7 @@ bool is_about_form(const std::string& id) { return id == "bad-expression" || id 
 
 ParameterOverrides::ParameterOverrides(const BuildOptions& options, Diagnostics& diagnostics) {
   for (const auto& [name, text] : options.set) {
+    if (PathOverrides::is_path(name)) continue;
     const std::string file = "--set " + name;
     try {
       Expression::compile(text, AnyScope(), true);

@@ -42,7 +42,9 @@ void add_part(Draft& draft, MapReader& map, const std::string& name) {
   part.prefix = name + ".";
   for (const char* word : part_sections) {
     const auto section = map.find(word);
-    if (section && !section->node().is_null()) part.sections.emplace(word, *section);
+    if (!section || section->node().is_null()) continue;
+    // Its entries are addressed by their full names.
+    part.sections.emplace(word, *section).first->second.set_address(std::string(word) + "." + name);
   }
   map.finish();
 }
@@ -133,7 +135,8 @@ class InstanceExpansion {
     Reading& inside = storage_.readings.emplace_back(given);
     inside.scope = &scope;
 
-    const CheckedValue body(inside, content.node(), content.key_node(), content.path());
+    CheckedValue body(inside, content.node(), content.key_node(), content.path());
+    body.set_address(content.path());
     MapReader map(body, "template");
     add_parameters(entry, map.find("parameters"), with, given, inside, scope);
     if (outer.readout != nullptr) outer.readout->add_instance(full, content.node());

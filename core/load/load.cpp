@@ -39,8 +39,10 @@ LoadedModel load(const Read& read, const BuildOptions& build, const LoadOptions&
     loaded.document = read(loaded.diagnostics);
     if (loaded.document) {
       const Registry registry = types(*loaded.document);
+      BuildOptions with_parser = build;
+      with_parser.parse_value = parse_yaml;
       loaded.model =
-          build_model(*loaded.document, registry, build, loaded.diagnostics,
+          build_model(*loaded.document, registry, with_parser, loaded.diagnostics,
                       [&](const Model& model, const std::vector<std::string>& unsure) {
                         check_channels(model, *loaded.document, unsure, !build.channels.empty(), loaded.diagnostics);
                       });

@@ -211,7 +211,7 @@ class Comparer {
     if (places_.empty()) return;
     const auto apart = [](const Difference& d) { return weight(d.largest, 1.0); };
     result_.distance = *std::ranges::max_element(result_.distances, {}, apart);
-    result_.farthest = std::exchange(result_.distance.name, "distance");
+    result_.farthest = std::exchange(result_.distance.name, "distances");
     result_.distance.rms = std::sqrt(squares / static_cast<double>(result_.rows * places_.size()));
     result_.distance.agrees = std::ranges::all_of(result_.distances, &Difference::agrees);
     result_.distances = worst_first(result_.distances, weights);

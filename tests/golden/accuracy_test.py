@@ -171,7 +171,7 @@ class Compare(ProgramTest):
         rms = math.sqrt(sum(d * d for d, _ in apart) / len(apart))
         out, _ = self.freeplay("compare", "a", "b", "--json", code=7)
         *_, body, total = json.loads(out)
-        self.assertEqual(["body.rod.distance", "distance"], [body["channel"], total["channel"]])
+        self.assertEqual(["body.rod.distance", "distances"], [body["channel"], total["channel"]])
         for row in (body, total):
             self.assertAlmostEqual(rms, row["rms"], delta=1e-12 * rms)
             self.assertAlmostEqual(max(apart)[0], row["max_abs"], delta=1e-12 * rms)
