@@ -1,6 +1,8 @@
 #include "base/sha256.h"
 
+#include <array>
 #include <cstring>
+#include <fstream>
 
 #include <sha2.h>
 
@@ -31,6 +33,18 @@ std::string Sha256::digits() const {
   std::memcpy(&context, state_.data(), sizeof context);
   char hex[SHA256_DIGEST_STRING_LENGTH];
   return SHA256End(&context, hex);
+}
+
+std::string sha256_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {};
+  Sha256 hash;
+  std::array<char, 1 << 16> piece{};
+  while (file) {
+    file.read(piece.data(), piece.size());
+    hash.add(piece.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  return file.bad() ? std::string() : hash.digits();
 }
 
 }  // namespace freeplay

@@ -11,6 +11,8 @@ namespace freeplay {
 
 /// 64 hexadecimal digits.
 std::string sha256(std::string_view text);
+/// The same of a file; empty where it cannot be read.
+std::string sha256_of_file(const std::string& path);
 
 /// The same of bytes that come piece by piece. A copy goes on from where it was made.
 class Sha256 {

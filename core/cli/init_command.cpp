@@ -155,7 +155,7 @@ Written init_plugin(const InitOptions& options, const CommonOptions& common) {
   written.next = {
       fmt::format("cmake -S {} -B {}", source, build), fmt::format("cmake --build {}", build),
       fmt::format("{} check-plugin {}", program, shell_word((folder / "build" / (snake_case(name) + ".so")).string())),
-      fmt::format("{} run {}", program, shell_word((folder / "example.yaml").string()))};
+      fmt::format("{} run {} --allow-plugins", program, shell_word((folder / "example.yaml").string()))};
   return written;
 }
 

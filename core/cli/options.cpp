@@ -90,6 +90,9 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
   repeatable(app, "--plugin", options.plugins, "Load one more plugin, a path or a name; repeatable")
       ->type_name("LIB")
       ->group(common_group);
+  app.add_flag("--allow-plugins", options.allow_plugins,
+               "Run the code of plugins that a model names, wherever they lie")
+      ->group(common_group);
 }
 
 void add_model_options(CLI::App& app, ModelOptions& options) {

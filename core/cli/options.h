@@ -19,10 +19,11 @@ namespace freeplay {
 
 /// Options of every command.
 struct CommonOptions {
-  bool quiet = false, verbose = false, json = false, no_color = false, strict = false;
+  bool quiet = false, verbose = false, json = false, no_color = false, strict = false, allow_plugins = false;
   int max_errors = 20;  ///< 0: no limit
   std::vector<std::string> plugins;
-  std::string command;  ///< the command line as typed
+  std::vector<std::string> recorded_plugins;  ///< files that a result which goes on was made with
+  std::string command;                        ///< the command line as typed
 };
 
 /// Options of every command that reads a model.

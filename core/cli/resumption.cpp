@@ -16,7 +16,8 @@ namespace {
 
 // What the numbers of a run that goes on may differ in; the rest of its options stays as it was.
 constexpr std::array may_change{"--resume", "--end", "--checkpoint", "--profile"};
-constexpr std::array of_every_command{"--quiet", "--verbose", "--json", "--no-color", "--max-errors"};
+constexpr std::array of_every_command{"--quiet",      "--verbose", "--json",         "--no-color",
+                                      "--max-errors", "--plugin",  "--allow-plugins"};
 
 void refuse_other_options(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
@@ -92,10 +93,15 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
                 fmt::format("'{}' does not say how the run was made", (directory / checkpoint_name).string()));
   }
   require_same_program(out.checkpoint);
+  const Json record = made.value("provenance", Json::object());
+  for (const Json& plugin : record.value("plugins", Json::array())) {
+    common.recorded_plugins.push_back(plugin.value("file", ""));
+  }
   out.options.checkpoint = asked.checkpoint;
   out.options.profile = asked.profile;
   out.options.out = asked.resume;
   out.options.model = (directory / made.value("model_copy", "model.yaml")).string();
+  out.options.model_name = record.value("model", Json::object()).value("name", "");
   const double end = number_at(made, "/settings/end");
   out.interval = number_at(made, "/settings/interval");
   const Json summary = summary_of(directory);

@@ -400,6 +400,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
     return run(with_interval, common, resumed);
   }
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
+  if (!options.model_name.empty()) loaded.model->name = options.model_name;
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (resumed != nullptr) require_same_making(*resumed, *loaded.model);
   if (!options.dry_run && resumed == nullptr) check_result_directory(path, options.force);
@@ -441,6 +442,7 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_run_options(*app, *options);
   add_common_options(*app, common);
   return {app, [app, options, &common] {
+            options->plugins = common.plugins;
             return options->resume.empty() ? run(*options, common, nullptr) : resume(*app, *options, common);
           }};
 }

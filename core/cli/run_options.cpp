@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
+#include "cli/repeat_runs.h"
 
 namespace freeplay {
 namespace {
@@ -34,7 +35,7 @@ void each_kept(Options& options, Common& common, Visit&& visit) {
   visit("interval", options.interval);
   visit("channels", options.channels);
   visit("twin", options.twin);
-  visit("plugins", common.plugins);
+  visit("plugins", options.plugins);
   visit("strict", common.strict);
 }
 
@@ -124,9 +125,10 @@ Making making(const RunOptions& options, const CommonOptions& common, const Mode
   add("--format", options.format);
   add("--repeat", options.repeat);
   add("--seed", options.seed);
+  if (!options.repeat.empty()) making.seed = repeat_plan(options.repeat, options.seed).seed;
   if (options.verify) making.arguments.emplace_back("--verify");
   if (options.twin) making.arguments.emplace_back("--twin");
-  for (const std::string& plugin : common.plugins) add("--plugin", plugin);
+  for (const std::string& plugin : options.plugins) add("--plugin", plugin);
   return making;
 }
 

@@ -15,6 +15,9 @@ namespace freeplay {
 struct RunOptions {
   std::string model, end, step, accuracy, interval, integrator, out, format, repeat, seed, checkpoint, resume;
   std::vector<std::string> channels;
+  // Of a run that goes on: the name of its model, whose copy has none where it was that of the file.
+  std::string model_name;
+  std::vector<std::string> plugins;  ///< words of --plugin, of the run that goes on where one does
   ModelOptions model_options;
   bool force = false, dry_run = false, verify = false, profile = false, twin = false;
   int twin_pipe = -1;  ///< this run is the twin of another, which compares

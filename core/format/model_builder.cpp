@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "base/kept_input.h"
 #include "format/analysis_section.h"
 #include "format/body_section.h"
 #include "format/doubtful_body.h"
@@ -106,7 +107,8 @@ class ModelBuilder {
     Model& model = draft_.model;
     model.file = document_.file_name();
     model.text = document_.text();
-    model.name = std::filesystem::path(model.file).stem().string();
+    model.name = kept_model_name(model.file);
+    if (model.name.empty()) model.name = std::filesystem::path(model.file).stem().string();
     model.overrides = draft_.options.set;
     const auto name = top.find("name"), description = top.find("description"), space = top.find("space");
     if (name) model.name = name->string().value_or(model.name);

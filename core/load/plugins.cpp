@@ -6,11 +6,15 @@
 
 #include <fmt/format.h>
 
+#include "base/kept_input.h"
+#include "base/sha256.h"
 #include "component/library.h"
 #include "format/model_builder.h"
 
 namespace freeplay {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// A joint type with play needs its ideal twin, of whatever library. Judged when all libraries are there: an error for
 /// those that were asked for (the first `named`), a warning for those that only lie in the folders for plugins.
@@ -29,35 +33,110 @@ void require_twins(const Registry& registry, std::size_t named, const LoadOption
   }
 }
 
-}  // namespace
+fs::path name_of(const std::string& file) { return fs::path(file).filename(); }
 
-Registry load_registry(const LoadOptions& options, const Document* document) {
-  Registry registry = Registry::with_builtins();
-  if (document != nullptr) {
-    const std::filesystem::path folder = std::filesystem::path(document->file_name()).parent_path();
-    for (const NamedPlugin& plugin : named_plugins(*document)) {
+/// The libraries of one command, in the order in which they are looked for.
+class Loader {
+ public:
+  explicit Loader(const LoadOptions& options) : options_(options) {}
+
+  void load_named(const Document& document) {
+    for (const NamedPlugin& plugin : named_plugins(document)) {
       try {
-        load_plugin(registry, find_plugin(plugin.word, folder));
+        load_named(plugin.word, document.file_name());
       } catch (const Error& error) {
         throw Error(error.category(), error.id(), error.message(), plugin.location, error.hint());
       }
     }
   }
-  for (const std::string& word : options.plugins) {
-    try {
-      load_plugin(registry, find_plugin(word, {}));
-    } catch (const Error& error) {
-      // A report on a model names its file, which does not name the plugin.
-      throw Error(error.category(), error.id(), fmt::format("--plugin {}: {}", word, error.message()), {},
-                  error.hint());
+
+  void load_options() {
+    for (const std::string& word : options_.plugins) {
+      try {
+        load_plugin(registry, find_plugin(word, {}));
+      } catch (const Error& error) {
+        // A report on a model names its file, which does not name the plugin.
+        throw Error(error.category(), error.id(), fmt::format("--plugin {}: {}", word, error.message()), {},
+                    error.hint());
+      }
     }
   }
+
+  void load_recorded() {
+    for (const std::string& file : options_.recorded_plugins) {
+      const auto same_name = [&](const RegisteredLibrary& library) { return name_of(library.path) == name_of(file); };
+      if (std::ranges::any_of(registry.libraries(), same_name)) continue;
+      const fs::path found = find_plugin(file, {});
+      require_plugin_allowed(found, options_);
+      load_plugin(registry, found);
+    }
+  }
+
+  Registry registry = Registry::with_builtins();
+
+ private:
+  void load_named(const std::string& word, const std::string& model_file) {
+    fs::path file;
+    try {
+      file = find_plugin(word, fs::path(model_file).parent_path());
+    } catch (const Error&) {
+      const auto same_name = [&](const std::string& other) { return name_of(other) == name_of(word); };
+      if (std::ranges::any_of(options_.plugins, same_name)) return;  // the option stands for it
+      const std::vector<std::string> kept = kept_plugins(model_file);
+      const auto there = std::ranges::find_if(kept, same_name);
+      std::error_code ignored;
+      if (there == kept.end() || !fs::is_regular_file(*there, ignored)) throw;
+      file = *there;
+    }
+    require_plugin_allowed(file, options_);
+    load_plugin(registry, file);
+  }
+
+  const LoadOptions& options_;
+};
+
+bool lies_in_plugin_folder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return std::ranges::any_of(plugin_folders(), [&](const fs::path& one) {
+    std::error_code ignored;
+    return fs::equivalent(one, folder, ignored);
+  });
+}
+
+bool is_option(const fs::path& file, const LoadOptions& options) {
+  return std::ranges::any_of(options.plugins, [&](const std::string& word) {
+    std::error_code ignored;
+    try {
+      return fs::equivalent(find_plugin(word, {}), file, ignored);
+    } catch (const Error&) {
+      return false;  // reported when it is loaded
+    }
+  });
+}
+
+}  // namespace
+
+void require_plugin_allowed(const fs::path& file, const LoadOptions& options) {
+  if (options.allow_plugins || lies_in_plugin_folder(file) || is_option(file, options)) return;
+  throw Error(Error::Category::plugin, "plugin-not-allowed",
+              fmt::format("the plugin '{}' (SHA-256 {}) lies outside of the folders for plugins, and to load it is to "
+                          "run its code",
+                          file.string(), sha256_of_file(file.string())),
+              {}, fmt::format("if you trust it, add --allow-plugins, or --plugin {}", file.string()));
+}
+
+Registry load_registry(const LoadOptions& options, const Document* document) {
+  Loader loader(options);
+  if (document != nullptr) loader.load_named(*document);
+  loader.load_options();
+  loader.load_recorded();
+  Registry& registry = loader.registry;
   const std::size_t named = registry.libraries().size();
   for (const std::string& reason : load_plugin_folders(registry)) {
     if (options.warn) options.warn(reason);
   }
   require_twins(registry, named, options);
-  return registry;
+  return std::move(registry);
 }
 
 }  // namespace freeplay

@@ -1,5 +1,6 @@
 """Plugins from outside: loading, the ways to find them, and probes that are broken on purpose."""
 import csv
+import hashlib
 import json
 import math
 import os
@@ -69,7 +70,7 @@ class LoadingTest(ProgramTest):
     def test_a_model_uses_the_joint_of_a_plugin_that_it_names(self):
         shutil.copy(EXAMPLE, self.path("spring.so"))
         model = self.write("twisted.yaml", TWISTED % "plugins: [spring.so]\n")
-        self.freeplay("run", model, "--out", "r")
+        self.freeplay("run", model, "--out", "r", "--allow-plugins")
         rows = list(csv.DictReader(self.read("r", "results.csv").splitlines()))
         rest, frequency = math.radians(20), math.sqrt(5 / 0.05)
         for row in rows:
@@ -117,6 +118,82 @@ class LoadingTest(ProgramTest):
         self.assertIn("revolute", out)
         self.assertRegex(err, r"warning: plugin '.*text\.so' cannot be loaded")
 
+    def test_a_library_that_only_a_model_names_is_not_loaded(self):
+        # Its constructor leaves a mark.
+        self.write("mark.c", """#include <stdio.h>
+__attribute__((constructor)) static void leave(void) { fclose(fopen("%s", "w")); }
+""" % self.path("mark"))
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", self.path("mark.so"), self.path("mark.c")], check=True)
+        with open(self.path("mark.so"), "rb") as file:
+            digits = hashlib.sha256(file.read()).hexdigest()
+        robot = self.write("m.yaml", TWISTED % "plugins: [./mark.so]\n")
+        commands = [("run", robot), ("run", robot, "--dry-run"), ("validate", robot), ("show", robot),
+                    ("show", robot, "--format", "svg"), ("analyze", "ik", robot, "--pose", "0,0,0"), ("convert", robot, "x.yaml"),
+                    ("list", "channels", robot)]
+        for words in commands:
+            with self.subTest(words):
+                out, err = self.freeplay(*words, code=5)
+                self.assertIn("m.yaml:3:11", err)
+                self.assertIn("the plugin './mark.so' (SHA-256 %s) lies outside of the folders for plugins" % digits, err)
+                self.assertIn("--allow-plugins", err)
+                self.assertIn("[plugin-not-allowed]", err)
+                self.assertFalse(os.path.exists(self.path("mark")))
+        # Told to, or found in a folder for plugins, it is.
+        for options in (("--allow-plugins",), ("--plugin", "./mark.so")):
+            _, err = self.freeplay("validate", robot, *options, code=5)
+            self.assertIn("has no entry point", err)
+            os.remove(self.path("mark"))
+        _, err = self.freeplay("validate", robot, code=5, environment={"FREEPLAY_PLUGIN_PATH": self.folder})
+        self.assertIn("has no entry point", err)
+        # A folder inside of one for plugins is none.
+        os.mkdir(self.path("inside"))
+        os.rename(self.path("mark.so"), self.path("inside", "mark.so"))
+        os.remove(self.path("mark"))
+        robot = self.write("m.yaml", TWISTED % "plugins: [inside/mark.so]\n")
+        _, err = self.freeplay("validate", robot, code=5, environment={"FREEPLAY_PLUGIN_PATH": self.folder})
+        self.assertIn("[plugin-not-allowed]", err)
+        self.assertFalse(os.path.exists(self.path("mark")))
+
+    def test_the_model_of_a_result_finds_its_plugins_and_its_tables(self):
+        for folder in ("lib", "models"):
+            os.mkdir(self.path(folder))
+        shutil.copy(EXAMPLE, self.path("lib", "spring.so"))
+        self.write("models/load.csv", "t,f\n0,1\n0.05,3\n0.5,2\n")
+        driven = (TWISTED % "plugins: [../lib/spring.so]\n").replace("name: twisted\n", "").replace(
+            "initial:", "drivers: {load: {joint: pin, kind: torque, table: load.csv}}\ninitial:")
+        self.write("models/twisted.yaml", driven)
+        self.freeplay("run", "models/twisted.yaml", "--out", "r", "--allow-plugins")
+        # In its own folder, and after a kill of the run.
+        _, err = self.freeplay("run", "r/model.yaml", "--out", "again", code=5)
+        self.assertIn("[plugin-not-allowed]", err)
+        self.freeplay("run", "r/model.yaml", "--out", "again", "--allow-plugins")
+        self.assertEqual(self.read("r", "results.csv"), self.read("again", "results.csv"))
+        self.assertEqual("twisted", json.loads(self.read("again", "summary.json"))["model"]["name"])
+        self.assertIn("twisted", self.freeplay("show", "r", "--allow-plugins")[0])
+        running = subprocess.Popen([PROGRAM, "run", "models/twisted.yaml", "--out", "cut", "--quiet", "--allow-plugins",
+                                    "--end", "20000 s"], cwd=self.folder, stderr=subprocess.DEVNULL)
+        self.addCleanup(running.kill)
+        while not os.path.exists(self.path("cut", "results.h5")):
+            self.assertIsNone(running.poll())
+            time.sleep(0.01)
+        running.send_signal(signal.SIGTERM)
+        self.assertEqual(130, running.wait(timeout=60))
+        os.remove(self.path("cut", "summary.json"))
+        _, err = self.freeplay("run", "--resume", "cut", code=5)
+        self.assertIn("[plugin-not-allowed]", err)
+        for options in (("--allow-plugins",), ("--plugin", "lib/spring.so")):
+            with self.subTest(options):
+                made = os.stat(self.path("cut", "checkpoint.bin")).st_ino
+                going_on = subprocess.Popen([PROGRAM, "run", "--resume", "cut", "--quiet", "--checkpoint", "50 ms", *options],
+                                            cwd=self.folder, stderr=subprocess.DEVNULL)
+                self.addCleanup(going_on.kill)
+                while os.stat(self.path("cut", "checkpoint.bin")).st_ino == made:
+                    self.assertIsNone(going_on.poll())
+                    time.sleep(0.01)
+                going_on.send_signal(signal.SIGTERM)
+                self.assertEqual(130, going_on.wait(timeout=60))
+                self.assertEqual("twisted", json.loads(self.read("cut", "summary.json"))["model"]["name"])
+
     def test_misspelt_parameters_of_a_plugin_are_reported_like_all_others(self):
         model = self.write("twisted.yaml", (TWISTED % "").replace("stiffness", "stifness"))
         _, err = self.freeplay("validate", model, "--plugin", EXAMPLE, code=3)
@@ -148,7 +225,7 @@ class ProbesTest(ProgramTest):
 
     def test_the_log_of_a_run_names_its_plugins(self):
         self.write("m.yaml", TWISTED % ("plugins: [%s]\n" % EXAMPLE))
-        self.freeplay("run", "m.yaml", "--out", "r", "--end", "1 ms")
+        self.freeplay("run", "m.yaml", "--out", "r", "--end", "1 ms", "--allow-plugins")
         self.assertRegex(self.read("r", "run.log"), r"note: plugin \S+ \S+, compiler .+, from %s" % re.escape(EXAMPLE))
 
     def test_a_name_of_a_built_in_type_is_refused(self):

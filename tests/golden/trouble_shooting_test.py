@@ -240,6 +240,8 @@ CASES = {
     "'...' holds other files than a result": (6, PENDULUM, ["run", "model.yaml", "--out", "."]),
     "'...' exists already": (6, PENDULUM, ["convert", "model.yaml", "model.yaml"]),
     "plugin '...' cannot be loaded: ... [plugin-refused]": (5, PENDULUM, RUN + ["--plugin", "./model.so"]),
+    "the plugin '...' (SHA-256 ...) lies outside of the folders for plugins, ... [plugin-not-allowed]":
+        (5, PENDULUM.replace("freeplay: 1", "freeplay: 1\nplugins: [./model.so]"), ["validate", "model.yaml"]),
     "there is no plugin '...' in ...": (5, PENDULUM, RUN + ["--plugin", "mine"]),
 }
 
