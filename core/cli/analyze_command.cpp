@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "analysis/analyse.h"
 #include "analysis/rows.h"
 #include "analysis/singularity.h"
+#include "base/sha256.h"
+#include "base/whole_file.h"
 #include "cli/analysis_watch.h"
 #include "cli/analyze_options.h"
 #include "cli/failure.h"
@@ -18,6 +22,8 @@
 #include "cli/terminal.h"
 #include "drawing/map_drawing.h"
 #include "load/load.h"
+#include "results/made_text.h"
+#include "results/provenance.h"
 
 namespace freeplay {
 namespace {
@@ -158,6 +164,33 @@ void refuse_idle_options(const AnalyzeOptions& options) {
   }
 }
 
+/// What makes the same table or map again.
+Json record_of(const Model& model, const AnalyzeOptions& options, const CommonOptions& common) {
+  Making making{.made = "analyze",
+                .command = common.command,
+                .arguments = analyze_arguments(options, common),
+                .build = FREEPLAY_BUILD};
+  if (!options.samples.empty()) making.seed = options.seed.empty() ? 0 : whole_number("--seed", options.seed, 0);
+  return provenance_with_texts(model, making);
+}
+
+/// Table, map and JSON, each to its place with the record of how it was made.
+void write_results(const AnalysisResult& result, const std::string& map, Json record, const AnalyzeOptions& options,
+                   const CommonOptions& common) {
+  if (!options.svg.empty()) write_output(options.svg, picture_with_record(map, record));
+  const std::string table = result.table.csv();
+  if (!options.out.empty() || !common.json) write_output(options.out, table);
+  if (common.json) {
+    Json json = result.table.json(options.kind);
+    json["provenance"] = record;
+    print_json(json);
+  }
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(options.out, ignored)) return;  // stdout, a terminal, a pipe
+  record["data_sha256"] = sha256(table);
+  write_whole_file(options.out + ".provenance.json", json_text(record));
+}
+
 int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   if (options.kind.empty() || options.model.empty()) {
     throw Error(Error::Category::usage, "missing-argument", "analyze needs a kind and a model file", {},
@@ -198,9 +231,7 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   for (const std::string& warning : result.warnings) {
     print_messages(fmt::format("{}: warning: {}\n", options.model, warning), common.no_color);
   }
-  if (!options.svg.empty()) write_output(options.svg, map);
-  if (!options.out.empty() || !common.json) write_output(options.out, result.table.csv());
-  if (common.json) print_json(result.table.json(options.kind));
+  write_results(result, map, record_of(*loaded.model, options, common), options, common);
   return 0;
 }
 

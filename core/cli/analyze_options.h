@@ -18,6 +18,9 @@ struct AnalyzeOptions {
   ModelOptions build;
 };
 
+/// The command line that makes the same table or map of a model, without the model and the files to write.
+std::vector<std::string> analyze_arguments(const AnalyzeOptions& options, const CommonOptions& common);
+
 /// "0.05,0,0" or "x=5 cm,angle=10 deg". Throws Error{usage} "bad-value".
 PoseWords pose_of(const PoseForm& form, const std::string& text);
 /// "x=FROM:TO:COUNT": the axis and its values. Throws Error{usage} "bad-value".

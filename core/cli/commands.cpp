@@ -10,6 +10,7 @@
 #include "cli/init_command.h"
 #include "cli/list_command.h"
 #include "cli/plot_command.h"
+#include "cli/reproduce_command.h"
 #include "cli/run_command.h"
 #include "cli/schema_command.h"
 #include "cli/seal_command.h"
@@ -28,6 +29,7 @@ std::span<const CommandEntry> all_commands() {
       {"export", add_export_command},
       {"seal", add_seal_command},
       {"plot", add_plot_command},
+      {"reproduce", add_reproduce_command},
       {"show", add_show_command},
       {"convert", add_convert_command},
       {"doctor", add_doctor_command},

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/input_text.h"
 #include "results/reader.h"
 
 namespace freeplay {
@@ -166,6 +167,12 @@ class CsvReader : public ResultReader {
       block.clear();
     }
     if (!block.empty()) take(block);
+  }
+
+  std::string summary() override {
+    std::string text;
+    const fs::path beside = fs::path(file_).parent_path() / "summary.json";
+    return read_input(beside.string(), text).empty() ? text : std::string();
   }
 
  private:

@@ -151,6 +151,18 @@ class Hdf5Reader : public ResultReader {
     return numbers;
   }
 
+  std::string summary() override {
+    std::string text;
+    guarded([&] {
+      if (H5Lexists(id_, "summary", H5P_DEFAULT) <= 0) return;
+      const Hdf5Id letters(H5Dopen2(id_, "/summary", H5P_DEFAULT), H5Dclose), type(H5Dget_type(letters), H5Tclose);
+      if (H5Tget_class(type) != H5T_STRING || H5Tget_size(type) != 1) return;
+      text.resize(static_cast<std::size_t>(length(letters)));
+      if (!text.empty()) checked(H5Dread(letters, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()));
+    });
+    return text;
+  }
+
  private:
   // A file that is written, or whose writer was killed, is open for one that reads along with it.
   void open_file() {

@@ -56,6 +56,8 @@ class ResultReader {
   /// Numbers of a table by bearing sector (BearingQuantity), 72 for each of RecordLayout::bearings; empty where the
   /// file has none.
   virtual std::vector<double> bearing(const std::string&) { return {}; }
+  /// Text of the summary of the run; empty while there is none.
+  virtual std::string summary() = 0;
 
  protected:
   explicit ResultReader(std::string file) : file_(std::move(file)) {}

@@ -3,7 +3,9 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/error.h"
 #include "base/input_text.h"
+#include "results/checkpoint.h"
 
 namespace freeplay {
 namespace {
@@ -22,42 +24,84 @@ std::string text_of(const fs::path& file) {
   return read_input(file.string(), text).empty() ? text : std::string();
 }
 
-Json parsed(const std::string& text) {
-  Json json = Json::parse(text, nullptr, false);
-  return json.is_discarded() ? Json(nullptr) : json;
+bool is_record(const Json& json) { return json.is_object() && json.contains("model") && json["model"].is_object(); }
+
+Json record_of_summary(const std::string& text) {
+  const Json summary = json_of(text);
+  return summary.is_object() ? summary.value("provenance", Json()) : Json();
 }
 
-/// From the files beside a CSV file.
-Json record_beside(const fs::path& folder) {
-  const Json summary = parsed(text_of(folder / "summary.json"));
-  if (!summary.is_object() || !summary.contains("provenance") || !summary["provenance"].is_object()) return nullptr;
-  Json record = summary["provenance"];
-  std::error_code ignored;
-  record["model"]["text"] =
-      text_of(fs::exists(folder / "model.urdf", ignored) ? folder / "model.urdf" : folder / "model.yaml");
-  if (!record.contains("inputs")) return record;
-  for (Json& input : record["inputs"]) {
-    if (input.contains("name") && input["name"].is_string()) {
-      input["text"] = text_of(folder / "inputs" / input["name"].get<std::string>());
-    }
+Json record_of_checkpoint(const fs::path& folder) {
+  try {
+    return read_checkpoint(folder).made.value("provenance", Json());
+  } catch (const Error&) {
+    return nullptr;
   }
-  return record;
+}
+
+/// Of results.h5, which may be damaged: other files have the same.
+Json record_of_rows(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::exists(folder / "results.h5", ignored)) return nullptr;
+  try {
+    return json_of(attribute(*open_hdf5(folder / "results.h5"), "provenance"));
+  } catch (const Error&) {
+    return nullptr;
+  }
 }
 
 }  // namespace
 
-Json record_of(const fs::path& path, const ResultReader& reader, const MadeOfResult& made) {
-  Json record = parsed(attribute(reader, "provenance"));
-  if (record.is_object()) {
-    record["model"]["text"] = attribute(reader, "model");
-    record["inputs"] = parsed(attribute(reader, "inputs"));
-  } else {
-    std::error_code ignored;
-    record = record_beside(fs::is_directory(path, ignored) ? path : path.parent_path());
+Json json_of(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  return json.is_discarded() ? Json(nullptr) : json;
+}
+
+bool has_ended(const Json& summary) {
+  if (!summary.is_object()) return false;
+  return summary.value("status", Json()) != "interrupted" && summary.value("exit_code", Json()) != 6;
+}
+
+Json record_of_directory(const fs::path& folder) {
+  Json record = record_of_summary(text_of(folder / "summary.json"));
+  if (!is_record(record)) record = record_of_rows(folder);
+  if (!is_record(record)) record = record_of_checkpoint(folder);
+  if (!is_record(record)) return nullptr;
+  std::error_code ignored;
+  record["model"]["text"] =
+      text_of(fs::exists(folder / "model.urdf", ignored) ? folder / "model.urdf" : folder / "model.yaml");
+  for (Json& input : record["inputs"]) {
+    if (!input.is_object() || !input.value("name", Json()).is_string()) continue;
+    // No more than a name, whatever a record from elsewhere says.
+    input["text"] = text_of(folder / "inputs" / fs::path(input["name"].get<std::string>()).filename());
   }
-  if (!record.is_object()) return nullptr;
-  if (record.value("made", "") == "run") {
-    record["run"] = {{"command", record.value("command", "")}, {"arguments", record.value("arguments", Json::array())}};
+  return record;
+}
+
+Json record_inside(ResultReader& reader) {
+  Json record = json_of(attribute(reader, "provenance"));
+  if (!is_record(record)) return nullptr;
+  if (record.value("made", Json()) != "run") return record;  // what was made from a result has it all
+  const Json of_summary = record_of_summary(reader.summary());
+  if (is_record(of_summary)) record = of_summary;  // which has hashes
+  record["model"]["text"] = attribute(reader, "model");
+  record["inputs"] = json_of(attribute(reader, "inputs"));
+  return record;
+}
+
+Json record_of(const fs::path& path, ResultReader& reader, const MadeOfResult& made) {
+  Json record = record_inside(reader);
+  if (!is_record(record)) {
+    std::error_code ignored;
+    record = record_of_directory(fs::is_directory(path, ignored) ? path : path.parent_path());
+  }
+  if (!is_record(record)) return nullptr;
+  if (record.value("made", Json()) == "run") {
+    record["run"] = {{"command", record.value("command", Json())},
+                     {"arguments", record.value("arguments", Json::array())},
+                     {"ended", has_ended(json_of(reader.summary()))}};
+  } else {
+    record["before"].push_back(record.value("arguments", Json::array()));  // a table of a table
   }
   record["made"] = made.made;
   record["command"] = made.command;

@@ -1,4 +1,4 @@
-// ResultRecord: the provenance of what is made from a result.
+// ResultRecord: the provenance of a result, and of what is made from one.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,13 @@
 
 namespace freeplay {
 
+/// The record of the run that wrote the directory, with texts of model and inputs as they stand there now; null where
+/// none says how it was made. A run that was killed has left it in its checkpoint.
+Json record_of_directory(const std::filesystem::path& folder);
+
+/// The record of the run with texts of model and inputs, from within an HDF5 file; null where it has none.
+Json record_inside(ResultReader& reader);
+
 /// How something was made from a result.
 struct MadeOfResult {
   std::string made;                    ///< the command: "export"
@@ -18,7 +25,14 @@ struct MadeOfResult {
 };
 
 /// The record of the run with texts of model and inputs, of what was made from it; null where the result has none. How
-/// the run was started stands in `run`.
-Json record_of(const std::filesystem::path& path, const ResultReader& reader, const MadeOfResult& made);
+/// the run was started stands in `run`, and whether it had come to its end; in `before` what exports made the result of
+/// it that is exported again.
+Json record_of(const std::filesystem::path& path, ResultReader& reader, const MadeOfResult& made);
+
+/// Whether a run with this summary came to its end: neither killed nor interrupted, and all was written.
+bool has_ended(const Json& summary);
+
+/// The text as JSON; null where it is none.
+Json json_of(const std::string& text);
 
 }  // namespace freeplay
