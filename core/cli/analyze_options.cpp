@@ -85,6 +85,7 @@ std::vector<std::string> analyze_arguments(const AnalyzeOptions& options, const 
   add("--seed", options.seed);
   add("--distribution", options.distribution);
   if (options.branches) words.emplace_back("--branches");
+  if (options.coloured) words.emplace_back("--colours");
   add("--preload", options.preload);
   add_each("--set", options.build.set);
   add_each("--ideal", options.build.ideal);

@@ -13,6 +13,7 @@
 #include "cli/output_file.h"
 #include "cli/terminal.h"
 #include "plot/channel_figure.h"
+#include "results/made_text.h"
 #include "results/result_record.h"
 
 namespace freeplay {
@@ -154,8 +155,7 @@ class Plot {
     }
     // How it was typed would make the bytes depend on where the picture goes.
     const Json record = record_of(options_.path, *readers_[0], {"plot", "freeplay plot", arguments_of(options_)});
-    figure.provenance = record.dump(-1, ' ', false, Json::error_handler_t::replace);
-    write_output(options_.out, figure_svg(figure, size_));
+    write_output(options_.out, picture_with_record(figure_svg(figure, size_), record));
     return 0;
   }
 

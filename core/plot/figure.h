@@ -39,7 +39,6 @@ struct Panel {
 
 struct Figure {
   std::string title;
-  std::string provenance;          ///< JSON
   std::vector<std::string> names;  ///< of the lines, for a legend where there are several
   std::string shading;             ///< what shaded spans mean
   std::vector<Panel> panels;

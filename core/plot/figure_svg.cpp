@@ -187,11 +187,10 @@ std::string figure_svg(const Figure& figure, const PageSize& size) {
   const char* unit = size.in_millimetres ? "mm" : "";
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2}{4}\" height=\"{3}{4}\" viewBox=\"0 0 {0} {1}\" "
-             "font-family=\"sans-serif\" font-size=\"11\">\n<title>{5}</title>\n<metadata>{6}</metadata>\n"
+             "font-family=\"sans-serif\" font-size=\"11\">\n<title>{5}</title>\n"
              "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
              px(size.width), px(y), fmt::format("{:g}", std::round(size.width * scale * 1e3) / 1e3),
-             fmt::format("{:g}", std::round(y * scale * 1e3) / 1e3), unit, escaped(figure.title),
-             escaped(figure.provenance)) +
+             fmt::format("{:g}", std::round(y * scale * 1e3) / 1e3), unit, escaped(figure.title)) +
          body + "</svg>\n";
 }
 

@@ -153,7 +153,7 @@ class Hdf5Reader : public ResultReader {
 
   std::string summary() override {
     std::string text;
-    guarded([&] {
+    guarded(file_, [&] {
       if (H5Lexists(id_, "summary", H5P_DEFAULT) <= 0) return;
       const Hdf5Id letters(H5Dopen2(id_, "/summary", H5P_DEFAULT), H5Dclose), type(H5Dget_type(letters), H5Tclose);
       if (H5Tget_class(type) != H5T_STRING || H5Tget_size(type) != 1) return;

@@ -96,8 +96,8 @@ std::string different_bearings(ResultReader& then, ResultReader& now) {
     if (then.layout().bearings.empty()) return {};
     const std::vector<double> a = then.bearing(quantity), b = now.bearing(quantity);
     for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
-      const Json x = i < a.size() ? json_number(a[i]) : Json("none"),
-                 y = i < b.size() ? json_number(b[i]) : Json("none");
+      const Json x = i < a.size() ? json_number(a[i]) : Json("nothing"),
+                 y = i < b.size() ? json_number(b[i]) : Json("nothing");
       if (x != y) return fmt::format("bearing/{}, number {}: {} recorded, {} now", quantity, i, x.dump(), y.dump());
     }
   }

@@ -19,7 +19,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t most_kept = std::size_t{1} << 25;  // numbers of one side at a time
-constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t no_place = std::numeric_limits<std::size_t>::max();
 
 std::string shown(const std::string& field) { return field.empty() ? "nothing" : field; }
 
@@ -43,8 +43,8 @@ bool compare_names(const std::vector<std::string>& then, const std::vector<std::
   const auto [a, b] = std::ranges::mismatch(then, now);
   if (a == then.end() && b == now.end()) return true;
   found.first = fmt::format("column {}: {} recorded, {} now", a - then.begin(),
-                            a == then.end() ? "none" : fmt::format("'{}'", *a),
-                            b == now.end() ? "none" : fmt::format("'{}'", *b));
+                            a == then.end() ? "nothing" : fmt::format("'{}'", *a),
+                            b == now.end() ? "nothing" : fmt::format("'{}'", *b));
   return false;
 }
 
@@ -71,7 +71,7 @@ class TextLines {
 };
 
 struct Mismatch {
-  std::size_t row = none, column = 0;
+  std::size_t row = no_place, column = 0;
   double time = 0.0, then = 0.0, now = 0.0;
 };
 
@@ -89,7 +89,7 @@ Mismatch first_mismatch(const Give& then, const Give& now, std::size_t width, co
   std::size_t at = 0;
   now([&](std::span<const double> rows) {
     const std::size_t both = std::min(rows.size(), kept.size() - std::min(at, kept.size()));
-    for (std::size_t i = 0; i < both && mismatch.row == none; ++i) {
+    for (std::size_t i = 0; i < both && mismatch.row == no_place; ++i) {
       const double a = kept[at + i];
       if (same((at + i) % width, a, rows[i])) continue;
       const std::size_t row = (at + i) / width;
@@ -161,7 +161,7 @@ TableDifference compare_rows(ResultReader& then, ResultReader& now, const TableR
     one.column = columns[one.column];
     if (one.row < first.row) first = one;
   }
-  if (first.row != none) {
+  if (first.row != no_place) {
     found.first = words_for(rules, first.row, number_text(first.time), names[first.column], number_text(first.then),
                             number_text(first.now));
   }
@@ -187,7 +187,7 @@ TableDifference compare_events(ResultReader& then, ResultReader& now, const Tabl
         return is_word ? word(then, column, a) == word(now, column, b) : same_number(a, b);
       },
       found);
-  if (first.row != none) {
+  if (first.row != no_place) {
     found.first = words_for(rules, first.row, number_text(first.time), names[first.column],
                             word(then, first.column, first.then), word(now, first.column, first.now));
   }

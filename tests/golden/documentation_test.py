@@ -160,7 +160,7 @@ class Documentation(ProgramTest):
     def test_pictures_are_those_that_their_commands_draw(self):
         self.run_page(os.path.join("docs", "pictures.md"))
         for image, name in (("plot-forces", "forces"), ("plot-orbit", "orbit"), ("show-slider-crank", "shown")):
-            shown, drawn = (re.sub(r"<metadata>.*</metadata>", "", text, flags=re.S) for text in (
+            shown, drawn = (re.sub(r"\n<metadata>.*</metadata>", "", text, flags=re.S) for text in (
                 self.read_file("docs", "images", image + ".svg"), self.read(name + ".svg")))
             words, numbers = words_and_numbers(drawn)
             expected_words, expected = words_and_numbers(shown)

@@ -16,17 +16,15 @@ Figure one_line(std::vector<Point> points) {
   panel.lines.push_back(std::move(line));
   Figure figure;
   figure.title = "a & b";
-  figure.provenance = "{\"made\": \"</metadata>\"}";
   figure.names = {"r"};
   figure.panels.push_back(std::move(panel));
   return figure;
 }
 
-TEST(FigureSvg, EscapesNamesAndProvenance) {
+TEST(FigureSvg, EscapesNames) {
   const std::string text = figure_svg(one_line({{0.0, 0.0}, {1.0, 2.0}}), {});
   EXPECT_NE(std::string::npos, text.find("joint.&lt;a&gt;.fn"));
   EXPECT_NE(std::string::npos, text.find("<title>a &amp; b</title>"));
-  EXPECT_EQ(text.find("</metadata>"), text.rfind("</metadata>"));
 }
 
 TEST(FigureSvg, IsWrittenInMillimetresForPaper) {
