@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -125,6 +126,22 @@ std::string name_of_result(const std::string& path, const Json& summary) {
   return summary["model"].value("name", folder);
 }
 
+/// What the legend calls results: by their models, and where that tells none apart by where they are, too.
+std::vector<std::string> legend_names(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) {
+    const Json summary = summary_beside(path);
+    std::string name = name_of_result(path, summary);
+    const bool ideal =
+        summary.is_object() && !summary.value(Json::json_pointer("/settings/ideal"), Json::array()).empty();
+    if (ideal) name += ", ideal";
+    names.push_back(std::move(name));
+  }
+  if (std::set<std::string>(names.begin(), names.end()).size() == names.size()) return names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] += fmt::format(", {}", paths[i]);
+  return names;
+}
+
 class Plot {
  public:
   Plot(PlotOptions options, const CommonOptions& common) : options_(std::move(options)), common_(common) {
@@ -141,8 +158,11 @@ class Plot {
     const bool as_text = options_.text || (options_.out.empty() && stdout_is_terminal());
     const int columns = std::min(stdout_columns(), most_columns);
     if (as_text) request_.across = 2.0 * columns;
-    std::vector<plot::Source> sources{{options_.path, readers_[0].get()}};
-    for (std::size_t i = 1; i < readers_.size(); ++i) sources.push_back({options_.against[i - 1], readers_[i].get()});
+    std::vector<std::string> paths{options_.path};
+    paths.insert(paths.end(), options_.against.begin(), options_.against.end());
+    const std::vector<std::string> names = legend_names(paths);
+    std::vector<plot::Source> sources;
+    for (std::size_t i = 0; i < readers_.size(); ++i) sources.push_back({names[i], readers_[i].get()});
     plot::Figure figure = plot::channel_figure(sources, request_);
     figure.title = name_of_result(options_.path, summary_);
     if (common_.json) {

@@ -124,6 +124,11 @@ class Plot(ProgramTest):
         panel = self.plot("joint.wrist.fn", "--against", "other")[0]
         self.assertEqual(2, len(panel.lines))
         self.assertEqual(panel.lines[0], panel.lines[1])
+        names = [e.text for e in ET.fromstring(self.freeplay("plot", "r", "joint.wrist.fn", "--against", "other")[0]).iter(SVG + "text")]
+        self.assertIn("slider-crank, other", names)
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--ideal", "all", "--out", "ideal")
+        out, _ = self.freeplay("plot", "r", "body.slider.x", "--against", "ideal")
+        self.assertIn(">slider-crank, ideal<", out)
         self.freeplay("run", mechanism("pendulum"), "--quiet", "--end", "10 ms", "--out", "pendulum")
         _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", "pendulum", code=2)
         self.assertIn("[unknown-channel]", err)

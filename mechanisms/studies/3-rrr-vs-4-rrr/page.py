@@ -141,9 +141,11 @@ clearance is {c:.2f} mm; all errors are proportional to it.
 
 {static}
 
-![maps]({images}/maps.svg)
+![map of the 3-RRR]({images}/map-3-rrr.svg)
 
-Worst errors at platform angle 0; hatched: out of reach; the circle is the path.
+![map of the 4-RRR]({images}/map-4-rrr.svg)
+
+Largest exact position errors at platform angle 0; hatched: out of reach; the circle is the path.
 
 ![along the circle]({images}/bounds.svg)
 
@@ -168,11 +170,21 @@ and fractions are good to some percent, largest forces to some ten percent: diff
 
 "rms torques" is that of all drivers together; forces are those of loose joints.
 
+The last turn at the base values, as `freeplay plot` draws it: the platform's error in x and y of the 3-RRR (blue) and the 4-RRR (dashed),
+
 ![platform error]({images}/errors.svg)
 
-![loads]({images}/loads.svg)
+drive torque and bearing force of the first leg with play (blue) and without (dashed), 3-RRR first,
 
-![journal orbits]({images}/orbits.svg)
+![loads of the 3-RRR]({images}/loads-3-rrr.svg)
+
+![loads of the 4-RRR]({images}/loads-4-rrr.svg)
+
+and the path of the journal in leg1.B, in the 3-RRR and in the 4-RRR.
+
+![orbit in the 3-RRR]({images}/orbit-3-rrr.svg)
+
+![orbit in the 4-RRR]({images}/orbit-4-rrr.svg)
 
 ## Does the motion stay within the bounds at rest?
 

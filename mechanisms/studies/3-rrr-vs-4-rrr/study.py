@@ -10,6 +10,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -90,10 +91,36 @@ class Study:
     def centre(self, mechanism):
         return self.analysis(mechanism, "--pose", "0,0,0")[0]
 
-    def map(self, mechanism):
+    def map_grid(self):
         ends = self.plan["map"]
         span = "%r:%r:%d" % (ends["from"], ends["to"], ends["count"])
-        return self.analysis(mechanism, "--grid", "x=" + span, "--grid", "y=" + span)
+        return ["--grid", "x=" + span, "--grid", "y=" + span]
+
+    def map(self, mechanism):
+        return self.analysis(mechanism, *self.map_grid())
+
+    def draw(self, runs, folder):
+        """Pictures of single runs and maps, by the program."""
+        base, turns = self.plan["base"], self.plan["turns"]
+        window = ["--from", "%r s" % ((turns - 1) * base["T"]), "--until", "%r s" % (turns * base["T"])]
+        one = {m: runs[m, "c", base["c"]].folder for m in self.mechanisms}
+        first, second = self.mechanisms
+        self.picture(folder, "errors", "plot", one[first], "driver.circle.ex", "driver.circle.ey", *window, "--against", one[second])
+        for m in self.mechanisms:
+            self.picture(folder, "map-" + m, "analyze", "error", self.model(m), *self.map_grid())
+            self.picture(folder, "loads-" + m, "plot", one[m], "driver.leg1.A.torque", "joint.leg1.B.fx", *window,
+                         "--against", runs[m, "ideal", base["T"]].folder)
+            self.picture(folder, "orbit-" + m, "plot", one[m], "--orbit", "leg1.B", *window, "--width", "480")
+
+    def picture(self, folder, name, command, *words):
+        """Without the record of provenance, which holds the paths of this machine; names of results are those of mechanisms."""
+        path = os.path.join(folder, name + ".svg")
+        where = ["--svg", path, "--out", os.devnull] if command == "analyze" else ["--out", path]
+        self.call(command, *words, *where)
+        with open(path, encoding="utf-8") as file:
+            text = re.sub(r"\n<metadata>.*?</metadata>", "", file.read(), flags=re.S)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
 
 
 class Run:
@@ -163,7 +190,10 @@ def main():
     runs = study.runs()
     pictures = os.path.join(docs, "images", NAME)
     os.makedirs(pictures, exist_ok=True)
+    for old in os.listdir(pictures):
+        os.remove(os.path.join(pictures, old))
     figures.draw(plan, static, runs, pictures)
+    study.draw(runs, pictures)
     text = page.text(plan, static, runs, "images/" + NAME)
     with open(os.path.join(docs, NAME + ".md"), "w", encoding="utf-8") as file:
         file.write(text)
