@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drawing/given_start.h"
+#include "drawing/pitch_radii.h"
 #include "drawing/spatial_drawing.h"
 #include "svg/page.h"
 
@@ -242,13 +243,12 @@ class Drawing {
   void draw_gear(const JointElement& joint) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
     const Point from = place(gear.first), to = place(gear.second);
-    // Teeth of both wheels pass equally fast: r_2 = r_1/|ratio|, outside of each other where they turn against it.
-    double second = length(to - from) / std::abs(1.0 - gear.ratio), first = second * std::abs(gear.ratio);
-    if (!turns(gear.first) || !turns(gear.second) || !(second > least_rim) || !(first > least_rim) ||
-        !(std::max(first, second) < 3.0 * width)) {
-      first = second = rim;
+    PitchRadii radii = pitch_radii(length(to - from), gear.ratio);
+    if (!turns(gear.first) || !turns(gear.second) || !(std::min(radii.first, radii.second) > least_rim) ||
+        !(std::max(radii.first, radii.second) < 3.0 * width)) {
+      radii = {rim, rim};
     }
-    for (const auto& [at, radius] : {std::pair(from, first), std::pair(to, second)}) {
+    for (const auto& [at, radius] : {std::pair(from, radii.first), std::pair(to, radii.second)}) {
       out_.shape(
           "<circle class=\"pitch\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" "
           "stroke-dasharray=\"2 2\"/>\n",

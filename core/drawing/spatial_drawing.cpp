@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drawing/given_start.h"
+#include "drawing/pitch_radii.h"
 #include "drawing/spatial_scene.h"
 #include "drawing/view.h"
 
@@ -19,7 +20,8 @@ using svg::Point;
 using Vector = Eigen::Vector3d;
 
 constexpr double panel_width = 580.0, most_height = 560.0, least_height = 240.0, title_height = 18.0;
-constexpr double margin = 52.0, axes_width = 80.0;  // the arrows of the axes stand left of everything else
+constexpr double least_rim = 8.0, most_rim = 120.0;  // radii of pitch circles that are drawn true
+constexpr double margin = 52.0, axes_width = 80.0;   // the arrows of the axes stand left of everything else
 // More names than these are in the isometric view alone.
 constexpr std::size_t few = 16;
 
@@ -323,8 +325,22 @@ class Drawing {
   void draw_gear(const JointElement& one) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(one.gear)];
     const Point from = view_->page(scene_.place(gear.first)), to = view_->page(scene_.place(gear.second));
-    for (const Point& at : {from, to})
-      page_.circle(at, 12.0, "fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" stroke-dasharray=\"2 2\"");
+    const JointFreedom &first = scene_.freedom(gear.first), &second = scene_.freedom(gear.second);
+    const double apart = (scene_.place(gear.second) - scene_.place(gear.first)).norm();
+    const bool parallel = first.turns == 1 && second.turns == 1 && first.turn.cross(second.turn).norm() < 1e-6;
+    const PitchRadii radii = pitch_radii(view_->scale() * apart, gear.ratio);
+    const bool seen =
+        parallel && std::min(radii.first, radii.second) > least_rim && std::max(radii.first, radii.second) < most_rim;
+    const std::pair<Point, const JointFreedom*> wheels[] = {{from, &first}, {to, &second}};
+    for (const auto& [at, freedom] : wheels) {
+      const double radius = !seen ? 12.0 : freedom == &first ? radii.first : radii.second;
+      if (freedom->turns == 1) {
+        solid::pitch_circle(page_, *view_, at, freedom->turn, radius);
+      } else {
+        page_.circle(at, 12.0,
+                     "class=\"pitch\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" stroke-dasharray=\"2 2\"");
+      }
+    }
     page_.line(from, to, "stroke=\"#aa3377\" stroke-dasharray=\"6 2 1 2\"");
     name(one.name, 0.5 * (from + to), "font-style=\"italic\"");
   }

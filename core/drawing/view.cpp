@@ -16,7 +16,7 @@ constexpr const char* axis_tints[] = {"#cc3311", "#228833", "#4477aa"};
 std::vector<Point> ring(const View& view, const Point& at, const Vector& axis, double radius) {
   const Vector side = axis.unitOrthogonal(), other = axis.cross(side);
   std::vector<Point> points;
-  constexpr int corners = 24;
+  const int corners = radius < 40.0 ? 24 : 72;
   for (int i = 0; i < corners; ++i) {
     const double angle = full_turn * i / corners;
     points.push_back(at + radius * view.flat(std::cos(angle) * side + std::sin(angle) * other));
@@ -66,6 +66,13 @@ void block(svg::Page& page, const View& view, const Point& at, const Eigen::Matr
         svg::path(corners), shade, shade, shade);
   }
   page.block(at, half.maxCoeff());
+}
+
+void pitch_circle(svg::Page& page, const View& view, const Point& at, const Vector& axis, double radius) {
+  page.shape(
+      "<path class=\"pitch\" d=\"{} Z\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"2.5\" stroke-dasharray=\"2 "
+      "2\"/>\n",
+      svg::path(ring(view, at, axis, radius)));
 }
 
 void ball(svg::Page& page, const Point& at, double radius) {

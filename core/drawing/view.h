@@ -48,6 +48,8 @@ void bar(svg::Page& page, const View& view, const svg::Point& at, const Eigen::V
 /// A block with its edges along the columns of `axes`, `half` wide to each side, faces in shades of `grey` 0 to 1.
 void block(svg::Page& page, const View& view, const svg::Point& at, const Eigen::Matrix3d& axes,
            const Eigen::Vector3d& half, double grey);
+/// A dashed circle about the unit vector `axis` [px].
+void pitch_circle(svg::Page& page, const View& view, const svg::Point& at, const Eigen::Vector3d& axis, double radius);
 void ball(svg::Page& page, const svg::Point& at, double radius);
 
 /// Arrows for the world axes from a point of the page on, with their letters; those along the line of sight are a ring

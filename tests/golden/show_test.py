@@ -223,6 +223,23 @@ frames: {ground/far: [1, 0]}
             self.assertAlmostEqual(first, float(a.get("r")) / apart, delta=1e-3)
             self.assertAlmostEqual(first / abs(ratio), float(b.get("r")) / apart, delta=1e-3)
 
+    def test_gears_in_space_are_drawn_by_their_pitch_circles(self):
+        self.write("m.yaml", """freeplay: 1
+space: spatial
+bodies: {a: {mass: 1, inertia: [1, 1, 1]}, b: {mass: 1, inertia: [1, 1, 1]}, c: {mass: 1, inertia: [1, 1, 1]}}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  B: {type: revolute, between: [ground/far, b]}
+  C: {type: revolute, between: [ground/wide, c]}
+  mesh: {type: gear, of: [A, B], ratio: -2}
+frames: {ground/far: [1, 0, 0], ground/wide: [7, 0, 0]}
+""")
+        out, _ = self.freeplay("show", "m.yaml", "--format", "svg")
+        (top,) = [g for g in xml.fromstring(out).iter(SVG + "g") if g.get("id") == "top"]
+        wide = [max(x for x, _ in points) - min(x for x, _ in points)
+                for points in map(self.points, self.kind(top, "path", "pitch"))]
+        self.assertAlmostEqual(2, wide[0] / wide[1], delta=0.05)
+
     def test_drawing_shows_gears_with_their_names(self):
         self.write("m.yaml", """freeplay: 1
 bodies:
