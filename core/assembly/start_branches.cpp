@@ -22,6 +22,7 @@ constexpr double same_place = 1e-6;    // of two positions
 constexpr double other_place = 1e-3;   // positions that differ by less are one, reached on two ways
 constexpr double kept = 1e-6;          // a pose that is missed by less is kept
 constexpr double equally_near = 0.01;  // of the distance
+constexpr double off_the_way = 0.2;    // of its length: what another branch would be beside
 constexpr double longest_turn = 0.5;   // in one step towards the rows
 constexpr double weight_of_guess = 1e-2;
 constexpr int steps_by_weight = 6;
@@ -294,10 +295,33 @@ void StartBranches::take_nearest() {
   mechanism_.evaluate(term_position | term_velocity);
 }
 
+// Places on the straight way, put right by the rows, that stay near it and are as near to what is given.
+bool StartBranches::joined(const Position& a, const Position& b) const {
+  const std::span<double> q = mechanism_.state.q();
+  const std::vector<double> before(q.begin(), q.end());
+  const VectorXd way = difference(a.q, b.q);
+  const double length = scaled(system_, way).norm();
+  bool as_near = true;
+  for (const double part : {0.25, 0.5, 0.75}) {
+    const VectorXd increment = part * way;
+    std::vector<double> aim(q.begin(), q.end());
+    system_.coordinates().retract(a.q, {increment.data(), at(static_cast<int>(increment.size()))}, aim);
+    std::ranges::copy(aim, q.begin());
+    as_near = as_near && mechanism_.holds(mechanism_.converge());
+    if (!as_near) break;
+    const std::vector<double> there(q.begin(), q.end());
+    const double missed = given_.any() ? given_.misses(there).norm() : 0.0;
+    as_near = scaled(system_, difference(aim, there)).norm() < off_the_way * length &&
+              missed <= (1.0 + equally_near) * std::max(a.from_given, b.from_given) + same_place;
+  }
+  std::ranges::copy(before, q.begin());
+  return as_near;
+}
+
 std::optional<std::vector<double>> StartBranches::as_near() const {
   const Position& best = nearest();
   for (const Position& one : found_) {
-    if (&one != &best && !nearer(best, one)) return one.q;
+    if (&one != &best && !nearer(best, one) && !joined(best, one)) return one.q;
   }
   return std::nullopt;
 }

@@ -29,7 +29,8 @@ class StartBranches {
   static bool keeps(const GivenPoses& given, std::span<const double> q);
   /// Puts the nearest position into the state.
   void take_nearest();
-  /// Another position that is as near as the nearest, if there is one.
+  /// Another position that is as near as the nearest, if there is one: none that a free motion leads to through others
+  /// which are as near, as a rod between two balls spins.
   std::optional<std::vector<double>> as_near() const;
 
  private:
@@ -48,6 +49,7 @@ class StartBranches {
   std::vector<double> turned(int seed) const;
   Eigen::VectorXd difference(std::span<const double> from, std::span<const double> to) const;
   double from_guess(std::span<const double> q) const;
+  bool joined(const Position& a, const Position& b) const;
   bool nearer(const Position& a, const Position& b) const;
   const Position& nearest() const;
 

@@ -44,6 +44,7 @@ class Examination {
     const MatrixXd open = constraint_matrix(released_, open_);
     judge_plays(open);
     find_undetermined(open);
+    if (!dead) judge_locked(open);
     if (!dead) find_left_free();
     return std::move(structure_);
   }
@@ -246,6 +247,28 @@ class Examination {
       if (slice.size > 0 && stresses.middleRows(slice.offset, slice.size).norm() > counts_as_motion) {
         structure_.undetermined.push_back(model_.joints[at(j)].name);
       }
+    }
+  }
+
+  /// A driver that pushes a joint between bodies which nothing lets move, though no other driver holds them.
+  void judge_locked(const MatrixXd& open) {
+    const bool held = std::ranges::any_of(model_.drivers, [](const Driver& driver) { return prescribes(driver.kind); });
+    if (held || model_.drivers.empty()) return;
+    const MatrixXd free = kernel(open);
+    const int width = released_.body_velocities();
+    const auto moves = [&](int marker) {
+      const BodyId b = body_of(marker);
+      return b != ground && free.cols() > 0 && free.middleRows(width * b, width).norm() > counts_as_motion;
+    };
+    for (const Driver& driver : model_.drivers) {
+      const JointElement& joint = model_.joints[at(driver.joint)];
+      if (moves(joint.marker_a) || moves(joint.marker_b)) continue;
+      doubt(
+          "locked",
+          fmt::format("driver '{}' moves nothing: the joints let neither body of '{}' move; leave out what holds them "
+                      "twice, or correct a length that closes a loop of no freedom",
+                      driver.name, joint.name),
+          driver.name, driver.location);
     }
   }
 

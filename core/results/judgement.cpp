@@ -113,17 +113,19 @@ void judge_constraints(const RunRecord& record, Verdict& verdict) {
 /// redundant constraints, forces pass it smoothly.
 void judge_singular(const RunRecord& record, Verdict& verdict) {
   const RunExtremes& seen = record.extremes;
-  if (!(seen.passed_at < unbounded) || seen.force_near_joint < 0) return;
-  const double usual = seen.force_beside > 0.0 ? seen.force_beside : seen.row_force / of_beside;
-  if (!(seen.force_near > of_beside * usual)) return;
-  const std::string joint = name(record.model.joints[at(seen.force_near_joint)]);
+  if (!(seen.passed_at < unbounded)) return;
+  // A long step may pass the position and end a little beside it, where forces are still far above all others.
+  const NearForce& near = seen.near.force > of_beside * seen.beside.force ? seen.near : seen.beside;
+  const double usual = near.force > seen.beside.force && seen.beside.force > 0.0 ? seen.beside.force : seen.away.force;
+  if (near.joint < 0 || !(near.force > of_beside * usual)) return;
+  const std::string joint = name(record.model.joints[at(near.joint)]);
   verdict.add({.id = "singular-position",
                .level = Trust::doubtful,
                .message = fmt::format("the mechanism went through a singular position of its constraints at t = {:.6g} "
                                       "s, where forces are not determined; beside it {} has {:.3g} N at t = {:.6g} s",
-                                      seen.passed_at, joint, seen.force_near, seen.force_near_time),
+                                      seen.passed_at, joint, near.force, near.time),
                .element = joint,
-               .value = seen.force_near,
+               .value = near.force,
                .limit = of_beside * usual});
 }
 

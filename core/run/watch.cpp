@@ -122,13 +122,8 @@ void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
   of_rows = std::sqrt(of_rows);
   seen_.applied_force = std::max(seen_.applied_force, std::sqrt(others));
   seen_.part_force[part] = std::max(seen_.part_force[part], of_rows);
-  if (passage_.is_near() && of_rows > seen_.force_near) {
-    seen_.force_near = of_rows;
-    seen_.force_near_joint = joint;
-    seen_.force_near_time = row[at(channels_.time)];
-  } else if (passage_.is_beside()) {
-    seen_.force_beside = std::max(seen_.force_beside, of_rows);
-  }
+  NearForce& of = passage_.is_near() ? seen_.near : passage_.is_beside() ? seen_.beside : seen_.away;
+  if (of_rows > of.force) of = {of_rows, row[at(channels_.time)], joint};
   if (of_rows > seen_.row_force) {
     seen_.row_force = of_rows;
     seen_.row_force_joint = joint;

@@ -22,6 +22,16 @@ inline constexpr double radius_by_clearance = 1000.0;
 inline constexpr double ideal_strength = 0.1;
 }  // namespace trust
 
+/// The largest force of rows in some part of a motion.
+struct NearForce {
+  double force = 0.0, time = 0.0;  ///< [N], [s]
+  int joint = -1;
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.force, self.time, self.joint);
+  }
+};
+
 /// Largest values over a run, from its start on and whatever `discard` says.
 struct RunExtremes {
   struct Range {
@@ -45,9 +55,8 @@ struct RunExtremes {
   std::array<double, parts> part_kinetic{}, part_force{};
   double row_force = 0.0, row_force_time = 0.0;  ///< largest force of rows [N] and when [s]
   int row_force_joint = -1;
-  double force_near = 0.0, force_near_time = 0.0;  ///< the same where the motion is close to a singular position
-  int force_near_joint = -1;
-  double force_beside = 0.0;   ///< the same not quite so close [N]
+  /// The same where the motion is close to a singular position, not quite so close, and further away.
+  NearForce near, beside, away;
   double applied_force = 0.0;  ///< largest force of contacts, springs and applied forces [N]
   double drive_motion = 0.0;   ///< largest of |alpha| L + omega^2 L, or |a| + v^2/L, of a prescribing driver [m/s^2]
   double drive_effort = 0.0;   ///< largest force, or torque by L, of a driver that applies one [N]
@@ -62,7 +71,8 @@ struct RunExtremes {
   static void exchange(Self& self, Archive& archive) {
     archive(self.kinetic, self.potential, self.work, self.dissipated, self.residual, self.residual_time);
     archive(self.part_kinetic, self.part_force, self.row_force, self.row_force_time, self.row_force_joint);
-    archive(self.force_near, self.force_near_time, self.force_near_joint, self.force_beside, self.applied_force);
+    archive(self.near, self.beside, self.away);
+    archive(self.applied_force);
     archive(self.drive_motion, self.drive_effort, self.beyond_reach, self.farthest_body, self.size);
     archive(self.least_regularity, self.singular_time, self.passed_at, self.open);
   }

@@ -284,6 +284,45 @@ simulation: {end: 0.1 s, step: 1 ms}
             start, _ = self.start(WHEELS % (turned, -0.4 * turned))
             self.assertEqual([], self.changes["moved"], turned)
 
+    def test_a_rod_between_two_balls_may_spin_as_it_likes(self):
+        _, messages = self.start("""freeplay: 1
+space: spatial
+bodies:
+  ground: {frames: {o2: {position: [0.3, 0, 0], rpy: [90 deg, 0, 0]}}}
+  crank: {mass: 0.3, inertia: [1e-5, 2e-4, 2e-4], com: [0.02, 0, 0], frames: {tip: [0.05, 0, 0]}}
+  rod: {mass: 0.3, inertia: [1e-5, 2e-3, 2e-3], com: [0.14, 0, 0], frames: {tip: [0.28, 0, 0]}}
+  out: {mass: 0.3, inertia: [1e-4, 5e-4, 5e-4], com: [0.05, 0, 0], frames: {tip: [0.15, 0, 0]}, pose: {rpy: [90 deg, -90 deg, 0]}}
+joints:
+  a: {type: revolute, between: [ground, crank]}
+  b: {type: spherical, between: [crank/tip, rod]}
+  c: {type: spherical, between: [rod/tip, out/tip]}
+  d: {type: revolute, between: [ground/o2, out]}
+drivers: {m: {joint: a, kind: velocity, value: 60 rpm}}
+simulation: {end: 1 s, accuracy: 1 um}
+""")
+        self.assertEqual([], [m["id"] for m in messages])
+
+    def test_a_motor_on_a_mechanism_that_cannot_move_is_named(self):
+        braced = """freeplay: 1
+bodies:
+  ground: {frames: {c: [0.3, 0]}}
+  crank: {mass: 1, inertia: 2e-3, frames: {tip: [0.1, 0]}, pose: {angle: 60 deg}}
+  bar: {mass: 1, inertia: 5e-3, frames: {tip: [0.25, 0]}}
+  rocker: {mass: 1, inertia: 5e-3, frames: {tip: [0.25, 0]}, pose: {angle: 100 deg}}
+joints:
+  a: {type: revolute, between: [ground, crank]}
+  d: {type: revolute, between: [ground/c, rocker]}
+  b: {type: revolute, between: [crank/tip, bar]}
+  c: {type: revolute, between: [bar/tip, rocker/tip]}
+  brace: {type: distance, between: [ground/c, crank/tip], length: 0.25}
+drivers: {m: {joint: a, kind: torque, value: 20 N*m}}
+simulation: {end: 1 s, accuracy: 1 um}
+"""
+        _, messages = self.start(braced)
+        self.assertIn("locked", [m["id"] for m in messages])
+        _, messages = self.start("".join(line for line in braced.splitlines(True) if "brace" not in line))
+        self.assertNotIn("locked", [m["id"] for m in messages])
+
     def test_a_train_finds_the_turn_in_which_given_poses_fit(self):
         # The poses hold up to whole turns: the large wheel turns by 144 deg less each turn of the small one.
         for turned in (9, 14, 40, -14):

@@ -150,6 +150,8 @@ CASES = {
             "initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
     "driver '...' cannot move its joint from here: ... it; ... [assembly-failed]":
         (3, driven("drivers:", "  again: {type: revolute, between: [ground/far, rod/tip]}\nframes: {ground/far: [1 m, 0]}\ndrivers:"), RUN),
+    "driver '...' moves nothing: ... [locked]":
+        (0, driven("drivers:", "  held: {type: fixed, between: [ground, rod]}\ndrivers:").replace("kind: angle, value: t", "kind: torque, value: 1"), ["validate", "model.yaml"]),
     "driver '...' starts joint '...' at a dead point...: ... [dead-point]":
         (0, SHORT_ROD.replace("value: 10*t", "value: 0").replace("joint: pivot, kind: angle, value: 0", "joint: guide, kind: position, value: 1.5 m"), ["validate", "model.yaml"]),
     "a step may err by ... m, but positions of a model of ... m are rounded to ... m [out-of-range]":

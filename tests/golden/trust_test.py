@@ -298,6 +298,26 @@ simulation: {end: 2 s, step: 1 ms}
         for words in (("--step", "0.7 ms"), ("--step", "2 ms"), ("--accuracy", "1um")):
             self.run_model(flat, *words)
             self.assertIn("singular-position", self.ids(), words)
+        # Wherever steps end: weights give these forces a pole there.
+        heavy = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {c: [0.3, 0]}}
+  crank: {mass: 1, inertia: 2e-3, com: [0.04, 0], frames: {tip: [0.1, 0]}}
+  bar: {mass: 1, inertia: 5e-3, com: [0.1, 0], frames: {tip: [0.3, 0]}}
+  rocker: {mass: 1, inertia: 5e-3, com: [0.1, 0], frames: {tip: [0.1, 0]}, pose: {angle: 60 deg}}
+joints:
+  a: {type: revolute, between: [ground, crank]}
+  d: {type: revolute, between: [ground/c, rocker]}
+  b: {type: revolute, between: [crank/tip, bar]}
+  c: {type: revolute, between: [bar/tip, rocker/tip]}
+drivers: {m: {joint: a, kind: velocity, value: 60 rpm}}
+initial: {joints: {a: 60 deg}}
+simulation: {end: 1 s, accuracy: 1 um}
+"""
+        for accuracy in ("1e-4", "1e-5", "3e-6", "1e-6", "1e-7", "1e-8"):
+            self.run_model(heavy, "--accuracy", accuracy)
+            self.assertIn("singular-position", self.ids(), accuracy)
         # One that never lies flat is regular, though its cranks are nearly as long.
         self.run_model(flat.replace("tip: [0.12, 0]}, pose: {angle: 50 deg}}\njoints", "tip: [0.2, 0]}, pose: {angle: 50 deg}}\njoints"))
         self.assertNotIn("singular-position", self.ids())
