@@ -7,13 +7,13 @@
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/output_file.h"
-#include "cli/result_model.h"
 #include "cli/result_picture.h"
 #include "cli/terminal.h"
 #include "convert/model_json.h"
 #include "drawing/mechanism_drawing.h"
 #include "drawing/model_text.h"
 #include "load/load.h"
+#include "load/result_model.h"
 
 namespace freeplay {
 namespace {

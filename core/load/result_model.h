@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "base/json_text.h"
 #include "format/build_options.h"
 
 namespace freeplay {
@@ -16,5 +17,9 @@ struct ResultWords {
 /// that run (summary.json), before those that are asked for, its end and its step or accuracy. Throws Error{input}
 /// "file-not-found" for a directory that holds no result.
 ResultWords use_model_of_result(std::string& path, BuildOptions& build);
+
+/// Adds to `build` what `settings` of a summary says: parameters and ideal joints before those that are asked for, the
+/// end and the step or accuracy.
+void use_settings(const Json& settings, BuildOptions& build);
 
 }  // namespace freeplay

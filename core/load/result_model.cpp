@@ -1,4 +1,4 @@
-#include "cli/result_model.h"
+#include "load/result_model.h"
 
 #include <filesystem>
 #include <fstream>
@@ -44,6 +44,12 @@ ResultWords use_model_of_result(std::string& path, BuildOptions& build) {
   if (!fs::exists(yaml, ignored) && !fs::exists(urdf, ignored)) no_result(path, "model.yaml or model.urdf");
   path = (fs::exists(yaml, ignored) ? yaml : urdf).string();
   const Json& settings = summary["settings"];
+  use_settings(settings, build);
+  return {text(summary.value("model", Json::object()), "name"),
+          text(settings.value("integrator", Json::object()), "type")};
+}
+
+void use_settings(const Json& settings, BuildOptions& build) {
   const Json set = settings.value("set", Json::object()), ideal = settings.value("ideal", Json::array());
   std::vector<std::pair<std::string, std::string>> all;
   for (const auto& [name, value] : set.items()) {
@@ -58,8 +64,6 @@ ResultWords use_model_of_result(std::string& path, BuildOptions& build) {
   build.end = number(settings, "end");
   build.accuracy = number(step, "accuracy");
   if (!build.accuracy) build.step = number(step, "size");
-  return {text(summary.value("model", Json::object()), "name"),
-          text(settings.value("integrator", Json::object()), "type")};
 }
 
 }  // namespace freeplay
