@@ -10,6 +10,7 @@
 #include "cli/init_command.h"
 #include "cli/list_command.h"
 #include "cli/plot_command.h"
+#include "cli/report_command.h"
 #include "cli/reproduce_command.h"
 #include "cli/run_command.h"
 #include "cli/schema_command.h"
@@ -27,6 +28,7 @@ std::span<const CommandEntry> all_commands() {
       {"analyze", add_analyze_command},
       {"compare", add_compare_command},
       {"export", add_export_command},
+      {"report", add_report_command},
       {"seal", add_seal_command},
       {"plot", add_plot_command},
       {"reproduce", add_reproduce_command},

@@ -30,8 +30,9 @@ STANDS_ON = {
     "drawing": ["assembly", "svg"],
     "analysis": ["assembly"],
     "load": ["yaml", "urdf", "run"],
+    "report": ["results", "load"],
     "contract": ["format", "stage"],
-    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract"],
+    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report"],
 }
 WITHOUT_SDK = {"base", "linear", "svg"}
 

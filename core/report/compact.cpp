@@ -1,0 +1,43 @@
+#include "report/compact.h"
+
+namespace freeplay {
+namespace {
+
+std::string_view next_line(std::string_view& rest) {
+  const std::size_t end = rest.find('\n');
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  return line;
+}
+
+void add_line(std::string& out, std::string_view line, std::string_view marks) {
+  const auto is_mark = [&](char c) { return marks.find(c) != std::string_view::npos; };
+  char quote = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quote == 0 && c == ' ') {
+      const char before = out.back(), after = i + 1 < line.size() ? line[i + 1] : ' ';
+      if ((is_mark(before) || is_mark(after)) && before != after) continue;
+    }
+    if (quote != 0 && c == '\\') out += line[i++];
+    if (quote != 0 ? c == quote : c == '\'' || c == '"') quote = quote != 0 ? 0 : c;
+    out += line[i];
+  }
+}
+
+}  // namespace
+
+std::string compact(std::string_view source, std::string_view marks) {
+  std::string out;
+  while (!source.empty()) {
+    std::string_view line = next_line(source);
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string_view::npos || line.substr(begin).starts_with("//")) continue;
+    line.remove_prefix(begin);
+    if (!out.empty() && std::string_view("{;,(").find(out.back()) == std::string_view::npos) out += '\n';
+    add_line(out, line, marks);
+  }
+  return out;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,74 @@
+// The instant that everything shows: frames of the animation, playing, and who listens.
+const clock = {time: timeStart, playing: false, speed: 1, drawn: 0, range: [timeStart, timeEnd]};
+const listeners = [], onTime = listener => listeners.push(listener);
+const frameTimes = runs.map(r => r.animation ? decode(r.animation.times, Float64Array) : r.times), frames = frameTimes[0];
+const clockScale = scale(Math.max(Math.abs(timeStart), Math.abs(timeEnd)), 's');
+const clockDigits = Math.max(0, Math.min(6, Math.ceil(4 - Math.log10((timeEnd - timeStart) / 10 ** clockScale.power || 1))));
+
+function show(t) {
+  clock.time = t;
+  for (const listener of listeners) listener(t);
+}
+function nearestFrame(t) {
+  const k = lastUpTo(frames, t, frames.length);
+  return k + 1 < frames.length && frames[k + 1] - t < t - frames[k] ? k + 1 : k;
+}
+function seek(t) {
+  pause();
+  show(frames[nearestFrame(t)]);
+  return clock.time;
+}
+// Frames on or back from the present one; an instant between two frames counts as the one before it.
+function stepFrames(by) {
+  const slack = 1e-9 * (timeEnd - timeStart), k = lastUpTo(frames, clock.time + slack, frames.length), between = by < 0 && clock.time > frames[k] + slack;
+  seek(frames[Math.max(0, Math.min(frames.length - 1, k + by + between))]);
+}
+
+let before = null;
+function tick(now) {
+  if (!clock.playing) return;
+  const [from, until] = clock.range, t = clock.time + (before === null ? 0 : Math.min(now - before, 100) / 1000 * clock.speed);
+  before = now;
+  show(t > until || t < from ? from : t);
+  requestAnimationFrame(tick);
+}
+function setPlaying(playing) {
+  if (playing && !clock.playing) { before = null; requestAnimationFrame(tick); }
+  clock.playing = playing;
+  const button = byId('play');
+  if (button) { button.textContent = playing ? 'Pause' : 'Play'; button.setAttribute('aria-pressed', playing); }
+}
+const play = () => setPlaying(timeEnd > timeStart), pause = () => setPlaying(false), toggle = () => setPlaying(!clock.playing);
+
+// Speeds in the series 1, 2, 5 about the one at which a run lasts ten seconds.
+const speeds = [-5, -4, -3, -2, -1, 0, 1].flatMap(power => [1, 2, 5].map(digit => +(digit * 10 ** power).toPrecision(1)));
+function setSpeed(speed) {
+  clock.speed = speed;
+  if (byId('speed')) byId('speed').value = speed;
+}
+const changeSpeed = by => setSpeed(speeds[Math.max(0, Math.min(speeds.length - 1, speeds.indexOf(clock.speed) + by))]);
+
+const impactTimes = runs.flatMap(r => r.events.rows.map(e => e[0])).sort((a, b) => a - b);
+function stepImpact(by) {
+  const half = 0.51 * (frames[1] - frames[0] || 0), t = by > 0 ? impactTimes.find(e => e > clock.time + half) : impactTimes.filter(e => e < clock.time - half).pop();
+  if (t !== undefined) seek(t);
+}
+
+function startClock() {
+  const scrub = byId('scrub');
+  if (scrub) {
+    byId('speed').append(...speeds.map(s => make('option', {value: s}, s + '\u00d7')));
+    byId('speed').onchange = e => setSpeed(+e.target.value);
+    byId('play').onclick = toggle;
+    [['earlier', -1], ['later', 1]].forEach(([id, by]) => { byId(id).onclick = () => stepImpact(by); byId(id).hidden = !impactTimes.length; });
+    scrub.max = frames.length - 1;
+    scrub.oninput = () => seek(frames[scrub.value]);
+    onTime(t => {
+      scrub.value = nearestFrame(t);
+      scrub.setAttribute('aria-valuetext', instant(t));
+      byId('clock').textContent = 't = ' + (t / 10 ** clockScale.power).toFixed(clockDigits) + '\u00a0' + clockScale.unit;
+    });
+  }
+  const wanted = (timeEnd - timeStart) / 10 || 1;
+  setSpeed(speeds.reduce((best, s) => Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best));
+}

@@ -1,0 +1,63 @@
+// Keys, theme, film.
+const keyHelp = [['Space', 'play or pause'], ['\u2190 \u2192', 'one frame; with Shift ten; in the focused picture of a spatial model: turn'], ['Home End', 'first or last frame'],
+                 ['+ \u2212', 'faster, slower'], ['E e', 'draw play larger, smaller'], ['z', 'all of the time'], ['t', 'light or dark'], ['?', 'these keys'],
+                 ['drag in a plot', 'zoom to a span of time; double click: all of it'], ['click in a plot', 'go to that instant']];
+
+function setTheme(name) {
+  document.documentElement.dataset.theme = name;
+  byId('theme').textContent = dark() ? 'Light' : 'Dark';
+  readPalette();
+  drawScene();
+  if (chosen.size) drawGraphs();
+  drawCards(false);
+}
+
+function startTheme() {
+  const system = matchMedia('(prefers-color-scheme: dark)'), print = matchMedia('print');
+  let own = null;
+  const follow = () => setTheme(print.matches ? 'light' : own || (system.matches ? 'dark' : 'light'));
+  system.addEventListener('change', follow);
+  print.addEventListener('change', () => { follow(); if (print.matches) drawCards(true); });  // on paper light, and all of it
+  byId('theme').onclick = () => { own = dark() ? 'light' : 'dark'; follow(); };
+  follow();
+}
+
+function startKeys() {
+  const dialog = byId('keys'), help = () => dialog.open ? dialog.close() : dialog.showModal();
+  dialog.querySelector('dl').append(...keyHelp.flatMap(([k, v]) => [make('dt', {}, k), make('dd', {}, v)]));
+  byId('help').onclick = help;
+  const actions = {' ': toggle, ArrowLeft: e => stepFrames(e.shiftKey ? -10 : -1), ArrowRight: e => stepFrames(e.shiftKey ? 10 : 1), Home: () => seek(timeStart), End: () => seek(timeEnd), '+': () => changeSpeed(1),
+                   '=': () => changeSpeed(1), '-': () => changeSpeed(-1), e: () => changeExaggeration(false), E: () => changeExaggeration(true), z: unzoom, t: () => byId('theme').click(), '?': help};
+  document.addEventListener('keydown', e => {
+    const {tagName: tag, type, id} = e.target, slides = type === 'range' && id !== 'scrub';
+    if (e.ctrlKey || e.altKey || e.metaKey || !Object.hasOwn(actions, e.key) || tag === 'SELECT' || type === 'search') return;
+    if (e.key === ' ' ? /BUTTON|INPUT|SUMMARY/.test(tag) : slides && /Arrow|Home|End/.test(e.key)) return;
+    actions[e.key](e);
+    e.preventDefault();
+  });
+}
+
+// One pass of what is seen, recorded by the browser.
+function startFilm() {
+  const button = byId('record'), type = window.MediaRecorder && ['video/webm;codecs=vp9', 'video/webm'].find(t => MediaRecorder.isTypeSupported(t));
+  let recorder = null, last = 0;
+  if (!button) return;
+  button.hidden = !type;
+  button.onclick = () => {
+    if (recorder) return recorder.stop();
+    const pieces = [];
+    recorder = new MediaRecorder(scene.canvas.captureStream(60), {mimeType: type, videoBitsPerSecond: 8e6});
+    recorder.ondataavailable = e => pieces.push(e.data);
+    recorder.onstop = () => {
+      recorder = null;
+      pause();
+      button.textContent = 'Record';
+      make('a', {href: URL.createObjectURL(new Blob(pieces, {type})), download: runs[0].title.replace(/[^\w.-]/g, '_') + '.webm'}).click();
+    };
+    button.textContent = 'Stop';
+    show(last = clock.range[0]);
+    recorder.start();
+    play();
+  };
+  onTime(t => { if (recorder && t < last) recorder.stop(); last = t; });
+}

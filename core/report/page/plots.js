@@ -1,0 +1,221 @@
+// Plots over time, zoomed together; which channels they show; their values at the cursor.
+const chosen = new Set();
+let graphs = [], sync = null;
+
+const phrases = {fn: 'Normal force', ft: 'Friction force', delta: 'Penetration', vt: 'Sliding speed', fx: 'Force, x', fy: 'Force, y', fz: 'Force, z', omega: 'Angular velocity'};
+const parts = name => { const p = name.split('.'); return {kind: p[0], of: p.slice(1, -1).join('.'), what: p[p.length - 1]}; };
+function phrase(name) {
+  const {kind, what} = parts(name), words = phrases[what] || what[0].toUpperCase() + what.slice(1);
+  return kind === 'joint' ? words : kind === 'driver' && /^e(x|y|angle)$/.test(what) ? 'Path error, ' + what.slice(1) : kind[0].toUpperCase() + kind.slice(1) + ': ' + words.toLowerCase();
+}
+
+const channelNames = [...new Set(runs.flatMap(r => r.channels.map(c => c.name)))];
+const owners = name => runs.filter(r => r.named.has(name));
+const unitOf = name => owners(name)[0].named.get(name).unit;
+const peak = name => Math.max(...owners(name).map(r => r.named.get(name)).map(c => Math.max(Math.abs(c.min), Math.abs(c.max)) || 0));
+
+// Points of a channel: rows where there are any, else a minimum and a maximum per bucket in the order that its course suggests.
+function points(run, name) {
+  const values = run.values(name), xs = [], ys = [];
+  if (!run.buckets) return [run.times, values];
+  const windows = run.windows.filter(w => w.channels[name]).map(w => ({times: decode(w.times, Float64Array), values: decode(w.channels[name].values, Float32Array).map(v => v + w.channels[name].offset)}));
+  windows.sort((a, b) => a.times[0] - b.times[0]);
+  let until = -Infinity;
+  const add = (x, y) => { if (x > until) { xs.push(x); ys.push(y); } }, middle = k => values[2 * k] + values[2 * k + 1], last = run.buckets - 1;
+  const addUpTo = (x, y) => {
+    while (windows.length && windows[0].times[0] <= x) {
+      const w = windows.shift();
+      w.times.forEach((t, i) => add(t, w.values[i]));
+      until = Math.max(until, w.times[w.times.length - 1]);
+    }
+    add(x, y);
+  };
+  for (let k = 0; k <= last; ++k) {
+    const t = run.times[k], next = run.times[k + 1], falls = middle(Math.min(k + 1, last)) < middle(Math.max(k - 1, 0));
+    addUpTo(t, values[2 * k + falls]);
+    if (next > t) addUpTo(k === last ? next : (t + next) / 2, values[2 * k + !falls]);
+  }
+  return [xs, ys];
+}
+
+// Rows of dygraphs for several curves with instants of their own.
+function merged(curves) {
+  const times = [...new Set(curves.flatMap(([xs]) => Array.from(xs)))].sort((a, b) => a - b), at = new Map(times.map((t, k) => [t, k]));
+  const rows = times.map(t => [t, ...curves.map(() => null)]);
+  curves.forEach(([xs, ys], s) => xs.forEach((x, k) => { rows[at.get(x)][s + 1] = ys[k]; }));
+  return rows;
+}
+
+function swatch(k) {
+  const [svg, line] = ['svg', 'line'].map(tag => document.createElementNS('http://www.w3.org/2000/svg', tag)), set = (e, a) => Object.entries(a).forEach(([key, v]) => e.setAttribute(key, v));
+  set(svg, {viewBox: '0 0 26 8', 'aria-hidden': 'true'});
+  set(line, {x1: 0, y1: 4, x2: 26, y2: 4, stroke: palette.series[k % 8], 'stroke-width': 2.5, 'stroke-dasharray': (dashes[k % 8] || []).join(' ')});
+  svg.append(line);
+  return svg;
+}
+
+// A plot with its heading, and a place for a value of each curve.
+function addPlot(home, title, labels, curves, options) {
+  const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k);
+  const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(k), label + ' ', values[k])));
+  const plot = make('div', {class: 'plot', role: 'img', 'aria-label': title});
+  home.append(make('figure', {}, head, plot));
+  const graph = new Dygraph(plot, merged(curves), {
+    labels: ['x', ...keys], colors: keys.map((_, k) => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[k % 8]}])),
+    strokeWidth: 1.3, legend: 'never', connectSeparatedPoints: true, axisLineColor: palette.soft, gridLineColor: palette.line,
+    highlightCallback: (_, x, at) => at.forEach(p => { values[+p.name.slice(1)].textContent = options.say(p.yval); }),
+    unhighlightCallback: () => values.forEach(v => { v.textContent = ''; }), ...options
+  });
+  graph.values = values;
+  return graph;
+}
+const axis = (write, width) => ({axisLabelFormatter: write, axisLabelWidth: width, axisLabelFontSize: 12, pixelsPerLabel: width > 60 ? 84 : 28});
+const tidy = (s, digits, unit = '') => v => minus(String(+(v / 10 ** s.power).toPrecision(digits))) + unit;
+
+function addGraph(home, title, names) {
+  const series = names.flatMap(name => owners(name).map(run => ({run, name}))), unit = unitOf(names[0]), s = scale(Math.max(...names.map(peak)), unit);
+  const label = ({run, name}) => [several ? run.title : '', parts(name).of || parts(name).what].filter(Boolean).join(' ');
+  const graph = addPlot(home, title + (s.unit && ' [' + s.unit + ']'), series.map(label), series.map(({run, name}) => points(run, name)), {
+    say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 7, '\u00a0' + clockScale.unit), 76), y: axis(tidy(s, 6), 52)},
+    clickCallback: (_, t) => seek(t), drawCallback: g => { clock.range = g.xAxisRange(); moveCursors(clock.time); },
+    underlayCallback: (c, area, g) => {  // what does not count
+      const from = runs[0].get('/statistics/from'), x = from > timeStart ? Math.min(g.toDomXCoord(from), area.x + area.w) : area.x;
+      c.fillStyle = palette.faint;
+      if (x > area.x) c.fillRect(area.x, area.y, x - area.x, area.h);
+    }
+  });
+  graph.line = make('div', {class: 'cursor'});
+  graph.graphDiv.append(graph.line);
+  graphs.push(graph);
+}
+
+function moveCursors(t) {
+  for (const g of graphs) {
+    if (!g.line) continue;
+    const x = g.toDomXCoord(t), area = g.getArea();
+    g.line.hidden = x < area.x - 0.5 || x > area.x + area.w + 0.5;
+    g.line.style.transform = 'translateX(' + x + 'px)';
+    g.line.style.height = area.h + 'px';
+  }
+}
+
+// Channels that mean the same of different elements share a plot, eight curves at most. Energy has a plot of its own.
+const most = Math.max(1, Math.floor(8 / runs.length));
+function drawGraphs() {
+  if (sync) sync.detach();
+  for (const g of [...graphs, ...spectra]) g.destroy();
+  graphs = [];
+  const groups = new Map(), energy = document.querySelector('#energy .graph'), home = byId('graphs');
+  for (const name of chosen) {
+    const {kind, what} = parts(name), key = (kind === 'energy' ? '' : what) + kind + unitOf(name);
+    groups.set(key, [...(groups.get(key) || []), name]);
+  }
+  home.replaceChildren();
+  for (const names of groups.values()) for (let k = 0; k < names.length; k += most) addGraph(home, parts(names[0]).kind === 'energy' ? 'Energy' : phrase(names[0]), names.slice(k, k + most));
+  if (energy) {
+    energy.replaceChildren();
+    const names = channelNames.filter(n => n.startsWith('energy.')).slice(0, most);
+    if (names.length) addGraph(energy, 'Over time', names);
+  }
+  sync = graphs.length > 1 ? Dygraph.synchronize(graphs, {zoom: true, selection: false, range: false}) : null;
+  drawSpectra();
+}
+
+function zoom(from, until) {
+  clock.range = [from, until];
+  if (graphs.length) graphs[0].updateOptions({dateWindow: [from, until]});
+}
+const unzoom = () => zoom(timeStart, timeEnd);
+
+function select(names) {
+  chosen.clear();
+  for (const name of names) if (channelNames.includes(name)) chosen.add(name);
+  drawGraphs();
+  drawNow();
+  for (const box of document.querySelectorAll('#choice input')) box.checked = chosen.has(box.value);
+  byId('chosen').textContent = '(' + chosen.size + ' of ' + channelNames.length + ')';
+}
+
+// The table of values at the cursor.
+let cells = [];
+function drawNow() {
+  cells = [];
+  const lines = [...chosen].map(name => row(name, ...runs.map(run => {
+    const e = make('span', {data: {run: run.index, channel: name}});
+    if (run.named.has(name)) cells.push({e, run, name});
+    return {number: run.named.has(name) ? e : '\u2013'};
+  })));
+  byId('now').replaceChildren(...table(['Channel', ...runs.map(r => ({number: several ? r.title : 'at the cursor'}))], lines).childNodes);
+  fillNow(clock.time);
+}
+function fillNow(t) {
+  for (const {e, run, name} of cells) {
+    const v = run.value(name, t), unit = run.named.get(name).unit;
+    if (Array.isArray(v)) {
+      [e.dataset.low, e.dataset.high] = v;
+      e.textContent = v[0] === v[1] ? quantity(v[0], unit) : quantityRange(...v, unit);
+    } else {
+      e.dataset.value = v;
+      e.textContent = quantity(v, unit);
+    }
+  }
+}
+
+// Choices of channels that answer common questions.
+function presets() {
+  const like = pattern => channelNames.filter(n => pattern.test(n)), largest = names => [...names].sort((a, b) => peak(b) - peak(a)).slice(0, most).sort((a, b) => channelNames.indexOf(a) - channelNames.indexOf(b));
+  const lists = {'Contact forces': largest(like(/^joint\..*\.fn$/)), Drivers: like(/^driver\..*\.(torque|force)$/).slice(0, most), 'Path errors': like(/^driver\..*\.e(x|y|angle)$/),
+                 Sliding: largest(like(/^joint\..*\.vt$/)), Penetration: largest(like(/^joint\..*\.delta$/)), Energy: like(/^energy\./), Bodies: like(/^body\.[^.]*\.(x|y|z|angle)$/).slice(0, 6)};
+  return Object.fromEntries(Object.entries(lists).filter(([, names]) => names.length));
+}
+
+function startChoice() {
+  const groups = new Map(), toggled = ({target: {checked, value}}) => { checked ? chosen.add(value) : chosen.delete(value); select([...chosen]); };
+  for (const name of channelNames) {
+    const {kind, of} = parts(name), key = kind + ' ' + of;
+    groups.set(key, [...(groups.get(key) || []), name]);
+  }
+  byId('channels').addEventListener('toggle', () => {
+    for (const [title, names] of groups) {
+      byId('choice').append(make('fieldset', {}, make('legend', {}, title), ...names.map(name =>
+        make('label', {}, make('input', {type: 'checkbox', value: name, checked: chosen.has(name), onchange: toggled}), parts(name).what))));
+    }
+  }, {once: true});
+  byId('search').oninput = e => {
+    const words = e.target.value.toLowerCase().split(/\s+/);
+    for (const label of document.querySelectorAll('#choice label')) label.hidden = !words.every(w => label.firstChild.value.toLowerCase().includes(w));
+    for (const set of document.querySelectorAll('#choice fieldset')) set.hidden = !set.querySelector('label:not([hidden])');
+  };
+}
+
+function startPlots() {
+  const lists = presets(), coarse = runs.filter(r => r.buckets);
+  byId('presets').append(...Object.entries(lists).map(([title, names]) => make('button', {type: 'button', onclick: () => select(names)}, title)));
+  byId('unzoom').onclick = unzoom;
+  startChoice();
+  byId('coarse').textContent = [
+    coarse.length && 'The page holds the smallest and the largest value of every ' + Math.ceil(Math.max(...coarse.map(r => r.rows / r.buckets))) +
+      ' rows, with every extreme, and all rows around the largest impacts. Values at the cursor are ranges for that reason.',
+    ...runs.filter(r => r.left_out.length).map(r => (several ? r.title + ': ' : '') + 'no room for ' + r.left_out.slice(0, 5).join(', ') + (r.left_out.length > 5 ? ' and ' + (r.left_out.length - 5) + ' more.' : '.'))
+  ].filter(Boolean).join(' ');
+  const counted = Math.min(...runs.map(r => r.get('/statistics/from') || timeStart));
+  if (counted > timeStart && counted < timeEnd) clock.range = [counted, timeEnd];
+  const first = ['Contact forces', 'Path errors', 'Drivers'].flatMap(t => lists[t] || []);
+  select(first.length ? first : Object.values(lists)[0] || channelNames.slice(0, 3));
+  onTime(t => { moveCursors(t); fillNow(t); });
+}
+
+// Spectra stand apart: their axis is frequency.
+let spectra = [];
+function drawSpectra() {
+  const box = document.querySelector('#spectra .spectra');
+  spectra = [];
+  if (box) box.replaceChildren();
+  for (const name of box ? new Set(runs.flatMap(r => r.spectra.map(s => s.name))) : []) {
+    const series = runs.map(run => ({run, s: run.spectra.find(s => s.name === name)})).filter(x => x.s), unit = series[0].s.unit;
+    const curves = series.map(({s}) => [decode(s.frequency, Float32Array), decode(s.amplitude, Float32Array).map(v => v || 1e-30)]), top = Math.max(...curves.flatMap(c => [...c[1]].filter(isFinite)));
+    const y = scale(top, unit), decade = v => Math.abs(Math.log10(v / 10 ** y.power) % 1) < 1e-6 ? tidy(y, 2)(v) : '';
+    spectra.push(addPlot(box, parts(name).of + ', ' + parts(name).what + ' [' + y.unit + ']', series.map(({run}) => several ? run.title : ''), curves,
+      {say: v => quantity(v, unit), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66), y: axis(decade, 52)}}));
+  }
+}

@@ -1,0 +1,150 @@
+#include "report/reported_run.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/input_text.h"
+#include "base/sha256.h"
+#include "load/result_model.h"
+#include "model/channel.h"
+#include "results/directory.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string attribute(const ResultReader& reader, std::string_view name) {
+  for (const auto& [key, text] : reader.layout().attributes) {
+    if (key == name) return text;
+  }
+  return {};
+}
+
+std::string text_of(const fs::path& file) {
+  std::string text;
+  return read_input(file.string(), text).empty() ? text : std::string();
+}
+
+Json object(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  return json.is_object() ? json : Json::object();
+}
+
+Json field(const Json& json, const char* name) {
+  const auto found = json.is_object() ? json.find(name) : json.end();
+  return json.is_object() && found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+std::string text_in(const Json& json, const char* name) {
+  const auto found = json.find(name);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+void read_summary(ReportedRun& run, const fs::path& folder) {
+  run.summary = object(text_of(folder / "summary.json"));
+  run.summary.erase("performance");
+  if (!run.summary.empty()) return;
+  run.note = "no summary.json: the run goes on or was killed, or its files are not all here";
+  for (const char* name : {"settings", "provenance"}) {
+    if (Json part = object(attribute(*run.reader, name)); !part.empty()) run.summary[name] = std::move(part);
+  }
+}
+
+void read_inputs(ReportedRun& run, const fs::path& folder) {
+  for (const Json& input : field(run.summary, "provenance").value("inputs", Json::array())) {
+    const std::string name = input.is_object() ? text_in(input, "name") : std::string();
+    std::string text = name.empty() ? name : text_of(folder / "inputs" / fs::path(name).filename());
+    if (text.empty()) continue;
+    std::string hash = sha256(text);
+    run.inputs.push_back({{"name", name}, {"sha256", std::move(hash)}, {"text", std::move(text)}});
+  }
+}
+
+/// The model in the directory, else that in the file of results.
+void read_model(ReportedRun& run, const fs::path& folder, const LoadOptions& options) {
+  std::error_code ignored;
+  const bool urdf = fs::exists(folder / "model.urdf", ignored);
+  const fs::path file = folder / (urdf ? "model.urdf" : "model.yaml");
+  const bool beside = fs::exists(file, ignored);
+  run.model_text = beside ? text_of(file) : attribute(*run.reader, "model");
+  if (run.model_text.empty()) return;
+  BuildOptions build;
+  use_settings(field(run.summary, "settings"), build);
+  LoadOptions quiet = options;
+  quiet.strict = false;
+  quiet.warn = quiet.note = {};
+  std::string why = "it has mistakes";
+  try {
+    LoadedModel loaded =
+        beside ? load_model(file.string(), build, quiet) : load_text(run.model_text, file.string(), build, quiet);
+    run.model = std::move(loaded.model);
+    if (run.model) return;
+    for (const Diagnostic& diagnostic : loaded.diagnostics.sorted()) {
+      why = diagnostic.message;
+      break;
+    }
+  } catch (const Error& error) {
+    why = error.message();
+  }
+  run.note += (run.note.empty() ? "" : "; ") + ("no animation, as the model cannot be read: " + why);
+}
+
+/// Names and units as the model has them, where the file of rows says nothing.
+void know_units(ReportedRun& run) {
+  run.columns = run.reader->layout().columns;
+  if (!run.model) return;
+  const Channels channels(*run.model);
+  for (RecordColumn& column : run.columns) {
+    if (!column.unit.empty()) continue;
+    const int index = channels.find(column.name);
+    if (index >= 0) column.unit = channels.all()[static_cast<std::size_t>(index)].unit;
+  }
+}
+
+std::string quoted(const std::string& word) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=*,:+";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos && word.find('*') == std::string::npos) {
+    return word;
+  }
+  std::string text = "'";
+  for (const char c : word) c == '\'' ? text += "'\\''" : text += c;
+  return text + "'";
+}
+
+}  // namespace
+
+ReportedRun open_reported(const fs::path& path, const LoadOptions& options) {
+  std::error_code ignored;
+  ReportedRun run;
+  run.reader = ResultReader::open(path);
+  const bool directory = fs::is_directory(path, ignored);
+  const fs::path folder = directory ? path : path.parent_path();
+  read_summary(run, folder);
+  read_model(run, folder, options);
+  read_inputs(run, folder);
+  know_units(run);
+  run.name = text_in(field(run.summary, "model"), "name");
+  if (run.name.empty() && run.model) run.name = run.model->name;
+  if (run.name.empty()) run.name = attribute(*run.reader, "title");
+  if (run.name.empty()) run.name = fs::absolute(path).lexically_normal().filename().string();
+  const auto ideal = field(run.summary, "settings").value("ideal", Json::array());
+  if (ideal.is_array() && !ideal.empty()) run.name += "-ideal";
+  return run;
+}
+
+std::string rerun_command(const ReportedRun& run) {
+  const Json provenance = field(run.summary, "provenance");
+  std::string model = text_in(field(provenance, "model"), "name");
+  if (model.empty()) model = run.name;
+  std::string command = "freeplay run " + quoted(model + ".yaml");
+  for (const Json& word : provenance.value("arguments", Json::array())) {
+    if (word.is_string()) command += " " + quoted(word.get<std::string>());
+  }
+  return command;
+}
+
+}  // namespace freeplay
