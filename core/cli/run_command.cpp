@@ -27,6 +27,7 @@
 #include "cli/verify_table.h"
 #include "load/load.h"
 #include "plot/sparkline.h"
+#include "report/report.h"
 #include "results/checkpoints.h"
 #include "results/directory.h"
 #include "results/judgement.h"
@@ -376,11 +377,22 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
 
 int run(const RunOptions& options, const CommonOptions& common, const Resumption* resumed);
 
+/// Makes a page of a result as `freeplay report` does.
+void write_report_of(const std::filesystem::path& path, const CommonOptions& common) {
+  ReportRequest request;
+  request.results = {path.string()};
+  request.build = FREEPLAY_BUILD;
+  request.load = loading(common);
+  const ReportMade made = write_report(request);
+  if (!common.json && !common.quiet)
+    print(fmt::format("  report in {} ({} bytes)\n", printable(made.file), made.bytes));
+}
+
 /// The same run with every clearance closed, into the folder `twin` of the result.
 int run_twin(RunOptions options, CommonOptions common, const std::filesystem::path& path, int pipe) {
   options.model_options.ideal = {"all"};
   options.out = (path / "twin").string();
-  options.verify = options.profile = options.twin = false;
+  options.verify = options.profile = options.twin = options.report = false;
   options.twin_pipe = pipe;
   common.quiet = true;
   common.verbose = common.json = false;
@@ -422,7 +434,9 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
   const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
-  return RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from).execute();
+  const int exit_code = RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from).execute();
+  if (options.report && exit_code != 6) write_report_of(path, common);
+  return exit_code;
 }
 
 int resume(const CLI::App& app, const RunOptions& asked, CommonOptions& common) {

@@ -56,6 +56,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
              "N");
   add_option(app, "--seed", options.seed, "Of the starts of --repeat (1)", "S");
   add_flag(app, "--twin", options.twin, "Run the model with every clearance closed alongside, and compare both");
+  add_flag(app, "--report", options.report, "Write report.html beside the results, as `freeplay report` does");
   add_flag(app, "--profile", options.profile,
            "Print where the time went: assembly, factorization, joints, events, output");
   add_file_option(app, "--out", options.out, "Result directory (results/NAME)", "DIR");
@@ -69,10 +70,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
 }
 
 void refuse_idle_options(const RunOptions& options) {
-  if (options.dry_run && (options.verify || options.profile || options.twin || !options.repeat.empty())) {
+  if (options.dry_run &&
+      (options.verify || options.profile || options.twin || options.report || !options.repeat.empty())) {
     const char* idle = options.verify    ? "--verify"
                        : options.profile ? "--profile"
                        : options.twin    ? "--twin"
+                       : options.report  ? "--report"
                                          : "--repeat";
     throw Error(Error::Category::usage, "usage",
                 fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
