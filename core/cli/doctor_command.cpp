@@ -16,6 +16,7 @@
 #include "cli/terminal.h"
 #include "component/library.h"
 #include "freeplay/plugin.h"
+#include "report/page_parts.h"
 #include "results/formats.h"
 
 namespace freeplay {
@@ -43,6 +44,7 @@ class Doctor {
     examine_folder_of_results();
     add("ok", "URDF", "links and joints read by urdfdom, loops and places by the program itself");
     add("ok", "HDF5", fmt::format("{}: results are HDF5 and CSV", hdf5_version()));
+    add("ok", "dygraphs", fmt::format("{}: plots of reports", page_parts().plots_version));
     examine_reference();
     return std::move(findings_);
   }

@@ -294,7 +294,10 @@ class RunJob {
   std::string glance() const {
     if (!stdout_is_terminal() || !stdout_takes_unicode()) return "";
     try {
-      return plot::sparklines(*ResultReader::open(path_));
+      return plot::sparklines(*ResultReader::open(path_)) +
+             (options_.report
+                  ? ""
+                  : fmt::format("  freeplay report {} makes a page of it: motion, orbits, plots\n", path_.string()));
     } catch (const Error&) {
       return "";  // the files were reported, and a picture is no reason to fail
     }

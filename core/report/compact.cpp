@@ -17,7 +17,8 @@ void add_line(std::string& out, std::string_view line, std::string_view marks) {
     const char c = line[i];
     if (quote == 0 && c == ' ') {
       const char before = out.back(), after = i + 1 < line.size() ? line[i + 1] : ' ';
-      if ((is_mark(before) || is_mark(after)) && before != after) continue;
+      const bool one_word = before == after && (before == '+' || before == '-');
+      if ((is_mark(before) || is_mark(after)) && !one_word) continue;
     }
     if (quote != 0 && c == '\\') out += line[i++];
     if (quote != 0 ? c == quote : c == '\'' || c == '"') quote = quote != 0 ? 0 : c;

@@ -7,8 +7,8 @@
 namespace freeplay {
 
 /// Leaves out lines of comment, indents, and blanks beside the characters `marks` outside of strings, except between
-/// equal signs; a line goes on with the next where it ends in one of `{;,(`. In what it is given no regular expression
-/// has a quote or a blank, and no string a line feed.
+/// two `+` or two `-`; a line goes on with the next where it ends in one of `{;,(`. In what it is given no regular
+/// expression has a quote or a blank, and no string a line feed.
 std::string compact(std::string_view source, std::string_view marks);
 
 inline constexpr std::string_view script_marks = "{}()[];,:=<>+-*/?&|!", style_marks = "{}:;,";

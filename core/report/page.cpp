@@ -38,7 +38,9 @@ std::string escaped(std::string_view text) {
 
 bool filled(const Json& json, const char* path) {
   const Json::json_pointer pointer(path);
-  return json.contains(pointer) && !json[pointer].empty();  // null is empty, too
+  if (!json.contains(pointer)) return false;
+  const Json& value = json[pointer];
+  return value.is_string() ? !value.get_ref<const std::string&>().empty() : !value.empty();  // null is empty, too
 }
 
 bool any_play(const Json& run) {

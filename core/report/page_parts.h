@@ -8,7 +8,7 @@ namespace freeplay {
 /// The definition is generated from page_parts.cpp.in: files of core/report/page and dygraphs.
 struct PageParts {
   std::string_view html, style, script;
-  std::string_view plot_style, plot_script;  ///< dygraphs
+  std::string_view plot_style, plot_script, plots_version;  ///< of dygraphs
 };
 PageParts page_parts();
 

@@ -89,6 +89,7 @@ class PageRuns {
 
   /// Takes more buckets where a page of `page` bytes has room for them: sizes are estimated with some margin.
   bool grow(std::size_t page) {
+    for (const RunData& data : data_) page += data.call_margin();
     const std::size_t before = buckets_, rest = page - courses(before);
     while (buckets_ < most_buckets && rest + courses(buckets_ + bucket_step) <= largest_page) buckets_ += bucket_step;
     return buckets_ > before && courses(buckets_) > courses(before);
@@ -132,6 +133,13 @@ Json record_of(const ReportRequest& request, const std::vector<ReportedRun>& run
   record["command"] = command;
   record["arguments"] = request.arguments;
   for (const char* field : {"model", "inputs", "plugins", "seed", "hashes"}) record[field] = made.value(field, Json());
+  Json inputs = Json::array();
+  for (const ReportedRun& run : runs) {
+    for (const Json& input : run.inputs) {
+      if (std::ranges::find(inputs, input) == inputs.end()) inputs.push_back(input);
+    }
+  }
+  if (inputs.dump(-1, ' ', false, Json::error_handler_t::replace).size() <= whole_page.text) record["inputs"] = inputs;
   record["data_sha256"] = nullptr;
   return record;
 }
@@ -178,7 +186,12 @@ ReportMade write_report(const ReportRequest& request) {
   name_apart(runs);
   ReportMade made{file.string(), 0, {}, {}};
   for (const ReportedRun& run : runs) made.runs.push_back(run.name);
-  const std::string page = make_page(request, runs, made.left_out);
+  std::string page;
+  try {
+    page = make_page(request, runs, made.left_out);
+  } catch (const Json::exception& error) {
+    unreadable_result(folder.string(), fmt::format("its summary.json is of another form: {}", error.what()));
+  }
   made.bytes = page.size();
   GrowingFile growing(staged.temporary());
   growing.line() += page;

@@ -34,6 +34,11 @@ Json object(const std::string& text) {
   return json.is_object() ? json : Json::object();
 }
 
+Json list_in(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  return json.is_array() ? json : Json::array();
+}
+
 Json field(const Json& json, const char* name) {
   const auto found = json.is_object() ? json.find(name) : json.end();
   return json.is_object() && found != json.end() && found->is_object() ? *found : Json::object();
@@ -58,6 +63,9 @@ void read_inputs(ReportedRun& run, const fs::path& folder) {
   for (const Json& input : field(run.summary, "provenance").value("inputs", Json::array())) {
     const std::string name = input.is_object() ? text_in(input, "name") : std::string();
     std::string text = name.empty() ? name : text_of(folder / "inputs" / fs::path(name).filename());
+    for (const Json& inside : list_in(attribute(*run.reader, "inputs"))) {
+      if (text.empty() && inside.is_object() && text_in(inside, "name") == name) text = text_in(inside, "text");
+    }
     if (text.empty()) continue;
     std::string hash = sha256(text);
     run.inputs.push_back({{"name", name}, {"sha256", std::move(hash)}, {"text", std::move(text)}});

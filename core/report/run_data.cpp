@@ -146,8 +146,18 @@ std::vector<JointChannels> RunData::joint_channels() const {
   return joints;
 }
 
+std::size_t RunData::call_margin() const {
+  std::size_t size = 0;
+  for (const char* path : {"/provenance", "/model/file", "/files"}) {
+    const Json::json_pointer pointer(path);
+    if (run_.summary.contains(pointer)) size += size_of(run_.summary[pointer]);
+  }
+  constexpr std::size_t step = 4096;
+  return step - size % step;
+}
+
 std::size_t RunData::fixed_size() const {
-  std::size_t size = 2000 + size_of(run_.summary) + size_of(Json(run_.model_text)) + size_of(run_.inputs) +
+  std::size_t size = 2000 + size_of(run_.summary) + call_margin() + size_of(Json(run_.model_text)) +
                      size_of(impacts_json_) + size_of(bearing_) + size_of(Json(rerun_command(run_))) +
                      size_of(Json(left_out_)) + size_of(Json(run_.note));
   if (plan_) {
@@ -307,7 +317,6 @@ Json RunData::json() const {
                {"spectra", spectra_},
                {"left_out", left_out_}};
   if (!run_.note.empty()) json["note"] = run_.note;
-  if (!run_.inputs.empty()) json["inputs"] = run_.inputs;
   return json;
 }
 

@@ -31,6 +31,9 @@ class RunData {
   std::size_t channels() const { return shown_.size(); }
   /// The least wanted channel goes. Returns the characters that its name then takes.
   std::size_t leave_out_channel();
+  /// What fills the part of the summary that depends on how the run was called, and where, up to a round size: a page
+  /// of the same run called in other words has as many buckets.
+  std::size_t call_margin() const;
   /// Characters of JSON: all but courses, at most; and those of the courses in so many buckets.
   std::size_t fixed_size() const;
   std::size_t course_size(std::size_t buckets) const;

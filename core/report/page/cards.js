@@ -11,7 +11,7 @@ const seen = new IntersectionObserver(entries => entries.forEach(e => {
 function drawCard({canvas, back, paint, mark}) {
   const surface = sharp(canvas);
   if (!surface) return;
-  const {context, width, height, ratio} = surface, half = Math.min(width, height) / 2, kind = canvas.width + (dark() ? ' dark' : '');
+  const {context, width, height, ratio} = surface, half = Math.min(width, height) / 2, kind = canvas.width + (palette.dark ? ' dark' : '');
   const middle = c => c.setTransform(ratio, 0, 0, ratio, width / 2 * ratio, height / 2 * ratio);
   if (back.kind !== kind) {
     back.kind = kind;
@@ -37,7 +37,8 @@ function startCards(section, list, kind, draw) {
     for (const one of run[list]) {
       const {caption, label, paint, mark} = draw(run, one), canvas = make('canvas', {class: kind, role: 'img', 'aria-label': label + ' of ' + one.joint, data: {run: run.index, joint: one.joint}});
       cards.push({canvas, back: document.createElement('canvas'), paint, mark});
-      box.append(make('figure', {onclick: () => { select(jointChannels(one.joint)); byId('plots').scrollIntoView(); }}, canvas,
+      const open = e => { if (e.key && e.key !== 'Enter') return; select(jointChannels(one.joint)); byId('plots').scrollIntoView(); };
+      box.append(make('figure', {tabindex: 0, onclick: open, onkeydown: open}, canvas,
                          make('figcaption', {}, make('b', {}, one.joint), ...caption)));
       seen.observe(canvas);
     }

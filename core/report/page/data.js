@@ -34,11 +34,11 @@ class Run {
     return path.split('/').slice(1).reduce((part, key) => part && part[key.replace(/~1/g, '/').replace(/~0/g, '~')], this.summary);
   }
 
-  // What stands for a channel: a minimum and a maximum per bucket, or a number per row.
+  // What stands for a channel: a minimum and a maximum per bucket, or a number per row. What is as small as the rounding is 0.
   values(name) {
     if (!this.decoded.has(name)) {
-      const {offset, values} = this.named.get(name);
-      this.decoded.set(name, Float64Array.from(decode(values, Float32Array), v => offset + v));
+      const {offset, values, min, max} = this.named.get(name), rounding = 6e-8 * (max - min);
+      this.decoded.set(name, Float64Array.from(decode(values, Float32Array), v => Math.abs(offset + v) < rounding ? 0 : Math.max(min, Math.min(max, offset + v))));
     }
     return this.decoded.get(name);
   }

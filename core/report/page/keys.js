@@ -3,23 +3,19 @@ const keyHelp = [['Space', 'play or pause'], ['\u2190 \u2192', 'one frame; with 
                  ['+ \u2212', 'faster, slower'], ['E e', 'draw play larger, smaller'], ['z', 'all of the time'], ['t', 'light or dark'], ['?', 'these keys'],
                  ['drag in a plot', 'zoom to a span of time; double click: all of it'], ['click in a plot', 'go to that instant']];
 
-function setTheme(name) {
-  document.documentElement.dataset.theme = name;
+function repaint() {
   byId('theme').textContent = dark() ? 'Light' : 'Dark';
   readPalette();
   drawScene();
   if (chosen.size) drawGraphs();
-  drawCards(false);
+  drawCards(matchMedia('print').matches);  // on paper all of them
 }
 
+// The style sheet knows the theme of the system, and that paper is light; canvases and plots are painted again.
 function startTheme() {
-  const system = matchMedia('(prefers-color-scheme: dark)'), print = matchMedia('print');
-  let own = null;
-  const follow = () => setTheme(print.matches ? 'light' : own || (system.matches ? 'dark' : 'light'));
-  system.addEventListener('change', follow);
-  print.addEventListener('change', () => { follow(); if (print.matches) drawCards(true); });  // on paper light, and all of it
-  byId('theme').onclick = () => { own = dark() ? 'light' : 'dark'; follow(); };
-  follow();
+  for (const query of ['(prefers-color-scheme: dark)', 'print']) matchMedia(query).addEventListener('change', repaint);
+  byId('theme').onclick = () => { document.documentElement.dataset.theme = dark() ? 'light' : 'dark'; repaint(); };
+  repaint();
 }
 
 function startKeys() {

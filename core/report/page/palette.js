@@ -4,10 +4,10 @@ const seriesColours = {light: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#a87
 const dashes = [null, [7, 3], [2, 2], [9, 3, 2, 3], [4, 4], [12, 3], [2, 5], [6, 2, 2, 2, 2, 2]];
 let palette = {};
 
-const dark = () => document.documentElement.dataset.theme === 'dark';
+const dark = () => getComputedStyle(document.documentElement).colorScheme === 'dark';
 function readPalette() {
   const style = getComputedStyle(document.documentElement);
-  palette = {series: seriesColours[dark() ? 'dark' : 'light']};
+  palette = {dark: dark(), series: seriesColours[dark() ? 'dark' : 'light']};
   for (const name of ['card', 'ink', 'soft', 'line', 'faint', 'blue', 'red', 'green', 'body', 'edge', 'platform']) {
     palette[name] = style.getPropertyValue('--' + name).trim();
   }

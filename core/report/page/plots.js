@@ -58,7 +58,7 @@ function swatch(k) {
 function addPlot(home, title, labels, curves, options) {
   const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k);
   const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(k), label + ' ', values[k])));
-  const plot = make('div', {class: 'plot', role: 'img', 'aria-label': title});
+  const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
   const graph = new Dygraph(plot, merged(curves), {
     labels: ['x', ...keys], colors: keys.map((_, k) => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[k % 8]}])),

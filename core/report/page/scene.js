@@ -26,7 +26,7 @@ function startScene() {
   byId('labels').checked = Math.max(...scene.motions.map(m => m.joints.length)) <= 16;
   for (const option of ['forces', 'labels']) byId(option).onchange = drawScene;
   fit();
-  exaggerate(nearest(factors.filter(x => x !== 200), Math.max(1, 12 / (Math.min(...loose.map(j => j.clearance)) * scene.scale))));  // circles that can be seen
+  exaggerate(nearest(factors.filter(x => x !== 200), Math.max(1, 12 / (Math.max(...loose.map(j => j.clearance)) * scene.scale))));  // circles that can be seen
   if (scene.spatial) turnable();
   onTime(drawScene);
   new ResizeObserver(() => { fit(); drawScene(); }).observe(scene.canvas);

@@ -10,7 +10,7 @@ function startTop() {
   for (const run of runs) {
     const {status, stop_reason, trust} = run.summary, verdict = trust ? trust.verdict : 'doubtful', reasons = trust ? trust.reasons : [];
     byId('verdicts').append(make('div', {}, several ? make('b', {}, run.title) : null,
-      make('span', {}, (status || 'incomplete') + (stop_reason ? ' (' + stop_reason + ')' : ''), ' at ', has('/time/reached') ? shown(run, '/time/reached', instant) : instant(run.end)),
+      make('span', {}, (status || 'incomplete') + (stop_reason ? ' (' + stop_reason + ')' : ''), ' at ', run.get('/time/reached') === undefined ? instant(run.end) : shown(run, '/time/reached', instant)),
       make('span', {class: 'chip ' + verdict}, {good: '\u2713', doubtful: '!', bad: '\u2715'}[verdict] + (trust ? ' trust: ' + verdict : ' no verdict')),
       run.note ? make('span', {class: 'soft'}, run.note) : null,
       reasons.length ? make('ul', {}, ...reasons.map(r => make('li', {}, r.level + ': ' + r.message))) : null));
@@ -29,8 +29,8 @@ function startFacts() {
   const count = (r, what) => [shown(r, '/model/' + what, whole), ' ' + what.replace('clearance_joints', 'with play')];
   put('facts', table(heads(), [...(has('/model') ? [row('Model', ...runs.map(r => make('span', {}, (r.get('/model/space') || '') + ', ', ...['bodies', 'joints', 'clearance_joints', 'drivers'].flatMap((w, k) => k ? [', ', ...count(r, w)] : count(r, w)))))] : []),
     ...(runs.some(changed) ? [row('Changed', ...runs.map(changed))] : []), ...(has('/settings') ? [row('Integrator', ...runs.map(r => r.get('/settings/integrator/type') || '\u2013'))] : []),
-    ...lines([['Degrees of freedom', '/model/dof', whole], ['Driven', '/model/dof_driven', whole], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'], ['Counted from', '/statistics/from', 's'],
-              ['Rows', '/counts/rows', whole], ['Steps', '/counts/steps', whole], ['Contacts', '/counts/contacts', whole], ['Fewest steps in an impact', '/advice/min_steps_per_contact', few],
+    ...lines([['Status', '/status', '', r => (r.get('/status') || 'incomplete') + (r.get('/stop_reason') ? ': ' + r.get('/stop_reason') : '')], ['Time reached', '/time/reached', instant], ['Degrees of freedom', '/model/dof', whole], ['Driven', '/model/dof_driven', whole], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'], ['Counted from', '/statistics/from', 's'],
+              ['Rows', '', '', r => r.get('/counts/rows') === undefined ? String(r.rows) : shown(r, '/counts/rows', whole)], ['Steps', '/counts/steps', whole], ['Contacts', '/counts/contacts', whole], ['Fewest steps in an impact', '/advice/min_steps_per_contact', few],
               ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm']]),
     ...(runs.some(r => (r.summary.warnings || []).length) ? [row('Warnings', ...runs.map(r => make('span', {}, ...(r.summary.warnings || []).flatMap(w => [w, make('br')]))))] : [])]));
 }

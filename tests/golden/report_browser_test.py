@@ -1,0 +1,227 @@
+"""Pages of results as a browser shows them."""
+import base64
+import json
+import re
+import struct
+import time
+import unittest
+
+from browser import Browser, needs_browser
+from page_reader import Page, numbers
+from program import ProgramTest, mechanism
+
+LEFT, RIGHT, HOME, END = "\ue012", "\ue014", "\ue011", "\ue010"
+PICTURE = """const c = document.getElementById('scene'), d = c.getContext('2d', {willReadFrequently: true}).getImageData(0, 0, c.width, c.height).data;
+let h = 0, n = 0;
+for (let i = 0; i < d.length; i += 4) { const v = d[i] * 65536 + d[i + 1] * 256 + d[i + 2]; h = (h * 31 + v) | 0; if (v !== d[0] * 65536 + d[1] * 256 + d[2]) ++n; }
+return [h, n];"""
+
+
+def pointed(document, pointer):
+    for part in pointer.split("/")[1:]:
+        document = document[part.replace("~1", "/").replace("~0", "~")]
+    return document
+
+
+@needs_browser
+class ReportInBrowser(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.browser = Browser()
+        self.addCleanup(self.browser.close)
+
+    def open(self, *models, options=(), more=()):
+        """Runs models and opens their page, which may complain of nothing and ask for nothing."""
+        for name in models:
+            self.freeplay("run", mechanism(name), "--quiet", "--out", name.replace("/", "-"), *options)
+        self.results = [name.replace("/", "-") for name in models]
+        self.freeplay("report", *self.results, "--out", "page.html", "--force", *more)
+        self.page = Page(self.read("page.html"))
+        self.browser.open(self.path("page.html"))
+        requests = self.browser.requests()
+        self.assertTrue(any("page.html" in url for url in requests))
+        self.assertEqual([], [url for url in requests if re.match("(https?|ftp|wss?):", url)])
+
+    def tearDown(self):
+        bad = [entry["message"] for entry in self.browser.log("browser") if entry["level"] in ("SEVERE", "WARNING") and "willReadFrequently" not in entry["message"]]
+        self.assertEqual([], bad)
+
+    def script(self, text, *arguments):
+        return self.browser.script(text, *arguments)
+
+    def picture(self):
+        time.sleep(0.1)
+        return self.script(PICTURE)
+
+    def test_every_number_is_that_of_the_results(self):
+        self.open("3-rrr", "4-rrr", options=("--end", "0.15 s", "--twin"))
+        summaries = [json.loads(self.read(result, "summary.json")) for result in self.results]
+        shown = self.script("return [...document.querySelectorAll('[data-path]')].map(e => [+e.dataset.run, e.dataset.path, e.dataset.value, e.textContent])")
+        self.assertGreater(len(shown), 200)
+        self.assertEqual({0, 1}, {run for run, *_ in shown})
+        scales = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+        for run, path, value, text in shown:
+            self.assertEqual(pointed(summaries[run], path), float(value), path)
+            found = re.fullmatch(r"(\u2212?[\d.]+(?:e\u2212?\d+)?)(?:\u00a0(.*))?", text)
+            self.assertTrue(found, text)
+            number, unit = float(found[1].replace("\u2212", "-")), found[2] or ""
+            if unit == "%":
+                number /= 100
+            elif unit == "deg":
+                number *= 3.14159265358979 / 180
+            elif len(unit) > 1 and unit[0] in scales and not re.match("(m/s|mol|min)", unit):
+                number *= scales[unit[0]]
+            self.assertAlmostEqual(number, float(value), delta=0.051 * abs(float(value)) + 1e-300, msg="%s reads %s" % (path, text))
+
+    def test_the_cursor_shows_the_row_of_its_frame(self):
+        self.open("slider-crank")
+        header, *rows = (line.split(",") for line in self.read("slider-crank", "results.csv").splitlines())
+        run = self.page.runs[0]
+        names = ["body.slider.x", "joint.wrist.fn", "driver.motor.torque"]
+        self.script("freeplay.select(arguments[0])", names)
+        self.assertGreaterEqual(self.script("return document.querySelectorAll('#graphs .plot canvas').length"), 3)
+        for row in numbers(run["animation"]["rows"], "i")[::150]:
+            at = float(rows[row][0])
+            self.assertEqual(at, self.script("return freeplay.seek(arguments[0])", at * 1.00001))
+            for name in names:
+                got = self.script("return +document.querySelector('#now [data-channel=\"' + arguments[0] + '\"]').dataset.value", name)
+                channel = next(c for c in run["channels"] if c["name"] == name)
+                slack = 1.3e-7 * (channel["max"] - channel["min"])
+                self.assertAlmostEqual(float(rows[row][header.index(name)]), got, delta=slack)
+                self.assertEqual(got, self.script("return freeplay.value(0, arguments[0])", name))
+
+    def test_it_plays_scrubs_and_obeys_keys(self):
+        self.open("slider-crank", "pendulum")
+        times = numbers(self.page.runs[0]["animation"]["times"], "d")
+        first, last = self.script("return freeplay.seek(-1)"), self.script("return freeplay.seek(1e9)")
+        self.assertEqual((times[0], times[-1]), (first, last))
+        before, drawn = self.script("freeplay.seek(0); freeplay.play(); return [freeplay.time(), freeplay.drawn()]")
+        time.sleep(1)
+        after, more = self.script("freeplay.pause(); return [freeplay.time(), freeplay.drawn()]")
+        self.assertGreater(after, before)
+        self.assertGreater(more, drawn + 5)
+        self.script("freeplay.seek(arguments[0])", times[100])
+        for key, shift, frame in ((RIGHT, False, 101), (LEFT, False, 100), (RIGHT, True, 110), (HOME, False, 0), (END, False, len(times) - 1)):
+            self.browser.key(key, shift=shift)
+            self.assertEqual(times[frame], self.script("return freeplay.time()"))
+        self.script("const e = document.getElementById('scrub'); e.value = 50; e.dispatchEvent(new Event('input'))")
+        self.assertEqual(times[50], self.script("return freeplay.time()"))
+        self.browser.key(" ")
+        time.sleep(0.3)
+        self.assertNotEqual(times[50], self.script("return freeplay.time()"))
+        self.browser.key(" ")
+        speed = self.script("return +document.getElementById('speed').value")
+        self.browser.key("+")
+        self.assertGreater(self.script("return +document.getElementById('speed').value"), speed)
+        factor = self.script("return +document.getElementById('exaggerate').value")
+        self.browser.key("E")
+        self.assertGreater(self.script("return +document.getElementById('exaggerate').value"), factor)
+        self.browser.key("e")
+        self.assertEqual(factor, self.script("return +document.getElementById('exaggerate').value"))
+        for opened in (True, False):
+            self.browser.key("?")
+            self.assertEqual(opened, self.script("return document.getElementById('keys').open"))
+        light = self.script("return getComputedStyle(document.body).backgroundColor")
+        self.browser.key("t")
+        self.assertNotEqual(light, self.script("return getComputedStyle(document.body).backgroundColor"))
+
+    def test_the_picture_follows_time_and_play(self):
+        self.open("slider-crank")
+        seen = set()
+        for act in ("freeplay.seek(0)", "freeplay.seek(0.006)", "const e = document.getElementById('exaggerate'); e.value = 200; e.dispatchEvent(new Event('input'))",
+                    "document.getElementById('forces').click()", "document.getElementById('labels').click()",
+                    "const e = document.getElementById('trace'); e.value = 'coupler'; e.dispatchEvent(new Event('change'))"):
+            self.script(act)
+            drawn, points = self.picture()
+            self.assertGreater(points, 500)
+            self.assertNotIn(drawn, seen, act)
+            seen.add(drawn)
+        self.assertEqual("wrist", self.script("return document.querySelector('canvas.orbit').dataset.joint"))
+        self.script("document.querySelector('#impacts tr.pick').click()")
+        impact = self.page.runs[0]["events"]["rows"][0][0]
+        step = 0.024 / 599
+        self.assertAlmostEqual(impact, self.script("return freeplay.time()"), delta=step)
+
+    def test_plots_zoom_together(self):
+        self.open("slider-crank")
+        self.script("freeplay.zoom(0.006, 0.012)")
+        self.assertEqual([0.006, 0.012], self.script("return freeplay.range()"))
+        labels = "return [...document.querySelectorAll('.plot')].map(p => [...p.querySelectorAll('.dygraph-axis-label-x')].map(e => e.textContent).join())"
+        shown = self.script(labels)
+        self.assertGreater(len(shown), 2)
+        self.assertEqual(1, len(set(shown[:2])))
+        self.script("document.getElementById('graphs').scrollIntoView()")
+        self.browser.drag("#graphs .plot", (0.5, 0.5), (0.75, 0.5))
+        time.sleep(0.2)
+        begin, end = self.script("return freeplay.range()")
+        self.assertTrue(0.006 < begin < end < 0.012, (begin, end))
+        self.assertEqual(1, len(set(self.script(labels)[:2])))
+        self.browser.key("z")
+        self.assertEqual([0, 0.024], self.script("return freeplay.range()"))
+
+    def test_dark_print_names_and_small_screens(self):
+        self.open("slider-crank")
+        paper = "return getComputedStyle(document.body).backgroundColor"
+        light = self.script(paper)
+        self.browser.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        self.assertNotEqual(light, self.script(paper))
+        self.browser.command("Emulation.setEmulatedMedia", media="print", features=[])
+        self.assertEqual(light, self.script(paper))
+        self.assertEqual(0, self.script("return document.getElementById('play').getClientRects().length"))
+        self.assertGreater(self.script("return document.querySelector('#model pre').getClientRects().length"), 0)
+        self.browser.command("Emulation.setEmulatedMedia", media="", features=[])
+        unnamed = "return [...document.querySelectorAll('canvas')].filter(c => !c.getAttribute('aria-label') && !c.closest('[aria-label]')).length"
+        self.assertEqual(0, self.script(unnamed))
+        unnamed = "return [...document.querySelectorAll('button, input, select')].filter(e => !e.textContent.trim() && !e.getAttribute('aria-label') && !e.closest('label') && e.getClientRects().length).length"
+        self.assertEqual(0, self.script(unnamed))
+        for width in (360, 800, 1280):
+            self.browser.command("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
+            self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)
+
+    def test_space_is_turned_by_mouse_and_keys(self):
+        self.open("spatial/stewart")
+        self.script("document.getElementById('mechanism').scrollIntoView()")
+        seen = {self.picture()[0]}
+        self.browser.drag("#scene", (0.3, 0.4), (0.5, 0.5))
+        seen.add(self.picture()[0])
+        self.script("document.getElementById('scene').focus()")
+        at = self.script("return freeplay.time()")
+        self.browser.key(RIGHT)
+        seen.add(self.picture()[0])
+        self.assertEqual(3, len(seen))
+        self.assertEqual(at, self.script("return freeplay.time()"))
+        begun = self.script("freeplay.play(); return freeplay.drawn()")
+        time.sleep(1)
+        self.assertGreater(self.script("freeplay.pause(); return freeplay.drawn()"), begun + 5)
+
+    def test_results_that_are_not_whole(self):
+        self.open("slider-crank", options=("--format", "csv", "--end", "6 ms"))
+        lines = self.read("slider-crank", "results.csv").splitlines()
+        name = lines[0].split(",").index("joint.wrist.fn")
+        emptied = [",".join("" if i == name else cell for i, cell in enumerate(line.split(","))) for line in lines[1:]]
+        self.write("slider-crank/results.csv", "\n".join([lines[0], *emptied]) + "\n")
+        self.write("slider-crank/summary.json", "{")
+        self.freeplay("report", "slider-crank", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        self.assertIn("no summary.json", self.script("return document.getElementById('verdicts').textContent"))
+        self.assertEqual("\u2013", self.script("freeplay.select(['joint.wrist.fn']); return document.querySelector('#now span').textContent"))
+        self.write("alone.csv", self.read("slider-crank", "results.csv"))
+        self.freeplay("report", "alone.csv", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        self.assertGreater(self.script("return document.querySelectorAll('.plot canvas').length"), 1)
+
+    def test_film_is_recorded(self):
+        self.open("slider-crank", options=("--end", "2 ms"))
+        self.script("""window.film = null;
+HTMLAnchorElement.prototype.click = function () { window.film = [this.download, this.href]; };
+document.getElementById('speed').value = '0.005'; document.getElementById('speed').dispatchEvent(new Event('change'));
+document.getElementById('record').click();""")
+        until = time.time() + 20
+        while not (film := self.script("return window.film")) and time.time() < until:
+            time.sleep(0.2)
+        self.assertEqual("slider-crank.webm", film[0])
+        self.assertTrue(film[1].startswith("blob:"))
+
+
+if __name__ == "__main__":
+    unittest.main()
