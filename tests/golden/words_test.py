@@ -9,7 +9,7 @@ from program import PROGRAM, ROOT, ProgramTest, mechanism
 
 COMMANDS = ["run", "validate", "analyze", "compare", "show", "convert", "doctor", "list", "describe", "schema", "init", "export",
             "check-plugin"]
-LATER_COMMANDS = ["sweep", "report"]
+LATER_COMMANDS = ["sweep"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 
