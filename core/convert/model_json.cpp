@@ -336,6 +336,7 @@ class ModelWriter {
                       {"channels", settings.channels},
                       {"frames", frames},
                       {"format", result_formats[static_cast<std::size_t>(settings.format)]},
+                      {"rows_in_contact", settings.rows_in_contact},
                       {"discard", number(settings.discard, "s")}};
     json["stop"] = Json::array();
     for (const StopCondition& one : settings.stop) json["stop"].push_back(condition(one));

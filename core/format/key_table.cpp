@@ -200,6 +200,8 @@ constexpr FormatKey output[] = {
      "[\"joint.*.fx\", \"energy.*\"]"},
     {"frames", "list of frame", "", "", "Frames whose pose and velocity are reported.", "[rod/tip]"},
     {"format", "'csv' | 'hdf5' | 'both'", "", "both", "Of the results.", "csv"},
+    {"rows_in_contact", "integer", "", "0",
+     "So many rows more in each impact, and those of its peaks; 0: none of either.", "10"},
     {"discard", "quantity", "s", "0", "Time from the start that statistics leave out.", "5 ms"}};
 
 constexpr FormatKey stop[] = {

@@ -13,6 +13,7 @@ namespace {
 // Below, rounding decides; above, the error says nothing.
 constexpr Range tolerances{.minimum = 1e-14, .maximum = 0.1};
 constexpr Range contact_steps{.minimum = 2.0, .maximum = 1e6};
+constexpr long most_rows_in_contact = 1000;
 constexpr double steps_of_accurate_contact = 5.0;  // at least; the error asks for more where they are needed
 
 /// Reads the section into the draft's settings.
@@ -175,6 +176,7 @@ class SimulationSection {
     const auto channels = map.find("channels");
     const auto frames = map.find("frames");
     const auto format = map.find("format");
+    const auto rows_in_contact = map.find("rows_in_contact");
     discard_ = map.find("discard");
     if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
     const double span = settings_.end - settings_.start;
@@ -182,6 +184,9 @@ class SimulationSection {
     if (channels) read_channels(*channels);
     if (frames) read_frames(*frames);
     if (format) read_format(*format);
+    if (rows_in_contact) {
+      settings_.rows_in_contact = static_cast<int>(rows_in_contact->integer(0, most_rows_in_contact).value_or(0));
+    }
     if (discard_) settings_.discard = discard_->quantity(dimension::time, not_negative).value_or(0.0);
     map.finish();
   }

@@ -181,6 +181,7 @@ struct Settings {
   ParameterBlock integrator_parameters;
   IntegratorRef integrator;
   double interval = 0.0;                   ///< of output rows [s]
+  int rows_in_contact = 0;                 ///< besides these, along an impact; 0: no rows inside of contacts
   double discard = 0.0;                    ///< left out of statistics, from the start [s]
   std::vector<std::string> channels{"*"};  ///< patterns of result columns
   std::vector<int> frames;                 ///< markers to report

@@ -299,7 +299,8 @@ void Hdf5Writer::File::write_events() {
   events.clear();
 }
 
-/// A kill may come at any instant: what says how many rows and events are complete follows them.
+/// A kill may come at any instant: what says how many rows and events are complete follows them. H5Fflush() goes on
+/// where numbers cannot be written, and would leave instants without them: H5Dflush() ends there.
 void Hdf5Writer::File::flush() {
   if (times.empty() && events.empty()) return;
   const bool some_events = !events.empty();
@@ -309,6 +310,7 @@ void Hdf5Writer::File::flush() {
   if (!times.empty()) {
     extend(columns.front(), rows);
     put(columns.front(), H5T_NATIVE_DOUBLE, rows - times.size(), times.size(), times.data());
+    checked(H5Dflush(columns.front()));
     times.clear();
   }
   if (some_events) extend(event, events_written);

@@ -68,6 +68,10 @@ Recording::Recording(ResultDirectory directory, const Model& model, const Channe
 }
 
 RecordThread::Start Recording::continued_writers(const Model& model, const KeptPart& part) {
+  if (part.rows == 0 && part.events == 0) {  // not even a header may be there
+    directory_.remove("summary.json");
+    return start_writers(model);
+  }
   const ResultFormat format = model.settings.format;
   KeptFiles kept =
       read_kept(directory_.path(), part, format, layout_, {.expected_rows = expected_rows(model.settings)});

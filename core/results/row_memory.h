@@ -6,7 +6,7 @@
 
 namespace freeplay {
 
-/// Keeps every channel of every output row.
+/// Keeps every channel of every row of the output grid: two runs have these in common.
 class RowMemory : public Sink {
  public:
   explicit RowMemory(const Channels& channels) {
@@ -17,6 +17,7 @@ class RowMemory : public Sink {
   void row(std::span<const double> values) override {
     for (std::size_t i = 0; i < values.size(); ++i) table_.values[i].push_back(values[i]);
   }
+  void row_in_contact(std::span<const double>) override {}
   void event(const EventRecord&) override {}
   bool ok() const override { return true; }
 

@@ -50,7 +50,7 @@ void AdaptiveRun::run(const RunHooks& hooks) {
     const bool going = step() && parts_.end.check_stop();
     const bool due = run_.accepted.t() >= parts_.recorder.next_row_time();
     if (run_.outcome.steps > before && (due || !going) && !parts_.recorder.write_row()) return;
-    if (!going) return;
+    if (!going) return parts_.recorder.write_held_rows();
     parts_.recorder.pass_rows();
     if (hooks.stepped) hooks.stepped();
     if (parts_.end.check_interrupt(hooks)) continue;

@@ -9,6 +9,7 @@
 
 namespace freeplay {
 namespace {
+constexpr int exit_cannot_write = 6;
 constexpr double open_rows = 1e-3;  // of the size of the model: constraints that are off by more do not hold
 
 EventStorm::Limits storm_limits(const Settings& settings, bool adaptive) {
@@ -31,6 +32,8 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       clearances_(run.system, run.channels),
       ledger_(run.system, run.channels),
       peaks_(statistics_.peak_values().size()),
+      contact_rows_(run.system, run.channels, statistics_, run.adaptive),
+      contact_peaks_(contact_rows_.largest().size()),
       storm_(run.model.joints.size(), storm_limits(run.settings, run.adaptive)),
       row_(run.channels.all().size(), 0.0),
       row_between_(row_.size(), 0.0),
@@ -70,9 +73,7 @@ bool Recorder::record_step() {
   if (!know_row()) return false;
   if (!counts) {
     statistics_.note(row_);
-    if (run_.adaptive)
-      run_.ended_abruptly ? peaks_.restart(run_.accepted.t(), statistics_.values())
-                          : seek_peaks({run_.trial, run_.e_trial, run_.accepted, run_.e_accepted});
+    if (run_.adaptive) look_back();
     return true;
   }
   run_.system.multiply(run_.e_accepted, run_.accepted.v(), residual_);
@@ -82,17 +83,28 @@ bool Recorder::record_step() {
   statistics_.add(row_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), position,
                   velocity);
   clearances_.add(row_, run_.e_accepted);
-  if (run_.adaptive && run_.ended_abruptly) {
-    statistics_.begin_stretch();
-    peaks_.restart(run_.accepted.t(), statistics_.values());
-  }
-  if (run_.adaptive && !run_.ended_abruptly) seek_peaks({run_.trial, run_.e_trial, run_.accepted, run_.e_accepted});
+  if (run_.adaptive && run_.ended_abruptly) statistics_.begin_stretch();
+  if (run_.adaptive) look_back();
   return true;
 }
 
+// Into the step that was just accepted.
+void Recorder::look_back() {
+  if (run_.ended_abruptly) return peaks_.restart(run_.accepted.t(), statistics_.values());
+  const Ends step{run_.trial, run_.e_trial, run_.accepted, run_.e_accepted};
+  if (contact_rows_.active()) see_contact_end(row_);
+  seek_peaks(step);
+  if (!contact_rows_.active()) return;
+  seek_contact_peaks(step);
+  run_.energy.fill(run_.e_accepted, run_.channels, row_);  // the account was asked about the inside
+}
+
+// What could not be written is written when the run is resumed: until then no row stands in the files that the run
+// would not have without the failure.
 bool Recorder::write_row() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::output);
-  if (!know_row()) return false;
+  if (run_.outcome.exit_code == exit_cannot_write || !know_row()) return false;
+  if (contact_rows_.active()) contact_rows_.give_before_row(run_.accepted.t(), giving());
   ++run_.outcome.rows;
   statistics_.note_written(row_);
   for (Sink* sink : sinks_) sink->row(row_);
@@ -116,19 +128,45 @@ bool Recorder::write_events() {
     if (ended != nullptr && statistics_.counts(happening.time))
       clearances_.add_contact(happening.joint, happening.time, *ended);
     statistics_.note_event(happening.joint, happening.event, run_.events.fields(happening));
+    contact_rows_.pass(happening.joint, happening.event, happening.time, run_.events.fields(happening));
     for (Sink* sink : sinks_) {
       sink->event({happening.time, happening.joint, happening.event, run_.events.fields(happening), ended});
     }
     const EventStorm::Finding found = storm_.note(happening.joint, happening.time, run_.outcome.steps);
     if (found.events > 0) return failure_.fail_in_storm(happening, found);
   }
+  if (contact_rows_.active() && !write_contact_rows()) return false;
   return run_.events.happenings().empty() || sinks_are_well();
+}
+
+// After a step. The ends of those that an accuracy chooses were seen before their inside was looked at, unless an event
+// came between.
+bool Recorder::write_contact_rows() {
+  if (!know_row()) return false;
+  if (!run_.adaptive || run_.ended_abruptly) {
+    contact_rows_.see_end(row_);
+    contact_peaks_.restart(run_.accepted.t(), contact_rows_.values(row_));
+  }
+  contact_rows_.give_after_step(giving());
+  return sinks_are_well();
+}
+
+void Recorder::write_held_rows() {
+  if (contact_rows_.active() && run_.outcome.exit_code != exit_cannot_write) contact_rows_.give_all(giving());
+}
+
+ContactRows::Give Recorder::giving() {
+  return [this](std::span<const double> row, bool of_grid) {
+    ++run_.outcome.rows;
+    statistics_.note_written_later(row);
+    for (Sink* sink : sinks_) of_grid ? sink->row(row) : sink->row_in_contact(row);
+  };
 }
 
 // What a sink was given may fail later, beside the run: a row or an event to come finds it.
 bool Recorder::sinks_are_well() {
   for (const Sink* sink : sinks_) {
-    if (!sink->ok()) return failure_.fail(6, "a result file could not be written");
+    if (!sink->ok()) return failure_.fail(exit_cannot_write, "a result file could not be written");
   }
   return true;
 }
@@ -163,6 +201,14 @@ bool Recorder::write_row_at(double t) {
   } else {
     run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
   }
+  if (contact_rows_.active()) {
+    if (!contact_rows_.idle()) {
+      statistics_.note(row_between_);
+      contact_rows_.hold(row_between_);
+      return true;
+    }
+    contact_rows_.give_before_row(t, giving());
+  }
   ++run_.outcome.rows;
   statistics_.note_written(row_between_);
   for (Sink* sink : sinks_) sink->row(row_between_);
@@ -182,17 +228,42 @@ bool Recorder::observe_inside(double t, const Ends& step) {
          observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row_between_, ignored);
 }
 
+void Recorder::see_contact_end(std::span<const double> row) {
+  contact_rows_.see_end(row);
+  contact_peaks_.end_step(row[at(run_.channels.time)], contact_rows_.values(row));
+}
+
+// A look into a step for a largest value. False where nothing can be seen there.
+bool Recorder::look_for_peak(double s, const Ends& step, bool wanted_row) {
+  if (!observe_inside(step.start.t() + s * (step.end.t() - step.start.t()), step)) return false;
+  statistics_.note(row_between_);
+  if (!contact_rows_.active()) return true;
+  run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
+  contact_rows_.see_inside(row_between_, wanted_row);
+  return true;
+}
+
 // The step ends with the values that statistics saw last.
 void Recorder::seek_peaks(const Ends& step) {
   const bool counts = statistics_.counts(step.end.t());
   if (statistics_.counts(step.start.t()) != counts) return peaks_.restart(step.end.t(), statistics_.values());
   peaks_.end_step(step.end.t(), statistics_.values());
-  const double dt = step.end.t() - step.start.t();
   const auto largest = counts ? statistics_.largest() : statistics_.largest_before();
   for (double s = peaks_.next(largest); s > 0.0; s = peaks_.next(largest)) {
-    if (!observe_inside(step.start.t() + s * dt, step)) return;
-    statistics_.note(row_between_);
+    if (!look_for_peak(s, step, false)) return;
     peaks_.seen(s, statistics_.values());
+  }
+}
+
+// The same for those of each contact, and what else an impact wants rows of.
+void Recorder::seek_contact_peaks(const Ends& step) {
+  const auto largest = contact_rows_.largest();
+  for (double s = contact_peaks_.next(largest); s > 0.0; s = contact_peaks_.next(largest)) {
+    if (!look_for_peak(s, step, false)) return;
+    contact_peaks_.seen(s, contact_rows_.values(row_between_));
+  }
+  for (const double s : contact_rows_.wanted_inside()) {
+    if (!look_for_peak(s, step, true)) return;
   }
 }
 
@@ -204,7 +275,13 @@ bool Recorder::note_abrupt_end() {
   if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
   if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial);
-  seek_peaks({run_.accepted, run_.e_accepted, run_.trial, run_.e_trial});
+  const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
+  if (contact_rows_.active()) {
+    run_.energy.fill(run_.e_trial, run_.channels, row_between_);
+    see_contact_end(row_between_);
+  }
+  seek_peaks(step);
+  if (contact_rows_.active()) seek_contact_peaks(step);
   return true;
 }
 
@@ -219,6 +296,7 @@ bool Recorder::begin_statistics_inside() {
   statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,
                   0.0);
   clearances_.add(row_between_, run_.e_between);
+  if (contact_rows_.active()) contact_rows_.see_inside(row_between_, false);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "run/clearance_statistics.h"
 #include "run/contact_ledger.h"
+#include "run/contact_rows.h"
 #include "run/event_storm.h"
 #include "run/observer.h"
 #include "run/peak_search.h"
@@ -45,6 +46,8 @@ class Recorder {
   void pass_rows();
   bool write_row();
   bool write_rows_inside();
+  /// Rows that are held back, of a run that ends where it has no row.
+  void write_held_rows();
 
   const Statistics& statistics() const { return statistics_; }
   const ClearanceStatistics& clearances() const { return clearances_; }
@@ -52,7 +55,7 @@ class Recorder {
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
     archive(self.statistics_, self.clearances_, self.ledger_, self.peaks_, self.storm_, self.row_, self.row_is_known_,
-            self.next_row_);
+            self.next_row_, self.contact_rows_, self.contact_peaks_);
   }
 
  private:
@@ -63,6 +66,12 @@ class Recorder {
     const Evaluation& e_end;
   };
   bool write_row_at(double t);
+  bool write_contact_rows();
+  ContactRows::Give giving();
+  void look_back();
+  bool look_for_peak(double s, const Ends& step, bool wanted_row);
+  void see_contact_end(std::span<const double> row);
+  void seek_contact_peaks(const Ends& step);
   bool sinks_are_well();
   bool observe_inside(double t, const Ends& step);
   void seek_peaks(const Ends& step);
@@ -78,6 +87,8 @@ class Recorder {
   ClearanceStatistics clearances_;
   ContactLedger ledger_;
   PeakSearch peaks_;  // with error control
+  ContactRows contact_rows_;
+  PeakSearch contact_peaks_;  // the same of each contact
   EventStorm storm_;
   std::vector<double> row_, row_between_, residual_;
   bool row_is_known_ = false;  // row_ is that of the accepted state

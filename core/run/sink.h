@@ -35,6 +35,8 @@ class Sink {
  public:
   virtual ~Sink() = default;
   virtual void row(std::span<const double> values) = 0;
+  /// A row inside a contact, between those of the output grid.
+  virtual void row_in_contact(std::span<const double> values) { row(values); }
   virtual void event(const EventRecord& record) = 0;
   virtual bool ok() const = 0;
 };

@@ -51,6 +51,7 @@ Statistics::Statistics(const Model& model, const Channels& channels, bool long_s
       largest_(peaks_.size(), nothing),
       before_(peaks_.size(), nothing),
       written_(peaks_.size(), nothing),
+      of_written_(peaks_.size()),
       discard_until_(model.settings.start + model.settings.discard),
       joints_(model.joints.size()),
       forces_(model.force_elements.size()),
@@ -81,6 +82,12 @@ void Statistics::note(std::span<const double> row) {
 void Statistics::note_written(std::span<const double> row) {
   note(row);
   if (counts(row[at(channels_.time)])) raise(values_, written_);
+}
+
+void Statistics::note_written_later(std::span<const double> row) {
+  if (!counts(row[at(channels_.time)])) return;
+  peaks_.of(row, of_written_);
+  raise(of_written_, written_);
 }
 
 void Statistics::add(std::span<const double> row, std::span<const double> driver_work,

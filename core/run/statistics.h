@@ -55,8 +55,9 @@ class Statistics {
   bool end_stretch(std::span<const double> row);
   /// After the row that was added last values go on otherwise than before.
   void begin_stretch();
-  /// A row that is written.
+  /// A row that is written; of one that was noted when it was seen.
   void note_written(std::span<const double> row);
+  void note_written_later(std::span<const double> row);
   void add_contact(int joint, double time);
   /// Any event of a joint, with its fields.
   void note_event(int joint, int event, std::span<const double> fields) { noise_.event(joint, event, fields); }
@@ -143,7 +144,7 @@ class Statistics {
   const Channels& channels_;
   PeakValues peaks_;
   PeakNoise noise_;
-  std::vector<double> values_, largest_, before_, written_;
+  std::vector<double> values_, largest_, before_, written_, of_written_;
   double discard_until_;
   double last_time_ = 0.0, duration_ = 0.0;
   bool seen_ = false;

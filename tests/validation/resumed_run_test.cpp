@@ -16,10 +16,12 @@ struct Case {
   std::string integrator;  ///< empty: that of the model
   enum Steps { own, fixed, adaptive } steps = own;
   long most_steps = 1500;
+  int rows_in_contact = 0;
 };
 void PrintTo(const Case& c, std::ostream* out) {
   constexpr const char* kinds[] = {"", " fixed", " adaptive"};
   *out << c.model << ' ' << c.integrator << kinds[c.steps];
+  if (c.rows_in_contact > 0) *out << ' ' << c.rows_in_contact << " rows in contact";
 }
 
 bool same_bits(std::span<const double> a, std::span<const double> b) {
@@ -28,8 +30,11 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
 
 /// A model that is assembled, each time from its text.
 struct Prepared {
-  explicit Prepared(const Case& what) : model(load(mechanism(what.model), options(what))), system(*model) {
-    start = assemble(system);
+  explicit Prepared(const Case& what) : model(model_of(what)), system(*model) { start = assemble(system); }
+  static std::unique_ptr<Model> model_of(const Case& what) {
+    std::unique_ptr<Model> model = load(mechanism(what.model), options(what));
+    model->settings.rows_in_contact = what.rows_in_contact;
+    return model;
   }
   static BuildOptions options(const Case& what) {
     BuildOptions out;
@@ -157,7 +162,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"3-rrr", "", Case::own, 4000}, Case{"slider-crank", "bathe", Case::adaptive},
                       Case{"slider-crank", "dopri5", Case::adaptive}, Case{"3-rpr", "generalized-alpha", Case::fixed},
                       Case{"spatial/bricard", "", Case::own}, Case{"spatial/stewart", "", Case::own},
-                      Case{"spatial/slider-crank", "bathe", Case::fixed}, Case{"validation/cradle-5", "", Case::own}));
+                      Case{"spatial/slider-crank", "bathe", Case::fixed}, Case{"validation/cradle-5", "", Case::own},
+                      Case{"3-rrr", "", Case::own, 4000, 3}, Case{"slider-crank", "dopri5", Case::adaptive, 1500, 10},
+                      Case{"spatial/slider-crank", "", Case::adaptive, 1500, 5}));
 
 std::vector<std::string> shipped_models() {
   const std::filesystem::path folder = std::string(source_folder()) + "/mechanisms";
