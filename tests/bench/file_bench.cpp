@@ -1,11 +1,14 @@
-// Reading a model, and a row of results: copied by the run, and made into text.
+// Reading a model, and rows of results: copied by the run, made into text, and written.
 #include <filesystem>
 #include <numeric>
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/number_text.h"
 #include "bench_model.h"
+#include "results/hdf5_writer.h"
 #include "results/record_layout.h"
 #include "results/record_thread.h"
 #include "results/text_writers.h"
@@ -46,6 +49,37 @@ void row(benchmark::State& state, const std::string& name, int windows) {
       static_cast<double>(values.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+/// A second of rows at 1 kHz after another, each flushed, as the thread of a run writes them; bytes are those of the
+/// numbers in memory.
+void write_seconds(benchmark::State& state, bool hdf5) {
+  constexpr std::size_t channels = 2000, rows = 1000;
+  RecordLayout layout;
+  for (std::size_t i = 0; i < channels; ++i)
+    layout.columns.push_back({i == 0 ? "time" : fmt::format("body.b{}.x", i), "m", "position", "bench"});
+  layout.events = {{"time", "s", "time", "bench"}, {"joint", "1", "joint", "bench"}, {"kind", "1", "kind", "bench"}};
+  RecordBlock block;
+  for (std::size_t i = 0; i < channels * rows; ++i) block.rows.push_back(std::sin(static_cast<double>(i)));
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("freeplay-bench-{}", ::getpid());
+  std::unique_ptr<RecordWriter> writer;
+  if (hdf5) {
+    writer = std::make_unique<Hdf5Writer>(file, layout, Hdf5Writer::Options{.expected_rows = 1000000, .grows = true});
+  } else {
+    writer = std::make_unique<RowTextWriter>(file, layout);
+  }
+  writer->flush();
+  double time = 0.0;
+  for (auto _ : state) {
+    for (std::size_t r = 0; r < rows; ++r) block.rows[r * channels] = (time += 1e-3);
+    writer->write(block);
+    writer->flush();
+  }
+  writer->close();
+  if (!writer->failure().empty()) state.SkipWithError(writer->failure().c_str());
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(block.rows.size() * sizeof(double)));
+  std::filesystem::remove(file);
+}
+
 const int registered = [] {
   const auto add = [](const std::string& label, auto run) {
     return benchmark::RegisterBenchmark(label.c_str(), run)->MeasureProcessCPUTime()->UseRealTime();
@@ -58,6 +92,8 @@ const int registered = [] {
   }
   add("row/3-rrr", [](benchmark::State& s) { row(s, "3-rrr", 0); });
   add("number_text", text_of_row);
+  add("write/csv-2000", [](benchmark::State& s) { write_seconds(s, false); });
+  add("write/hdf5-2000", [](benchmark::State& s) { write_seconds(s, true); });
   return 0;
 }();
 
