@@ -253,9 +253,8 @@ class MotionDoubts {
     const double speed = angle ? course.fastest : std::max(std::abs(course.low), std::abs(course.high));
     judge_step(speed, written);
     if (names_a_unit(written)) return;
-    if (angle && settings_.start == 0.0 && std::abs(course.begin) > bare_limit::angle) {
-      return doubt_angle(written, course.begin);
-    }
+    const bool far = angle && settings_.start == 0.0 && std::abs(course.begin) > bare_limit::angle;
+    if (far && doubt_angle(written, course.begin)) return;
     const double swing = angle ? amplitude(driver.value, written) : 0.0;
     if (swing > bare_limit::angle) {
       written.warn("doubtful-angle", fmt::format("'{0}' swings or turns by {1:.6g} rad: write '{1:.6g} deg' if degrees "

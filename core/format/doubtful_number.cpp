@@ -38,7 +38,21 @@ constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are sim
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_word_part(char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)); }
 
-/// Calls `use(word, is_parameter)` for every word of an expression; the exponent of a number is none.
+/// Functions whose result is a plain number, whatever stands in their brackets.
+constexpr std::string_view plain_functions[] = {"sin", "cos", "tan", "exp", "log", "smooth"};
+
+/// The place after the bracket that closes the one at `open`.
+std::size_t after_bracket(std::string_view text, std::size_t open) {
+  int depth = 0;
+  for (std::size_t i = open; i < text.size(); ++i) {
+    depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+    if (depth == 0) return i + 1;
+  }
+  return text.size();
+}
+
+/// Calls `use(word, is_parameter)` for every word of an expression; the exponent of a number is none, nor is what
+/// stands in the brackets of a function that makes a plain number of it: the pi of `30*sin(2*pi*t)` says nothing of 30.
 template <class Use>
 bool any_word(std::string_view text, Use&& use) {
   for (std::size_t i = 0; i < text.size();) {
@@ -54,6 +68,12 @@ bool any_word(std::string_view text, Use&& use) {
     const std::size_t begin = i;
     while (i < text.size() && (is_word_part(text[i]) || static_cast<unsigned char>(text[i]) >= 0x80)) ++i;
     const bool parameter = begin > 0 && (text[begin - 1] == '$' || text[begin - 1] == '{');
+    const std::size_t bracket = std::min(text.find_first_not_of(' ', i), text.size());
+    if (!parameter && bracket < text.size() && text[bracket] == '(' &&
+        std::ranges::count(plain_functions, text.substr(begin, i - begin)) > 0) {
+      i = after_bracket(text, bracket);
+      continue;
+    }
     if (use(text.substr(begin, i - begin), parameter)) return true;
   }
   return false;
@@ -129,14 +149,17 @@ bool says_unit(const CheckedValue& value) {
   return false;
 }
 
-void doubt_angle(const CheckedValue& written, double radians) {
-  if (std::abs(radians) <= bare_limit::angle * (1.0 + 1e-12) || names_a_unit(written)) return;
+bool doubt_angle(const CheckedValue& written, double radians) {
+  if (std::abs(radians) <= bare_limit::angle * (1.0 + 1e-12) || names_a_unit(written)) return false;
   // A parameter may hold a multiple of pi; round numbers are none.
-  if (says_pi(written) || (!is_round(radians) && written.node().text.find('$') != std::string::npos)) return;
+  if (says_pi(written) || (!is_round(radians) && written.node().text.find('$') != std::string::npos)) {
+    return false;
+  }
   written.warn("doubtful-angle",
                fmt::format("'{0}' is {1:.6g} rad, {2:.3g} turns: write '{1:.6g} deg' if degrees are meant, else "
                            "'{1:.6g} rad'",
                            written.path(), radians, std::abs(radians) / (2.0 * pi)));
+  return true;
 }
 
 void doubt_angular_speed(const CheckedValue& written, double speed) {
@@ -151,6 +174,10 @@ void doubt_slide_speed(const CheckedValue& written, double speed) {
   written.warn("doubtful-speed", fmt::format("'{0}' is {1:.6g} m/s, that is {2:.0f} km/h: write '{1:.6g} mm/s' if "
                                              "millimetres per second are meant, else '{1:.6g} m/s'",
                                              written.path(), speed, std::abs(speed) * 3.6));
+}
+
+void doubt_start_length(const CheckedValue& written, double value, double scale) {
+  doubt_length(written, value, scale, bare_limit::start);
 }
 
 void doubt_gravity(const CheckedValue& written, const Vector3& gravity) {

@@ -16,23 +16,26 @@ inline constexpr double gravity = 50.0;                 ///< [m/s^2]
 inline constexpr double step = 5e-3;                    ///< and a fiftieth of the run [s]
 inline constexpr double long_step = 0.1;                ///< in whatever run [s]
 inline constexpr double length = 100.0;                 ///< in terms of the lengths around it
+inline constexpr double start = 50.0;                   ///< likewise: of a slide at its start
 inline constexpr double bearing = 20.0;                 ///< likewise: radii, lengths and plays of bearings
 inline constexpr double slide_speed = 50.0;             ///< [m/s]
 inline constexpr double rows = 1e7;                     ///< of a result
 }  // namespace bare_limit
 
-/// True if a unit stands in the text of the value or in that of a parameter that it refers to. Such a value is never
-/// doubted for its unit.
+/// True if a unit stands in the text of the value or in that of a parameter that it refers to, but for arguments of
+/// functions such as sin and smooth, which say nothing of its own unit. Such a value is never doubted for its unit.
 bool names_a_unit(const CheckedValue& written);
 /// The same for any text within a list or a map.
 bool says_unit(const CheckedValue& value);
 
-/// `doubtful-angle`: beyond a turn, without a unit, and no multiple of pi.
-void doubt_angle(const CheckedValue& written, double radians);
+/// `doubtful-angle`: beyond a turn, without a unit, and no multiple of pi. True after a message.
+bool doubt_angle(const CheckedValue& written, double radians);
 /// `doubtful-speed`.
 void doubt_angular_speed(const CheckedValue& written, double speed);
 /// The same of a speed along a slide.
 void doubt_slide_speed(const CheckedValue& written, double speed);
+/// `doubtful-length`: a start of a slide where the lengths of the mechanism are about `scale` [m], 0 when unknown.
+void doubt_start_length(const CheckedValue& written, double value, double scale);
 /// `doubtful-value`.
 void doubt_gravity(const CheckedValue& written, const Vector3& gravity);
 /// `doubtful-time`: of fixed steps, or the first one, in a run of length `span` [s].

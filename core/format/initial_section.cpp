@@ -45,10 +45,12 @@ void read_start_value(Draft& draft, const CheckedValue& value, StartKind what) {
                              "a driver moves joint '" + name + "'; it has no start value of its own");
   }
   if (!number) return;
-  if (coordinate == Coordinate::angle) {
-    what == StartKind::coordinate ? doubt_angle(value, *number) : doubt_angular_speed(value, *number);
-  } else if (what == StartKind::speed) {
-    doubt_slide_speed(value, *number);
+  if (what == StartKind::speed) {
+    coordinate == Coordinate::angle ? doubt_angular_speed(value, *number) : doubt_slide_speed(value, *number);
+  } else if (coordinate == Coordinate::angle) {
+    doubt_angle(value, *number);
+  } else {
+    doubt_start_length(value, *number, draft.length_scale);
   }
   (what == StartKind::coordinate ? element.start_coordinate : element.start_speed) =
       StartValue{*number, value.key_location()};
