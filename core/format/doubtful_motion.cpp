@@ -10,81 +10,16 @@
 
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
+#include "format/motion_course.h"
 
 namespace freeplay {
 namespace {
 
-constexpr int samples = 128;                // of a motion over the run
 constexpr std::size_t most_drivers = 2000;  // that are looked at
 constexpr double table_beyond = 50.0;       // the end of a table, in runs
 constexpr double largest_turn = 0.5;        // in a fixed step [rad]
-constexpr int halvings = 40;                // towards the fastest place of a motion
-// Speeds that no drive has, whatever their unit: a rifle's bullet, a million turns a minute.
-constexpr double fastest_slide = 1e3;  // [m/s]
-constexpr double fastest_turn = 1e5;   // [rad/s]
-constexpr int places_in_piece = 8;     // of a cubic table
-constexpr double overshoot = 0.25;     // by the range of its points: eight points a turn follow a sine to a fifth
-
-/// What a prescribed motion does during the run.
-struct Course {
-  bool known = false;
-  double begin = 0.0, low = 0.0, high = 0.0, fastest = 0.0;
-  bool returns = false;  // it turns back, or comes to rest at the end
-};
-
-Course course_of(const Expression& motion, const Settings& settings, double spans = 1.0) {
-  Course course;
-  double forward = 0.0, back = 0.0, last_rate = 0.0;
-  for (int i = 0; i <= samples; ++i) {
-    const double t = settings.start + spans * (settings.end - settings.start) * i / samples;
-    Jet jet;
-    EvaluationFailure failure;
-    if (!motion.evaluate(t, jet, failure)) return {};
-    if (i == 0) course.begin = course.low = course.high = jet.value;
-    course.low = std::min(course.low, jet.value);
-    course.high = std::max(course.high, jet.value);
-    forward = std::max(forward, jet.rate);
-    back = std::max(back, -jet.rate);
-    last_rate = std::abs(jet.rate);
-  }
-  course.fastest = std::max(forward, back);
-  const double noise = 1e-9 * course.fastest;
-  course.returns = (forward > noise && back > noise) || last_rate <= noise;
-  course.known = std::isfinite(course.fastest) && std::isfinite(course.high - course.low);
-  return course;
-}
-
-/// Largest speed of a motion: a short move lies between samples, towards the half of a span with the larger change.
-double peak_speed(const Expression& motion, const Settings& settings) {
-  const auto look = [&](double t, Jet& jet) {
-    EvaluationFailure failure;
-    return motion.evaluate(t, jet, failure);
-  };
-  const double span = (settings.end - settings.start) / samples;
-  double fastest = 0.0, most = -1.0, to = settings.start, before = 0.0;
-  for (int i = 0; i <= samples; ++i) {
-    const double t = settings.start + span * i;
-    Jet jet;
-    if (!look(t, jet)) return 0.0;
-    fastest = std::max(fastest, std::abs(jet.rate));
-    const double change = i > 0 ? std::abs(jet.value - before) : 0.0;
-    if (change > most) most = change, to = t;
-    before = jet.value;
-  }
-  double from = to - span;
-  Jet first, last;
-  if (!look(from, first) || !look(to, last)) return fastest;
-  for (int halving = 0; halving < halvings && to > from; ++halving) {
-    const double middle = 0.5 * (from + to);
-    Jet jet;
-    if (!look(middle, jet)) return fastest;
-    fastest = std::max(fastest, std::abs(jet.rate));
-    const bool first_half = std::abs(jet.value - first.value) > std::abs(last.value - jet.value);
-    (first_half ? to : from) = middle;
-    (first_half ? last : first) = jet;
-  }
-  return fastest;
-}
+constexpr int places_in_piece = 8;          // of a cubic table
+constexpr double overshoot = 0.25;          // by the range of its points: eight points a turn follow a sine to a fifth
 
 /// Numbers that are written in the text, and those of its parameters that have no dimension.
 std::vector<double> numbers_in(const CheckedValue& written) {
@@ -180,7 +115,7 @@ class MotionDoubts {
   /// A speed that no machine has, be its unit written or not. True after a message.
   bool doubt_peak(const Driver& driver, double speed, const CheckedValue& written) const {
     const bool turns = coordinate(driver) == Coordinate::angle;
-    if (!(speed > (turns ? fastest_turn : fastest_slide))) return false;
+    if (!(speed > (turns ? fastest_motion::turn : fastest_motion::slide))) return false;
     written.warn("doubtful-speed",
                  fmt::format("'{}' comes to {:.3g} {}, faster than any machine: check its numbers, its "
                              "times and their units",

@@ -1,5 +1,6 @@
 #include "format/gear.h"
 
+#include "format/doubtful_number.h"
 #include "freeplay/plugin.h"
 
 namespace freeplay {
@@ -44,6 +45,7 @@ class GearEntry {
     if (number && *number == 0.0) ratio->fail("out-of-range", "'" + ratio->path() + "' must not be 0");
     if (given) gear.offset = read(*offset, second);
     if (!paired || !ratio) return;
+    if (gear.offset) judge_offset(*offset, gear);
     gear.ratio = number.value_or(1.0);
     draft_.model.joints[static_cast<std::size_t>(joint_)].gear = static_cast<int>(draft_.model.gears.size());
     draft_.model.gears.push_back(gear);
@@ -53,6 +55,14 @@ class GearEntry {
   const JointElement& element(int joint) const { return draft_.model.joints[static_cast<std::size_t>(joint)]; }
   Dimension dimension_of(int joint) const {
     return element(joint).ideal_layout.coordinate == Coordinate::angle ? dimension::angle : dimension::length;
+  }
+
+  void judge_offset(const CheckedValue& written, const Gear& gear) const {
+    if (element(gear.second).ideal_layout.coordinate == Coordinate::angle) {
+      doubt_angle(written, *gear.offset);
+    } else {
+      doubt_start_length(written, *gear.offset, draft_.length_scale);
+    }
   }
 
   bool read_pair(const CheckedValue& of, Gear& gear) const {

@@ -10,6 +10,7 @@
 #include "format/analysis_section.h"
 #include "format/body_section.h"
 #include "format/doubtful_body.h"
+#include "format/doubtful_gear.h"
 #include "format/doubtful_motion.h"
 #include "format/doubtful_number.h"
 #include "format/draft.h"
@@ -76,6 +77,7 @@ class ModelBuilder {
     if (diagnostics_.has_errors()) return nullptr;
     doubt_bodies(draft_);
     doubt_motions(draft_);
+    doubt_gears(draft_);
     if (!document_.incomplete()) warn_unused_frames(draft_);
     if (diagnostics_.has_errors()) return nullptr;  // with --strict
     keep_frames();

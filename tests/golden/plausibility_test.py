@@ -72,6 +72,20 @@ joints:
 drivers: {motor: {joint: a, kind: velocity, value: 10}}
 simulation: {end: 0.1, step: 1e-3}
 """
+# A wheel and a slide that it moves.
+RACK = """freeplay: 1
+bodies:
+  wheel: {mass: 1, inertia: 1e-3}
+  rack: {mass: 3, inertia: 0.01, frames: {end: [0.3, 0]}}
+frames: {ground/r: [0, -0.05]}
+joints:
+  p: {type: revolute, between: [ground, wheel]}
+  s: {type: prismatic, between: [ground/r, rack]}
+  mesh: {type: gear, of: [p, s], ratio: 0.05}
+forces: {load: {type: force, at: rack/end, value: [-20, 0]}}
+drivers: {motor: {joint: p, kind: angle, value: 0.5*sin(2*pi*t)}}
+simulation: {end: 1, step: 1e-3}
+"""
 # A motor with an unbalanced rotor on a spring, whose offset is no length of the machine.
 SHAKER = """freeplay: 1
 gravity: [0, -9.81]
@@ -255,6 +269,19 @@ MISTAKES = [
     (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 50 ms}", "doubtful-time", "50 ms", "start and its end"),
     (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 1 ns}", "doubtful-time", "1 ns", "rows would be written"),
     (TRAIN, "drivers:", "  again: {type: gear, of: [b, a], ratio: 0.5}\ndrivers:", "duplicate-joint", "again", "'pair'"),
+    (RACK, "ratio: 0.05", "ratio: 50", LENGTH, "50", "mm/rad"),
+    (RACK, "of: [p, s], ratio: 0.05", "of: [s, p], ratio: 1/50", LENGTH, "1/50", "50 m in each radian"),
+    (RACK, "ratio: 0.05", "ratio: 0.4", LENGTH, "0.4", "50.27 m in all",
+     {"value: 0.5*sin(2*pi*t)": "table: {points: [[0, 0], [0.5, 20], [1, 0]], unit: rev, ends: clamped}"}),
+    (RACK, "ratio: 0.05", "ratio: 0.4", "doubtful-speed", "0.4", "62.83 m/s",
+     {"kind: angle, value: 0.5*sin(2*pi*t)": "kind: velocity, value: 1500 rpm"}),
+    (RACK, "ratio: 0.05", "ratio: 7 m", "doubtful-speed", "7 m", "faster than any machine",
+     {"kind: angle, value: 0.5*sin(2*pi*t)": "kind: velocity, value: 1500 rpm"}),
+    (RACK, "ratio: 0.05", "ratio: 0.05, offset: 25", LENGTH, "25", "25 mm"),
+    (TRAIN, "ratio: 2", "ratio: -2000", VALUE, "-2000", "2e+04 rad/s"),
+    (TRAIN, "ratio: 2", "ratio: 180/pi", "doubtful-angle", "90", "90 deg", {"ratio: 180/pi": "ratio: 2, offset: 90"}),
+    (TRAIN, "ratio: 2", "ratio: 2e4", "doubtful-speed", "2e4", "faster than any machine"),
+    (TRAIN, "ratio: 2", "ratio: 360", VALUE, "360", "360 times", {"kind: velocity, value: 10": "kind: angle, value: 0.1*sin(300*t)"}),
     (ROD, "  held:", "  again: {type: spherical, between: [ground, rod]}\n  held:", "duplicate-joint", "again", "'hung'"),
     (CART, "value: 0.1*sin(3*t)", "value: '10 m*smooth(t, 0.5, 0.501)'", "doubtful-speed", "'10 m", "faster than any machine"),
     (CRANK, DRIVEN, "kind: angle, value: '90 deg*smooth(t, 0.01, 0.01001)'}}", "doubtful-speed", "'90", "faster than any machine"),
@@ -297,7 +324,7 @@ SOUND = [
     (CRANK, "", ""),
     (CART, "", ""),
     (ROD, "", ""),
-    *[(model, "", "") for model in (TRAIN, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
+    *[(model, "", "") for model in (TRAIN, RACK, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
     (SHAKER, "initial: {joints: {guide: 0}}\n", ""),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e8"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 1.4}"),
@@ -313,6 +340,10 @@ SOUND = [
     (CRANK, DRIVEN, "kind: angle, value: '8*pi*smooth(t, 0, 0.1)'}}"),
     (CRANK, "{main: 1}", "{main: 60 rad}"),
     (SHAKER, "{guide: 0}", "{guide: 25 m}"),
+    (RACK, "ratio: 0.05", "ratio: 5 m/rad"),
+    (RACK, "of: [p, s], ratio: 0.05", "of: [s, p], ratio: 20"),
+    (TRAIN, "ratio: 2", "ratio: 2, offset: 90 deg"),
+    (TRAIN, "ratio: 2", "ratio: 90"),
     (CRANK, "{main: 1}", "{main: 7*pi}"),
     (CRANK, "{main: 1}", "{main: 2*pi}"),
     (CRANK, "-9.81", "-9810 mm/s^2"),
