@@ -45,6 +45,7 @@ inline constexpr Parameter axis_kind_parameter{.name = "kind",
 ///   effort(s, s')     for numbers and for duals
 ///   stored(s)         potential energy [J]
 ///   stored_rate(s, s')
+///   doubt(s, slides)  a sentence where s is far outside of what the law is for, else null; a Law may have none
 template <class Law>
 class AxisForce final : public Joint {
  public:
@@ -74,6 +75,10 @@ class AxisForce final : public Joint {
     if (out.derivatives.empty()) return;
     const RelativeMotion<Dual> slopes = pair.duals();
     pair.write_derivatives(force(slopes, motion(slopes, in.coordinate)), 24, out);
+  }
+  const char* warning(const JointInput& in) const override {
+    if constexpr (requires { law_.doubt(0.0, false); }) return law_.doubt(in.coordinate, slides_);
+    return nullptr;
   }
 
  private:

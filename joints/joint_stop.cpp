@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "axis_force.h"
 
 namespace freeplay {
@@ -25,8 +27,19 @@ class Stops {
   }
   double stored(double s) const { return 0.5 * stiffness_ * depth(s) * depth(s); }
   double stored_rate(double s, double rate) const { return stiffness_ * depth(s) * beyond(s) * rate; }
+  const char* doubt(double s, bool slides) const {
+    const double d = depth(s), way = upper_ - lower_;
+    const bool far = (way > 0.0 && d > most_ways * way) || (!slides && d > most_turn);
+    return far ? "The joint is far beyond the end of its way: a driver moves it through its stop, or the stop is too "
+                 "soft."
+               : nullptr;
+  }
 
  private:
+  // How far beyond an end no stop yields: by the way between the two ends, and of turns.
+  static constexpr double most_ways = 2.0;
+  static constexpr double most_turn = std::numbers::pi / 2.0;  // [rad]
+
   /// 1 beyond the upper end, -1 beyond the lower.
   double beyond(double s) const { return s > upper_ ? 1.0 : -1.0; }
   double depth(double s) const { return s > upper_ ? s - upper_ : s < lower_ ? lower_ - s : 0.0; }
