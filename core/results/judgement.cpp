@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "results/load_judgement.h"
 #include "run/motion_period.h"
 
 namespace freeplay {
@@ -339,6 +340,7 @@ void judge(const RunRecord& record, Verdict& verdict) {
   judge_reach(record, verdict);
   judge_singular(record, verdict);
   judge_largest_force(record, verdict);
+  judge_loads(record, verdict);
   judge_window(record, verdict);
 }
 

@@ -322,6 +322,46 @@ simulation: {end: 1 s, accuracy: 1 um}
         self.run_model(flat.replace("tip: [0.12, 0]}, pose: {angle: 50 deg}}\njoints", "tip: [0.2, 0]}, pose: {angle: 50 deg}}\njoints"))
         self.assertNotIn("singular-position", self.ids())
 
+    def test_loads_beyond_all_machines_are_doubtful_without_play(self):
+        """A ram on a rail, 2 kg and 0.2 m, under a motion, a force or a motor."""
+        ram = ("freeplay: 1\nbodies: {ram: {mass: 2, inertia: 0.01, frames: {t: [0.2, 0]}}}\nframes: {ground/w: [-0.3, 0]}\n"
+               "joints: {rail: {type: prismatic, between: [ground, ram]}}\n%s\nsimulation: {end: 0.1, accuracy: 1 um}\n")
+        moved = "drivers: {d: {joint: rail, kind: position, value: 0.05*sin(20*t)}}\nforces: {f: {%s}}"
+        spring = "type: spring-damper, between: [ground/w, ram/t], free_length: 0.6, stiffness: "
+        for part, element in (
+                (moved % "type: force, at: ram/t, value: [-5e6, 0]", "force 'f'"),
+                (moved % "type: torque, on: ram, value: 5e5", "force 'f'"),
+                (moved % (spring + "5e8"), "force 'f'"),
+                (moved % "type: spring-damper, between: [ground/w, ram/t], stiffness: 0, damping: 5e6", "force 'f'"),
+                (moved % "type: joint-friction, between: [ground, ram], friction: 2e6", "force 'f'"),
+                ("drivers: {d: {joint: rail, kind: force, value: 3e6*sin(60*t)}}\nforces: {f: {%s}}" % (spring + "1000"), "driver 'd'")):
+            with self.subTest(part):
+                self.run_model(ram % part)
+                reason = next(r for r in self.trust["reasons"] if r["id"] == "load-size")
+                self.assertEqual(["doubtful", element], [reason["level"], reason["element"]])
+        for part in ("type: force, at: ram/t, value: [-1e5, 0]", spring + "5e4"):
+            self.run_model(ram % (moved % part))
+            self.assertNotIn("load-size", self.ids(), self.trust)
+
+    def test_a_motor_that_nothing_brakes_is_doubtful_by_its_speed(self):
+        self.run_model("freeplay: 1\nbodies: {arm: {mass: 1, inertia: 0.01, com: [0.1, 0]}}\n"
+                       "joints: {axle: {type: revolute, between: [ground, arm]}}\n"
+                       "drivers: {motor: {joint: axle, kind: torque, value: 2000}}\nsimulation: {end: 0.2, accuracy: 1 um}\n")
+        reason = next(r for r in self.trust["reasons"] if r["id"] == "body-speed")
+        self.assertEqual(("body 'arm'", 1000), (reason["element"], reason["limit"]))
+        self.assertIn("driver 'motor' has put", reason["message"])
+
+    def test_a_joint_driven_through_its_stop_is_doubtful(self):
+        text = ("freeplay: 1\nbodies: {arm: {mass: 1, inertia: 0.01}}\njoints: {axle: {type: revolute, between: [ground, arm]}}\n"
+                "forces: {stop: {type: joint-stop, kind: rotational, between: [ground, arm], lower: -10 deg, upper: 90 deg, stiffness: 100}}\n"
+                "drivers: {motor: {joint: axle, kind: angle, value: %s}}\nsimulation: {end: 1, accuracy: 1 um}\n")
+        self.run_model(text % "2*pi*t")
+        reason = next(r for r in self.trust["reasons"] if r["id"] == "law-range")
+        self.assertEqual("joint 'stop'", reason["element"])
+        self.assertIn("through its stop", reason["message"])
+        self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
+        self.assertEqual([], self.ids())
+
     def test_few_impacts_after_a_discard_are_doubtful(self):
         self.run_model(BALL % "")
         self.assertNotIn("statistics-window", self.ids())

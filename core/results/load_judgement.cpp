@@ -1,0 +1,137 @@
+#include "results/load_judgement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+// Accelerations that one load would give to all masses together [m/s^2]. Of a gun 6e4 move the bolt; a toggle clamp
+// holds 1e4 times its mass. Springs, dampers and friction answer motions, impacts among them.
+constexpr double most_of_load = 1e5, most_of_element = 3e5;
+constexpr double fastest_body = 1e3;  // [m/s]: a rifle's bullet
+
+class LoadJudge {
+ public:
+  explicit LoadJudge(const RunRecord& record) : record_(record), model_(record.model), size_(record.extremes.size) {
+    for (const Body& body : model_.bodies) {
+      mass_ += body.mass;
+      inertia_ += std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
+    }
+  }
+
+  void add_to(Verdict& verdict) {
+    if (!(mass_ > 0.0) || !(size_ > 0.0)) return;
+    look_at_forces();
+    look_at_drivers();
+    if (worst_.excess > 1.0) {
+      verdict.add(
+          {.id = "load-size",
+           .level = Trust::doubtful,
+           .message = fmt::format("{} of {:.3g} {} on {:.3g} kg in a mechanism of {:.2g} m: check its numbers and "
+                                  "their units",
+                                  worst_.element, worst_.amount, worst_.unit, mass_, size_),
+           .element = worst_.element,
+           .value = worst_.excess * worst_.limit,
+           .limit = worst_.limit});
+    }
+    look_at_speeds(verdict);
+  }
+
+ private:
+  struct Load {
+    double excess = 0.0;  // acceleration by its limit
+    double limit = 0.0, amount = 0.0;
+    const char* unit = "N";
+    std::string element{};
+  };
+
+  /// Over the whole run, whatever `discard` says; 0 where nothing was seen.
+  double largest(std::size_t peak) const {
+    const Statistics& seen = record_.statistics;
+    return std::max({seen.any() ? seen.largest()[peak] : 0.0, seen.largest_before()[peak], 0.0});
+  }
+
+  void look_at(double force, double torque, double limit, const std::string& element) {
+    const double by_torque = torque * size_ / (inertia_ + mass_ * size_ * size_);
+    if (force / mass_ > limit * worst_.excess) worst_ = {force / mass_ / limit, limit, force, "N", element};
+    if (by_torque > limit * worst_.excess) worst_ = {by_torque / limit, limit, torque, "N m", element};
+  }
+
+  void look_at_forces() {
+    const PeakValues& peaks = record_.statistics.peak_values();
+    for (int f = 0; f < static_cast<int>(model_.force_elements.size()); ++f) {
+      const bool applied = model_.force_elements[at(f)].applied >= 0;
+      look_at(largest(peaks.applied_force(f)), largest(peaks.applied_torque(f)),
+              applied ? most_of_load : most_of_element, fmt::format("force '{}'", force_words(model_, f).name));
+    }
+  }
+
+  void look_at_drivers() {
+    for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
+      const Driver& driver = model_.drivers[d];
+      if (prescribes(driver.kind)) continue;
+      const double effort = largest(record_.statistics.peak_values().effort(static_cast<int>(d)));
+      const bool turns = driver.kind == DriverKind::torque;
+      look_at(turns ? 0.0 : effort, turns ? effort : 0.0, most_of_load, fmt::format("driver '{}'", driver.name));
+    }
+  }
+
+  bool is_on_ground() const {
+    return std::ranges::any_of(model_.joints, [&](const JointElement& joint) {
+      if (joint.is_force || joint.gear >= 0) return false;
+      return model_.markers[at(joint.marker_a)].body == ground || model_.markers[at(joint.marker_b)].body == ground;
+    });
+  }
+
+  /// A planet may be fast, a mechanism on ground not.
+  void look_at_speeds(Verdict& verdict) const {
+    double fastest = fastest_body;
+    int body = -1;
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      const double speed = largest(record_.statistics.peak_values().speed(b));
+      if (speed > fastest) fastest = speed, body = b;
+    }
+    if (body < 0 || !is_on_ground()) return;
+    const std::string element = fmt::format("body '{}'", model_.bodies[at(body)].name);
+    verdict.add({.id = "body-speed",
+                 .level = Trust::doubtful,
+                 .message = fmt::format("{} moves with {:.3g} m/s, faster than in any machine{}", element, fastest,
+                                        likely_source()),
+                 .element = element,
+                 .value = fastest,
+                 .limit = fastest_body});
+  }
+
+  /// "; driver 'motor' has put 3e9 J into 2 kg" of the motor or force with the largest work, where it is the most of
+  /// the motion's energy.
+  std::string likely_source() const {
+    double most = 0.5 * record_.extremes.kinetic.most;
+    std::string text;
+    const auto look = [&](double work, const char* kind, const std::string& name) {
+      if (!(work > most)) return;
+      most = work;
+      text = fmt::format("; {} '{}' has put {:.3g} J into {:.3g} kg", kind, name, work, mass_);
+    };
+    for (int f = 0; f < static_cast<int>(model_.force_elements.size()); ++f)
+      look(record_.statistics.force(f).work, "force", force_words(model_, f).name);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d)
+      look(record_.statistics.driver(d).work, "driver", model_.drivers[at(d)].name);
+    return text;
+  }
+
+  const RunRecord& record_;
+  const Model& model_;
+  double size_, mass_ = 0.0, inertia_ = 0.0;
+  Load worst_{};
+};
+
+}  // namespace
+
+void judge_loads(const RunRecord& record, Verdict& verdict) { LoadJudge(record).add_to(verdict); }
+
+}  // namespace freeplay
