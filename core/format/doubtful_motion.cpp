@@ -72,8 +72,7 @@ class MotionDoubts {
     const TimeTable& table = *driver.table;
     const double last = table.times().back(), span = settings_.end - settings_.start;
     const TableSource& source = driver.table_source;
-    const bool says = says_unit(*written);
-    if (!says && source.time_unit.empty() && last - settings_.start > table_beyond * span) {
+    if (source.time_unit.empty() && !points_say_unit(*written, 0) && last - settings_.start > table_beyond * span) {
       written->warn("doubtful-time", fmt::format("'{}' goes on to {:.4g} s, but the run takes {:.4g} s: write "
                                                  "'time_unit: ms' if milliseconds are meant",
                                                  written->path(), last, span));
@@ -82,7 +81,8 @@ class MotionDoubts {
     if (looked_at_.insert(&table).second) judge_overshoot(table, *written);
     if (!prescribes(driver.kind)) return;
     const auto [low, high] = std::ranges::minmax(table.values());
-    const bool speeds = driver.kind == DriverKind::velocity, bare = !says && source.unit.empty();
+    const bool speeds = driver.kind == DriverKind::velocity,
+               bare = source.unit.empty() && !points_say_unit(*written, 1);
     const double fastest = speeds ? std::max(std::abs(low), std::abs(high)) : steepest(table);
     if (!bare && doubt_peak(driver, fastest, *written)) return;
     if (coordinate(driver) != Coordinate::angle) return judge_table_of_slide(driver, high - low, fastest, bare);
@@ -106,6 +106,18 @@ class MotionDoubts {
     const auto entry = entry_of(draft_, "drivers", driver.name);
     if (!entry || !entry->node().is_map()) return std::nullopt;
     return MapReader(*entry, "driver").find(key);
+  }
+
+  /// Is some time (0) or value (1) of the points of a table written with a unit?
+  static bool points_say_unit(const CheckedValue& table, std::size_t which) {
+    if (!table.node().is_map()) return false;
+    const auto points = MapReader(table, "table").find("points");
+    if (!points || !points->node().is_list()) return false;
+    for (std::size_t i = 0; i < points->node().items.size(); ++i) {
+      const CheckedValue point = points->item(i);
+      if (point.node().is_list() && which < point.node().items.size() && says_unit(point.item(which))) return true;
+    }
+    return false;
   }
 
   Coordinate coordinate(const Driver& driver) const {
