@@ -28,7 +28,13 @@ constexpr const char* less_wanted[] = {"/bodies", "/statistics", "/twin/bodies",
 }  // namespace
 
 RunData::RunData(ReportedRun& run, std::vector<std::size_t> channels, const RowWindow& window, const Shares& shares)
-    : run_(run), window_(window), shares_(shares), wanted_(std::move(channels)), impacts_(*run.reader, window) {
+    : run_(run),
+      window_(window),
+      shares_(shares),
+      summary_(run.summary),
+      model_text_(run.model_text),
+      wanted_(std::move(channels)),
+      impacts_(*run.reader, window) {
   look_at_times();
   shown_ = wanted_;
   std::ranges::sort(shown_);
@@ -55,11 +61,19 @@ void RunData::look_at_times() {
                 fmt::format("'{}' has no rows in this window", run_.reader->file()), {},
                 "change --from and --until, or wait until the run has written rows");
   }
-  const CountedTime counted = counted_time(*run_.reader, first_);
-  interval_ = counted.interval;
-  if (!(interval_ > 0.0) && run_.summary.contains("settings"))
-    interval_ = run_.summary["settings"].value("interval", 0.0);
+  interval_ = counted().interval;
   if (!(interval_ > 0.0) && rows_ > 1) interval_ = (last_ - first_) / static_cast<double>(rows_ - 1);
+}
+
+/// As the file of rows says, or else the summary beside it.
+CountedTime RunData::counted() const {
+  CountedTime time = counted_time(*run_.reader, first_);
+  const Json settings = summary_.value("settings", Json::object());
+  if (time.interval > 0.0 || !settings.is_object()) return time;
+  time.origin = settings.value("start", first_);
+  time.from = time.origin + settings.value("discard", 0.0);
+  time.interval = settings.value("interval", 0.0);
+  return time;
 }
 
 void RunData::find_orbits(std::size_t points) {
@@ -106,15 +120,15 @@ std::size_t RunData::lines_of_effort() const {
 }
 
 void RunData::shorten_texts(std::size_t most) {
-  if (run_.model_text.size() > most) {
+  if (model_text_.size() > most) {
     left_out_.push_back("text of the model");
-    run_.model_text.clear();
+    model_text_.clear();
   }
   for (const char* path : less_wanted) {
-    if (size_of(run_.summary) <= most) return;
+    if (size_of(summary_) <= most) return;
     const Json::json_pointer pointer(path);
-    if (!run_.summary.contains(pointer) || run_.summary[pointer].is_null()) continue;
-    Json& part = run_.summary[pointer];
+    if (!summary_.contains(pointer) || summary_[pointer].is_null()) continue;
+    Json& part = summary_[pointer];
     part = part.is_array() ? Json::array() : std::string_view(path).ends_with("s") ? Json::object() : Json(nullptr);
     left_out_.push_back("summary: " + std::string(path).substr(1));
   }
@@ -150,16 +164,16 @@ std::size_t RunData::call_margin() const {
   std::size_t size = 0;
   for (const char* path : {"/provenance", "/model/file", "/files"}) {
     const Json::json_pointer pointer(path);
-    if (run_.summary.contains(pointer)) size += size_of(run_.summary[pointer]);
+    if (summary_.contains(pointer)) size += size_of(summary_[pointer]);
   }
   constexpr std::size_t step = 4096;
   return step - size % step;
 }
 
 std::size_t RunData::fixed_size() const {
-  std::size_t size = 2000 + size_of(run_.summary) + call_margin() + size_of(Json(run_.model_text)) +
-                     size_of(impacts_json_) + size_of(bearing_) + size_of(Json(rerun_command(run_))) +
-                     size_of(Json(left_out_)) + size_of(Json(run_.note));
+  std::size_t size = 2000 + size_of(summary_) + call_margin() + size_of(Json(model_text_)) + size_of(impacts_json_) +
+                     size_of(bearing_) + size_of(Json(rerun_command(run_))) + size_of(Json(left_out_)) +
+                     size_of(Json(run_.note));
   if (plan_) {
     Animation empty = *plan_;
     size += size_of(empty.json()) + plan_->size();
@@ -271,8 +285,8 @@ Json RunData::spectra_json(const std::vector<std::vector<double>>& efforts) cons
   if (efforts.empty()) return list;
   Spectrum spectrum;
   try {
-    const CountedTime counted = counted_time(*run_.reader, first_);
-    const RowGrid grid = RowGrid::of(efforts[0], counted.origin, counted.from, counted.interval);
+    const CountedTime time = counted();
+    const RowGrid grid = RowGrid::of(efforts[0], time.origin, time.from, time.interval);
     const std::vector<std::span<const double>> columns(efforts.begin() + 1, efforts.end());
     spectrum = freeplay::spectrum(grid, columns);
   } catch (const Error&) {  // too few rows
@@ -302,8 +316,8 @@ Json RunData::json() const {
   Json orbits = Json::array();
   for (const Orbit& orbit : orbits_) orbits.push_back(orbit.json());
   Json json = {{"name", run_.name},
-               {"summary", run_.summary},
-               {"model", run_.model_text},
+               {"summary", summary_},
+               {"model", model_text_},
                {"rerun", rerun_command(run_)},
                {"rows", rows_},
                {"channels", channels_json()},

@@ -12,6 +12,7 @@
 #include "report/impacts.h"
 #include "report/orbit.h"
 #include "report/reported_run.h"
+#include "results/derived_table.h"
 
 namespace freeplay {
 
@@ -54,6 +55,7 @@ class RunData {
   };
 
   void look_at_times();
+  CountedTime counted() const;
   void find_orbits(std::size_t points);
   void find_efforts();
   void shorten_texts(std::size_t most);
@@ -69,6 +71,8 @@ class RunData {
   ReportedRun& run_;
   RowWindow window_;
   Shares shares_;
+  Json summary_;
+  std::string model_text_;
   std::vector<std::size_t> wanted_, shown_;  // by rank, and in the order of the columns
   std::size_t rows_ = 0;
   double first_ = 0.0, last_ = 0.0, interval_ = 0.0;
