@@ -19,6 +19,7 @@
 #include "cli/progress_line.h"
 #include "cli/repeat_runs.h"
 #include "cli/resumption.h"
+#include "cli/run_glance.h"
 #include "cli/run_options.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
@@ -26,8 +27,6 @@
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "load/load.h"
-#include "plot/sparkline.h"
-#include "report/report.h"
 #include "results/checkpoints.h"
 #include "results/directory.h"
 #include "results/judgement.h"
@@ -281,26 +280,13 @@ class RunJob {
     } else if (!common_.quiet) {
       print(run_table(record) + moved_text(*loaded_.model, assembled_.start.report) +
             (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()) +
-            glance());
+            glance(path_, options_.report));
     }
     if (options_.profile) {
       const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
       common_.json ? print_messages(table, common_.no_color) : print(table);
     }
     return exit_code;
-  }
-
-  /// On a terminal: how the main channels went.
-  std::string glance() const {
-    if (!stdout_is_terminal() || !stdout_takes_unicode()) return "";
-    try {
-      return plot::sparklines(*ResultReader::open(path_)) +
-             (options_.report
-                  ? ""
-                  : fmt::format("  freeplay report {} makes a page of it: motion, orbits, plots\n", path_.string()));
-    } catch (const Error&) {
-      return "";  // the files were reported, and a picture is no reason to fail
-    }
   }
 
   /// Where a file could not be written, that is what is reported, and no later failure.
@@ -379,17 +365,6 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
 }
 
 int run(const RunOptions& options, const CommonOptions& common, const Resumption* resumed);
-
-/// Makes a page of a result as `freeplay report` does.
-void write_report_of(const std::filesystem::path& path, const CommonOptions& common) {
-  ReportRequest request;
-  request.results = {path.string()};
-  request.build = FREEPLAY_BUILD;
-  request.load = loading(common);
-  const ReportMade made = write_report(request);
-  if (!common.json && !common.quiet)
-    print(fmt::format("  report in {} ({} bytes)\n", printable(made.file), made.bytes));
-}
 
 /// The same run with every clearance closed, into the folder `twin` of the result.
 int run_twin(RunOptions options, CommonOptions common, const std::filesystem::path& path, int pipe) {
