@@ -103,7 +103,9 @@ class Kills:
         run = Watched([*self.command, "--out", folder])
         going, instant = run.kill(draw.uniform(0.0, self.seconds))
         self.killed += going
-        self.over += not going
+        if not going:
+            self.over += 1
+            self.seconds = min(self.seconds, instant - run.began)
         self.look(folder, run, instant)
         while os.path.exists(os.path.join(folder, "checkpoint.bin")) and draw.random() < 1 / 3:
             run = Watched([self.program, "run", "--resume", folder])

@@ -37,8 +37,8 @@ def soak_kills(program, folder, count, draw, say, runs=KILLED):
     checkpoints = ["--checkpoint", "0.3 s"]
     kinds = [Kills(name, program, folder, model(what, folder, 5 if name == "rows in contact" else 0), options + checkpoints)
              for name, what, options in runs]
-    for number in range(count):
-        kinds[number % len(kinds)].kill(draw)
+    while sum(kind.killed for kind in kinds) < count:
+        min(kinds, key=lambda kind: kind.killed).kill(draw)
     for kind in kinds:
         say("%s (%.1f s): %s" % (kind.name, kind.seconds, kind.words()))
     return kinds
