@@ -54,14 +54,14 @@ function swatch(k) {
   return svg;
 }
 
-// A plot with its heading, and a place for a value of each curve.
+// A plot with its heading, and a place for a value of each curve; `signs` are the colours and dashes of the curves.
 function addPlot(home, title, labels, curves, options) {
-  const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k);
-  const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(k), label + ' ', values[k])));
+  const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k), {signs = [...labels.keys()]} = options;
+  const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
   const graph = new Dygraph(plot, merged(curves), {
-    labels: ['x', ...keys], colors: keys.map((_, k) => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[k % 8]}])),
+    labels: ['x', ...keys], colors: signs.map(k => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[signs[k] % 8]}])),
     strokeWidth: 1.3, legend: 'never', connectSeparatedPoints: true, axisLineColor: palette.soft, gridLineColor: palette.line,
     highlightCallback: (_, x, at) => at.forEach(p => { values[+p.name.slice(1)].textContent = options.say(p.yval); }),
     unhighlightCallback: () => values.forEach(v => { v.textContent = ''; }), ...options
@@ -216,6 +216,6 @@ function drawSpectra() {
     const curves = series.map(({s}) => [decode(s.frequency, Float32Array), decode(s.amplitude, Float32Array).map(v => v || 1e-30)]), top = Math.max(...curves.flatMap(c => [...c[1]].filter(isFinite)));
     const y = scale(top, unit), decade = v => Math.abs(Math.log10(v / 10 ** y.power) % 1) < 1e-6 ? tidy(y, 2)(v) : '';
     spectra.push(addPlot(box, parts(name).of + ', ' + parts(name).what + ' [' + y.unit + ']', series.map(({run}) => several ? run.title : ''), curves,
-      {say: v => quantity(v, unit), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66), y: axis(decade, 52)}}));
+      {say: v => quantity(v, unit), signs: series.map(({run}) => run.index), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66), y: axis(decade, 52)}}));
   }
 }
