@@ -92,8 +92,8 @@ const char* ending_of(MadeKind kind) {
 
 }  // namespace
 
-Remaking::Remaking(const MadeFile& made, const CommonOptions& common, const fs::path& out)
-    : made_(made), common_(common) {
+Remaking::Remaking(const MadeFile& made, const CommonOptions& common, const fs::path& out, bool yes)
+    : made_(made), common_(common), yes_(yes) {
   const Json maker = made.record.value("made", Json());
   if (!maker.is_string()) refuse_record(made, "it does not say by which command");
   command_ = maker.get<std::string>();
@@ -172,6 +172,7 @@ bool Remaking::run_model(const Json& run, std::size_t number, const fs::path& ou
   std::vector<std::string> words{"run", stage(run, number).string(), "--out", out.string()};
   const std::vector<std::string> more = words_of(made_, run.value("arguments", Json()));
   words.insert(words.end(), more.begin(), more.end());
+  if (yes_) words.emplace_back("--yes");
   execute(std::move(words), run);
   // A run that fails leaves a result, too, unless it was refused before.
   std::error_code ignored;

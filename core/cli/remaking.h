@@ -13,9 +13,9 @@ namespace freeplay {
 
 class Remaking {
  public:
-  /// `out`: where what is made stays; empty: a folder that goes with this object. Throws Error{file} "no-provenance"
-  /// for a record that asks for what makes no such thing, "cannot-write".
-  Remaking(const MadeFile& made, const CommonOptions& common, const std::filesystem::path& out);
+  /// `out`: where what is made stays; empty: a folder that goes with this object. `yes`: however large. Throws
+  /// Error{file} "no-provenance" for a record that asks for what makes no such thing, "cannot-write".
+  Remaking(const MadeFile& made, const CommonOptions& common, const std::filesystem::path& out, bool yes);
   ~Remaking();
   Remaking(const Remaking&) = delete;
   Remaking& operator=(const Remaking&) = delete;
@@ -39,6 +39,7 @@ class Remaking {
 
   const MadeFile& made_;
   const CommonOptions& common_;
+  bool yes_;
   std::string command_;
   std::filesystem::path scratch_, out_, again_;
   ProgramEnd end_;

@@ -23,6 +23,7 @@ constexpr int not_reproduced = 7;  // exit code
 
 struct ReproduceOptions {
   std::string path, out;
+  bool yes = false;
 };
 
 std::string text_at(const Json& json, const char* name) {
@@ -74,11 +75,11 @@ class Reproduction {
  public:
   Reproduction(const MadeFile& made, const CommonOptions& common) : made_(made), common_(common) {}
 
-  int execute(const std::string& out) {
+  int execute(const ReproduceOptions& options) {
     faults_ = record_faults(made_);
     const bool changed_model = std::ranges::any_of(faults_, &RecordFault::of_model);
     if (!changed_model) {
-      Remaking remaking(made_, common_, out);
+      Remaking remaking(made_, common_, options.out, options.yes);
       if (!remaking.make()) return give_up(remaking.end());
       checks_ = compare_again(made_, remaking.again());
       rerun_ = read_made_file(remaking.again()).record;
@@ -154,7 +155,7 @@ int reproduce(const ReproduceOptions& options, const CommonOptions& common) {
   }
   try {
     const MadeFile made = read_made_file(options.path);
-    return Reproduction(made, common).execute(options.out);
+    return Reproduction(made, common).execute(options);
   } catch (const Json::exception&) {
     throw Error(Error::Category::file, "no-provenance",
                 fmt::format("'{}' has a record of another form than this program writes", options.path));
@@ -168,6 +169,7 @@ Command add_reproduce_command(CLI::App& program, CommonOptions& common) {
   const auto options = std::make_shared<ReproduceOptions>();
   add_option(*app, "RESULT", options->path, "Result directory, or a file that this program has made");
   add_file_option(*app, "--out", options->out, "Keep what was made again (a temporary folder)", "DIR");
+  add_flag(*app, "--yes", options->yes, "Run again even what takes more than half of the room that is free");
   add_common_options(*app, common);
   return {app, [options, &common] { return reproduce(*options, common); }};
 }

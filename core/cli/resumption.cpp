@@ -15,7 +15,7 @@ namespace freeplay {
 namespace {
 
 // What the numbers of a run that goes on may differ in; the rest of its options stays as it was.
-constexpr std::array may_change{"--resume", "--end", "--checkpoint", "--report", "--profile"};
+constexpr std::array may_change{"--resume", "--end", "--checkpoint", "--report", "--profile", "--yes"};
 constexpr std::array of_every_command{"--quiet",      "--verbose", "--json",         "--no-color",
                                       "--max-errors", "--plugin",  "--allow-plugins"};
 
@@ -100,6 +100,7 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
   out.options.checkpoint = asked.checkpoint;
   out.options.profile = asked.profile;
   out.options.report = asked.report;
+  out.options.yes = asked.yes;
   out.options.out = asked.resume;
   out.options.model = (directory / made.value("model_copy", "model.yaml")).string();
   out.options.model_name = record.value("model", Json::object()).value("name", "");

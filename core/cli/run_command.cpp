@@ -21,6 +21,7 @@
 #include "cli/resumption.h"
 #include "cli/run_glance.h"
 #include "cli/run_options.h"
+#include "cli/run_size.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
 #include "cli/twin_run.h"
@@ -399,6 +400,8 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
         Error::Category::usage, "no-clearance",
         "--twin runs the model with every clearance closed alongside, and no joint of this model has a clearance");
   }
+  const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
+  if (!options.dry_run) announce_size(*loaded.model, path, from != nullptr ? from->rows() : 0, options, common);
   const auto assembled = assemble_model(loaded);
   if (!assembled) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
@@ -411,7 +414,6 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   if (options.twin) {
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
-  const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
   const int exit_code = RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from).execute();
   if (options.report && exit_code != 6) write_report_of(path, common);
   return exit_code;

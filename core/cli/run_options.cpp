@@ -61,6 +61,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
            "Print where the time went: assembly, factorization, joints, events, output");
   add_file_option(app, "--out", options.out, "Result directory (results/NAME)", "DIR");
   add_flag(app, "--force", options.force, "Write into a directory that holds other files");
+  add_flag(app, "--yes", options.yes, "Write even what takes more than half of the room that is free");
   add_option(app, "--format", options.format, "Of the results: csv, hdf5, both (both)", "FORMAT");
   add_option(app, "--checkpoint", options.checkpoint, "Wall time between checkpoints (10 s); 0: when it is interrupted",
              "T");

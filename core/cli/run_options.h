@@ -19,7 +19,7 @@ struct RunOptions {
   std::string model_name;
   std::vector<std::string> plugins;  ///< words of --plugin, of the run that goes on where one does
   ModelOptions model_options;
-  bool force = false, dry_run = false, verify = false, profile = false, twin = false, report = false;
+  bool force = false, yes = false, dry_run = false, verify = false, profile = false, twin = false, report = false;
   int twin_pipe = -1;  ///< this run is the twin of another, which compares
 };
 

@@ -308,7 +308,7 @@ simulation: {end: 10 ms, step: 1 ms}
 
     def test_an_interrupt_seals_the_files(self):
         for number in (signal.SIGINT, signal.SIGTERM):
-            process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "1000 s", "--out", number.name],
+            process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "100 s", "--out", number.name],
                                        cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             # Interrupted once rows have reached the file, which they do within a second.
             deadline = time.monotonic() + 60
@@ -336,7 +336,7 @@ simulation: {end: 10 ms, step: 1 ms}
         self.assertEqual("interrupted", self.summary("v")["status"])
 
     def test_a_directory_that_is_removed_is_a_failure_of_files(self):
-        process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "1000 s", "--out", "gone"],
+        process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "100 s", "--out", "gone"],
                                    cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         deadline = time.monotonic() + 60
         while not self.grown("gone", "results.csv") and time.monotonic() < deadline:

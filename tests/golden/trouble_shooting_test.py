@@ -240,6 +240,8 @@ CASES = {
         (0, journal("step: 10 us", "step: 500 us"), RUN),
     "trust: doubtful (...)": (0, journal("mass: 1 kg", "mass: 100 kg"), RUN),
     "'...' holds other files than a result": (6, PENDULUM, ["run", "model.yaml", "--out", "."]),
+    "the run would write about ... (... rows of ... columns) into '...', more than half of the ... that are free there [too-large]":
+        (6, PENDULUM, RUN + ["--end", "1e9 s", "--interval", "1 us"]),
     "'...' exists already": (6, PENDULUM, ["convert", "model.yaml", "model.yaml"]),
     "plugin '...' cannot be loaded: ... [plugin-refused]": (5, PENDULUM, RUN + ["--plugin", "./model.so"]),
     "the plugin '...' (SHA-256 ...) lies outside of the folders for plugins, ... [plugin-not-allowed]":
