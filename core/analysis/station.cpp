@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <exception>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
@@ -201,8 +202,14 @@ void in_parallel(std::size_t count, int threads, const std::function<void(int, s
     }
   };
   std::vector<std::thread> others;
-  for (std::size_t piece = 1; piece < pieces; ++piece) others.emplace_back(run, piece);
+  others.reserve(pieces);
+  std::size_t piece = 1;
+  try {
+    for (; piece < pieces; ++piece) others.emplace_back(run, piece);
+  } catch (const std::system_error&) {  // no more threads: the rest is done here
+  }
   run(0);
+  for (; piece < pieces; ++piece) run(piece);
   for (std::thread& other : others) other.join();
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);

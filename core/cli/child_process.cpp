@@ -43,7 +43,7 @@ double processor_time(int process) {
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 [[noreturn]] void no_process(const char* what) {
-  throw Error(Error::Category::internal, "internal", std::string(what) + ": " + std::strerror(errno));
+  throw Error(Error::Category::file, "no-process", std::string(what) + ": " + std::strerror(errno));
 }
 
 void limit(int resource, rlim_t most) {

@@ -38,7 +38,7 @@ class ChildProcess {
   using Work = std::function<Leave(const Report&, CallNote&)>;
 
   /// Starts `work` in a child without stdin, whose output is kept, with at most 4 GiB of memory and 16 MiB to print. It
-  /// dies with this program. Throws Error{internal} when no process can be made.
+  /// dies with this program. Throws Error{file} "no-process" when none can be made.
   explicit ChildProcess(const Work& work);
   /// Kills what is left of it, with all that it started.
   ~ChildProcess();

@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <malloc.h>
+#include <sys/resource.h>
 
 #include "base/version.h"
 #include "cli/commands.h"
@@ -78,20 +80,23 @@ int execute_and_report(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) (common.command += ' ') += argv[i];
   try {
     return execute(argc, argv, common);
-  } catch (const Error& error) {
+  } catch (const std::exception& exception) {
     common.json = common.json || json_wanted(argc, argv);
-    return report_failure(error, common);
-  } catch (const std::exception& error) {
-    common.json = common.json || json_wanted(argc, argv);
-    const std::string message = fmt::format("internal error: {}", error.what());
-    return report_failure(Error(Error::Category::internal, "internal", message, {}, "please report this"), common);
+    return report_failure(error_of(exception), common);
   }
+}
+
+/// Each thread would take 128 MB of addresses for itself, and a page for every number where it does not get them.
+void share_what_a_limit_leaves() {
+  rlimit addresses{};
+  if (::getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY) ::mallopt(M_ARENA_MAX, 1);
 }
 
 }  // namespace
 }  // namespace freeplay
 
 int main(int argc, char** argv) {
+  freeplay::share_what_a_limit_leaves();
   freeplay::open_standard_descriptors();
   freeplay::handle_signals();
   int exit_code = 1;

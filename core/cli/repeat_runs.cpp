@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
 #include "cli/whole_text.h"
@@ -34,7 +35,7 @@ namespace {
 constexpr std::size_t most_workers = 256, most_runs = 10'000;
 
 [[noreturn]] void no_process(const char* what) {
-  throw Error(Error::Category::internal, "internal", fmt::format("{}: {}", what, std::strerror(errno)));
+  throw Error(Error::Category::file, "no-process", fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
 Json failure(std::size_t run, int exit_code, const std::string& reason) {
@@ -55,10 +56,9 @@ Json record_of(const Model& model, std::uint64_t seed, std::size_t run) {
         model,  channels, start.facts, outcome, simulation.statistics(), simulation.clearances(), simulation.last_row(),
         advice, {},       {}};
     return {{"run", run}, {"exit_code", 0}, {"figures", RepeatSummary::figures_of(summary(record))}};
-  } catch (const Error& error) {
+  } catch (const std::exception& exception) {
+    const Error error = error_of(exception);
     return failure(run, error.exit_code(), fmt::format("{} [{}]", error.message(), error.id()));
-  } catch (const std::exception& error) {
-    return failure(run, 1, error.what());
   }
 }
 

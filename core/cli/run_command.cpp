@@ -31,6 +31,7 @@
 #include "results/checkpoints.h"
 #include "results/directory.h"
 #include "results/judgement.h"
+#include "results/record_thread.h"
 #include "results/recording.h"
 #include "results/row_memory.h"
 #include "results/summary.h"
@@ -414,6 +415,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   if (options.twin) {
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
+  require_thread();
   const int exit_code = RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from).execute();
   if (options.report && exit_code != 6) write_report_of(path, common);
   return exit_code;

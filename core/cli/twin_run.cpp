@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/whole_text.h"
 
@@ -28,7 +29,7 @@ constexpr int look_again = 50;                  // for an interrupt [ms]
 constexpr double same_instant_of_twins = 1e-9;  // of the interval
 
 [[noreturn]] void no_twin(const char* what) {
-  throw Error(Error::Category::internal, "internal", fmt::format("{}: {}", what, std::strerror(errno)));
+  throw Error(Error::Category::file, "no-process", fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
 /// The first error among messages, without what stands before its words.
@@ -155,11 +156,10 @@ void TwinRun::live(const std::function<int(int pipe)>& work, int gate, int pipe,
   int exit_code = 1;
   try {
     exit_code = work(pipe);
-  } catch (const Error& error) {
+  } catch (const std::exception& exception) {
+    const Error error = error_of(exception);
     write_all(STDERR_FILENO, fmt::format("error: {} [{}]\n", error.message(), error.id()));
     exit_code = error.exit_code();
-  } catch (const std::exception& error) {
-    write_all(STDERR_FILENO, fmt::format("error: {}\n", error.what()));
   }
   std::fflush(nullptr);
   _exit(exit_code);

@@ -34,7 +34,7 @@ class TwinRows final : public Sink {
 class TwinRun {
  public:
   /// Makes the process, which waits for start(). It leaves with what `work` returns; `work` gives rows to TwinRows on
-  /// this pipe. Call it before there are threads. Throws Error{internal}.
+  /// this pipe. Call it before there are threads. Throws Error{file} "no-process".
   explicit TwinRun(const std::function<int(int pipe)>& work);
   /// Ends what still runs.
   ~TwinRun();

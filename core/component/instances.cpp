@@ -5,6 +5,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "component/plugin_memory.h"
+
 namespace freeplay {
 namespace {
 
@@ -202,6 +204,7 @@ void* Instances::create(const ParameterBlock& parameters, Make make, void (*dest
   Message message;
   const Status status = make(&served, &self, &message);
   if (status != Status::ok || self == nullptr) {
+    require_memory(message);
     fault = fault_of(component, status, message);
     return nullptr;
   }

@@ -1,9 +1,11 @@
 #include "results/hdf5_call.h"
 
 #include <algorithm>
+#include <new>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include "results/formats.h"
 
@@ -41,11 +43,19 @@ herr_t note_reason(unsigned, const H5E_error2_t* error, void* result) {
 
 Hdf5Lock::Hdf5Lock() : lock_(library()) {
   static const bool ready = [] {
+    require_memory_for_hdf5();
     H5dont_atexit();
     H5open();
     return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
   }();
   static_cast<void>(ready);
+}
+
+void require_memory_for_hdf5(std::size_t more) {
+  const std::size_t bytes = (std::size_t{16} << 20) + more;
+  void* some = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (some == MAP_FAILED) throw std::bad_alloc();
+  ::munmap(some, bytes);
 }
 
 void fail_hdf5() {

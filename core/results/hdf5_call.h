@@ -1,6 +1,7 @@
 // Hdf5Call: what every use of the HDF5 library needs: its lock, its handles, its failures as exceptions.
 #pragma once
 
+#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <stdexcept>
@@ -16,7 +17,8 @@ struct Hdf5Failure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Held during any call: the library knows one thread at a time. The first one sets it up. A thread may hold several.
+/// Held during any call: the library knows one thread at a time. The first one sets it up, or throws std::bad_alloc. A
+/// thread may hold several.
 class Hdf5Lock {
  public:
   Hdf5Lock();
@@ -24,6 +26,10 @@ class Hdf5Lock {
  private:
   std::lock_guard<std::recursive_mutex> lock_;
 };
+
+/// Throws std::bad_alloc where the system would not give what calls may want, `more` bytes besides what every one may:
+/// the library ends the program when it gets less.
+void require_memory_for_hdf5(std::size_t more = 0);
 
 /// Throws the reason of the last failure.
 [[noreturn]] void fail_hdf5();

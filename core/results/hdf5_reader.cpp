@@ -52,6 +52,7 @@ std::vector<std::string> words(const std::string& text) {
 template <class Act>
 auto guarded(const std::string& file, Act&& act) {
   const Hdf5Lock lock;
+  require_memory_for_hdf5();
   try {
     return act();
   } catch (const Hdf5Failure& failure) {
@@ -123,6 +124,7 @@ class Hdf5Reader : public ResultReader {
 
   std::unique_ptr<RowSource> open_rows(std::span<const std::size_t> columns) override {
     return guarded(file_, [&] {
+      require_memory_for_hdf5(2 * block_rows * sizeof(double) * columns.size());  // a chunk of each is kept
       std::vector<Hdf5Id> datasets;
       for (const std::size_t column : columns)
         datasets.push_back(open("/" + dataset_name(layout_.columns[column].name)));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <numbers>
 
 #include <fcntl.h>
@@ -365,17 +366,24 @@ Hdf5Writer::~Hdf5Writer() {
   if (options_.named_later && file_ != nullptr && file_->inode == 0) fs::remove(file_->part, ignored);
 }
 
+void Hdf5Writer::fail(const char* reason) {
+  failure_ = fmt::format("cannot write '{}': {}", path_.string(), reason);
+  std::error_code ignored;
+  fs::remove(part_of(path_), ignored);
+}
+
 template <class Act>
 void Hdf5Writer::attempt(Act&& act) {
   if (!failure_.empty()) return;
   const Hdf5Lock lock;
   try {
+    require_memory_for_hdf5(2 * largest_chunk * sizeof(double) * layout_.columns.size());  // one chunk of each is kept
     if (file_ == nullptr) file_ = std::make_unique<File>(path_, layout_, options_);
     act(*file_);
   } catch (const Hdf5Failure& failure) {
-    failure_ = fmt::format("cannot write '{}': {}", path_.string(), failure.what());
-    std::error_code ignored;
-    fs::remove(part_of(path_), ignored);
+    fail(failure.what());
+  } catch (const std::bad_alloc&) {
+    fail(std::strerror(ENOMEM));
   }
 }
 

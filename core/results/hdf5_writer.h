@@ -54,6 +54,7 @@ class Hdf5Writer : public RecordWriter {
   struct File;
   template <class Act>
   void attempt(Act&& act);
+  void fail(const char* reason);
 
   std::filesystem::path path_;
   const RecordLayout& layout_;

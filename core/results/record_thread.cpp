@@ -36,14 +36,16 @@ RecordThread::~RecordThread() { close(); }
 
 void RecordThread::add_row(std::span<const double> values, std::span<const std::size_t> picked) {
   std::unique_lock lock(mutex_);
+  if (gone_) return;
   for (const std::size_t index : picked) waiting_.rows.push_back(values[index]);
   if (waiting_.rows.size() < worth_waking) return;
   changed_.notify_all();
-  changed_.wait(lock, [this] { return waiting_.rows.size() < std::max(too_many, 2 * width_); });
+  changed_.wait(lock, [this] { return gone_ || waiting_.rows.size() < std::max(too_many, 2 * width_); });
 }
 
 void RecordThread::add_event(std::span<const double> numbers) {
   const std::lock_guard lock(mutex_);
+  if (gone_) return;
   waiting_.events.insert(waiting_.events.end(), numbers.begin(), numbers.end());
 }
 
@@ -54,7 +56,15 @@ void RecordThread::when_safe(std::function<void()> then) {
 }
 
 void RecordThread::serve() {
-  write_all();
+  try {
+    write_all();
+  } catch (const std::exception&) {  // only memory can be missing here
+    if (failure_.empty()) failure_.swap(no_memory_);
+    good_ = false;
+    const std::lock_guard lock(mutex_);
+    gone_ = true;
+  }
+  changed_.notify_all();
   timespec used{};
   if (::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used) == 0) {
     thread_seconds_ = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
@@ -138,6 +148,10 @@ std::string RecordThread::close() {
     thread_.join();
   }
   return failure_;
+}
+
+void require_thread() {
+  std::thread([] {}).join();
 }
 
 }  // namespace freeplay

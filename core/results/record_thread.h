@@ -64,12 +64,16 @@ class RecordThread {
   std::vector<std::function<void()>> asked_, asking_;   // as the blocks
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool ending_ = false;
+  bool ending_ = false, gone_ = false;  // the second: the thread ended before it was asked to
   std::atomic<bool> good_ = true;
   std::string failure_;  // of the thread, until it ended
-  long given_, rows_;    // to the writers; flushed by all of them
+  std::string no_memory_ = "cannot write the results: the system gives no more memory";  // none is left to make it then
+  long given_, rows_;  // to the writers; flushed by all of them
   double time_given_, last_time_, thread_seconds_ = 0.0;
   std::thread thread_;
 };
+
+/// Throws std::system_error where the system gives no thread, before anything is made that needs one.
+void require_thread();
 
 }  // namespace freeplay

@@ -157,7 +157,7 @@ std::vector<std::string> Recording::files() {
 void Recording::seal(const Json& summary) {
   directory_.require_all(names_);
   const std::string text = json_text(summary);
-  if (hdf5_ != nullptr && hdf5_->failure().empty()) {
+  if (hdf5_ != nullptr && hdf5_->failure().empty() && thread_.ok()) {
     hdf5_->finish(tables_, text);
     if (!hdf5_->failure().empty()) throw Error(Error::Category::file, "cannot-write", hdf5_->failure());
   }

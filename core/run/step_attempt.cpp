@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "component/joint_answer.h"
+#include "component/plugin_memory.h"
 #include "system/finite.h"
 
 namespace freeplay {
@@ -51,6 +52,7 @@ bool StepAttempt::start() {
   Message message;
   run_.solver.use_history(run_.accepted.h());
   if (run_.settings.integrator.restart(view, run_.solver.table(), message)) return true;
+  require_memory(message);
   if (run_.solver.fault().kind != Fault::Kind::none) {
     return failure_.fail_with(run_.solver.fault(), run_.accepted.t());
   }
@@ -130,6 +132,7 @@ bool StepAttempt::make(double dt, bool& converged) {
                                         run_.accepted.t(), integrator_words(run_.model)));
   }
   if (!good) {
+    require_memory(message);
     // A joint may fail at a trial state that a shorter step does not meet; a driver fails by its time alone.
     run_.plugin_fault = run_.solver.fault();
     if (run_.plugin_fault.kind == Fault::Kind::plugin) return true;

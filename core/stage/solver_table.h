@@ -1,6 +1,8 @@
 // stage_solver_table(): the functions of a class in the table that the SDK's StageSolver calls.
 #pragma once
 
+#include <exception>
+
 #include "freeplay/integrator.h"
 
 namespace freeplay {
@@ -10,24 +12,28 @@ namespace freeplay {
 template <class Solver>
 abi::StageSolverTable stage_solver_table(Solver& solver) {
   static constexpr auto of = [](void* self) -> Solver& { return *static_cast<Solver*>(self); };
-  static constexpr auto answer = [](bool good, const Solver& from, Message* message) {
-    if (good) return Status::ok;
-    abi::copy_text(message->text, sizeof message->text, from.trouble());
+  static constexpr auto answer = [](void* self, Message* message, auto&& act) noexcept {
+    try {
+      if (act(of(self))) return Status::ok;
+      abi::copy_text(message->text, sizeof message->text, of(self).trouble());
+    } catch (const std::exception& error) {  // no memory for a matrix
+      abi::copy_text(message->text, sizeof message->text, error.what());
+    }
     return Status::failed;
   };
   return {sizeof(abi::StageSolverTable),
           &solver,
           [](void* self, const Stage* stage, StateView* out, StageResult* result, Message* m) noexcept {
-            return answer(of(self).solve(*stage, *out, *result), of(self), m);
+            return answer(self, m, [&](Solver& one) { return one.solve(*stage, *out, *result); });
           },
           [](void* self, StateView* state, Message* m) noexcept {
-            return answer(of(self).project_velocity(*state), of(self), m);
+            return answer(self, m, [&](Solver& one) { return one.project_velocity(*state); });
           },
           [](void* self, StateView* state, Message* m) noexcept {
-            return answer(of(self).project_position(*state), of(self), m);
+            return answer(self, m, [&](Solver& one) { return one.project_position(*state); });
           },
           [](void* self, StateView* state, Span<double> z_rate, Message* m) noexcept {
-            return answer(of(self).accelerate(*state, z_rate), of(self), m);
+            return answer(self, m, [&](Solver& one) { return one.accelerate(*state, z_rate); });
           },
           [](void* self, Span<const double> position, Span<const double> velocity) noexcept {
             return of(self).error_norm(position, velocity);

@@ -104,5 +104,65 @@ class Room(ProgramTest):
             self.assertEqual(130, other.returncode)
 
 
+@unittest.skipIf(SANITIZED, "sanitizers want all addresses")
+class System(ProgramTest):
+    def limited(self, words, kind, limit, user=None):
+        """Exit code and messages under a limit; None where the program could not even start."""
+        def shrink():
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            if user:
+                os.setgid(user)
+                os.setuid(user)
+            resource.setrlimit(kind, (limit, limit))
+        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, preexec_fn=shrink, timeout=300)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_any_amount_of_memory_gives_a_result_or_a_message(self):
+        crank = mechanism("slider-crank")
+        commands = [("run", crank, "--end", "1 ms", "--quiet", "--out", "r"), ("validate", mechanism("4-rrr"), "--quiet"),
+                    ("analyze", "error", mechanism("3-rrr"), "--grid", "x=-0.1:0.1:20", "--grid", "y=-0.1:0.1:20"),
+                    ("export", "done", "--to", "csv", "--table", "spectra", "--channels", "body.slider.x")]
+        self.freeplay("run", crank, "--quiet", "--out", "done")
+        self.write("pendulums.yaml", PENDULUMS)
+        commands.append(("run", "pendulums.yaml", "--format", "csv", "--quiet", "--out", "r"))
+        enough = 400
+        least = next(mb for mb in range(10, enough) if self.limited(["--version"], resource.RLIMIT_AS, mb << 20)[0] == 0)
+        for words in commands:
+            seen = set()
+            for mb in [least + k / 2 for k in range(40)] + [least + k for k in range(20, 120, 3)] + [enough]:
+                with self.subTest(words=words, mb=mb):
+                    shutil.rmtree(self.path("r"), ignore_errors=True)
+                    code, _, err = self.limited(words, resource.RLIMIT_AS, int(mb * (1 << 20)))
+                    seen.add(code)
+                    if code == 0:
+                        continue
+                    self.assertEqual(6, code, err)
+                    self.assertTrue(any(text in err and "[%s]" % name in err for name, text in WORDS.items()), err)
+            self.assertIn(0, seen, words)
+
+    def test_no_threads_and_no_processes_are_messages(self):
+        user = 65534 if os.geteuid() == 0 else None
+        os.chmod(self.folder, 0o777)
+        code, out, err = self.limited(["--version"], resource.RLIMIT_NPROC, 1, user)
+        if code != 0:
+            self.skipTest("another user may not run the program")
+        model = self.write("crank.yaml", self.text_of("slider-crank"))
+        code, out, err = self.limited(["run", model, "--end", "1 ms", "--json", "--out", "r"], resource.RLIMIT_NPROC, 1, user)
+        self.assertEqual((6, "no-threads"), (code, json.loads(out)["error"]["messages"][0]["id"]), err)
+        for options in (("--twin",), ("--repeat", "2")):
+            code, out, err = self.limited(["run", model, "--end", "1 ms", "--out", "r", *options], resource.RLIMIT_NPROC, 1, user)
+            self.assertEqual(6, code, err)
+            self.assertRegex(err, r"cannot start a process: .* \[no-process\]")
+        # An analysis does alone what others would help with.
+        model = self.write("robot.yaml", self.text_of("3-rrr"))
+        words = ["analyze", "error", model, "--grid", "x=-0.1:0.1:5", "--grid", "y=-0.1:0.1:5"]
+        self.assertEqual(self.freeplay(*words)[0], self.limited(words, resource.RLIMIT_NPROC, 1, user)[1])
+
+    @staticmethod
+    def text_of(name):
+        with open(mechanism(name), encoding="utf-8") as file:
+            return file.read()
+
+
 if __name__ == "__main__":
     unittest.main()
