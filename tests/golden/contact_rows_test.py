@@ -76,6 +76,8 @@ class ContactRows(ProgramTest):
                 times = [float(line.split(",")[0]) for line in more[1:]]
                 self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
                 self.assertEqual(self.read("more", "events.csv"), self.read("grid", "events.csv"))
+        spectra = [self.freeplay("export", out, "--to", "csv", "--table", "spectra")[0] for out in ("more", "grid")]
+        self.assertEqual(*spectra)
 
     def test_an_impact_has_as_many_rows_as_asked_for(self):
         for options in (("--step", "0.2 us"), ("--accuracy", "1um")):
