@@ -126,19 +126,28 @@ std::string name_of_result(const std::string& path, const Json& summary) {
   return summary["model"].value("name", folder);
 }
 
-/// What the legend calls results: by their models, and where that tells none apart by where they are, too.
+/// What the legend calls results: by their models, and where that tells none apart by what was set, or their numbers.
 std::vector<std::string> legend_names(const std::vector<std::string>& paths) {
   std::vector<std::string> names;
+  std::vector<Json> summaries;
   for (const std::string& path : paths) {
-    const Json summary = summary_beside(path);
+    const Json& summary = summaries.emplace_back(summary_beside(path));
     std::string name = name_of_result(path, summary);
     const bool ideal =
         summary.is_object() && !summary.value(Json::json_pointer("/settings/ideal"), Json::array()).empty();
     if (ideal) name += ", ideal";
     names.push_back(std::move(name));
   }
-  if (std::set<std::string>(names.begin(), names.end()).size() == names.size()) return names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] += fmt::format(", {}", paths[i]);
+  const auto differ = [&] { return std::set<std::string>(names.begin(), names.end()).size() == names.size(); };
+  if (differ()) return names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!summaries[i].is_object()) continue;
+    const Json set = summaries[i].value(Json::json_pointer("/settings/set"), Json::object());
+    for (const auto& [name, value] : set.items())
+      names[i] += fmt::format(", {} = {}", name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  if (differ()) return names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = fmt::format("{}. {}", i + 1, names[i]);
   return names;
 }
 
@@ -164,7 +173,7 @@ class Plot {
     std::vector<plot::Source> sources;
     for (std::size_t i = 0; i < readers_.size(); ++i) sources.push_back({names[i], readers_[i].get()});
     plot::Figure figure = plot::channel_figure(sources, request_);
-    figure.title = name_of_result(options_.path, summary_);
+    figure.title = name_of_result(options_.path, summary_) + incomplete_words();
     if (common_.json) {
       print_json(extremes(figure));
       if (options_.out.empty()) return 0;
@@ -218,6 +227,7 @@ class Plot {
     if (!options_.orbit.empty()) {
       if (!request_.channels.empty()) refuse("--orbit JOINT has its channels: name no others");
       request_.channels = {fmt::format("joint.{}.ex", options_.orbit), fmt::format("joint.{}.ey", options_.orbit)};
+      require_journal(options_.orbit);
       request_.clearance = clearance_of(summary_, options_.orbit);
       if (request_.clearance == 0.0) {
         print_messages("freeplay: note: no summary.json says how large the clearance is: its circle is left out\n",
@@ -230,6 +240,17 @@ class Plot {
                             some_channels()));
   }
 
+  /// A joint whose journal has a place in its bearing.
+  void require_journal(const std::string& joint) const {
+    std::vector<std::string> journals;
+    for (const RecordColumn& column : readers_[0]->layout().columns) {
+      if (column.name.starts_with("joint.") && column.name.ends_with(".ex")) {
+        journals.push_back(column.name.substr(6, column.name.size() - 9));
+      }
+    }
+    require_word("joint with play", joint, journals);
+  }
+
   std::string some_channels() const {
     std::string names;
     const std::vector<RecordColumn>& columns = readers_[0]->layout().columns;
@@ -237,6 +258,15 @@ class Plot {
       names += (i == 1 ? "" : ", ") + columns[i].name;
     }
     return names;
+  }
+
+  /// Of a result whose run did not come to its end.
+  std::string incomplete_words() const {
+    std::error_code ignored;
+    if (!fs::exists(folder_of(options_.path) / "run.log", ignored)) return "";
+    if (!summary_.is_object()) return " (the run goes on, or was killed)";
+    const std::string status = summary_.value("status", "");
+    return status == "completed" || status == "stopped" || status.empty() ? "" : fmt::format(" ({})", status);
   }
 
   Json extremes(const plot::Figure& figure) const {

@@ -39,8 +39,14 @@ ResultWords use_model_of_result(std::string& path, BuildOptions& build) {
   if (!fs::is_directory(folder, ignored)) return {};
   std::ifstream file(folder / "summary.json");
   const Json summary = Json::parse(file, nullptr, false);
-  if (!summary.is_object() || !summary.contains("settings")) no_result(path, "summary.json of a run");
   const fs::path yaml = folder / "model.yaml", urdf = folder / "model.urdf";
+  const bool ended = summary.is_object() && summary.contains("settings");
+  if (!ended && fs::exists(folder / "run.log", ignored)) {
+    throw Error(Error::Category::input, "file-not-found",
+                fmt::format("the run into '{}' goes on, or was killed: it has no summary.json", path), {},
+                fmt::format("once it is over: freeplay seal {}", path));
+  }
+  if (!ended) no_result(path, "summary.json of a run");
   if (!fs::exists(yaml, ignored) && !fs::exists(urdf, ignored)) no_result(path, "model.yaml or model.urdf");
   path = (fs::exists(yaml, ignored) ? yaml : urdf).string();
   const Json& settings = summary["settings"];

@@ -15,7 +15,7 @@ void ColumnCurve::add(const Point& point) {
   const double column = std::floor((point.x - from_) * per_unit_);
   if (column != column_) end_column();
   column_ = column;
-  if (std::isnan(point.y)) {
+  if (!std::isfinite(point.y)) {
     end_column();
     gap_ = true;
   } else {
@@ -56,7 +56,7 @@ bool Trail::is_new(const Point& point, std::uint64_t pixel) {
 }
 
 void Trail::add(const Point& point) {
-  if (std::isnan(point.x) || std::isnan(point.y)) {
+  if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
     pen_down_ = false;
     return;
   }

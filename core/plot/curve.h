@@ -1,6 +1,7 @@
 // Curve: what a picture of many points needs of them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <unordered_set>
@@ -8,7 +9,7 @@
 
 namespace freeplay::plot {
 
-/// A NaN of y is a gap in a line.
+/// A y that is no finite number is a gap in a line.
 struct Point {
   double x = 0.0, y = 0.0;
 };
@@ -18,8 +19,9 @@ struct Extremes {
   double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
   double least_at = std::numeric_limits<double>::quiet_NaN(), most_at = std::numeric_limits<double>::quiet_NaN();
 
-  /// NaN counts for nothing.
+  /// What is no finite number counts for nothing.
   void add(double at, double value) {
+    if (!std::isfinite(value)) return;
     if (value < least) least = value, least_at = at;
     if (value > most) most = value, most_at = at;
   }

@@ -130,8 +130,13 @@ class PanelDrawing {
       d += fmt::format("{}{:.2f} {:.2f}", down ? "L" : "M", at_x(point.x) + 0.0, at_y(point.y) + 0.0);
       down = true;
     }
-    // A point alone is a line back to itself, which its round ends make a dot.
-    if (d.find('L') == std::string::npos && !d.empty()) d += "L" + d.substr(1);
+    // A point alone is a line back to itself, and a dot.
+    if (d.find('L') == std::string::npos && !d.empty()) {
+      d += "L" + d.substr(1);
+      const Point& point = *std::ranges::find_if(points, [](const Point& p) { return !std::isnan(p.y); });
+      out_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>\n", px(at_x(point.x)), px(at_y(point.y)),
+                          styles[i % std::size(styles)].colour);
+    }
     if (!d.empty()) out_ += fmt::format("<path class=\"line\" d=\"{}\" {}/>\n", d, stroke(i));
     if (!d.empty()) return;
     out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">no numbers</text>\n",

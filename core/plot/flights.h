@@ -11,7 +11,7 @@ namespace freeplay::plot {
 
 class Flights {
  public:
-  /// From the events of a result; flights shorter than `shortest` [s] are left out.
+  /// From the events of a result, which outlives this; flights shorter than `shortest` [s] are left out.
   Flights(ResultReader& reader, double from, double until, double shortest);
 
   /// Spans of time [s] of the joint that a channel belongs to; none where it has no contacts.
@@ -23,7 +23,7 @@ class Flights {
     bool free = false, seen = false;
     std::vector<std::pair<double, double>> spans;
   };
-  std::vector<std::string> names_;
+  const RecordLayout& layout_;  // a text file names its joints as they come
   std::vector<Joint> joints_;
 };
 

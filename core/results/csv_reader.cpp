@@ -93,7 +93,11 @@ class CsvRows : public RowSource {
  public:
   CsvRows(const std::string& file, std::span<const std::size_t> columns, std::size_t fields)
       : file_(file), lines_(file), place_(fields, columns.size()), row_(columns.size()) {
-    for (std::size_t i = 0; i < columns.size(); ++i) place_[columns[i]] = i;
+    for (std::size_t i = columns.size(); i-- > 0;) {
+      // A column may be asked for several times: it is read in its first place.
+      if (place_[columns[i]] < columns.size()) copies_.emplace_back(i, place_[columns[i]]);
+      place_[columns[i]] = i;
+    }
     std::string_view header;
     lines_.next(header);
   }
@@ -116,6 +120,7 @@ class CsvRows : public RowSource {
         row_[place_[field]] = number(text, file_, lines_.number());
       ++field;
     });
+    for (auto copy = copies_.rbegin(); copy != copies_.rend(); ++copy) row_[copy->second] = row_[copy->first];
     require_fields(field, place_.size(), file_, lines_.number());
     if (!(row_[0] > last_))
       unreadable_result(file_, fmt::format("line {}: time does not grow", lines_.number()), lines_.number());
@@ -124,7 +129,8 @@ class CsvRows : public RowSource {
 
   const std::string file_;
   Lines lines_;
-  std::vector<std::size_t> place_;  // of each field in a row that is given
+  std::vector<std::size_t> place_;                           // of each field in a row that is given
+  std::vector<std::pair<std::size_t, std::size_t>> copies_;  // places of one column, the first ones last
   std::vector<double> block_, row_;
   double last_ = -std::numeric_limits<double>::infinity();
 };

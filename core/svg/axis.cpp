@@ -9,6 +9,7 @@
 
 namespace freeplay::svg {
 namespace {
+constexpr double most_steps = 1e5;     // of the largest value, beyond which labels are differences
 constexpr double rounding = 1e-9;      // of a step
 constexpr int most_decimals = 12;      // of a label
 constexpr double written_out = 1e6;    // numbers without a unit up to here have no exponent,
@@ -34,6 +35,22 @@ std::vector<double> round_numbers(double least, double most, double count) {
   return numbers;
 }
 
+namespace {
+/// Labels as differences from the tick in the middle, which the unit names: others would have too many digits.
+Axis from_middle(Axis axis, std::string_view unit) {
+  const double middle = axis.ticks[axis.ticks.size() / 2];
+  const double largest = std::max(std::abs(axis.from - middle), std::abs(axis.until - middle));
+  const bool plain = unit.empty() || unit.front() == '1';
+  const std::string own = unit == "1" ? "" : std::string(unit);
+  const PrefixedUnit to = plain ? PrefixedUnit{1.0, own} : prefixed_unit(largest, unit);
+  axis.labels.clear();
+  for (const double tick : axis.ticks) axis.labels.push_back(fmt::format("{:.4g}", (tick - middle) / to.factor + 0.0));
+  axis.unit =
+      fmt::format("{}{}from {:.15g}{}{}", to.unit, to.unit.empty() ? "" : " ", middle, own.empty() ? "" : " ", own);
+  return axis;
+}
+}  // namespace
+
 Axis make_axis(double least, double most, std::string_view unit, double ticks, Fit fit) {
   if (!std::isfinite(least) || !std::isfinite(most)) least = 0.0, most = 1.0;
   const double size = std::max(std::abs(least), std::abs(most));
@@ -53,6 +70,7 @@ Axis make_axis(double least, double most, std::string_view unit, double ticks, F
       plain ? PrefixedUnit{1.0, unit == "1" ? "" : std::string(unit)} : prefixed_unit(largest, unit);
   axis.unit = to.unit;
   const double step = round_step(least, most, ticks) / to.factor;
+  if (step > 0.0 && largest / to.factor > most_steps * step && !axis.ticks.empty()) return from_middle(axis, unit);
   const bool exponent = largest >= written_out * to.factor || largest < smallest_out * to.factor;
   const int decimals = static_cast<int>(std::clamp(-std::floor(std::log10(step) + rounding), 0.0, 1.0 * most_decimals));
   for (const double tick : axis.ticks) {

@@ -125,7 +125,7 @@ class Plot(ProgramTest):
         self.assertEqual(2, len(panel.lines))
         self.assertEqual(panel.lines[0], panel.lines[1])
         names = [e.text for e in ET.fromstring(self.freeplay("plot", "r", "joint.wrist.fn", "--against", "other")[0]).iter(SVG + "text")]
-        self.assertIn("slider-crank, other", names)
+        self.assertIn("2. slider-crank", names)
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--ideal", "all", "--out", "ideal")
         out, _ = self.freeplay("plot", "r", "body.slider.x", "--against", "ideal")
         self.assertIn(">slider-crank, ideal<", out)
@@ -158,6 +158,30 @@ class Plot(ProgramTest):
         self.assertTrue(plain.isascii())
         self.assertIn("*", plain)
 
+    def test_text_files_alone_are_drawn_the_same(self):
+        os.mkdir(self.path("csv"))
+        for name in ("results.csv", "events.csv"):
+            shutil.copy(os.path.join(self.made, name), self.path("csv"))
+        (from_text,) = panels(self.freeplay("plot", "csv", "joint.wrist.fn")[0])
+        (whole,) = self.plot("joint.wrist.fn")
+        self.assertEqual(whole.lines, from_text.lines)
+        self.assertEqual(whole.shades, from_text.shades)
+        times = panels(self.freeplay("plot", "csv", "time", "joint.wrist.fn")[0])
+        self.assertEqual(["time", "joint.wrist.fn"], [panel.channel for panel in times])
+
+    def test_numbers_that_are_not_finite_are_gaps(self):
+        self.write("a.csv", "time,a,b\n" + "".join("%d,%s,inf\n" % (i, "inf" if i == 3 else i) for i in range(8)))
+        finite, nothing = panels(self.freeplay("plot", "a.csv", "a", "b")[0])
+        self.assertEqual(7, len(finite.lines[0]))
+        self.assertAlmostEqual(7.0, max(y for _, y in finite.lines[0]), delta=finite.pixel[1])
+        self.assertEqual([], nothing.lines)
+
+    def test_a_result_that_is_not_complete_says_so(self):
+        shutil.copytree(self.made, self.path("part"))
+        os.remove(self.path("part", "summary.json"))
+        self.assertIn("(the run goes on, or was killed)", self.freeplay("plot", "part", "joint.wrist.fn")[0])
+        self.assertIn("freeplay seal part", self.freeplay("show", "part", "--format", "svg", code=3)[1])
+
     def test_what_cannot_be_drawn_is_refused(self):
         for arguments, code, words in (
                 (["r", "joint.wrst.fn"], 2, "did you mean 'joint.wrist.fn'?"),
@@ -169,7 +193,8 @@ class Plot(ProgramTest):
                 (["r", "joint.wrist.fn", "--x", "joint.*"], 2, "channels, and others are drawn over one"),
                 (["r", "--polar", "wirst"], 2, "did you mean 'wrist'?"),
                 (["r", "--polar", "wrist", "wrok"], 2, "did you mean 'work'?"),
-                (["r", "--orbit", "wrst"], 2, "did you mean 'joint.wrist.ex'?"),
+                (["r", "--orbit", "wrst"], 2, "did you mean 'wrist'?"),
+                (["r", "--orbit", "main"], 2, "there is no joint with play 'main'"),
                 (["r", "joint.wrist.fn", "--width", "3"], 2, "a picture has 200 to 10000 pixels"),
                 (["r", "joint.wrist.fn", "--width", "wide"], 2, "bad value 'wide' of --width"),
                 (["r", "joint.wrist.fn", "--from", "2 ms", "--until", "1 ms"], 2, "--from 2 ms is after --until 1 ms"),

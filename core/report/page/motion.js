@@ -15,7 +15,7 @@ class Motion {
     this.offsets = new Map(this.joints.filter(j => j.clearance).map(j => [j, this.offsetsOf(j)]));
     this.box();
     const {columns, rows} = run.events, at = name => columns.indexOf(name), force = r => r[at('max_fn')] || 0;
-    this.flashes = {};
+    this.flashes = Object.create(null);
     this.largest = Math.max(...rows.map(force), 1e-300);
     for (const r of rows) (this.flashes[r[at('joint')]] = this.flashes[r[at('joint')]] || []).push([r[0] - (r[at('duration')] || 0), Math.sqrt(force(r) / this.largest)]);
   }

@@ -2,7 +2,7 @@
 const chosen = new Set();
 let graphs = [], sync = null;
 
-const phrases = {fn: 'Normal force', ft: 'Friction force', delta: 'Penetration', vt: 'Sliding speed', fx: 'Force, x', fy: 'Force, y', fz: 'Force, z', omega: 'Angular velocity'};
+const phrases = {__proto__: null, fn: 'Normal force', ft: 'Friction force', delta: 'Penetration', vt: 'Sliding speed', fx: 'Force, x', fy: 'Force, y', fz: 'Force, z', omega: 'Angular velocity'};
 const parts = name => { const p = name.split('.'); return {kind: p[0], of: p.slice(1, -1).join('.'), what: p[p.length - 1]}; };
 function phrase(name) {
   const {kind, what} = parts(name), words = phrases[what] || what[0].toUpperCase() + what.slice(1);
@@ -18,7 +18,7 @@ const peak = name => Math.max(...owners(name).map(r => r.named.get(name)).map(c 
 function points(run, name) {
   const values = run.values(name), xs = [], ys = [];
   if (!run.buckets) return [run.times, values];
-  const windows = run.windows.filter(w => w.channels[name]).map(w => ({times: decode(w.times, Float64Array), values: decode(w.channels[name].values, Float32Array).map(v => v + w.channels[name].offset)}));
+  const windows = run.windows.filter(w => Object.hasOwn(w.channels, name)).map(w => ({times: decode(w.times, Float64Array), values: decode(w.channels[name].values, Float32Array).map(v => v + w.channels[name].offset)}));
   windows.sort((a, b) => a.times[0] - b.times[0]);
   let until = -Infinity;
   const add = (x, y) => { if (x > until) { xs.push(x); ys.push(y); } }, middle = k => values[2 * k] + values[2 * k + 1], last = run.buckets - 1;

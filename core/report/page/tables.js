@@ -45,7 +45,7 @@ function startSide() {
   const compare = ([label, path, unit]) => {
     const paths = runs.map(r => typeof path === 'string' ? path : largest(r, ...path)), values = runs.map((r, k) => r.get(paths[k]));
     if (!values.some(v => typeof v === 'number')) return [];
-    const percents = values.map(v => typeof v === 'number' && values[0] ? (v >= values[0] ? '+' : '\u2212') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '');
+    const percents = values.map(v => typeof v === 'number' && typeof values[0] === 'number' && values[0] !== 0 ? (v >= values[0] ? '+' : '\u2212') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '');
     return [row(label, ...runs.flatMap((r, k) => [right(scattered(r, paths[k], unit)), ...(k ? [{number: make('span', {class: 'soft'}, percents[k])}] : [])]))];
   };
   const first = (part, most) => [...new Set(runs.flatMap(r => Object.keys(r.summary[part] || {})))].slice(0, most), torque = effort(Object.values(runs[0].summary.drivers || {})[0]);

@@ -30,8 +30,9 @@ TEST(Axis, SpreadsAroundAValueThatDoesNotChange) {
 }
 
 TEST(Axis, TellsSmallDifferencesOfLargeValuesApart) {
-  const Axis axis = make_axis(1000.00001, 1000.00004, "1", 3.0, Fit::exact);
-  EXPECT_THAT(axis.labels, ElementsAre("1000.00001", "1000.00002", "1000.00003", "1000.00004"));
+  const Axis axis = make_axis(1000.00001, 1000.00004, "N", 3.0, Fit::exact);
+  EXPECT_THAT(axis.labels, ElementsAre("-20", "-10", "0", "10"));
+  EXPECT_EQ("uN from 1000.00003 N", axis.unit);
 }
 
 TEST(Axis, HasNoPrefixBeforeAUnitThatBeginsWithANumber) {
