@@ -73,6 +73,13 @@ Json made(const RunOptions& options, const CommonOptions& common, const Model& m
           {"provenance", provenance(model, making(options, common, model))}};
 }
 
+KeptPart kept_part(const Checkpoint& from) {
+  const auto digits = [&](const char* of) {
+    return from.made.value(Json::json_pointer(fmt::format("/hashes/{}", of)), std::string());
+  };
+  return {from.rows(), from.events, digits("rows"), digits("events")};
+}
+
 /// Runs to the end and returns it as a record.
 class RunJob {
  public:
@@ -87,11 +94,10 @@ class RunJob {
         twin_(twin),
         path_(std::move(path)),
         channels_(*loaded.model),
-        recording_(
-            from == nullptr
-                ? Recording(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model))
-                : Recording::go_on(path_, *loaded.model, channels_, making(options, common, *loaded.model),
-                                   {.rows = from->rows(), .events = from->events})),
+        recording_(from == nullptr ? Recording(path_, options.force, *loaded.model, channels_,
+                                               making(options, common, *loaded.model))
+                                   : Recording::go_on(path_, *loaded.model, channels_,
+                                                      making(options, common, *loaded.model), kept_part(*from))),
         sinks_(recording_.sinks()),
         checkpoints_(recording_, path_, made(options, common, *loaded.model), checkpoint_period(options)) {
     if (from == nullptr || !from->state) {

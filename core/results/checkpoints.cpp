@@ -48,7 +48,10 @@ void Checkpoints::add(RunState state) {
   const auto checkpoint =
       std::make_shared<Checkpoint>(Checkpoint{.made = made_, .state = std::move(state), .events = recording_.events()});
   recording_.save(checkpoint->files);
-  recording_.when_safe([checkpoint, path = file_] { write_whole_file(path, bytes_of(*checkpoint), true); });
+  recording_.when_safe([checkpoint, path = file_, &recording = recording_] {
+    checkpoint->made["hashes"] = recording.hashes();  // of what is safe now: this is the thread that writes
+    write_whole_file(path, bytes_of(*checkpoint), true);
+  });
 }
 
 }  // namespace freeplay

@@ -283,6 +283,7 @@ void Hdf5Writer::File::write_columns() {
 
 void Hdf5Writer::File::write_events() {
   const std::size_t width = event_columns.size();
+  if (events.empty()) return;
   const hsize_t count = events.size() / width;
   std::vector<double> column(count);
   std::vector<std::int32_t> indices(count);

@@ -129,6 +129,15 @@ void cut_file(const fs::path& file, std::uintmax_t bytes) {
               fmt::format("cannot write '{}': {}", file.string(), std::strerror(reason)));
 }
 
+namespace {
+void require_same(const fs::path& file, const char* what, const std::string& found, const std::string& expected) {
+  if (expected.empty() || found == expected) return;
+  throw Error(Error::Category::file, "bad-checkpoint",
+              fmt::format("'{}' was changed: its {} are not those that the checkpoint counts", file.string(), what), {},
+              "run the model again");
+}
+}  // namespace
+
 KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultFormat format, const RecordLayout& layout,
                     const Hdf5Writer::Options& options) {
   KeptFiles kept;
@@ -137,6 +146,7 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
   const WholeLines event_lines = whole_lines(events, part.events + 1, &kept.event_text);
   require_enough(events, "events", event_lines.lines - 1, part.events);
   kept.event_bytes = event_lines.bytes;
+  require_same(events, "events", kept.event_text.digits(), part.event_hash);
   const auto note = [&](std::span<const double> some) {
     kept.row_hash->write({.rows = {some.begin(), some.end()}, .events = {}});
     kept.last_time = some[some.size() - layout.columns.size()];
@@ -147,7 +157,16 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
     kept.row_bytes = lines.bytes;
     const auto reader = ResultReader::open(rows);
     require_columns(rows, reader->layout(), layout);
-    if (format == ResultFormat::csv) first_rows(*reader, part.rows, note);
+    if (format == ResultFormat::csv) {
+      first_rows(*reader, part.rows, note);
+      require_same(rows, "rows", kept.row_hash->digits(), part.row_hash);
+    } else if (!part.row_hash.empty()) {
+      RowHash of_text;
+      first_rows(*reader, part.rows, [&](std::span<const double> some) {
+        of_text.write({.rows = {some.begin(), some.end()}, .events = {}});
+      });
+      require_same(rows, "rows", of_text.digits(), part.row_hash);
+    }
   }
   if (format == ResultFormat::csv) return kept;
   const fs::path file = directory / "results.h5";
@@ -155,6 +174,7 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
   later.named_later = true;
   kept.hdf5 = std::make_unique<Hdf5Writer>(file, layout, later);
   copy_hdf5(file, part, layout, kept, note);
+  require_same(file, "rows", kept.row_hash->digits(), part.row_hash);
   if (!kept.hdf5->failure().empty()) throw Error(Error::Category::file, "cannot-write", kept.hdf5->failure());
   return kept;
 }

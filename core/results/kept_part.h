@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "base/sha256.h"
 #include "model/model.h"
@@ -16,6 +17,7 @@ namespace freeplay {
 /// How many rows and events stay.
 struct KeptPart {
   std::int64_t rows = 0, events = 0;
+  std::string row_hash{}, event_hash{};  ///< of these, as digits (RowHash; text of events.csv); empty: not known
 };
 
 /// Writers that hold what was kept.

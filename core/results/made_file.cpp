@@ -87,7 +87,12 @@ MadeFile read_as(MadeKind kind, const fs::path& path) {
   if (kind == MadeKind::result) {
     made.record = record_of_directory(path);
     std::error_code ignored;
-    made.ended = fs::exists(path / "summary.json", ignored) && has_ended(json_of(whole_text_of(path / "summary.json")));
+    const fs::path summary = path / "summary.json";
+    if (fs::exists(summary, ignored)) {
+      const Json json = json_of(whole_text_of(summary));
+      if (!json.is_object()) unreadable_result(summary.string(), "it is no JSON object");
+      made.ended = has_ended(json);
+    }
   } else if (kind == MadeKind::hdf5) {
     const std::unique_ptr<ResultReader> reader = open_hdf5(path);
     made.record = record_inside(*reader);

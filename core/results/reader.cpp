@@ -21,6 +21,10 @@ std::size_t ResultReader::find(std::string_view name) const {
                                   layout_.columns.begin());
 }
 
+namespace {
+constexpr std::size_t first_column[] = {0};
+}
+
 std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) unreadable_result(path.string(), "there is no such file or directory");
@@ -28,7 +32,9 @@ std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   const bool text = fs::exists(path / "results.csv", ignored);
   if (fs::exists(path / "results.h5", ignored)) {
     try {
-      return open_hdf5(path / "results.h5");
+      auto reader = open_hdf5(path / "results.h5");
+      // Of a run that was killed early the text may hold rows when the other file has none yet.
+      if (!text || reader->sealed() || reader->open_rows(first_column)->next().size() > 0) return reader;
     } catch (const Error&) {
       if (!text) throw;
     }

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/number_text.h"
 #include "results/hdf5_writer.h"
+#include "results/mat_table.h"
 
 namespace freeplay {
 namespace {
@@ -40,6 +41,15 @@ Variable words_variable(const char* name, const std::vector<std::string>& words)
   std::vector<matvar_t*> cells;
   for (const std::string& word : words) cells.push_back(text_variable(nullptr, word).release());
   return variable(name, MAT_C_CELL, MAT_T_CELL, words.size(), 1, cells.data());
+}
+
+/// Whether the last variable of a MAT-file is there as it was written.
+bool ends_with_record(const std::filesystem::path& path, const std::string& record) {
+  try {
+    return read_mat(path).provenance == record;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -143,7 +153,7 @@ void write_mat(TableView& table, const Json& provenance, const std::filesystem::
     names.push_back(table.columns()[c].name);
     units.push_back(table.columns()[c].unit);
   }
-  const std::unique_ptr<mat_t, decltype(&Mat_Close)> file(Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
+  std::unique_ptr<mat_t, decltype(&Mat_Close)> file(Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5), Mat_Close);
   if (file == nullptr) cannot_write(path, std::strerror(errno));
   const auto put = [&](const Variable& one) {
     if (one == nullptr || Mat_VarWrite(file.get(), one.get(), MAT_COMPRESSION_NONE) != 0) {
@@ -155,7 +165,11 @@ void write_mat(TableView& table, const Json& provenance, const std::filesystem::
   put(variable("data", MAT_C_DOUBLE, MAT_T_DOUBLE, rows, width - 1, data.data(), MAT_F_DONT_COPY_DATA));
   put(words_variable("channels", names));
   put(words_variable("units", units));
-  put(text_variable("provenance", provenance.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  const std::string record = provenance.dump(-1, ' ', false, Json::error_handler_t::replace);
+  put(text_variable("provenance", record));
+  file.reset();
+  // The library does not say that the disk is full: what was written last is there if all is.
+  if (!ends_with_record(path, record)) cannot_write(path, "it is not complete, as where the disk is full");
 }
 
 }  // namespace freeplay

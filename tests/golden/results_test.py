@@ -4,6 +4,7 @@ import importlib.util
 import json
 import math
 import os
+import resource
 import shutil
 import signal
 import struct
@@ -55,6 +56,23 @@ class Results(ProgramTest):
                 first.send_signal(signal.SIGINT)
         self.assertEqual(130, first.returncode)
         self.run_model(end="1 ms")
+
+    def test_text_alone_is_exported_as_hdf5(self):
+        self.run_model(end="1 ms")
+        shutil.copy(self.path("r", "results.csv"), self.path("plain.csv"))
+        self.freeplay("export", "plain.csv", "--to", "hdf5", "--out", "plain.h5")
+        self.assertEqual(self.read("plain.csv"), self.freeplay("export", "plain.h5", "--to", "csv")[0])
+
+    def test_a_file_that_does_not_fit_on_the_disk_is_no_file(self):
+        self.run_model(end="1 ms")
+        self.freeplay("export", "r", "--to", "mat", "--out", "whole.mat")
+        size = os.path.getsize(self.path("whole.mat"))
+        for limit in (1000, size // 2, size - 8):
+            done = subprocess.run([PROGRAM, "export", "r", "--to", "mat", "--out", "cut.mat"], cwd=self.folder, capture_output=True,
+                                  text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+            self.assertEqual(6, done.returncode, limit)
+            self.assertIn("[cannot-write]", done.stderr)
+            self.assertFalse(os.path.exists(self.path("cut.mat")))
 
     def test_a_killed_result_is_sealed(self):
         command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r"]
