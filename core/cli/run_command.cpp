@@ -73,13 +73,6 @@ Json made(const RunOptions& options, const CommonOptions& common, const Model& m
           {"provenance", provenance(model, making(options, common, model))}};
 }
 
-KeptPart kept_part(const Checkpoint& from) {
-  const auto digits = [&](const char* of) {
-    return from.made.value(Json::json_pointer(fmt::format("/hashes/{}", of)), std::string());
-  };
-  return {from.rows(), from.events, digits("rows"), digits("events")};
-}
-
 /// Runs to the end and returns it as a record.
 class RunJob {
  public:
@@ -97,7 +90,7 @@ class RunJob {
         recording_(from == nullptr ? Recording(path_, options.force, *loaded.model, channels_,
                                                making(options, common, *loaded.model))
                                    : Recording::go_on(path_, *loaded.model, channels_,
-                                                      making(options, common, *loaded.model), kept_part(*from))),
+                                                      making(options, common, *loaded.model), kept_part_of(*from))),
         sinks_(recording_.sinks()),
         checkpoints_(recording_, path_, made(options, common, *loaded.model), checkpoint_period(options)) {
     if (from == nullptr || !from->state) {

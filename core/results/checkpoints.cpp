@@ -49,7 +49,7 @@ void Checkpoints::add(RunState state) {
       std::make_shared<Checkpoint>(Checkpoint{.made = made_, .state = std::move(state), .events = recording_.events()});
   recording_.save(checkpoint->files);
   recording_.when_safe([checkpoint, path = file_, &recording = recording_] {
-    checkpoint->made["hashes"] = recording.hashes();  // of what is safe now: this is the thread that writes
+    checkpoint->made["safe"] = recording.safe();  // this is the thread that writes
     write_whole_file(path, bytes_of(*checkpoint), true);
   });
 }
