@@ -106,8 +106,10 @@ void ClearanceStatistics::add_contact(int joint, double end, const ContactRecord
 PlayFigures ClearanceStatistics::figures(int joint) const {
   const OfJoint& sums = of(joint);
   const bool any = duration_ > 0.0, slides = channels_.joints[at(joint)].slip >= 0;
-  const double time = any ? duration_ : not_known, flight = 1.0 - sums.contact_time / time,
-               impact = sums.impact_time / time, load = std::hypot(sums.load_x, sums.load_y);
+  const double time = any ? duration_ : not_known, load = std::hypot(sums.load_x, sums.load_y);
+  // Sums of the same time that are taken step by step differ in their last digits: no part is below zero.
+  const double flight = any ? std::max(0.0, 1.0 - sums.contact_time / time) : not_known;
+  const double impact = any ? std::min(sums.impact_time / time, 1.0 - flight) : not_known;
   const bool loaded = any && sums.is_bearing && sums.impulse > 0.0;
   return {.flight = flight,
           .impact = impact,

@@ -362,6 +362,16 @@ simulation: {end: 1 s, accuracy: 1 um}
         self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())
 
+    def test_no_part_of_the_time_of_a_play_is_below_zero(self):
+        """A rotor that never leaves its bearing."""
+        rotor = (BALL % "").replace("radial_clearance: 0.5 mm", "radial_clearance: 0.06 mm\n      length: 30 mm\n      initial: loaded\n"
+                                    "      friction: {law: ambrosio, mu: 0.05, v0: 1e-4, v1: 1e-3}")
+        rotor = rotor.replace("1 kg, inertia: 1e-4 kg*m^2, frames: {rim: [20 mm, 0]}", "3 kg, inertia: 4e-3, com: [20 um, 0], velocity: {angular: 3000 rpm}")
+        out, _ = self.run_model(rotor, "--end", "0.3 s")
+        self.assertRegex(out, r"\n  B +0.0 % ")
+        figures = self.summary["joints"]["B"]["play"]
+        self.assertGreaterEqual(min(figures[part] for part in ("flight", "impact", "lasting")), 0.0)
+
     def test_few_impacts_after_a_discard_are_doubtful(self):
         self.run_model(BALL % "")
         self.assertNotIn("statistics-window", self.ids())
