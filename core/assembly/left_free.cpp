@@ -25,6 +25,7 @@ class FreeMotions {
     found.bodies = moving_in(rows, spins, &found.motions);
     if (found.motions <= 0) found.bodies.clear();
     if (!found.bodies.empty()) judge(rows, spins, found);
+    if (found.doubt.empty()) find_idle(spins, found);
     return found;
   }
 
@@ -46,6 +47,40 @@ class FreeMotions {
         "say under 'initial' how it starts",
         found.motions == 1 ? std::string("1 freedom is") : fmt::format("{} freedoms are", found.motions),
         acts ? "no start is given for" : "nothing acts on", names);
+  }
+
+  /// A wheel on its own bearing on ground that nothing turns, as one whose gear was forgotten.
+  void find_idle(const MatrixXd& spins, LeftFree& found) const {
+    const int width = closed_.body_velocities();
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+      if (spins.middleRows(width * b, width).norm() <= counts_as_motion || !rests_on_ground(b)) continue;
+      found.doubtful = b;
+      found.doubt = fmt::format(
+          "'{}' never moves: it turns in its bearing on ground alone, and no gear, driver, force or start turns it; "
+          "add "
+          "what is missing, or delete it",
+          model_.bodies[at(b)].name);
+      return;
+    }
+  }
+
+  /// Is one bearing on ground without play all that touches the body?
+  bool rests_on_ground(BodyId body) const {
+    if (has_velocity(model_.bodies[at(body)])) return false;
+    int bearing = -1;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+      if (joint.gear >= 0 || (a != body && b != body)) continue;
+      if (bearing >= 0 || joint.is_force || joint.has_play || joint.start_speed || (a != ground && b != ground))
+        return false;
+      bearing = j;
+    }
+    const auto turns = [&](const Gear& gear) { return gear.first == bearing || gear.second == bearing; };
+    return bearing >= 0 && std::ranges::none_of(model_.gears, turns) &&
+           std::ranges::count(model_.drivers, bearing, &Driver::joint) == 0 &&
+           std::ranges::none_of(model_.forces,
+                                [&](const AppliedForce& force) { return body_of(force.marker) == body; });
   }
 
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }

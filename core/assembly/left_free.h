@@ -14,7 +14,8 @@ namespace freeplay {
 struct LeftFree {
   int motions = 0;
   std::vector<BodyId> bodies;  ///< that they move
-  /// Says that no start is given for some of them, or that nothing acts on them; empty where that is not so.
+  /// Says that no start is given for some of them, or that nothing acts on them, or that a wheel on its own bearing
+  /// never turns; empty where that is not so.
   std::string doubt;
   BodyId doubtful = ground;  ///< the first of these
 };

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
@@ -19,9 +20,8 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
-constexpr double coarse_accuracy = 0.5;    // by a clearance
-constexpr double deep_start = 1.5;         // eccentricity of a journal, by its clearance
+constexpr double coarse_accuracy = 0.5;  // by a clearance
+constexpr double deep_start = 1.5;       // eccentricity of a journal, by its clearance
 
 class Examination {
  public:
@@ -36,7 +36,9 @@ class Examination {
       doubt("dead-point", words(*dead, model_), driver.name, driver.location);
     }
     find_loose_ends();
-    judge_springs();
+    doubt_forces(released_, open_, [&](const char* id, const std::string& message, const JointElement& element) {
+      doubt(id, message, element.name, element.location);
+    });
     judge_journals();
     judge_pairs();
     judge_gears();
@@ -90,23 +92,6 @@ class Examination {
             fmt::format("no joint or force holds body '{}', which {}: connect it, or delete it", body.name,
                         body.gravity == Vector3{} ? "stays where it is" : "falls freely"),
             body.name, body.location);
-    }
-  }
-
-  void judge_springs() {
-    for (const JointElement& joint : model_.joints) {
-      if (!joint.is_force || !joint.parameters) continue;
-      const auto found = joint.parameters->values.find("free_length");
-      if (found == joint.parameters->values.end() || !(found->second.number > 0.0)) continue;
-      const double* a = open_.markers[at(joint.marker_a)].position;
-      const double* b = open_.markers[at(joint.marker_b)].position;
-      const double length = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]), free = found->second.number;
-      if (length < 1e-9 || (free <= odd_free_length * length && length <= odd_free_length * free)) continue;
-      doubt("doubtful-length",
-            fmt::format("the free length of '{}' is {:.4g} m, but its ends are {:.4g} m apart at the start: check the "
-                        "number and its unit",
-                        joint.name, free, length),
-            joint.name, joint.location);
     }
   }
 

@@ -59,6 +59,18 @@ joints:
   held: {type: spherical, between: [rod/end, bob]}
 simulation: {end: 0.1, step: 1e-3}
 """
+# A box on a spring.
+BOX = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {box: {mass: 200, inertia: 3, frames: {up: {angle: 90 deg}}}}
+frames: {ground/up: {angle: 90 deg}, ground/floor: [0, -0.3]}
+joints: {guide: {type: prismatic, between: [ground/up, box/up]}}
+forces:
+  foot: {type: spring-damper, between: [ground/floor, box], stiffness: 2e4, damping: 100, free_length: 0.4}
+simulation: {end: 0.1, step: 1e-3}
+"""
+FOOT = "  foot: {type: spring-damper, between: [ground/floor, box], stiffness: 2e4, damping: 100, free_length: 0.4}\n"
+GUIDED = "joints: {guide: {type: prismatic, between: [ground/up, box/up]}}\n"
 # Two wheels.
 TRAIN = """freeplay: 1
 bodies:
@@ -285,6 +297,13 @@ MISTAKES = [
     (TRAIN, "ratio: 2", "ratio: 180/pi", "doubtful-angle", "90", "90 deg", {"ratio: 180/pi": "ratio: 2, offset: 90"}),
     (TRAIN, "ratio: 2", "ratio: 2e4", "doubtful-speed", "2e4", "faster than any machine"),
     (TRAIN, "ratio: 2", "ratio: 360", VALUE, "360", "360 times", {"kind: velocity, value: 10": "kind: angle, value: 0.1*sin(300*t)"}),
+    (BOX, FOOT, FOOT + FOOT.replace("foot", "again"), "duplicate-force", "again", "'foot'"),
+    (BOX, FOOT, FOOT + FOOT.replace("foot", "again").replace("ground/floor, box", "box, ground/floor"), "duplicate-force", "again", "'foot'"),
+    (BOX, FOOT, FOOT + "  idle: {type: spring-damper, between: [ground, box], free_length: 0.1}\n", "unused", "idle", "does nothing"),
+    (BOX, "ground/floor, box", "ground, box", LENGTH, "foot", "at one place", {", ground/floor: [0, -0.3]": ""}),
+    (BOX, "stiffness: 2e4", "stiffness: 20", VALUE, "foot", "98.1 m"),
+    (BOX, "stiffness: 2e4", "stiffness: 20", VALUE, "foot", "98.1 m", {GUIDED: "", ", frames: {up: {angle: 90 deg}}": "", "ground/up: {angle: 90 deg}, ": ""}),
+    (TRAIN, "  pair: {type: gear, of: [a, b], ratio: 2}\n", "", "left-free", "two", "'two' never moves"),
     (ROD, "  held:", "  again: {type: spherical, between: [ground, rod]}\n  held:", "duplicate-joint", "again", "'hung'"),
     (CART, "value: 0.1*sin(3*t)", "value: '10 m*smooth(t, 0.5, 0.501)'", "doubtful-speed", "'10 m", "faster than any machine"),
     (CRANK, DRIVEN, "kind: angle, value: '90 deg*smooth(t, 0.01, 0.01001)'}}", "doubtful-speed", "'90", "faster than any machine"),
@@ -327,7 +346,7 @@ SOUND = [
     (CRANK, "", ""),
     (CART, "", ""),
     (ROD, "", ""),
-    *[(model, "", "") for model in (TRAIN, RACK, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
+    *[(model, "", "") for model in (TRAIN, BOX, RACK, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
     (SHAKER, "initial: {joints: {guide: 0}}\n", ""),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e8"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 1.4}"),
@@ -344,6 +363,14 @@ SOUND = [
     (CRANK, "{main: 1}", "{main: 60 rad}"),
     (SHAKER, "{guide: 0}", "{guide: 25 m}"),
     (RACK, "ratio: 0.05", "ratio: 5 m/rad"),
+    (BOX, FOOT, FOOT + FOOT.replace("foot", "again").replace("2e4", "1e4")),
+    (BOX, FOOT, FOOT + "  idle: {type: spring-damper, between: [ground, box], preload: 10}\n"),
+    (BOX, "stiffness: 2e4", "stiffness: 800"),
+    (BOX, "stiffness: 2e4", "stiffness: 20", "drivers: {jack: {joint: guide, kind: position, value: 0.01*t}}\n"),
+    (TRAIN, "  pair: {type: gear, of: [a, b], ratio: 2}\n", "", "initial: {speeds: {b: 10}}\n"),
+    (TRAIN, "  pair: {type: gear, of: [a, b], ratio: 2}\n", "", "forces: {load: {type: torque, on: two, value: 0.1}}\n"),
+    (TRAIN, "  pair: {type: gear, of: [a, b], ratio: 2}\n", "",
+     "forces: {belt: {type: spring-damper, kind: rotational, between: [one, two], stiffness: 10}}\n"),
     (RACK, "of: [p, s], ratio: 0.05", "of: [s, p], ratio: 20"),
     (TRAIN, "ratio: 2", "ratio: 2, offset: 90 deg"),
     (TRAIN, "ratio: 2", "ratio: 90"),

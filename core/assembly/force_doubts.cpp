@@ -1,0 +1,186 @@
+#include "assembly/force_doubts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
+constexpr double no_length = 1e-9;         // of a spring [m]
+constexpr double most_stretch = 10.0;      // of a spring by a weight, by the model's size
+
+class ForceDoubts {
+ public:
+  using Doubt = std::function<void(const char*, const std::string&, const JointElement&)>;
+  ForceDoubts(const System& system, const Evaluation& at_start, const Doubt& doubt)
+      : system_(system), model_(system.model()), at_start_(at_start), doubt_(doubt) {}
+
+  void run() const {
+    for (const JointElement& joint : model_.joints) {
+      if (!joint.is_force || !joint.parameters || joint.has_play) continue;
+      if (does_nothing(joint)) {
+        doubt_("unused",
+               fmt::format("'{}' does nothing: none of its numbers that make a force is given; delete it, "
+                           "or give them",
+                           joint.name),
+               joint);
+      } else {
+        judge_length(joint);
+      }
+    }
+    judge_pairs();
+    for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) judge_softness(b);
+  }
+
+ private:
+  static double number(const JointElement& joint, const char* name) {
+    const auto found = joint.parameters->values.find(name);
+    return found == joint.parameters->values.end() ? std::nan("") : found->second.number;
+  }
+
+  BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
+
+  std::array<double, 3> apart(const JointElement& joint) const {
+    const double* a = at_start_.markers[at(joint.marker_a)].position;
+    const double* b = at_start_.markers[at(joint.marker_b)].position;
+    return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  }
+
+  /// All parameters that are neither lengths, angles nor choices have a force in their unit, and all of these are 0.
+  static bool does_nothing(const JointElement& joint) {
+    bool any = false;
+    for (const Parameter& parameter : joint.parameters->component->description.parameters) {
+      if (parameter.kind == ParameterKind::choice) continue;
+      const auto value = joint.parameters->values.find(std::string_view(parameter.name));
+      if (parameter.kind != ParameterKind::number || value == joint.parameters->values.end()) return false;
+      const std::string_view unit = parameter.unit;
+      if (unit == "m" || unit == "rad") continue;
+      if (unit.find('N') == unit.npos || value->second.number != 0.0) return false;
+      any = true;
+    }
+    return any;
+  }
+
+  void judge_length(const JointElement& joint) const {
+    const double free = number(joint, "free_length");
+    if (!(free > 0.0)) return;
+    const auto [x, y, z] = apart(joint);
+    const double length = std::hypot(x, y, z);
+    if (length < no_length) {
+      doubt_("doubtful-length",
+             fmt::format("the ends of '{}' are at one place at the start, where it has no direction: with its free "
+                         "length of {:.4g} m it pushes nowhere until they part; check its frames",
+                         joint.name, free),
+             joint);
+    } else if (free > odd_free_length * length || length > odd_free_length * free) {
+      doubt_("doubtful-length",
+             fmt::format("the free length of '{}' is {:.4g} m, but its ends are {:.4g} m apart at the start: check the "
+                         "number and its unit",
+                         joint.name, free, length),
+             joint);
+    }
+  }
+
+  // --- twice -----------------------------------------------------------------------------------------------------
+
+  static bool same_numbers(const ParameterBlock& one, const ParameterBlock& other) {
+    return std::ranges::equal(one.values, other.values, [](const auto& a, const auto& b) {
+      const ParameterValue &x = a.second, &y = b.second;
+      const bool plain = !x.law && !y.law && !x.function_owner && !y.function_owner;
+      const bool same = x.number == y.number || (std::isnan(x.number) && std::isnan(y.number));
+      return a.first == b.first && plain && same && x.word == y.word && x.vector == y.vector;
+    });
+  }
+
+  void judge_pairs() const {
+    std::map<std::tuple<const Component*, int, int>, std::vector<const JointElement*>> alike;
+    for (const JointElement& joint : model_.joints) {
+      if (!joint.is_force || !joint.parameters) continue;
+      const auto [low, high] = std::minmax(joint.marker_a, joint.marker_b);
+      std::vector<const JointElement*>& others = alike[{joint.parameters->component, low, high}];
+      const auto same = std::ranges::find_if(
+          others, [&](const JointElement* other) { return same_numbers(*other->parameters, *joint.parameters); });
+      if (same == others.end()) {
+        others.push_back(&joint);
+        continue;
+      }
+      doubt_(
+          "duplicate-force",
+          fmt::format("'{}' has the same frames and numbers as '{}', so that both act as one twice as strong: delete "
+                      "one of them, or write its numbers into the other",
+                      joint.name, (*same)->name),
+          joint);
+    }
+  }
+
+  // --- too soft --------------------------------------------------------------------------------------------------
+
+  /// A body that springs alone hold against its weight, on a slide or free.
+  void judge_softness(BodyId body) const {
+    const Vector3& gravity = model_.bodies[at(body)].gravity;
+    double along = std::hypot(gravity[0], gravity[1], gravity[2]), stiffness = 0.0, longest = system_.size();
+    const JointElement* first = nullptr;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (joint.gear >= 0 && couples(joint.gear, body)) return;
+      if (joint.gear >= 0 || (body_of(joint.marker_a) != body && body_of(joint.marker_b) != body)) continue;
+      const double k = joint.is_force && joint.parameters ? number(joint, "stiffness") : std::nan("");
+      if (joint.is_force && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
+        const auto [x, y, z] = apart(joint);
+        stiffness += k;
+        longest = std::max({longest, std::hypot(x, y, z), number(joint, "free_length")});
+        if (first == nullptr) first = &joint;
+      } else if (joint.is_force && (k == 0.0 || number(joint, "friction") >= 0.0)) {
+        continue;  // holds nothing
+      } else if (joint.ideal_layout.coordinate == Coordinate::position && on_ground(joint) &&
+                 std::ranges::count(model_.drivers, j, &Driver::joint) == 0) {
+        const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
+        along = std::abs(axes[0] * gravity[0] + axes[3] * gravity[1] + axes[6] * gravity[2]);
+      } else {
+        return;
+      }
+    }
+    if (first == nullptr || !(along * model_.bodies[at(body)].mass > most_stretch * longest * stiffness)) return;
+    doubt_(
+        "doubtful-value",
+        fmt::format("'{}' is so soft that the weight of '{}' would stretch it by {:.3g} m in a mechanism of {:.2g} m: "
+                    "check its stiffness and its unit",
+                    first->name, model_.bodies[at(body)].name, along * model_.bodies[at(body)].mass / stiffness,
+                    system_.size()),
+        *first);
+  }
+
+  bool on_ground(const JointElement& joint) const {
+    return body_of(joint.marker_a) == ground || body_of(joint.marker_b) == ground;
+  }
+
+  bool couples(int gear, BodyId body) const {
+    for (const int j : {model_.gears[at(gear)].first, model_.gears[at(gear)].second}) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (body_of(joint.marker_a) == body || body_of(joint.marker_b) == body) return true;
+    }
+    return false;
+  }
+
+  const System& system_;
+  const Model& model_;
+  const Evaluation& at_start_;
+  const Doubt& doubt_;
+};
+
+}  // namespace
+
+void doubt_forces(const System& system, const Evaluation& at_start,
+                  const std::function<void(const char*, const std::string&, const JointElement&)>& doubt) {
+  ForceDoubts(system, at_start, doubt).run();
+}
+
+}  // namespace freeplay
