@@ -34,20 +34,26 @@ struct Figures {
     if (const Json* const spread = spread_of(part, name, quantity)) return range_text(*spread, unit);
     return figure_text(value, unit, peak ? record.statistics.noise().of(*peak) : 0.0, style);
   }
-  /// A number of events.
-  std::string count(const char* part, const std::string& name, const char* quantity, long value) const {
-    const Json* const spread = spread_of(part, name, quantity);
-    return spread ? range_text(*spread, "") : std::to_string(value);
+  /// A number of events of a joint.
+  std::string count(int joint, const char* quantity, long value) const {
+    const Json* const spread = spread_of("joints", name(joint), quantity);
+    return spread ? range_text(*spread, "") : count_text(value, is_chaotic(joint));
   }
-  /// A part of the whole, in per cent.
-  std::string share(const char* part, const std::string& name, const char* quantity, double value) const {
-    const Json* const spread = spread_of(part, name, quantity);
-    if (!spread || !(*spread)["median"].is_number()) return fmt::format("{:.1f} %", 100.0 * value);
+  /// A part of the whole time of a joint, in per cent.
+  std::string share(int joint, const char* quantity, double value) const {
+    const Json* const spread = spread_of("joints", name(joint), quantity);
+    if (!spread || !(*spread)["median"].is_number()) return share_text(value, is_chaotic(joint));
     const auto percent = [&](const char* key) { return 100.0 * (*spread)[key].get<double>(); };
     return fmt::format("{:.1f} % ({:.1f} to {:.1f})", percent("median"), percent("min"), percent("max"));
   }
+  /// Whether the largest force of a joint has a noise that is shown: its sums and counts are then as uncertain.
+  bool is_chaotic(int joint) const {
+    const std::size_t peak = record.statistics.peak_values().force(joint);
+    return has_shown_noise(record.statistics.joint(joint).max_force, record.statistics.noise().of(peak));
+  }
 
  private:
+  const std::string& name(int joint) const { return record.model.joints[static_cast<std::size_t>(joint)].name; }
   const Json* spread_of(const char* part, const std::string& name, const char* quantity) const {
     if (record.repeat.is_null() || record.repeat["completed"] == 0) return nullptr;
     const auto element = record.repeat[part].find(name);
@@ -122,8 +128,8 @@ void add_joints(const RunRecord& record, TextTable& table) {
     const std::string& name = joints[i].name;
     std::vector<std::string> row{
         name, figure("joints", name, "max_force", seen.max_force, "N", peaks.force(static_cast<int>(i)))};
-    row.push_back(touches ? figure.count("joints", name, "contacts", seen.contacts) : "-");
-    row.push_back(touches ? figure.share("joints", name, "contact_fraction", seen.contact_fraction) : "-");
+    row.push_back(touches ? figure.count(static_cast<int>(i), "contacts", seen.contacts) : "-");
+    row.push_back(touches ? figure.share(static_cast<int>(i), "contact_fraction", seen.contact_fraction) : "-");
     row.push_back(touches ? figure("joints", name, "max_delta", seen.max_penetration, "m",
                                    peaks.penetration(static_cast<int>(i)), short_figure)
                           : "-");
@@ -138,16 +144,14 @@ void add_joints(const RunRecord& record, TextTable& table) {
 
 /// What joints with play go through in the time that counts, of the run that is written.
 void add_play(const RunRecord& record, TextTable& table) {
-  const auto share = [](double part) { return fmt::format("{:.1f} %", 100.0 * part); };
-  const auto prefixed_text = [](double value, const char* unit) {
-    return std::isfinite(value) ? figure_text(value, unit, 0.0, {.digits = 3, .prefixed = true}) : "-";
-  };
   table.add_row({heading(record, "play"), "in flight", "in impact", "lasting", "impacts", "sliding", "load x slip"});
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     if (!is_listed(record.model.joints[i]) || !record.clearances.has(static_cast<int>(i))) continue;
     const PlayFigures seen = record.clearances.figures(static_cast<int>(i));
-    table.add_row({record.model.joints[i].name, share(seen.flight), share(seen.impact), share(seen.lasting),
-                   std::to_string(seen.impacts), prefixed_text(seen.sliding, "m"), prefixed_text(seen.work, "J")});
+    const bool chaotic = Figures{record}.is_chaotic(static_cast<int>(i));
+    table.add_row({record.model.joints[i].name, share_text(seen.flight, chaotic), share_text(seen.impact, chaotic),
+                   share_text(seen.lasting, chaotic), count_text(seen.impacts, chaotic),
+                   sum_text(seen.sliding, "m", chaotic), sum_text(seen.work, "J", chaotic)});
   }
 }
 
@@ -261,8 +265,11 @@ std::string steps_per_impact(const RunRecord& record) {
 /// What a figure with its noise says, where there is one.
 std::string noise_line(const std::string& tables) {
   if (tables.find(" +- ") == std::string::npos) return {};
-  return "  +-: impacts make the motion chaotic; another step, start or build may change a peak by so much (--repeat "
-         "N)\n";
+  std::string text =
+      "  +-: impacts make the motion chaotic; another step, start or build may change a peak by so much (--repeat N)\n";
+  if (tables.find('~') != std::string::npos)
+    text += "  ~: for the same reason two digits of counts, parts and sums at most\n";
+  return text;
 }
 
 /// From which starts the medians and ranges are, and which runs are not among them.

@@ -32,6 +32,24 @@ std::string rounded(double value, int decimals) {
 
 }  // namespace
 
+bool has_shown_noise(double value, double noise) { return value != 0.0 && std::abs(noise / value) >= shown_noise; }
+
+std::string count_text(long count, bool noisy) {
+  if (!noisy || count == 0) return std::to_string(count);
+  return "~" + rounded(static_cast<double>(count), std::min(0, 1 - magnitude(static_cast<double>(count))));
+}
+
+std::string sum_text(double sum, const char* unit, bool noisy) {
+  if (!std::isfinite(sum)) return "-";
+  if (!noisy) return figure_text(sum, unit, 0.0, {.digits = 3, .prefixed = true});
+  const PrefixedUnit to = prefixed_unit(sum, unit);
+  return "~" + with_unit(rounded(sum / to.factor, 1 - magnitude(sum / to.factor)), to.unit);
+}
+
+std::string share_text(double part, bool noisy) {
+  return fmt::format("{}{:.{}f} %", noisy ? "~" : "", 100.0 * part, noisy ? 0 : 1);
+}
+
 std::string figure_text(double value, const char* unit, double noise, FigureStyle style) {
   if (!std::isfinite(value)) return "-";
   const double part = value != 0.0 ? std::abs(noise / value) : 0.0;

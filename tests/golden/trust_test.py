@@ -362,6 +362,12 @@ simulation: {end: 1 s, accuracy: 1 um}
         self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())
 
+    def test_counts_and_sums_beside_a_peak_with_noise_have_two_digits(self):
+        out, _ = self.run_model(SLIDER_CRANK)
+        self.assertRegex(out, r"\n  wrist +\d+ \+- \d+ kN +~\d+ +~\d+ %")
+        self.assertRegex(out, r"\n  wrist( +~\d+ %){3} +~\d+ +~\d+(\.\d)? mm +~\d+(\.\d)? m?J\n")
+        self.assertIn("\n  ~: ", out)
+
     def test_no_part_of_the_time_of_a_play_is_below_zero(self):
         """A rotor that never leaves its bearing."""
         rotor = (BALL % "").replace("radial_clearance: 0.5 mm", "radial_clearance: 0.06 mm\n      length: 30 mm\n      initial: loaded\n"
