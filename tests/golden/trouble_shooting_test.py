@@ -95,6 +95,7 @@ simulation: {end: 0.1 s, step: 10 us}
 LIBRARIES = {"TEMPLATE": os.path.join(BUILD, "plugins", "template", "template_integrator.so"),
              "PROBE": os.path.join(BUILD, "plugins", "probes", "probe_throws_in_apply.so"),
              "ENDLESS": os.path.join(BUILD, "plugins", "tests", "endless_events.so")}
+SPRING = "{type: spring-damper, kind: rotational, between: [ground, rod], stiffness: 10}"
 RUN = ["run", "model.yaml", "--force"]
 
 
@@ -189,6 +190,12 @@ CASES = {
         (0, pendulum("joints:\n", "  spare: {mass: 1 kg, inertia: 0.1}\njoints:\n"), RUN),
     "joint '...' holds nothing that '...' does not hold between the same two bodies: ... [duplicate-joint]":
         (0, pendulum("initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
+    "'...' has the same frames and numbers as '...', so that both act as one twice as strong: ... [duplicate-force]":
+        (0, pendulum("initial:", "forces:\n  one: %s\n  two: %s\ninitial:" % (SPRING, SPRING)), RUN),
+    "'...' does nothing: none of its numbers that make a force is given; ...":
+        (0, pendulum("initial:", "forces:\n  one: %s\ninitial:" % SPRING.replace(", stiffness: 10", "")), RUN),
+    "'...' never moves: it turns in its bearing on ground alone, and no gear, driver, force or start turns it; ... [left-free]":
+        (0, driven("joints:", "  wheel: {mass: 1 kg, inertia: 0.1}\njoints:\n  axle: {type: revolute, between: [ground, wheel]}"), RUN),
     "the play of joint '...' is bypassed by ... [play-bypassed]":
         (0, journal("simulation:", "  pin: {type: revolute, between: [ground, ball]}\nsimulation:"), RUN),
     "... left over with all drivers at rest, ... [left-free]":
