@@ -92,7 +92,6 @@ std::vector<std::string> arguments_of(const PlotOptions& options) {
   flag("--histogram", options.histogram);
   add("--from", options.from);
   add("--until", options.until);
-  for (const std::string& other : options.against) add("--against", other);
   add("--width", options.width);
   add("--height", options.height);
   return arguments;
@@ -182,13 +181,21 @@ class Plot {
       print_data(plot::figure_text(figure, columns, stdout_takes_unicode()));
       return 0;
     }
-    // How it was typed would make the bytes depend on where the picture goes.
-    const Json record = record_of(options_.path, *readers_[0], {"plot", "freeplay plot", arguments_of(options_)});
-    write_output(options_.out, picture_with_record(figure_svg(figure, size_), record));
+    write_output(options_.out, picture_with_record(figure_svg(figure, size_), record(paths)));
     return 0;
   }
 
  private:
+  /// How it was typed would make the bytes depend on where the picture goes. Of several results each has its own.
+  Json record(const std::vector<std::string>& paths) {
+    const MadeOfResult made{"plot", "freeplay plot", arguments_of(options_)};
+    Json record = record_of(paths[0], *readers_[0], made);
+    if (paths.size() < 2 || !record.is_object()) return record;
+    record["results"] = paths;
+    for (std::size_t i = 0; i < paths.size(); ++i) record["runs"].push_back(record_of(paths[i], *readers_[i], made));
+    return record;
+  }
+
   void size_of_page() {
     if (options_.text && (!options_.out.empty() || !options_.width.empty() || !options_.height.empty())) {
       refuse("--text goes to the terminal and has no --out, --width or --height");

@@ -193,24 +193,26 @@ bool Remaking::analyze(const Json& run) {
 
 /// From results, which are made first.
 bool Remaking::derive() {
-  std::vector<std::string> results;
   for (const Json& run : runs_of(made_)) {
-    const std::size_t number = results.size();
-    results.push_back((out_ / fmt::format("run-{}", number)).string());
-    if (!run_model(run, number, results.back())) return false;
+    const std::size_t number = results_.size();
+    results_.push_back((out_ / fmt::format("run-{}", number)).string());
+    if (!run_model(run, number, results_.back())) return false;
   }
   std::vector<std::vector<std::string>> steps;
   for (const Json& before : made_.record.value("before", Json::array())) steps.push_back(words_of(made_, before));
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    std::vector<std::string> words{"export", results[0]};
+    std::vector<std::string> words{"export", results_[0]};
     words.insert(words.end(), steps[i].begin(), steps[i].end());
     const std::string table = (scratch_ / fmt::format("table-{}.h5", i)).string();
     words.insert(words.end(), {"--out", table});
     if (!execute(std::move(words), Json::object())) return false;
-    results = {table};
+    results_ = {table};
   }
   std::vector<std::string> words{command_};
-  words.insert(words.end(), results.begin(), results.end());
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    if (i > 0 && command_ == "plot") words.emplace_back("--against");
+    words.push_back(results_[i]);
+  }
   const std::vector<std::string> more = words_of(made_, made_.record.value("arguments", Json()));
   words.insert(words.end(), more.begin(), more.end());
   words.insert(words.end(), {"--out", again_.string()});

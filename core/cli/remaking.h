@@ -26,6 +26,8 @@ class Remaking {
 
   /// After make(): the directory or file that was made.
   const std::filesystem::path& again() const { return again_; }
+  /// The results that it was made from, made again; none for a result.
+  const std::vector<std::string>& results() const { return results_; }
   /// How the last program ended.
   const ProgramEnd& end() const { return end_; }
 
@@ -42,6 +44,7 @@ class Remaking {
   bool yes_;
   std::string command_;
   std::filesystem::path scratch_, out_, again_;
+  std::vector<std::string> results_;
   ProgramEnd end_;
 };
 

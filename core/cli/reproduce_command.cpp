@@ -81,7 +81,7 @@ class Reproduction {
     if (!changed_model) {
       Remaking remaking(made_, common_, options.out, options.yes);
       if (!remaking.make()) return give_up(remaking.end());
-      checks_ = compare_again(made_, remaking.again());
+      checks_ = compare_again(made_, remaking.again(), remaking.results());
       rerun_ = read_made_file(remaking.again()).record;
     }
     const bool same = faults_.empty() && std::ranges::all_of(checks_, &ReproductionCheck::same);

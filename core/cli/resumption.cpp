@@ -27,8 +27,8 @@ void refuse_other_options(const CLI::App& app) {
       continue;
     }
     throw Error(Error::Category::usage, "usage", fmt::format("{} does not go with --resume", name), {},
-                "model and settings are those of the run that goes on; only --end, --checkpoint, --report and "
-                "--profile may change");
+                "model and settings are those of the run that goes on; only --end, --checkpoint, --report, "
+                "--profile and --yes may change");
   }
 }
 

@@ -111,6 +111,8 @@ MadeFile read_as(MadeKind kind, const fs::path& path) {
   if (!made.record.is_object()) return made;
   const Json run = made.record.value("run", Json());
   if (run.is_object()) made.ended = run.value("ended", true);
+  if (kind != MadeKind::page) return made;
+  for (const Json& shown : json_of(made.data)) made.ended = made.ended && has_ended(shown.value("summary", Json()));
   return made;
 }
 

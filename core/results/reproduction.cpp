@@ -178,9 +178,22 @@ ReproductionCheck check_page(const std::string& then, const std::string& now) {
   return check;
 }
 
+/// A text with the names of results that the record has.
+std::string with_names(std::string text, const std::vector<std::string>& results, const Json& record) {
+  const Json names = record.value("results", Json::array());
+  for (std::size_t i = 0; i < std::min(results.size(), names.size()); ++i) {
+    const std::string name = names[i].get<std::string>();
+    for (std::size_t at = 0; (at = text.find(results[i], at)) != std::string::npos; at += name.size()) {
+      text.replace(at, results[i].size(), name);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
-std::vector<ReproductionCheck> compare_again(const MadeFile& made, const fs::path& again) {
+std::vector<ReproductionCheck> compare_again(const MadeFile& made, const fs::path& again,
+                                             const std::vector<std::string>& results) {
   const bool ended = made.ended;
   switch (made.kind) {
     case MadeKind::result: {
@@ -206,7 +219,7 @@ std::vector<ReproductionCheck> compare_again(const MadeFile& made, const fs::pat
     case MadeKind::picture:
       break;
   }
-  return {check_text("data", made.data, data_of(made.kind, again), ended)};
+  return {check_text("data", made.data, with_names(data_of(made.kind, again), results, made.record), ended)};
 }
 
 }  // namespace freeplay

@@ -22,7 +22,9 @@ struct ReproductionCheck {
 
 /// Compares a thing with the one that was made again at `again`: rows and numbers of events bit by bit, summaries but
 /// for what names files and times of the machine, texts byte by byte. What a run that had not ended left is compared as
-/// far as it goes. Throws Error{file} "unreadable-result".
-std::vector<ReproductionCheck> compare_again(const MadeFile& made, const std::filesystem::path& again);
+/// far as it goes. `results`: the directories that a picture of several was made from again, which it may name. Throws
+/// Error{file} "unreadable-result".
+std::vector<ReproductionCheck> compare_again(const MadeFile& made, const std::filesystem::path& again,
+                                             const std::vector<std::string>& results);
 
 }  // namespace freeplay

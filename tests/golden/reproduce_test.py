@@ -207,6 +207,44 @@ class Reproduce(ProgramTest):
                           data.replace(b"</metadata>", b"</metadata> ", 1), name)
                 self.assert_different(name, "first difference")
 
+    def test_pictures_of_results_are_made_again(self):
+        self.run_model("r", "--end", "4 ms", "--interval", "0.1 ms")
+        self.run_model("s", "--end", "4 ms", "--interval", "0.1 ms", "--set", "c=0.3 mm")
+        for name, words in (("one.svg", ("joint.wrist.fn", "body.slider.x", "--from", "1 ms")), ("orbit.svg", ("--orbit", "wrist")),
+                            ("two.svg", ("joint.wrist.fn", "--against", "s")),
+                            ("three.svg", ("body.slider.x", "--against", "r", "--against", "s"))):
+            with self.subTest(name):
+                self.freeplay("plot", "r", *words, "--out", name)
+                self.assert_same(name)
+        self.edit(lambda data: data[:(at := re.search(rb'class="line"[^>]*[ML][^>]*\d', data).end() - 1)] +
+                  (b"1" if data[at:at + 1] != b"1" else b"2") + data[at + 1:], "two.svg")
+        self.assert_different("two.svg", r"data .*first difference: byte \d+, line \d+: ")
+
+    def test_pages_are_made_again(self):
+        self.run_model("r", "--end", "4 ms", "--interval", "0.1 ms")
+        os.mkdir(self.path("tables"))
+        os.mkdir(self.path("models"))
+        self.write("tables/speed.csv", "t,w\n0,1\n0.05,3\n0.1,2\n")
+        self.write("models/turning.yaml", DRIVEN)
+        self.run_model("t", model="models/turning.yaml")
+        self.freeplay("report", "r", "--out", "one.html")
+        self.freeplay("report", "r", "t", "--out", "two.html", "--title", "a <b> & c", "--from", "1 ms")
+        for name in ("one.html", "two.html"):
+            with self.subTest(name):
+                self.assertRegex(self.assert_same(name), r"data +\d+ bytes +same bytes")
+
+        def other_value(data):
+            at = re.search(rb'"values": ?"[A-Za-z0-9+/]{40}', data).end()
+            return data[:at] + (b"A" if data[at:at + 1] != b"A" else b"B") + data[at + 1:]
+
+        self.edit(other_value, "two.html")
+        self.assert_different("two.html", "its data was changed afterwards: SHA-256 ", "data .*first difference: /.*/values: ")
+        # The text of the model in it, and that of an input.
+        for old, new in ((b"inertia: 1e-4", b"inertia: 2e-4"), (b"0.05,3", b"0.05,4")):
+            self.freeplay("report", "r", "t", "--out", "again.html", "--force")
+            self.edit(lambda data: data.replace(old, new), "again.html")
+            self.assert_different("again.html", "the (model|input .*) was changed afterwards")
+
     def test_what_a_killed_run_left_is_compared_as_far_as_it_goes(self):
         for attempt in range(5):
             with subprocess.Popen([PROGRAM, "run", "crank.yaml", "--quiet", "--out", "k", "--force", "--end", "0.1 s"],
