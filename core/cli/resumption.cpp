@@ -147,12 +147,4 @@ void require_same_making(const Resumption& resumption, const Model& model) {
   }
 }
 
-KeptPart kept_part_of(const Checkpoint& from) {
-  const Json safe = from.made.value("safe", Json::object());
-  return {.rows = from.rows(),
-          .events = from.events,
-          .safe = {safe.value("rows", ""), safe.value("events", ""), safe.value("numbers", std::size_t{0}),
-                   safe.value("bytes", std::size_t{0})}};
-}
-
 }  // namespace freeplay

@@ -5,7 +5,6 @@
 
 #include "cli/run_options.h"
 #include "results/checkpoint.h"
-#include "results/kept_part.h"
 
 namespace freeplay {
 
@@ -22,9 +21,6 @@ struct Resumption {
 /// do not go with --resume and an end that is not later, Error{file} "unreadable-result", "no-checkpoint",
 /// "bad-checkpoint", Error{input} "resume-mismatch" where another program made the result.
 Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonOptions& common);
-
-/// What stays of the files of that run.
-KeptPart kept_part_of(const Checkpoint& from);
 
 /// Throws Error{input} "resume-mismatch" where the model, an input or a plugin is not the one of that run.
 void require_same_making(const Resumption& resumption, const Model& model);

@@ -87,10 +87,11 @@ class RunJob {
         twin_(twin),
         path_(std::move(path)),
         channels_(*loaded.model),
-        recording_(from == nullptr ? Recording(path_, options.force, *loaded.model, channels_,
-                                               making(options, common, *loaded.model))
-                                   : Recording::go_on(path_, *loaded.model, channels_,
-                                                      making(options, common, *loaded.model), kept_part_of(*from))),
+        recording_(
+            from == nullptr
+                ? Recording(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model))
+                : Recording::go_on(path_, *loaded.model, channels_, making(options, common, *loaded.model),
+                                   {.rows = from->rows(), .events = from->events})),
         sinks_(recording_.sinks()),
         checkpoints_(recording_, path_, made(options, common, *loaded.model), checkpoint_period(options)) {
     if (from == nullptr || !from->state) {

@@ -48,10 +48,7 @@ void Checkpoints::add(RunState state) {
   const auto checkpoint =
       std::make_shared<Checkpoint>(Checkpoint{.made = made_, .state = std::move(state), .events = recording_.events()});
   recording_.save(checkpoint->files);
-  recording_.when_safe([checkpoint, path = file_, &recording = recording_] {
-    checkpoint->made["safe"] = recording.safe();  // this is the thread that writes
-    write_whole_file(path, bytes_of(*checkpoint), true);
-  });
+  recording_.when_safe([checkpoint, path = file_] { write_whole_file(path, bytes_of(*checkpoint), true); });
 }
 
 }  // namespace freeplay

@@ -129,36 +129,6 @@ void cut_file(const fs::path& file, std::uintmax_t bytes) {
               fmt::format("cannot write '{}': {}", file.string(), std::strerror(reason)));
 }
 
-namespace {
-
-void require_same(const fs::path& file, const char* what, const std::string& found, const std::string& expected) {
-  if (found == expected) return;
-  throw Error(Error::Category::file, "bad-checkpoint",
-              fmt::format("'{}' was changed: its {} are not those that the checkpoint counts", file.string(), what), {},
-              "run the model again");
-}
-
-void require_unchanged_rows(const fs::path& file, const KeptPart::Safe& safe) {
-  const auto reader = ResultReader::open(file);
-  RowHash hash;
-  first_rows(*reader, static_cast<std::int64_t>(safe.numbers / reader->layout().columns.size()),
-             [&](std::span<const double> some) {
-               hash.write({.rows = {some.begin(), some.end()}, .events = {}});
-             });
-  require_same(file, "rows", hash.digits(), safe.rows);
-}
-
-void require_unchanged_events(const fs::path& file, const KeptPart::Safe& safe) {
-  std::string text(safe.bytes, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(text.data(), static_cast<std::streamsize>(safe.bytes));
-  Sha256 hash;
-  hash.add(text.data(), static_cast<std::size_t>(stream.gcount()));
-  require_same(file, "events", hash.digits(), safe.events);
-}
-
-}  // namespace
-
 KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultFormat format, const RecordLayout& layout,
                     const Hdf5Writer::Options& options) {
   KeptFiles kept;
@@ -167,7 +137,6 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
   const WholeLines event_lines = whole_lines(events, part.events + 1, &kept.event_text);
   require_enough(events, "events", event_lines.lines - 1, part.events);
   kept.event_bytes = event_lines.bytes;
-  if (!part.safe.events.empty()) require_unchanged_events(events, part.safe);
   const auto note = [&](std::span<const double> some) {
     kept.row_hash->write({.rows = {some.begin(), some.end()}, .events = {}});
     kept.last_time = some[some.size() - layout.columns.size()];
@@ -179,7 +148,6 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
     const auto reader = ResultReader::open(rows);
     require_columns(rows, reader->layout(), layout);
     if (format == ResultFormat::csv) first_rows(*reader, part.rows, note);
-    if (!part.safe.rows.empty()) require_unchanged_rows(rows, part.safe);
   }
   if (format == ResultFormat::csv) return kept;
   const fs::path file = directory / "results.h5";
@@ -187,7 +155,6 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
   later.named_later = true;
   kept.hdf5 = std::make_unique<Hdf5Writer>(file, layout, later);
   copy_hdf5(file, part, layout, kept, note);
-  if (!part.safe.rows.empty()) require_unchanged_rows(file, part.safe);
   if (!kept.hdf5->failure().empty()) throw Error(Error::Category::file, "cannot-write", kept.hdf5->failure());
   return kept;
 }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
 
 #include "base/sha256.h"
 #include "model/model.h"
@@ -17,11 +16,6 @@ namespace freeplay {
 /// How many rows and events stay.
 struct KeptPart {
   std::int64_t rows = 0, events = 0;
-  /// Fingerprints of what was safe when that was noted, which is as much or more; empty: not known.
-  struct Safe {
-    std::string rows{}, events{};        ///< digits of RowHash, and of the text of events.csv
-    std::size_t numbers = 0, bytes = 0;  ///< of so many numbers of rows, and bytes of that text
-  } safe{};
 };
 
 /// Writers that hold what was kept.

@@ -88,6 +88,7 @@ MadeFile read_as(MadeKind kind, const fs::path& path) {
     made.record = record_of_directory(path);
     std::error_code ignored;
     const fs::path summary = path / "summary.json";
+    made.ended = false;
     if (fs::exists(summary, ignored)) {
       const Json json = json_of(whole_text_of(summary));
       if (!json.is_object()) unreadable_result(summary.string(), "it is no JSON object");

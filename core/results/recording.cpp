@@ -78,8 +78,7 @@ RecordThread::Start Recording::continued_writers(const Model& model, const KeptP
   cut_back(directory_.path(), kept, format);
   directory_.remove("summary.json");
   RecordThread::Start start{.writers = {}, .rows = static_cast<long>(part.rows), .last_time = kept.last_time};
-  auto events =
-      std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_, kept.event_text, kept.event_bytes);
+  auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_, kept.event_text);
   row_hash_ = kept.row_hash.get();
   event_text_ = events.get();
   hdf5_ = kept.hdf5.get();
@@ -144,13 +143,6 @@ void Recording::bearing(const ClearanceStatistics& clearances) {
       out.insert(out.end(), numbers.begin(), numbers.end());
     }
   }
-}
-
-Json Recording::safe() const {
-  return {{"rows", row_hash_->digits()},
-          {"numbers", row_hash_->numbers()},
-          {"events", event_text_->digits()},
-          {"bytes", event_text_->bytes()}};
 }
 
 Json Recording::hashes() const { return {{"rows", row_hash_->digits()}, {"events", event_text_->digits()}}; }

@@ -72,8 +72,6 @@ class Recording {
   double last_time() const { return thread_.last_time(); }
   /// Processor time of the thread that writes [s].
   double text_seconds() const { return thread_.thread_seconds(); }
-  /// Fingerprints of what was written so far (KeptPart::Safe); in the thread that writes.
-  Json safe() const;
   /// The fields `provenance` and `hashes` of the summary.
   const Json& provenance() const { return provenance_; }
   Json hashes() const;

@@ -11,7 +11,6 @@ class RowHash : public RecordWriter {
  public:
   void write(const RecordBlock& block) override {
     if (!block.rows.empty()) hash_.add(block.rows.data(), block.rows.size() * sizeof(double));
-    numbers_ += block.rows.size();
   }
   void flush() override {}
   void sync() override {}
@@ -19,12 +18,9 @@ class RowHash : public RecordWriter {
   void look_after() override {}
   const std::string& failure() const override { return none_; }
   std::string digits() const { return hash_.digits(); }
-  /// So many were added.
-  std::size_t numbers() const { return numbers_; }
 
  private:
   Sha256 hash_;
-  std::size_t numbers_ = 0;
   std::string none_;
 };
 

@@ -51,7 +51,6 @@ void EventTextWriter::write(const RecordBlock& block) {
     line += layout_.kinds[static_cast<std::size_t>(event[2])];
     for (const double field : event.subspan(3)) append_number(line += ',', field);
     hash_.add(line.data() + begin, line.size() - begin);
-    bytes_ += line.size() - begin + 1;
     hash_.add("\n", 1);
     file_.end_line();
   }

@@ -48,20 +48,17 @@ class EventTextWriter : public TextWriter {
   EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout)
       : TextWriter(path, layout.events, GrowingFile::Begin::empty), layout_(layout) {
     hash_.add(header_.data(), header_.size());
-    bytes_ = header_.size();
   }
   /// Goes on in a file that has `kept` as its text.
-  EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout, const Sha256& kept, std::size_t bytes)
-      : TextWriter(path, layout.events, GrowingFile::Begin::append), layout_(layout), hash_(kept), bytes_(bytes) {}
+  EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout, const Sha256& kept)
+      : TextWriter(path, layout.events, GrowingFile::Begin::append), layout_(layout), hash_(kept) {}
   void write(const RecordBlock& block) override;
-  /// SHA-256 of the file's text so far, and its bytes.
-  std::size_t bytes() const { return bytes_; }
+  /// SHA-256 of the file's text so far.
   std::string digits() const { return hash_.digits(); }
 
  private:
   const RecordLayout& layout_;
   Sha256 hash_;
-  std::size_t bytes_ = 0;
 };
 
 }  // namespace freeplay

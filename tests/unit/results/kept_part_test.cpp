@@ -85,7 +85,7 @@ TEST(KeptPart, OfARunThatGoesOnGivesTheFilesOfOneThatNeverStopped) {
     EXPECT_EQ(0.1 * 82.0, kept.last_time);
     cut_back(folder.path(), kept, ResultFormat::both);
     RowTextWriter rows(folder.file("results.csv"), layout, GrowingFile::Begin::append);
-    EventTextWriter events(folder.file("events.csv"), layout, kept.event_text, kept.event_bytes);
+    EventTextWriter events(folder.file("events.csv"), layout, kept.event_text);
     const RecordBlock block = part_of_run(83, 200);
     for (RecordWriter* writer :
          {static_cast<RecordWriter*>(&rows), static_cast<RecordWriter*>(&events),
