@@ -21,15 +21,15 @@ constexpr double pivot_limit = 1e-10;  // of pivots, and of parts of the null sp
 MatrixXd all_rows(const IdealMechanism& mechanism, const Evaluation& e) {
   const Model& model = mechanism.model();
   const System& system = mechanism.system();
-  const int nc = system.layout().nc(), width = system.body_velocities();
+  const int nc = system.layout().nc(), width = system.layout().body_velocities();
   const auto& inputs = mechanism.platform().inputs;
   MatrixXd rows = MatrixXd::Zero(nc + static_cast<Index>(inputs.size()), system.layout().nv());
   std::vector<SparseEntry> entries;
-  system.jacobian_entries(e, entries);
+  system.jacobian().list(e.jacobian, entries);
   for (const SparseEntry& entry : entries) rows(entry.row(), entry.col()) += entry.value();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     double row[2 * spatial::velocities], bias = 0.0;
-    system.coordinate_row(inputs[i], e, row, bias);
+    system.joints().coordinate_row(inputs[i], e, row, bias);
     const JointElement& joint = model.joints[at(inputs[i])];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
@@ -65,7 +65,7 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
   const Index inputs = static_cast<Index>(mechanism.platform().inputs.size());
   const MatrixXd rows = all_rows(mechanism, e);
   VectorXd load(nv);
-  for (int i = 0; i < nv; ++i) load[i] = e.force[at(i)] - system.mass()[at(i)] * a[at(i)];
+  for (int i = 0; i < nv; ++i) load[i] = e.force[at(i)] - system.inertia().mass()[at(i)] * a[at(i)];
 
   // rows P = Q R, so rows^T lambda = load becomes R^T (Q^T lambda) = P^T load.
   Eigen::ColPivHouseholderQR<MatrixXd> qr;
@@ -100,7 +100,7 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
   for (Index i = 0; i < inputs; ++i) out.input.push_back(-lambda[nc + i]);
   out.wrench.clear();
   for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
-    system.reaction(j, e, {lambda.data(), at(nc)}, out.wrench.emplace_back().data());
+    system.constraints().reaction(j, e, {lambda.data(), at(nc)}, out.wrench.emplace_back().data());
   }
   return Found::yes;
 }

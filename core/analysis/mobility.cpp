@@ -12,10 +12,10 @@ namespace {
 std::vector<SparseEntry> input_entries(PostureSolver& solver, const Evaluation& e, int first_row) {
   const Model& model = solver.mechanism().model();
   std::vector<SparseEntry> out;
-  const int width = solver.mechanism().system().body_velocities();
+  const int width = solver.mechanism().system().layout().body_velocities();
   for (const int j : solver.mechanism().platform().inputs) {
     double row[2 * spatial::velocities], bias = 0.0;
-    solver.mechanism().system().coordinate_row(j, e, row, bias);
+    solver.mechanism().system().joints().coordinate_row(j, e, row, bias);
     const JointElement& joint = model.joints[at(j)];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
@@ -30,11 +30,11 @@ std::vector<SparseEntry> input_entries(PostureSolver& solver, const Evaluation& 
 
 void add_frame(PostureSolver& solver, const Evaluation& e, int first_row, std::vector<SparseEntry>& out) {
   const System& system = solver.mechanism().system();
-  const int marker = solver.mechanism().platform().marker, width = system.body_velocities();
+  const int marker = solver.mechanism().platform().marker, width = system.layout().body_velocities();
   for (const int component : solver.form().twist) {
     double g[6] = {}, row[spatial::velocities];
     g[component] = 1.0;
-    system.marker_row(marker, g, e, row);
+    system.markers().row(marker, g, e, row);
     for (int c = 0; c < width; ++c) {
       out.emplace_back(first_row, width * solver.mechanism().platform_body() + c, row[c]);
     }
@@ -50,7 +50,7 @@ Mobility mobility_at(PostureSolver& solver, double t, const Posture& posture) {
   const int nc = system.layout().nc(), nv = system.layout().nv();
   const int inputs = static_cast<int>(solver.mechanism().platform().inputs.size());
   std::vector<SparseEntry> entries;
-  system.jacobian_entries(e, entries);
+  system.jacobian().list(e.jacobian, entries);
   const int joints = nc > 0 ? numerical_rank(sparse_matrix(nc, nv, entries)) : 0;
   const std::vector<SparseEntry> more = input_entries(solver, e, nc);
   entries.insert(entries.end(), more.begin(), more.end());

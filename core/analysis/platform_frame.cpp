@@ -45,14 +45,6 @@ void turn_axes(const Vector3d& angles, const Vector3d& rates, Matrix3d& e, Matri
 
 }  // namespace
 
-void twist_row(const System& system, int marker, const double* row, const Evaluation& e, double* twist) {
-  if (system.model().space == Space::planar) {
-    planar::wrench_of(row, e.arms[at(marker)], twist);
-  } else {
-    spatial::wrench_of(row, e.spatial_arms[at(marker)], twist);
-  }
-}
-
 PlatformFrame::PlatformFrame(const System& system, int marker)
     : system_(system), marker_(marker), form_(pose_form(system.model().space)) {}
 
@@ -160,7 +152,7 @@ void PlatformFrame::turn_rows(const Components& given, const std::array<Jet, mos
 
 void PlatformFrame::frame_row(const double* row, const Evaluation& e, double* out) const {
   double twist[6];
-  twist_row(system_, marker_, row, e, twist);
+  system_.markers().twist_row(marker_, row, e, twist);
   for (std::size_t i = 0; i < form_.size(); ++i) out[i] = twist[form_.twist[i]];
 }
 

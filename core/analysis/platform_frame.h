@@ -46,7 +46,4 @@ class PlatformFrame {
   const PoseForm& form_;
 };
 
-/// A row in the velocities of the body that `marker` is on as a row of the marker's twist (6 numbers).
-void twist_row(const System& system, int marker, const double* row, const Evaluation& e, double* twist);
-
 }  // namespace freeplay

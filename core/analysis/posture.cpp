@@ -139,7 +139,7 @@ bool PostureSolver::place_leg(const Limb& part, const Leg& leg, const Demand& de
 void PostureSolver::assemble(const Task& task, const Demand& demand) {
   const Model& model = mechanism_.model();
   const Platform& platform = mechanism_.platform();
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   pose_rows_.clear();
   if (task.whole) frame_.rows(demand.given, demand.pose, e_, pose_rows_);
   const auto held = std::ranges::count_if(demand.inputs, [](const Jet& input) { return !std::isnan(input.value); });
@@ -154,7 +154,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand) {
     local_row_[at(task.rows[at(i)])] = i;
     right_[i] = -e_.phi[at(task.rows[at(i)])];
   }
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
     const int column = column_[at(block.body)];
     if (column < 0) continue;
     for (int r = 0; r < block.rows; ++r) {
@@ -167,7 +167,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand) {
   int row = rows;
   for (const PoseRow& wanted : pose_rows_) {
     double entries[spatial::velocities];
-    system_.marker_row(platform.marker, wanted.g, e_, entries);
+    system_.markers().row(platform.marker, wanted.g, e_, entries);
     for (int c = 0; c < width; ++c) matrix_(row, column_[at(mechanism_.platform_body())] + c) = entries[c];
     right_[row++] = wanted.gap;
   }
@@ -175,7 +175,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand) {
     if (std::isnan(demand.inputs[i].value)) continue;
     const int j = platform.inputs[i];
     double entries[2 * spatial::velocities], bias = 0.0;
-    system_.coordinate_row(j, e_, entries, bias);
+    system_.joints().coordinate_row(j, e_, entries, bias);
     const JointElement& joint = model.joints[at(j)];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
@@ -189,7 +189,7 @@ void PostureSolver::assemble(const Task& task, const Demand& demand) {
 }
 
 void PostureSolver::move(const Task& task, const Eigen::VectorXd& step, Posture& posture) {
-  const std::size_t width = at(system_.body_velocities());
+  const std::size_t width = at(system_.layout().body_velocities());
   std::ranges::fill(increment_, 0.0);
   for (std::size_t b = 0; b < task.bodies.size(); ++b) {
     std::copy_n(step.data() + width * b, width, &increment_[width * at(task.bodies[b])]);
@@ -266,7 +266,7 @@ bool PostureSolver::settle_on_fold(const Task& task, const Demand& demand, Postu
   if (!task.whole) place_platform(demand, trial);
   std::ranges::fill(state_.v(), 0.0);
   double scale = system_.size(), last = std::numeric_limits<double>::infinity();
-  const std::size_t numbers = at(system_.body_coordinates());
+  const std::size_t numbers = at(system_.layout().body_coordinates());
   for (std::size_t i = 0; i < trial.q.size(); ++i) {
     if (i % numbers < form().lengths) scale = std::max(scale, std::abs(trial.q[i]));
   }
@@ -409,12 +409,12 @@ bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vec
     int row = system_.layout().nc();
     for (const PoseRow& wanted : pose_rows_) {
       right_[row++] =
-          speeds ? wanted.rate : wanted.acceleration - system_.marker_row_product(platform.marker, wanted.g, e_);
+          speeds ? wanted.rate : wanted.acceleration - system_.markers().row_product(platform.marker, wanted.g, e_);
     }
     for (std::size_t i = 0; i < demand.inputs.size(); ++i) {
       if (std::isnan(demand.inputs[i].value)) continue;
       double entries[2 * spatial::velocities], bias = 0.0;
-      system_.coordinate_row(platform.inputs[i], e_, entries, bias);
+      system_.joints().coordinate_row(platform.inputs[i], e_, entries, bias);
       right_[row++] = speeds ? demand.inputs[i].rate : demand.inputs[i].acceleration - bias;
     }
     const Eigen::VectorXd solution = solver_.solve(right_);

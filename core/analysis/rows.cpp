@@ -103,7 +103,7 @@ std::vector<std::string> pose_columns(const PoseForm& form, const char* first) {
 void append_inputs(const IdealMechanism& mechanism, const Station& station, PostureSolver& solver, Turns& turns,
                    Row& row) {
   const System& system = mechanism.system();
-  const std::size_t width = at(system.body_velocities());
+  const std::size_t width = at(system.layout().body_velocities());
   std::vector<double> v(at(system.layout().nv()), 0.0), a = v;
   const bool moves = follows_path(station);
   const bool known = !moves || (!station.folded && solver.rates(station.demand, station.posture, v, a));
@@ -113,7 +113,7 @@ void append_inputs(const IdealMechanism& mechanism, const Station& station, Post
     const int j = mechanism.platform().inputs[at(i)];
     const JointElement& joint = model.joints[at(j)];
     double entries[2 * spatial::velocities], acceleration = 0.0;
-    system.coordinate_row(j, e, entries, acceleration);
+    system.joints().coordinate_row(j, e, entries, acceleration);
     double speed = 0.0;
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (std::size_t k = 0; k < 2; ++k) {

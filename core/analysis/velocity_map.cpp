@@ -55,15 +55,15 @@ void VelocityMapper::make_group(std::vector<int> parts) {
     const Limb& part = mechanism_.parts()[at(p)];
     for (const BodyId b : part.bodies) {
       column_[at(b)] = group.columns;
-      group.columns += system_.body_velocities();
+      group.columns += system_.layout().body_velocities();
     }
     for (const int row : part.rows) local[at(row)] = group.rows++;
     group.inputs.insert(group.inputs.end(), part.inputs.begin(), part.inputs.end());
     group.plays.insert(group.plays.end(), part.plays.begin(), part.plays.end());
   }
   group.columns += eliminated_;
-  for (int k = 0; k < static_cast<int>(system_.jacobian_blocks().size()); ++k) {
-    const JacobianBlock& block = system_.jacobian_blocks()[at(k)];
+  for (int k = 0; k < static_cast<int>(system_.jacobian().blocks().size()); ++k) {
+    const JacobianBlock& block = system_.jacobian().blocks()[at(k)];
     if (block.rows > 0 && local[at(block.row)] >= 0) {
       group.fills.push_back({k, 0, block.rows, local[at(block.row)], block.body});
     }
@@ -84,7 +84,7 @@ void VelocityMapper::make_group(std::vector<int> parts) {
 // Entries of a row in the columns of a body; those of the platform become columns of its frame.
 void VelocityMapper::put(Group& group, int row, int body, const double* g, const Evaluation& e) {
   if (body != mechanism_.platform_body()) {
-    for (int c = 0; c < system_.body_velocities(); ++c) group.passive(row, column_[at(body)] + c) += g[c];
+    for (int c = 0; c < system_.layout().body_velocities(); ++c) group.passive(row, column_[at(body)] + c) += g[c];
     return;
   }
   double frame[most_components];
@@ -100,18 +100,18 @@ void VelocityMapper::put(Group& group, int row, int body, const double* g, const
 
 void VelocityMapper::eliminate(Group& group, const Evaluation& e) {
   const Model& model = mechanism_.model();
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   group.passive.setZero();
   group.right.setZero();
   for (const Fill& fill : group.fills) {
-    const double* entries = &e.jacobian[at(system_.jacobian_blocks()[at(fill.block)].offset)];
+    const double* entries = &e.jacobian[at(system_.jacobian().blocks()[at(fill.block)].offset)];
     for (int r = 0; r < fill.rows; ++r) put(group, fill.row + r, fill.body, entries + width * r, e);
   }
   const int first_input = group.rows - static_cast<int>(group.inputs.size());
   for (int i = 0; i < static_cast<int>(group.inputs.size()); ++i) {
     const int j = mechanism_.platform().inputs[at(group.inputs[at(i)])];
     double row[2 * spatial::velocities], bias = 0.0;
-    system_.coordinate_row(j, e, row, bias);
+    system_.joints().coordinate_row(j, e, row, bias);
     const JointElement& joint = model.joints[at(j)];
     const BodyId bodies[2] = {model.markers[at(joint.marker_a)].body, model.markers[at(joint.marker_b)].body};
     for (int k = 0; k < 2; ++k) {
@@ -137,11 +137,12 @@ void VelocityMapper::put_play(Group& group, std::size_t p, const Evaluation& e) 
   const int marker = second ? joint.marker_b : joint.marker_a;
   const Index first = kept_ + static_cast<Index>(group.inputs.size()) + group.play_columns[p];
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(e.markers[at(joint.marker_a)].rotation);
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
     if (block.row != rows.offset || block.body != model.markers[at(marker)].body || block.rows != rows.size) continue;
     for (int r = 0; r < rows.size; ++r) {
       double row[6];
-      twist_row(system_, marker, &e.jacobian[at(block.offset + system_.body_velocities() * r)], e, row);
+      system_.markers().twist_row(marker, &e.jacobian[at(block.offset + system_.layout().body_velocities() * r)], e,
+                                  row);
       for (int k = 0; k < play.size; ++k) {
         Eigen::Map<const Eigen::Vector3d> shift(play.twist[at(k)].data()), turn(play.twist[at(k)].data() + 3);
         const Eigen::Map<const Eigen::Vector3d> force(row), moment(row + 3);

@@ -49,7 +49,7 @@ class VelocityMapper {
 
  private:
   struct Fill {
-    int block;       // of System::jacobian_blocks(), -1: an input
+    int block;       // of ConstraintJacobian::blocks(), -1: an input
     int from, rows;  // rows of the block
     int row;         // first row in the group
     int body;

@@ -52,10 +52,10 @@ class Assembler {
     set_offsets({});
     solve_positions();
     check_paths();
-    report_.chosen = solve_velocities(mechanism_, system_.mass());
+    report_.chosen = solve_velocities(mechanism_, system_.inertia().mass());
     if (load_journals()) {
       solve_positions();
-      report_.chosen = solve_velocities(mechanism_, system_.mass());
+      report_.chosen = solve_velocities(mechanism_, system_.inertia().mass());
     }
     report_.moved = moved_starts(closed_, state_.q(), state_.v());
     report_moved_journals();
@@ -292,7 +292,7 @@ class Assembler {
     std::vector<std::array<double, 3>> reactions(model_.joints.size());
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       double wrench[6];
-      closed_.reaction(j, e_, state_.lambda(), wrench);
+      closed_.constraints().reaction(j, e_, state_.lambda(), wrench);
       reactions[at(j)] = {wrench[0], wrench[1], wrench[2]};
     }
     return set_offsets(reactions);
@@ -338,7 +338,8 @@ class Assembler {
       Message message;
       const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
                          history = Span<double>(state.h()).part(at(h.offset), at(h.size));
-      if (!system_.joint(j).initialize(system_.input(j, point(state), e), internal, history, message) ||
+      if (!system_.joints().handle(j).initialize(system_.joints().input(j, point(state), e), internal, history,
+                                                 message) ||
           !keeps_finite(internal, history, "initialize", message)) {
         throw Error(Error::Category::plugin, "plugin-failed",
                     fmt::format("joint '{}' of {} failed at its start: {}", model_.joints[at(j)].name,
@@ -357,7 +358,7 @@ class Assembler {
     std::ranges::copy(state_.v(), state.v().begin());
     if (closed) std::ranges::copy(state_.h(), state.h().begin());
     if (!system.evaluate(point(state), term_position | term_velocity, e)) throw_fault(model_, e.fault);
-    return constraint_facts(system, e);
+    return constraint_facts(system.jacobian(), e);
   }
 
   System& system_;

@@ -86,14 +86,14 @@ ClosedMechanism::Rows ClosedMechanism::assemble(Rows rows, const std::vector<Lea
   evaluate(term_position | term_velocity);
   const int nc = system.layout().nc(), nv = system.layout().nv();
   VectorXd flow(nc);
-  system.multiply(e, state.v(), {flow.data(), at(nc)});
+  system.jacobian().multiply(e.jacobian, state.v(), {flow.data(), at(nc)});
   const std::size_t own = rows.row.size();
   rows.row.resize(rows.path.size(), -1);
   rows.lead.assign(rows.path.size(), -1);
   for (std::size_t i = 0; i < leading.size(); ++i) rows.lead[own + i] = leading[i].joint;
   const auto count = static_cast<Eigen::Index>(rows.row.size());
   std::vector<SparseEntry> system_entries, entries;
-  system.jacobian_entries(e, system_entries);
+  system.jacobian().list(e.jacobian, system_entries);
   std::vector<int> place(at(nc), -1);
   rows.residual = VectorXd::Zero(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -127,8 +127,8 @@ void ClosedMechanism::add_lead(Rows& rows, Eigen::Index i, double value, bool sp
                                std::vector<SparseEntry>& entries) {
   const int j = rows.lead[static_cast<std::size_t>(i)];
   double row[12], bias = 0.0;
-  system.coordinate_row(j, e, row, bias);
-  const int width = system.body_velocities();
+  system.joints().coordinate_row(j, e, row, bias);
+  const int width = system.layout().body_velocities();
   const JointElement& joint = model().joints[at(j)];
   const int bodies[2] = {model().markers[at(joint.marker_a)].body, model().markers[at(joint.marker_b)].body};
   for (int k = 0; k < 2; ++k) {

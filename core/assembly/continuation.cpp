@@ -45,7 +45,7 @@ bool follow(ClosedMechanism& mechanism, const std::function<void()>& prescribe) 
 bool leave_dead_point(ClosedMechanism& mechanism, double sign) {
   ClosedMechanism::Lead& lead = mechanism.leads.back();
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
-  const bool turns = mechanism.system.joint_layout(lead.joint).coordinate == Coordinate::angle;
+  const bool turns = mechanism.system.joints().layout(lead.joint).coordinate == Coordinate::angle;
   const double start = lead.value, unit = turns ? 1.0 : mechanism.system.size();
   for (const double part : {1.0, 0.1, 0.01}) {
     for (const double turn : {0.0, 0.1, -0.1, 0.3, -0.3}) {

@@ -78,7 +78,7 @@ std::optional<SingularPosition> singular_position(const System& system, const St
   if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > nearly_lost * values[0]) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    if (model.joints[at(j)].gear >= 0 || mechanism.system.joint_layout(j).coordinate == Coordinate::none) continue;
+    if (model.joints[at(j)].gear >= 0 || mechanism.system.joints().layout(j).coordinate == Coordinate::none) continue;
     for (const double sign : {1.0, -1.0}) {
       std::ranges::copy(q, mechanism.state.q().begin());
       mechanism.evaluate(term_position);

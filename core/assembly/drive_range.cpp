@@ -23,7 +23,7 @@ constexpr double longest_step = 0.1, shortest_step = 1e-7;
 // The last coordinate of the way in one direction, +-infinity where it does not end.
 double limit(ClosedMechanism& mechanism, double sign) {
   ClosedMechanism::Lead& lead = mechanism.leads.back();
-  const bool turns = mechanism.system.joint_layout(lead.joint).coordinate == Coordinate::angle;
+  const bool turns = mechanism.system.joints().layout(lead.joint).coordinate == Coordinate::angle;
   const double unit = turns ? 1.0 : mechanism.system.size();
   const double whole = turns ? 2.0 * std::numbers::pi : 3.0 * unit, start = lead.value;
   double step = first_drive_step * unit;

@@ -6,7 +6,6 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
 double start_angle(const Model& model, std::span<const double> coordinate, int element) {
   const JointElement& force = model.joints[at(element)];

@@ -56,7 +56,7 @@ Eigen::VectorXd GivenPoses::misses(std::span<const double> q) const {
 }
 
 Eigen::MatrixXd GivenPoses::derivative(std::span<const double> q) const {
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   std::vector<double> v(at(system_.layout().nv()), 0.0);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows_, static_cast<Eigen::Index>(v.size()));
   Eigen::Index first = 0;

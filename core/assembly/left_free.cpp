@@ -88,9 +88,9 @@ class FreeMotions {
   /// Rate of a joint's coordinate by all velocities.
   MatrixXd coordinate_rate(int joint) const {
     double row[12], bias = 0.0;
-    closed_.coordinate_row(joint, shut_, row, bias);
+    closed_.joints().coordinate_row(joint, shut_, row, bias);
     MatrixXd one = MatrixXd::Zero(1, closed_.layout().nv());
-    const int width = closed_.body_velocities();
+    const int width = closed_.layout().body_velocities();
     const int bodies[2] = {body_of(model_.joints[at(joint)].marker_a), body_of(model_.joints[at(joint)].marker_b)};
     for (int k = 0; k < 2; ++k) {
       for (int c = 0; c < width && bodies[k] != ground; ++c) one(0, width * bodies[k] + c) += row[width * k + c];
@@ -100,7 +100,7 @@ class FreeMotions {
 
   /// All velocities of a body.
   MatrixXd body_rates(BodyId body) const {
-    const int width = closed_.body_velocities();
+    const int width = closed_.layout().body_velocities();
     MatrixXd rows = MatrixXd::Zero(width, closed_.layout().nv());
     rows.middleCols(width * body, width).setIdentity();
     return rows;
@@ -108,7 +108,7 @@ class FreeMotions {
 
   /// Rows of the closed mechanism, and coordinates on which efforts act.
   MatrixXd held_by_drivers() const {
-    MatrixXd rows = constraint_matrix(closed_, shut_);
+    MatrixXd rows = constraint_matrix(closed_.jacobian(), shut_);
     for (const Driver& driver : model_.drivers) {
       if (!prescribes(driver.kind)) rows = stacked(rows, coordinate_rate(driver.joint));
     }
@@ -118,7 +118,7 @@ class FreeMotions {
   /// Spins of single bodies about their centres of mass, which nothing else notices: of rollers, of rods between two
   /// balls.
   MatrixXd idle_spins(const MatrixXd& rows) const {
-    const int width = closed_.body_velocities(), turns = model_.space == Space::planar ? 1 : 3;
+    const int width = closed_.layout().body_velocities(), turns = model_.space == Space::planar ? 1 : 3;
     MatrixXd spins(rows.cols(), 0);
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       const int first = width * b + width - turns;
@@ -141,7 +141,7 @@ class FreeMotions {
     MatrixXd free = kernel(rows);
     free -= spins * (spins.transpose() * free);
     if (motions != nullptr) *motions = static_cast<int>(free.cols() - spins.cols());  // spins are among the free ones
-    const int width = closed_.body_velocities();
+    const int width = closed_.layout().body_velocities();
     std::vector<int> moving;
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (free.middleRows(width * b, width).norm() > counts_as_motion) moving.push_back(b);
@@ -228,7 +228,7 @@ class FreeMotions {
       if (posed(b)) given = stacked(given, body_rates(b));
     }
     std::vector<int> unrestrained = moving_in(given, idle_spins(given));
-    const int width = closed_.body_velocities();
+    const int width = closed_.layout().body_velocities();
     for (const int b : candidates) {
       const bool turns_unnoticed = spins.middleRows(width * b, width).norm() > counts_as_motion;
       if (turns_unnoticed && !posed(b) && std::ranges::count(unrestrained, b) == 0) unrestrained.push_back(b);

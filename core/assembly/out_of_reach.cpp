@@ -142,7 +142,7 @@ class Reach {
   std::optional<Widest> widest(const DriveRange& range, const Exit& exit) {
     const double whole = 2.0 * std::numbers::pi;
     const bool comes_round =
-        mechanism_.system.joint_layout(mechanism_.leads.back().joint).coordinate == Coordinate::angle &&
+        mechanism_.system.joints().layout(mechanism_.leads.back().joint).coordinate == Coordinate::angle &&
         range.from > -never && range.to < never;
     const double way = comes_round ? std::min(exit.beyond, whole - (range.to - range.from)) : exit.beyond;
     const double end = exit.up ? range.to : range.from, sign = exit.up ? 1.0 : -1.0;

@@ -156,14 +156,14 @@ class Walk {
     const double coordinate = std::isnan(coordinates_[at(j)]) ? 0.0 : coordinates_[at(j)];
     Pose relative{};
     Message message;
-    if (!system_.joint(j).place(coordinate, relative, message)) {
+    if (!system_.joints().handle(j).place(coordinate, relative, message)) {
       if (message.text[0] == '\0') return false;
       throw Error(Error::Category::plugin, "plugin-failed",
                   fmt::format("joint '{}' of {} failed to place a body: {}", joint.name,
                               model_.instances.words_of(*joint.component), message.text),
                   joint.location);
     }
-    const bool is_angle = system_.joint_layout(j).coordinate == Coordinate::angle;
+    const bool is_angle = system_.joints().layout(j).coordinate == Coordinate::angle;
     const Frame b_in_a = Frame::of(relative, is_angle, coordinate);
     const int near = second_is_free ? joint.marker_a : joint.marker_b;
     const int far = second_is_free ? joint.marker_b : joint.marker_a;

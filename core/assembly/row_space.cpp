@@ -36,10 +36,10 @@ MatrixXd stacked(const MatrixXd& above, const MatrixXd& below) {
   return all;
 }
 
-MatrixXd constraint_matrix(const System& system, const Evaluation& e) {
+MatrixXd constraint_matrix(const ConstraintJacobian& jacobian, const ConstraintValues& e) {
   std::vector<SparseEntry> entries;
-  system.jacobian_entries(e, entries);
-  MatrixXd matrix = MatrixXd::Zero(system.layout().nc(), system.layout().nv());
+  jacobian.list(e.jacobian, entries);
+  MatrixXd matrix = MatrixXd::Zero(jacobian.layout().nc(), jacobian.layout().nv());
   for (const SparseEntry& entry : entries) matrix(entry.row(), entry.col()) += entry.value();
   return matrix;
 }

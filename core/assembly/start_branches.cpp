@@ -55,7 +55,7 @@ VectorXd StartBranches::difference(std::span<const double> from, std::span<const
 // Of bodies, and parts of them, for which the file gives no pose.
 double StartBranches::from_guess(std::span<const double> q) const {
   const VectorXd away = scaled(system_, difference(guess_, q));
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   double sum = 0.0;
   for (int i = 0; i < static_cast<int>(away.size()); ++i) {
     const Body& body = mechanism_.model().bodies[at(i / width)];
@@ -230,7 +230,7 @@ void StartBranches::add_approached(std::span<const double> start) {
 // Bodies without a given angle are turned far, the others a little; each by another angle.
 std::vector<double> StartBranches::turned(int seed) const {
   VectorXd increment = VectorXd::Zero(system_.layout().nv());
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   for (int i = 0, count = 0; i < static_cast<int>(increment.size()); ++i) {
     if (!system_.coordinates().is_turn(i)) continue;
     const Body& body = mechanism_.model().bodies[at(i / width)];

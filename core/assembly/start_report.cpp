@@ -96,7 +96,7 @@ TwinStart twin_start(const System& closed, std::span<const double> taken, std::s
   const Model& model = closed.model();
   std::vector<double> difference(at(closed.layout().nv()));
   closed.coordinates().difference(taken, other, difference);
-  const int width = closed.body_velocities();
+  const int width = closed.layout().body_velocities();
   int worst = 0;
   double largest = -1.0;
   bool turns = true;

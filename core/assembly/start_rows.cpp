@@ -11,12 +11,12 @@
 #include "system/path_row.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
-ConstraintFacts constraint_facts(const System& system, const Evaluation& e) {
-  const int nc = system.layout().nc(), nv = system.layout().nv(), joints = system.layout().first_driver_row();
+ConstraintFacts constraint_facts(const ConstraintJacobian& jacobian, const ConstraintValues& e) {
+  const Layout& layout = jacobian.layout();
+  const int nc = layout.nc(), nv = layout.nv(), joints = layout.first_driver_row();
   std::vector<SparseEntry> entries;
-  system.jacobian_entries(e, entries);
+  jacobian.list(e.jacobian, entries);
   const int all = numerical_rank(sparse_matrix(nc, nv, entries));
   std::erase_if(entries, [&](const SparseEntry& entry) { return entry.row() >= joints; });
   const int own = numerical_rank(sparse_matrix(joints, nv, entries));
@@ -28,7 +28,7 @@ void check_paths(const System& closed, const Evaluation& e) {
   const int nv = closed.layout().nv();
   for (const InverseKinematics& entry : model.kinematics) {
     std::vector<SparseEntry> entries;
-    closed.jacobian_entries(e, entries);
+    closed.jacobian().list(e.jacobian, entries);
     for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) {
       const int driven = closed.layout().driver_row(d);
       std::erase_if(entries, [&](const SparseEntry& one) { return one.row() == driven; });
@@ -64,14 +64,14 @@ void check_paths(const System& closed, const Evaluation& e) {
 
 void refuse_massless_motion(const System& system, const Evaluation& e) {
   const int nc = system.layout().nc(), nv = system.layout().nv();
-  const Eigen::Map<const Eigen::VectorXd> mass(system.mass().data(), nv);
+  const Eigen::Map<const Eigen::VectorXd> mass(system.inertia().mass().data(), nv);
   std::vector<SparseEntry> entries;
-  system.jacobian_entries(e, entries);
+  system.jacobian().list(e.jacobian, entries);
   const std::optional<Eigen::VectorXd> motion = weightless_motion(sparse_matrix(nc, nv, entries), mass);
   if (!motion) return;
   Eigen::Index worst = 0;
   motion->cwiseAbs().maxCoeff(&worst);
-  const Body& body = system.model().bodies[at(static_cast<int>(worst) / system.body_velocities())];
+  const Body& body = system.model().bodies[at(static_cast<int>(worst) / system.layout().body_velocities())];
   throw Error(Error::Category::input, "singular-mass",
               fmt::format("body '{}' can move without moving any mass", body.name), body.location,
               "give it inertia, or hold that motion by a joint");

@@ -7,7 +7,7 @@
 namespace freeplay {
 
 /// Of a system evaluated at its start (term_position).
-ConstraintFacts constraint_facts(const System& system, const Evaluation& e);
+ConstraintFacts constraint_facts(const ConstraintJacobian& jacobian, const ConstraintValues& e);
 
 /// With its frame prescribed the ideal mechanism must be still, and the frame must be able to follow. Throws
 /// Error{input} "ik-underdetermined", "ik-unreachable".

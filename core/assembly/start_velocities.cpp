@@ -142,7 +142,7 @@ class Velocities {
   // Rates of what the file gives bodies: of the frame's origin where it gives `linear` alone, of the centre of mass
   // where it gives both, which says the same.
   MatrixXd given_rows() const {
-    const int width = system_.body_velocities(), turns = width - linear();
+    const int width = system_.layout().body_velocities(), turns = width - linear();
     std::vector<VectorXd> rows;
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       const Body& body = model_.bodies[at(b)];
@@ -163,13 +163,13 @@ class Velocities {
     for (std::size_t i = 0; i < rows.size(); ++i) out.row(static_cast<Eigen::Index>(i)) = rows[i];
     return out;
   }
-  int linear() const { return system_.body_velocities() == 3 ? 2 : 3; }
+  int linear() const { return system_.layout().body_velocities() == 3 ? 2 : 3; }
 
   // Component c of the velocity of a body's origin against its centre of mass at unit rate of its k-th turn.
   double arm_rate(int body, int k, int c) const {
     const Pose frame = system_.coordinates().frame_pose(body, mechanism_.state.q());
     std::vector<double> v(mechanism_.state.v().size(), 0.0);
-    v[at(system_.body_velocities() * body + linear() + k)] = 1.0;
+    v[at(system_.layout().body_velocities() * body + linear() + k)] = 1.0;
     double twist[6];
     system_.coordinates().body_twist(body, mechanism_.state.q(), v, twist);
     const Vector3& com = model_.bodies[at(body)].com;
@@ -245,7 +245,7 @@ class Velocities {
   // Bodies that move though the file leaves their velocity open along `free`.
   void add_bodies(const MatrixXd& free, std::vector<ChosenSpeed>& out) const {
     const VectorXd v = velocities();
-    const int width = system_.body_velocities(), lengths = width == 3 ? 2 : 3;
+    const int width = system_.layout().body_velocities(), lengths = width == 3 ? 2 : 3;
     const double least = kept_part * v.lpNorm<Eigen::Infinity>();
     // Zero where the file gives it, or where it is zero.
     const auto open = [&](int first, int count) {

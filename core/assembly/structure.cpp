@@ -27,7 +27,7 @@ class Examination {
  public:
   Examination(const System& released, const Evaluation& open, const System& closed, const Evaluation& shut)
       : model_(released.model()), released_(released), closed_(closed), open_(open), shut_(shut) {
-    for (const JacobianBlock& block : closed.jacobian_blocks()) blocks_.emplace(block.row, &block);
+    for (const JacobianBlock& block : closed.jacobian().blocks()) blocks_.emplace(block.row, &block);
   }
 
   Structure run(const std::optional<DeadStart>& dead) {
@@ -43,7 +43,7 @@ class Examination {
     judge_pairs();
     judge_gears();
     if (closed_.layout().nv() > Structure::most_examined) return std::move(structure_);
-    const MatrixXd open = constraint_matrix(released_, open_);
+    const MatrixXd open = constraint_matrix(released_.jacobian(), open_);
     judge_plays(open);
     find_undetermined(open);
     if (!dead) judge_locked(open);
@@ -149,7 +149,7 @@ class Examination {
   /// Rows of a joint of the closed mechanism in the columns of two bodies.
   MatrixXd rows_of(int joint, const std::pair<BodyId, BodyId>& bodies) const {
     const Slice slice = closed_.layout().rows(joint);
-    const int width = closed_.body_velocities();
+    const int width = closed_.layout().body_velocities();
     MatrixXd rows = MatrixXd::Zero(slice.size, 2 * width);
     for (auto [found, end] = blocks_.equal_range(slice.offset); found != end; ++found) {
       const JacobianBlock& block = *found->second;
@@ -212,7 +212,7 @@ class Examination {
   void judge_plays(const MatrixXd& open) {
     if (model_.clearance_joints() == 0) return;
     const MatrixXd free = kernel(open);
-    const MatrixXd shut = constraint_matrix(closed_, shut_);
+    const MatrixXd shut = constraint_matrix(closed_.jacobian(), shut_);
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       if (!model_.joints[at(j)].has_play || std::ranges::count(bypassed_, j) > 0) continue;
       const Slice slice = closed_.layout().rows(j);

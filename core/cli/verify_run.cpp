@@ -35,7 +35,7 @@ double accuracy_of(const System& system) {
   if (model.settings.accuracy > 0.0) return model.settings.accuracy;
   double accuracy = std::min(least_agreement, part_of_size * system.size());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const double clearance = system.joint_layout(j).clearance;
+    const double clearance = system.joints().layout(j).clearance;
     if (clearance > 0.0) accuracy = std::min(accuracy, part_of_clearance * clearance);
   }
   return accuracy;

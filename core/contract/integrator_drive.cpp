@@ -180,7 +180,7 @@ void IntegratorDrive::residuals(double& position, double& velocity) {
   position = velocity = 0.0;
   if (!system.evaluate({t[0], q, v, z, {}}, term_position | term_velocity, evaluation_)) return;
   std::vector<double> flow(evaluation_.phi.size());
-  system.multiply(evaluation_, v, flow);
+  system.jacobian().multiply(evaluation_.jacobian, v, flow);
   for (std::size_t r = 0; r < flow.size(); ++r) {
     position = std::max(position, std::abs(evaluation_.phi[r]) / system.size());
     velocity = std::max(velocity, std::abs(flow[r] - evaluation_.nu[r]));

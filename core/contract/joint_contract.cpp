@@ -119,7 +119,7 @@ void check_place(const JointProbe& probe, RandomNumbers& random, Findings& findi
                     [&] { return fmt::format("a body placed at {} has a rotation that is none", wanted); });
     if (!turns) continue;
     const JointMoment placed = probe.start(placed_pair(random_pair(probe.space(), random), pose), 0.0);
-    const RowValues rows = probe.rows(placed);
+    const ProbedRows rows = probe.rows(placed);
     // Rounding of a rotation applied to lengths, a few times, as the rows enlarge it.
     const double rounding = 1e-13 * (1.0 + vector3(pose.position).norm());
     double tolerance = rounding;

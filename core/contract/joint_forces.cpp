@@ -15,13 +15,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-double power(const ForceValues& f, const MarkerPair& markers) {
+double power(const ProbedForces& f, const MarkerPair& markers) {
   const Twelve v = twists(markers);
   double sum = 0.0;
   for (std::size_t i = 0; i < v.size(); ++i) sum += f.wrench[i] * v[i];
   return sum;
 }
-double power_size(const ForceValues& f, const MarkerPair& markers) {
+double power_size(const ProbedForces& f, const MarkerPair& markers) {
   const Twelve v = twists(markers);
   double sum = 0.0;
   for (std::size_t i = 0; i < v.size(); ++i) sum += std::abs(f.wrench[i] * v[i]);
@@ -36,7 +36,7 @@ void keep_moving(Space space, std::vector<double>& wrench) {
   }
 }
 
-void check_balance(const JointProbe& probe, const JointMoment& moment, ForceValues f, Findings& findings) {
+void check_balance(const JointProbe& probe, const JointMoment& moment, ProbedForces f, Findings& findings) {
   keep_moving(probe.space(), f.wrench);
   const Eigen::Map<const Vector3d> fa(&f.wrench[0]), ma(&f.wrench[3]), fb(&f.wrench[6]), mb(&f.wrench[9]);
   const Vector3d pa = vector3(moment.markers.a.position), pb = vector3(moment.markers.b.position);
@@ -63,7 +63,7 @@ double fastest(const MarkerPair& markers) {
 }
 
 /// What the forces would do on the way from the world's origin, and the moments on a turn by 1 rad [J].
-double work_of_positions(const ForceValues& f, const MarkerPair& markers) {
+double work_of_positions(const ProbedForces& f, const MarkerPair& markers) {
   double force = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < f.wrench.size(); ++i) (i % 6 < 3 ? force : moment) += std::abs(f.wrench[i]);
   return force * (vector3(markers.a.position).norm() + vector3(markers.b.position).norm()) + moment;
@@ -75,7 +75,7 @@ struct EnergyBalance {
   // The speed of the surfaces and that of the point of action differ by a penetration times an angular velocity.
   bool holds() const { return done + stored <= 1e-4 * largest + 20.0 * error; }
 };
-EnergyBalance energy_balance(const JointProbe& probe, const JointMoment& moment, const ForceValues& f) {
+EnergyBalance energy_balance(const JointProbe& probe, const JointMoment& moment, const ProbedForces& f) {
   const MarkerPath path{moment.markers, {}};
   // Forward in time: at a yield point or a stop, what has been and what comes differ. The steps are shorter than the
   // way from one yield point to the other, at which the energy is the same.
@@ -86,7 +86,7 @@ EnergyBalance energy_balance(const JointProbe& probe, const JointMoment& moment,
     return probe.forces(there);
   };
   const auto potential = [&](double x) {
-    const ForceValues values = forces_at(x);
+    const ProbedForces values = forces_at(x);
     return values.wrench.empty() ? std::vector<double>{} : std::vector<double>{values.potential};
   };
   // The rounding of the positions and angles counts as the forces make it count.
@@ -97,7 +97,7 @@ EnergyBalance energy_balance(const JointProbe& probe, const JointMoment& moment,
   return {power(f, moment.markers), stored.value[0], stored.error[0], power_size(f, moment.markers)};
 }
 
-void check_energy(const JointProbe& probe, const JointMoment& moment, const ForceValues& f, Findings& findings) {
+void check_energy(const JointProbe& probe, const JointMoment& moment, const ProbedForces& f, Findings& findings) {
   // Internal variables store energy that no joint reports; over a cycle it does not count (check_cycle).
   if (probe.layout().internal_variables > 0) return;
   EnergyBalance balance = energy_balance(probe, moment, f);
@@ -125,7 +125,7 @@ void check_energy(const JointProbe& probe, const JointMoment& moment, const Forc
 }
 
 /// Flat list of what the derivatives are of: wrenches and z'.
-std::vector<double> outputs(const ForceValues& f) {
+std::vector<double> outputs(const ProbedForces& f) {
   std::vector<double> all = f.wrench;
   all.insert(all.end(), f.z_rate.begin(), f.z_rate.end());
   return all;
@@ -133,7 +133,7 @@ std::vector<double> outputs(const ForceValues& f) {
 
 class DerivativeCheck {
  public:
-  DerivativeCheck(const JointProbe& probe, const JointMoment& moment, const ForceValues& f, Findings& findings)
+  DerivativeCheck(const JointProbe& probe, const JointMoment& moment, const ProbedForces& f, Findings& findings)
       : probe_(probe), moment_(moment), given_(f.derivatives), nz_(f.z_rate.size()), findings_(findings) {
     const std::vector<double> all = outputs(f);
     for (std::size_t r = 0; r < all.size(); ++r) {
@@ -213,7 +213,7 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
   for (const JointMoment& fresh : moments) {
     JointMoment moment = fresh;
     if (probe.layout().coordinate != Coordinate::none) moment.coordinate = probe.coordinate(moment).value;
-    const ForceValues f = probe.forces(moment, probe.layout().analytic_derivatives != 0);
+    const ProbedForces f = probe.forces(moment, probe.layout().analytic_derivatives != 0);
     if (f.wrench.empty()) return;
     if (probe.layout().forces == 0) {
       const bool silent = std::all_of(f.wrench.begin(), f.wrench.end(), [](double x) { return x == 0.0; });
@@ -224,7 +224,7 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
     check_balance(probe, moment, f, findings);
     if (passive) check_energy(probe, moment, f, findings);
     if (probe.layout().analytic_derivatives != 0) DerivativeCheck(probe, moment, f, findings).run();
-    const ForceValues bare = probe.forces(moment);
+    const ProbedForces bare = probe.forces(moment);
     findings.expect("unused-derivatives", same_bits(outputs(bare), outputs(f)),
                     [&] { return "the forces depend on whether derivatives are asked for, " + words_of(moment); });
   }

@@ -54,7 +54,7 @@ void check_rollback(const JointProbe& probe, const JointProbe& twin, RandomNumbe
 
 /// Event functions of position alone: their rates against differences along the present twists.
 void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findings& findings) {
-  const EventValues here = probe.events(moment);
+  const ProbedEvents here = probe.events(moment);
   const auto g_of = [&](double x, bool turn_twists) {
     JointMoment there = moment;
     there.markers = MarkerPath{moment.markers, {}}.at(x);
@@ -84,7 +84,7 @@ void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, F
   JointWalk walk(probe, probe.start(path.at(0.0), 0.0));
   double work = 0.0, total = 0.0, stored = 0.0;
   double terms = 0.0;  // what work and stored energy are differences of
-  const auto power_of = [&](const ForceValues& f, const MarkerPair& markers) {
+  const auto power_of = [&](const ProbedForces& f, const MarkerPair& markers) {
     const Twelve v = twists(markers);
     double power = 0.0;
     for (std::size_t i = 0; i < 12 && i < f.wrench.size(); ++i) {
@@ -97,7 +97,7 @@ void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, F
   // The first time around lets internal variables settle; the second is a cycle.
   for (int i = 0; i < 2 * around; ++i) {
     walk.step(path.at((i + 1) * dt), path.acceleration(i * dt), dt);
-    const ForceValues f = probe.forces(walk.now());
+    const ProbedForces f = probe.forces(walk.now());
     const double power = power_of(f, walk.now().markers);
     if (i + 1 == around) stored = f.potential;
     terms = std::max(terms, std::abs(f.potential));

@@ -111,7 +111,7 @@ void JointProbe::expect_fence(const char* function, bool intact, const JointMome
   });
 }
 
-RowValues JointProbe::rows(const JointMoment& moment) const {
+ProbedRows JointProbe::rows(const JointMoment& moment) const {
   const std::size_t n = at(layout_.constraint_rows);
   Fed fed(*this, moment);
   GuardedNumbers phi(n), jacobian(12 * n), nu(n), gamma(n);
@@ -121,7 +121,7 @@ RowValues JointProbe::rows(const JointMoment& moment) const {
   return {phi.values(), jacobian.values(), nu.values(), gamma.values()};
 }
 
-CoordinateValues JointProbe::coordinate(const JointMoment& moment) const {
+ProbedCoordinate JointProbe::coordinate(const JointMoment& moment) const {
   Fed fed(*this, moment);
   Fenced<CoordinateRow> fenced;
   CoordinateRow& row = fenced.inside;
@@ -137,7 +137,7 @@ CoordinateValues JointProbe::coordinate(const JointMoment& moment) const {
   return {value, row.bias, numbers.values()};
 }
 
-ForceValues JointProbe::forces(const JointMoment& moment, bool derivatives) const {
+ProbedForces JointProbe::forces(const JointMoment& moment, bool derivatives) const {
   const std::size_t nz = at(layout_.internal_variables);
   Fed fed(*this, moment);
   GuardedNumbers rate(nz), table(derivatives ? (12 + nz) * (24 + nz) : 0);
@@ -154,7 +154,7 @@ ForceValues JointProbe::forces(const JointMoment& moment, bool derivatives) cons
   return {wrench, out.potential, rate.values(), table.values(), out.potential_rate};
 }
 
-EventValues JointProbe::events(const JointMoment& moment) const {
+ProbedEvents JointProbe::events(const JointMoment& moment) const {
   const std::size_t count = layout_.events.size;
   Fed fed(*this, moment);
   GuardedNumbers g(count), rate(count);
@@ -272,19 +272,19 @@ std::vector<double> JointProbe::all(const JointMoment& moment) const {
   const auto add = [&numbers](const std::vector<double>& more) {
     numbers.insert(numbers.end(), more.begin(), more.end());
   };
-  const RowValues r = rows(moment);
+  const ProbedRows r = rows(moment);
   for (const auto* part : {&r.phi, &r.jacobian, &r.nu, &r.gamma}) add(*part);
   if (layout_.coordinate != Coordinate::none) {
-    const CoordinateValues c = coordinate(moment);
+    const ProbedCoordinate c = coordinate(moment);
     add({c.value, c.bias});
     add(c.jacobian);
   }
   if (layout_.forces != 0) {
-    const ForceValues f = forces(moment, layout_.analytic_derivatives != 0);
+    const ProbedForces f = forces(moment, layout_.analytic_derivatives != 0);
     for (const auto* part : {&f.wrench, &f.z_rate, &f.derivatives}) add(*part);
     add({f.potential});
   }
-  const EventValues e = events(moment);
+  const ProbedEvents e = events(moment);
   add(e.g);
   add(e.rate);
   add(observe(moment));

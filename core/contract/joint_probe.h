@@ -22,20 +22,20 @@ struct JointMoment {
   std::vector<double> z, h;
 };
 
-struct RowValues {
+struct ProbedRows {
   std::vector<double> phi, jacobian, nu, gamma;
 };
-struct CoordinateValues {
+struct ProbedCoordinate {
   double value = 0.0, bias = 0.0;
   std::vector<double> jacobian;
 };
-struct ForceValues {
+struct ProbedForces {
   std::vector<double> wrench;  ///< on a and on b, 12 numbers
   double potential = 0.0;
   std::vector<double> z_rate, derivatives;
   double potential_rate = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
 };
-struct EventValues {
+struct ProbedEvents {
   std::vector<double> g, rate;
 };
 
@@ -49,10 +49,10 @@ class JointProbe {
   Space space() const { return space_; }
   const JointRef& joint() const { return joint_; }
 
-  RowValues rows(const JointMoment& at) const;
-  CoordinateValues coordinate(const JointMoment& at) const;
-  ForceValues forces(const JointMoment& at, bool derivatives = false) const;
-  EventValues events(const JointMoment& at) const;
+  ProbedRows rows(const JointMoment& at) const;
+  ProbedCoordinate coordinate(const JointMoment& at) const;
+  ProbedForces forces(const JointMoment& at, bool derivatives = false) const;
+  ProbedEvents events(const JointMoment& at) const;
   std::vector<double> observe(const JointMoment& at) const;
   double step_limit(const JointMoment& at) const;
   double free_distance(const JointMoment& at) const;

@@ -40,10 +40,10 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
           return fmt::format("within the {:.6g} m that free_distance() gives {}, {}", distance, what, words_of(there));
         });
       };
-      const ForceValues f = probe.forces(there);
+      const ProbedForces f = probe.forces(there);
       const bool stores = f.potential != 0.0 || (!std::isnan(f.potential_rate) && f.potential_rate != 0.0);
       expect(all_zero(f.wrench) && all_zero(f.z_rate) && !stores, "it exerts or stores something");
-      const EventValues events = probe.events(there);
+      const ProbedEvents events = probe.events(there);
       for (std::size_t e = 0; e < events.g.size(); ++e) {
         const double sign = probe.layout().events[e].crossing == Crossing::rising ? 1.0 : -1.0;
         expect(!(sign * events.g[e] > 0.0), "an event is past its zero");

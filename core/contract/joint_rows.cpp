@@ -27,10 +27,10 @@ struct AllRows {
 };
 
 AllRows all_rows(const JointProbe& probe, const JointMoment& moment) {
-  RowValues rows = probe.rows(moment);
+  ProbedRows rows = probe.rows(moment);
   AllRows all{rows.phi, rows.jacobian, rows.nu, rows.gamma};
   if (probe.layout().coordinate == Coordinate::none) return all;
-  const CoordinateValues c = probe.coordinate(moment);
+  const ProbedCoordinate c = probe.coordinate(moment);
   if (c.jacobian.empty()) return all;
   // s'' = G dV/dt + bias: a row with gamma = -bias.
   all.value.push_back(c.value);
@@ -231,7 +231,7 @@ class RowCheck {
   bool close() {
     const auto n = static_cast<Eigen::Index>(probe_.layout().constraint_rows);
     for (int iteration = 0; iteration < 30; ++iteration) {
-      const RowValues rows = probe_.rows(moment_);
+      const ProbedRows rows = probe_.rows(moment_);
       if (static_cast<Eigen::Index>(rows.phi.size()) != n) return false;
       const Eigen::Map<const Eigen::VectorXd> phi(rows.phi.data(), n);
       if (n == 0 || phi.cwiseAbs().maxCoeff() < 1e-14) {

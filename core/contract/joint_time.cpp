@@ -17,10 +17,10 @@ void check_scale(const JointProbe& probe, const std::vector<JointMoment>& moment
   for (const JointMoment& moment : moments) {
     JointMoment later = moment;
     later.t += random.between(1e-3, 10.0);
-    const RowValues rows = probe.rows(moment), rows_later = probe.rows(later);
+    const ProbedRows rows = probe.rows(moment), rows_later = probe.rows(later);
     bool same = same_bits(rows.phi, rows_later.phi);
     if (probe.layout().forces != 0) {
-      const ForceValues forces = probe.forces(moment), forces_later = probe.forces(later);
+      const ProbedForces forces = probe.forces(moment), forces_later = probe.forces(later);
       same = same && same_bits(forces.wrench, forces_later.wrench) && same_bits(forces.z_rate, forces_later.z_rate);
     }
     findings.expect("time-scale", same, [&] {

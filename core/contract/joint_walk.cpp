@@ -48,7 +48,7 @@ void JointWalk::tell_events(JointMoment& trial) const {
   for (std::size_t i = 0; i < events.size; ++i) {
     JointMoment before = now_;
     before.h = trial.h;
-    const EventValues start = probe_.events(before), end = probe_.events(trial);
+    const ProbedEvents start = probe_.events(before), end = probe_.events(trial);
     if (i >= start.g.size() || i >= end.g.size()) return;
     const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
     if (sign * start.g[i] <= 0.0 && sign * end.g[i] > 0.0) probe_.on_event(static_cast<int>(i), trial);

@@ -144,7 +144,7 @@ std::vector<KnownState> ReferenceSystem::motion(double dt, int steps) const {
 }
 
 double ReferenceSystem::energy(std::span<const double> q, std::span<const double> v) const {
-  return system_->kinetic_energy(v) + system_->gravity_potential(q);
+  return system_->inertia().kinetic_energy(v) + system_->inertia().gravity_potential(q);
 }
 
 }  // namespace freeplay

@@ -72,7 +72,7 @@ std::vector<SpatialScene::Vector> SpatialScene::points_of(BodyId body) const {
   }
   if (extended) return points;
   const std::size_t b = static_cast<std::size_t>(body);
-  const double* mass = &system_.mass()[6 * b];
+  const double* mass = &system_.inertia().mass()[6 * b];
   const Eigen::Map<const Vector> moments(mass + 3);
   // I_1 = m (b^2 + c^2)/3 for half edges a, b, c.
   Vector half = (1.5 / mass[0] * (moments.sum() - 2.0 * moments.array())).max(0.0).sqrt();

@@ -5,7 +5,6 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
 bool ListedCholesky::set_pattern(int size, std::vector<std::pair<int, int>> entries, std::size_t most) {
   std::vector<std::vector<int>> below(at(size));  // rows of each column of L

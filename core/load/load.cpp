@@ -99,19 +99,17 @@ void judge_start(const StartReport& report, Diagnostics& diagnostics) {
 
 std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
   try {
-    System system(*loaded.model);
-    Start start = assemble(system);
-    require_attainable_accuracy(system);
-    for (const StructureDoubt& doubt : start.structure.doubts) {
+    auto assembled = std::make_unique<AssembledModel>(*loaded.model);
+    require_attainable_accuracy(assembled->system);
+    for (const StructureDoubt& doubt : assembled->start.structure.doubts) {
       loaded.diagnostics.warning(doubt.location, doubt.length, doubt.id, doubt.message);
     }
-    judge_start(start.report, loaded.diagnostics);
+    judge_start(assembled->start.report, loaded.diagnostics);
     if (loaded.diagnostics.has_errors()) {  // with --strict
       loaded.exit_code = 3;
       return nullptr;
     }
-    // Not make_unique: clang 14 knows no aggregates in parentheses.
-    return std::unique_ptr<AssembledModel>(new AssembledModel{std::move(system), std::move(start)});
+    return assembled;
   } catch (const Error& error) {
     keep(error, loaded, false);
     return nullptr;

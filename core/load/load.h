@@ -39,6 +39,8 @@ void require_planar(const LoadedModel& loaded, const std::string& what);
 
 /// A model that is ready to move. The system refers to the model.
 struct AssembledModel {
+  explicit AssembledModel(const Model& model) : system(model), start(assemble(system)) {}
+
   System system;
   Start start;
 };

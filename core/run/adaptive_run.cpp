@@ -237,9 +237,9 @@ void AdaptiveRun::allow_error(Search& search) {
 }
 
 bool AdaptiveRun::in_contact(const Evaluation& e) const {
-  const std::span<const ForceBlock> blocks = run_.system.force_blocks();
+  const std::span<const ForceBlock> blocks = run_.system.forces().blocks();
   for (std::size_t f = 0; f < blocks.size(); ++f) {
-    if (e.acts[f] != 0 && run_.system.joint_layout(blocks[f].joint).clearance > 0.0) return true;
+    if (e.acts[f] != 0 && run_.system.joints().layout(blocks[f].joint).clearance > 0.0) return true;
   }
   return false;
 }
@@ -250,15 +250,15 @@ bool AdaptiveRun::bounded_step(double& dt, int& limiting_joint) {
   limiting_joint = -1;
   for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
     if (run_.model.joints[at(j)].gear >= 0) continue;
-    const JointInput in = run_.system.input(j, point(run_.accepted), run_.e_accepted);
+    const JointInput in = run_.system.joints().input(j, point(run_.accepted), run_.e_accepted);
     double limit = unbounded;
     Fault fault;
-    if (!run_.system.joint(j).step_limit(in, limit, fault.message)) {
+    if (!run_.system.joints().handle(j).step_limit(in, limit, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
       return parts_.failure.fail_with(fault, run_.accepted.t());
     }
-    if (run_.system.joint_layout(j).coordinate == Coordinate::angle) {
+    if (run_.system.joints().layout(j).coordinate == Coordinate::angle) {
       limit = std::min(limit, largest_turn / std::abs(in.coordinate_rate));
     }
     if (limit < dt) dt = limit, limiting_joint = j;

@@ -16,22 +16,20 @@ double BearingTable::angle(std::size_t sector) {
   return (static_cast<double>(sector) + 0.5) * (whole_turn / static_cast<double>(sectors));
 }
 
-ClearanceStatistics::ClearanceStatistics(const System& system, const Channels& channels)
-    : channels_(channels),
-      from_(system.model().settings.start + system.model().settings.discard),
-      index_(system.model().joints.size(), -1) {
+ClearanceStatistics::ClearanceStatistics(const Model& model, const Joints& joints, const Channels& channels)
+    : channels_(channels), from_(model.settings.start + model.settings.discard), index_(model.joints.size(), -1) {
   for (int j = 0; j < static_cast<int>(index_.size()); ++j) {
     const JointColumns& columns = channels.joints[at(j)];
     if (columns.normal_force < 0) continue;
-    const JointLayout& layout = system.joint_layout(j);
+    const JointLayout& layout = joints.layout(j);
     // In space a bearing has an axis, about which the joint turns; a socket has none.
-    const bool planar = system.model().space == Space::planar;
+    const bool planar = model.space == Space::planar;
     const bool is_bearing = columns.eccentricity_x >= 0 && columns.eccentricity_y >= 0 &&
                             (planar || (columns.eccentricity_z >= 0 && layout.coordinate == Coordinate::angle));
     index_[at(j)] = static_cast<int>(joints_.size());
     OfJoint& joint = joints_.emplace_back();
     joint.joint = j;
-    joint.marker = system.model().joints[at(j)].marker_a;
+    joint.marker = model.joints[at(j)].marker_a;
     joint.is_bearing = is_bearing;
     joint.area = 2.0 * (layout.smaller_radius + layout.clearance) * layout.contact_length;
   }

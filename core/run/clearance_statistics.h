@@ -36,7 +36,7 @@ struct BearingTable {
 /// counts half of it, in its own sector.
 class ClearanceStatistics {
  public:
-  ClearanceStatistics(const System& system, const Channels& channels);
+  ClearanceStatistics(const Model& model, const Joints& joints, const Channels& channels);
 
   bool active() const { return !joints_.empty(); }
   /// A row at the end of a step, in rising order of time and from the first instant that counts on; `e` is evaluated

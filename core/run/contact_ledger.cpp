@@ -24,10 +24,10 @@ double is_impact(double told, double approach_speed, double depth, double durati
 }
 }  // namespace
 
-ContactLedger::ContactLedger(const System& system, const Channels& channels) : system_(system), channels_(channels) {
+ContactLedger::ContactLedger(const Joints& joints, const Channels& channels) : all_(joints), channels_(channels) {
   std::size_t most_contacts = 0;
-  for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
-    const JointLayout& layout = system.joint_layout(j);
+  for (int j = 0; j < joints.count(); ++j) {
+    const JointLayout& layout = joints.layout(j);
     const std::size_t contacts = contact_count(layout);
     if (contacts == 0) continue;
     const JointColumns& columns = channels.joints[at(j)];
@@ -84,8 +84,8 @@ bool ContactLedger::look(OfJoint& joint, std::span<const double> row, const Poin
   }
   const std::span numbers = std::span(numbers_).first(3 * joint.contacts.size());
   std::ranges::fill(numbers, unknown);
-  if (!system_.joint(joint.joint)
-           .contacts(system_.input(joint.joint, point, e), {numbers.data(), numbers.size()}, fault.message)) {
+  if (!all_.handle(joint.joint)
+           .contacts(all_.input(joint.joint, point, e), {numbers.data(), numbers.size()}, fault.message)) {
     fault.kind = Fault::Kind::plugin;
     fault.joint = joint.joint;
     return false;

@@ -8,7 +8,7 @@
 #include "run/area.h"
 #include "run/sink.h"
 #include "run/step_events.h"
-#include "system/system.h"
+#include "system/joints.h"
 
 namespace freeplay {
 
@@ -17,7 +17,7 @@ namespace freeplay {
 /// the forces at accepted states.
 class ContactLedger {
  public:
-  ContactLedger(const System& system, const Channels& channels);
+  ContactLedger(const Joints& joints, const Channels& channels);
 
   bool active() const { return !joints_.empty(); }
   /// An accepted state, at the end of a step or at the start of the run, with its row, with what joints lost since the
@@ -85,7 +85,7 @@ class ContactLedger {
   void pass(OfJoint& joint, const StepEvents& events, std::size_t happening);
   void share(OfJoint& joint, double lost, double end);
 
-  const System& system_;
+  const Joints& all_;
   const Channels& channels_;
   double time_ = 0.0;
   bool started_ = false;

@@ -44,7 +44,7 @@ double local_tolerance(const System& system) {
   if (settings.accuracy > 0.0) return accuracy_per_step * settings.accuracy;
   double unit = system.size();
   for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
-    const double clearance = system.joint_layout(j).clearance;
+    const double clearance = system.joints().layout(j).clearance;
     if (clearance > 0.0) unit = std::min(unit, clearance);
   }
   return settings.tolerance * unit;
@@ -72,7 +72,7 @@ RunContext::RunContext(std::shared_ptr<const RunEquations> all_equations, const 
       own_between(adaptive ? std::optional<KeptEvaluation>(std::in_place, system, &evaluations) : std::nullopt),
       e_between(own_between ? *own_between : solver.evaluation()),
       events(system, evaluations, adaptive, between, e_between),
-      sleeping(system, evaluations),
+      sleeping(system.joints(), system.forces(), evaluations),
       kinks(model),
       watch(system, all_channels),
       inner(at(system.layout().nv()), at(system.layout().nz() + flows)),

@@ -162,7 +162,7 @@ int Corners::row_that_jumps() const {
   const double allowed_gap = 1e-9 * run_.system.size();
   for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
     const std::size_t driven = (i - run_.accepted.q().size()) / 3;
-    if (std::abs(run_.e_accepted->q[i] - q_before_[i]) > allowed_gap) return run_.system.row_of_driven(driven);
+    if (std::abs(run_.e_accepted->q[i] - q_before_[i]) > allowed_gap) return run_.system.driven().last_row(driven);
   }
   for (std::size_t r = 0; r < run_.e_accepted->phi.size(); ++r) {
     if (std::abs(run_.e_accepted->phi[r]) > allowed_gap) return static_cast<int>(r);
@@ -175,7 +175,7 @@ int Corners::row_that_jumps() const {
 void Corners::book_impulses(Evaluation& after) {
   const std::size_t first = run_.accepted.v().size();
   for (std::size_t i = 0; i < driven_change_.size(); ++i) driven_change_[i] = after.v[first + i] - v_before_[first + i];
-  run_.system.recover_impulses(after, driven_change_, impulses_);
+  run_.system.driven().recover_impulses(after, driven_change_, impulses_);
   for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
     const int r = run_.system.layout().driver_row(d);
     if (r < 0) continue;
@@ -250,7 +250,7 @@ void Corners::format_jumps() {
     const SpeedJump& jump = speed_jumps_[d];
     if (jump.count == 0) continue;
     const Driver& driver = run_.model.drivers[d];
-    const bool angle = run_.system.joint_layout(driver.joint).coordinate == Coordinate::angle;
+    const bool angle = run_.system.joints().layout(driver.joint).coordinate == Coordinate::angle;
     std::string text =
         fmt::format("driver '{}' at t = {:.9g} s: the speed that it prescribes jumps from {:.4g} to {:.4g} {}",
                     driver.name, jump.time, jump.from, jump.to, angle ? "rad/s" : "m/s");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "run/event_finder.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {
@@ -91,7 +92,7 @@ void DenseStep::at(double s, State& out) const {
   const double dt = end_.t() - start_.t();
   out.t() = start_.t() + s * dt;
   const InnerMotion::Weights inside(s);
-  if (system_.model().space == Space::planar) {
+  if (space_ == Space::planar) {
     const Quintic quintic(s, dt);
     const std::span q = out.q(), v = out.v(), a = out.a();
     const std::span<const double> q0 = start_.q(), v0 = start_.v(), a0 = start_.a();
@@ -125,7 +126,7 @@ void DenseStep::missing(double s, const State& solved, std::span<const double> r
   const double dt = end_.t() - start_.t();
   const Quintic quintic(s, dt);
   const std::span<const double> v0 = start_.v(), a0 = start_.a();
-  if (system_.model().space == Space::planar) {
+  if (space_ == Space::planar) {
     for (std::size_t i = 0; i < bends.size(); ++i) {
       const Moved at = quintic(v0[i], a0[i], end_.q()[i] - start_.q()[i], end_.v()[i], end_.a()[i]);
       bends[i] = dt * dt * (solved.a()[i] - at.a);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "run/inner_motion.h"
-#include "system/system.h"
+#include "system/state.h"
 
 namespace freeplay {
 
@@ -13,9 +13,9 @@ namespace freeplay {
 /// order 9 in q and 8 in v, and z of order 6.
 class DenseStep {
  public:
-  DenseStep(const System& system, const State& start, std::span<const double> start_rate, const State& end,
+  DenseStep(Space space, const State& start, std::span<const double> start_rate, const State& end,
             std::span<const double> end_rate, const InnerMotion* inner = nullptr)
-      : system_(system),
+      : space_(space),
         start_(start),
         end_(end),
         start_rate_(start_rate),
@@ -32,7 +32,7 @@ class DenseStep {
  private:
   void bodies_in_space(double s, State& out) const;
 
-  const System& system_;
+  Space space_;
   const State& start_;
   const State& end_;
   std::span<const double> start_rate_, end_rate_;  ///< z' of the joints' internal variables

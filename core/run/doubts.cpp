@@ -38,7 +38,7 @@ RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
   std::size_t values = 0;
   for (int j = 0; j < static_cast<int>(run.model.joints.size()); ++j) {
     joint_warnings_[at(j)].values = values;
-    values += run.system.joint_layout(j).channels.size;
+    values += run.system.joints().layout(j).channels.size;
   }
   warning_values_.resize(values);
 }
@@ -82,13 +82,14 @@ bool RunDoubts::watch_row(double dt) {
 
 // Once for each joint; the text is made when the run is over.
 bool RunDoubts::note_warnings() {
-  for (const ForceBlock& block : run_.system.force_blocks()) {
+  for (const ForceBlock& block : run_.system.forces().blocks()) {
     Warning& warning = joint_warnings_[at(block.joint)];
     if (warning.text != nullptr || run_.evaluations.is_asleep(block.joint)) continue;
     const Point here = point(run_.accepted);
     Fault fault;
-    if (!run_.system.joint(block.joint)
-             .warning(run_.system.input(block.joint, here, run_.e_accepted), warning.text, fault.message)) {
+    if (!run_.system.joints()
+             .handle(block.joint)
+             .warning(run_.system.joints().input(block.joint, here, run_.e_accepted), warning.text, fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = block.joint;
       return failure_.fail_with(fault, run_.accepted.t());
@@ -97,7 +98,7 @@ bool RunDoubts::note_warnings() {
     if (!recorder_.know_row()) return false;
     warning.time = run_.accepted.t();
     std::copy_n(recorder_.row().begin() + run_.channels.joints[at(block.joint)].own,
-                run_.system.joint_layout(block.joint).channels.size,
+                run_.system.joints().layout(block.joint).channels.size,
                 warning_values_.begin() + static_cast<std::ptrdiff_t>(warning.values));
   }
   return true;
@@ -107,16 +108,16 @@ bool RunDoubts::note_warnings() {
 // declared to fall, only has its event when the bodies part: with error control the contact then never begins.
 void RunDoubts::note_event_directions() {
   for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
-    const Span<const Event> declared = run_.system.joint_layout(j).events;
+    const Span<const Event> declared = run_.system.joints().layout(j).events;
     std::vector<double> value(declared.size), rate(declared.size);
     Message message;
-    const JointInput in = run_.system.input(j, point(run_.accepted), run_.e_accepted);
+    const JointInput in = run_.system.joints().input(j, point(run_.accepted), run_.e_accepted);
     if (declared.empty() ||
-        !run_.system.joint(j).events(in, {value.data(), value.size()}, {rate.data(), rate.size()}, message)) {
+        !run_.system.joints().handle(j).events(in, {value.data(), value.size()}, {rate.data(), rate.size()}, message)) {
       continue;
     }
     for (std::size_t i = 0; i < declared.size; ++i) {
-      if (event_role(run_.system.joint_layout(j), i) != EventRole::contact_begin) continue;
+      if (event_role(run_.system.joints().layout(j), i) != EventRole::contact_begin) continue;
       if (declared[i].crossing == Crossing::rising || !(value[i] < -StepEvents::tolerance)) continue;
       const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
       run_.outcome.doubts.push_back(
@@ -132,7 +133,7 @@ void RunDoubts::note_event_directions() {
 
 void RunDoubts::note_first_forces() {
   run_.first_forces.assign(run_.model.joints.size(), 0.0);
-  for (const ForceBlock& block : run_.system.force_blocks()) {
+  for (const ForceBlock& block : run_.system.forces().blocks()) {
     const double* force = &run_.e_accepted->wrench[12 * at(block.joint) + 6];
     run_.first_forces[at(block.joint)] = std::hypot(force[0], force[1], force[2]);
   }
@@ -162,7 +163,7 @@ void RunDoubts::format_warnings() {
                                    .level = Trust::doubtful,
                                    .message = fmt::format("{}: {}", joint, sentence),
                                    .element = joint});
-    const Span<const Channel> own = run_.system.joint_layout(static_cast<int>(j)).channels;
+    const Span<const Channel> own = run_.system.joints().layout(static_cast<int>(j)).channels;
     for (std::size_t i = 0; i < own.size; ++i) {
       const bool plain = std::string_view(own[i].unit) == "1";
       text += fmt::format("{} {} = {:.4g}{}{}", i == 0 ? ":" : ",", own[i].name, warning_values_[warning.values + i],

@@ -24,7 +24,7 @@ EnergyAccount::EnergyAccount(const System& system)
       joint_loss_(system.model().joints.size(), 0.0),
       stored_start_(system.model().joints.size(), 0.0),
       force_work_(system.model().force_elements.size(), 0.0) {
-  const std::size_t count = driver_work_.size() + system.model().forces.size() + system.force_blocks().size();
+  const std::size_t count = driver_work_.size() + system.model().forces.size() + system.forces().blocks().size();
   for (auto* numbers :
        {&power_, &integral_, &power_before_, &power_earlier_, &integral_before_, &power_end_, &integral_inside_})
     numbers->resize(count);
@@ -42,8 +42,8 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
   for (std::size_t f = 0; f < model.forces.size(); ++f) {
     out[flow++] = power(&e.applied[6 * f], e.markers[at(model.forces[f].marker)]);
   }
-  for (std::size_t f = 0; f < system_.force_blocks().size(); ++f) {
-    const std::size_t j = at(system_.force_blocks()[f].joint);
+  for (std::size_t f = 0; f < system_.forces().blocks().size(); ++f) {
+    const std::size_t j = at(system_.forces().blocks()[f].joint);
     const double rate = e.potential_rate[j], *wrench = &e.wrench[12 * j];
     double given = std::isnan(rate) ? 0.0 : rate;
     if (e.acts[f] != 0) {
@@ -56,9 +56,9 @@ void EnergyAccount::flow(const Evaluation& e, std::span<const double> lambda, st
 
 /// -lambda^T nu over the rows of joints: what the force of a row that moves by itself puts in.
 double EnergyAccount::row_power(const Evaluation& e, std::span<const double> lambda) const {
-  if (!system_.rows_move()) return 0.0;
+  if (!system_.constraints().rows_move()) return 0.0;
   // What driven bodies move in a row is not its own motion.
-  double power = -system_.power_from_driven(e, lambda);
+  double power = -system_.driven().power(e, lambda);
   for (std::size_t r = 0; r < at(system_.layout().first_driver_row()); ++r) power -= lambda[r] * e.nu[r];
   return power;
 }
@@ -150,7 +150,7 @@ double EnergyAccount::largest_power(const Evaluation& start, std::span<const dou
 double EnergyAccount::lost_less_given(const Evaluation& e) const {
   double sum = -initial_ - row_work_;
   for (const double integral : integral_) sum -= integral;
-  for (const ForceBlock& block : system_.force_blocks()) {
+  for (const ForceBlock& block : system_.forces().blocks()) {
     const std::size_t j = at(block.joint);
     if (std::isnan(e.potential_rate[j])) sum -= e.potential[j] - stored_start_[j];
   }
@@ -199,7 +199,7 @@ void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::spa
   for (double& driver : driver_work_) work += driver = integral[flow++];
   const std::size_t first_force = flow;
   for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
-  for (const ForceBlock& block : system_.force_blocks()) {
+  for (const ForceBlock& block : system_.forces().blocks()) {
     const std::size_t j = at(block.joint);
     joint_loss_[j] = -integral[flow++];
     if (std::isnan(e.potential_rate[j])) joint_loss_[j] -= e.potential[j] - stored_start_[j];

@@ -135,7 +135,7 @@ class EnergyAccount final : public Flows {
   std::vector<double> power_, integral_;  // at the end of the last step
   std::vector<double> power_earlier_;     // at the start of the step before that
   int steps_alike_ = 0;                   // in length and forces, the last ones
-  std::uint64_t acting_ = 0;              // Evaluation::acting at the end of the last
+  std::uint64_t acting_ = 0;              // ForceValues::acting at the end of the last
   std::vector<double> power_before_, integral_before_, power_end_, integral_inside_;  // of the last step
 };
 

@@ -14,7 +14,7 @@ constexpr double unexplained = 2.0;    // growth of energy, by all work that pow
 
 // Of motion and of what joints store: without gravity's, which has no zero.
 double EnergyGrowth::energy_of(const Evaluation& e) const {
-  double sum = run_.system.kinetic_energy(e.v);
+  double sum = run_.system.inertia().kinetic_energy(e.v);
   for (const double potential : e.potential) sum += potential;
   return sum;
 }
@@ -23,9 +23,9 @@ double EnergyGrowth::energy_of(const Evaluation& e) const {
 // potential energies of weights and work of loads are rounded to: of a short step from rest, or from links in line with
 // what pushes them, nothing else is left.
 double EnergyGrowth::energy_of_drives() const {
-  double squared = 0.0, mass = 0.0, lifted = std::abs(run_.system.gravity_potential(run_.e_accepted->q));
+  double squared = 0.0, mass = 0.0, lifted = std::abs(run_.system.inertia().gravity_potential(run_.e_accepted->q));
   for (std::size_t d = 0; d < run_.model.drivers.size(); ++d) {
-    const bool rotates = run_.system.joint_layout(run_.model.drivers[d].joint).coordinate == Coordinate::angle;
+    const bool rotates = run_.system.joints().layout(run_.model.drivers[d].joint).coordinate == Coordinate::angle;
     if (!prescribes(run_.model.drivers[d].kind)) {
       const double effort =
           std::max(std::abs(run_.e_accepted->motion[d].value), std::abs(run_.e_trial->motion[d].value));
@@ -62,8 +62,8 @@ bool EnergyGrowth::too_large() {
   if (after <= suspicious * explained_energy_) return false;
   const double dt = run_.trial.t() - run_.accepted.t();
   if (run_.kinks.next(run_.accepted.t(), run_.trial.t()) <= run_.trial.t()) return false;
-  const double before = energy_of(run_.e_accepted), high = run_.system.gravity_potential(run_.e_accepted->q);
-  const double fallen = high - run_.system.gravity_potential(run_.e_trial->q), drives = energy_of_drives();
+  const double before = energy_of(run_.e_accepted), high = run_.system.inertia().gravity_potential(run_.e_accepted->q);
+  const double fallen = high - run_.system.inertia().gravity_potential(run_.e_trial->q), drives = energy_of_drives();
   const double work = std::abs(fallen) + dt * run_.energy.largest_power(run_.e_accepted, run_.accepted.lambda(),
                                                                         run_.e_trial, run_.trial.lambda());
   gained_ = after - before;

@@ -71,7 +71,7 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   if (hunts > most_hunts) {
     return failure_.fail(
         4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located{}", run_.accepted.t(),
-                       run_.system.joint_layout(hunted.joint).events[at(hunted.event)].name,
+                       run_.system.joints().layout(hunted.joint).events[at(hunted.event)].name,
                        run_.model.joints[at(hunted.joint)].name,
                        failure_.all_built_in() ? std::string(advice::other_steps) : fmt::format("; {}", event_rule)));
   }
@@ -140,7 +140,7 @@ bool EventPursuit::end_inside(const StepEvents::Passage& hunted, double dt, int 
   if (hunted.joint < 0 || hunts >= early_hunts || !(dt < last) || run_.system.layout().nz() > 0) return false;
   if (run_.solver.regularity() < near_singular) return false;
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
-  const DenseStep motion(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial,
+  const DenseStep motion(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial,
                          run_.e_trial->internal_rate);
   const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   StepEvents::Passage end = hunted;

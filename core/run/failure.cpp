@@ -84,7 +84,7 @@ int RunFailure::hardest_joint(BodyId body) const {
       continue;
     }
     double wrench[6];
-    run_.system.reaction(j, run_.e_accepted, run_.accepted.lambda(), wrench);
+    run_.system.constraints().reaction(j, run_.e_accepted, run_.accepted.lambda(), wrench);
     const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
     if (force > largest) largest = force, hardest = j;
   }
@@ -99,7 +99,7 @@ std::string RunFailure::why_not_converged(double dt) const {
   // A force law that pulls hardest is the usual suspect where no constraint is.
   double largest = 0.0;
   int suspect = -1;
-  for (const ForceBlock& block : run_.system.force_blocks()) {
+  for (const ForceBlock& block : run_.system.forces().blocks()) {
     const double* wrench = &run_.e_accepted->wrench[12 * at(block.joint) + 6];
     const double force = std::hypot(std::hypot(wrench[0], wrench[1]), wrench[2]);
     if (force > largest) largest = force, suspect = block.joint;
@@ -138,7 +138,7 @@ std::string RunFailure::why_so_small(double dt, double smallest, int limiting_jo
     return text + fmt::format("; joint '{}' asks for it", run_.model.joints[at(limiting_joint)].name);
   const int worst = run_.solver.local_error().worst_component();
   if (worst < 0) return text;
-  const int width = run_.system.body_velocities(), part = worst % width;
+  const int width = run_.system.layout().body_velocities(), part = worst % width;
   const BodyId body = run_.system.layout().body_at(worst / width);
   constexpr const char* planar[] = {"x", "y", "angle"};
   constexpr const char* spatial[] = {"x", "y", "z", "rotation", "rotation", "rotation"};
@@ -185,7 +185,7 @@ bool RunFailure::all_built_in() const {
 bool RunFailure::fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found) {
   return fail(4, fmt::format("t = {:.9g} s: the events of joint '{}' do not end: {} within {:.2g} s, the last '{}'; {}",
                              last.time, run_.model.joints[at(last.joint)].name, found.events, found.within,
-                             run_.system.joint_layout(last.joint).events[at(last.event)].name, event_rule));
+                             run_.system.joints().layout(last.joint).events[at(last.event)].name, event_rule));
 }
 
 // Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.

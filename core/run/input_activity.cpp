@@ -165,7 +165,7 @@ void InputActivity::add_joint(int joint) {
   double corner = 0.0;
   Fault fault;
   if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back({joint});
-  const JointLayout& layout = system_.joint_layout(joint);
+  const JointLayout& layout = system_.joints().layout(joint);
   const std::size_t rows = at(layout.constraint_rows), internal = at(layout.internal_variables);
   const std::size_t signals = rows + (layout.forces != 0 ? 12 + internal : 0);
   if (signals == 0 || layout.time_scale == unbounded) return;
@@ -177,7 +177,7 @@ void InputActivity::add_joint(int joint) {
 
 bool InputActivity::ask(int joint, double t, double& corner, Fault& fault) const {
   corner = unbounded;
-  if (system_.joint(joint).next_corner(t, corner, fault.message) && corner > t) return true;
+  if (system_.joints().handle(joint).next_corner(t, corner, fault.message) && corner > t) return true;
   if (!(corner > t))
     abi::copy_text(fault.message.text, sizeof fault.message.text, "its next corner is not a later time");
   fault.kind = Fault::Kind::plugin;
@@ -350,9 +350,9 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
   for (TimedJoint& timed : joints_) {
     if (dt <= unwatched(timed.shortest, timed.varies ? 0.0 : timed.most)) continue;
     bool good = true;
-    const JointInput in = system_.input(timed.joint, here, e);
+    const JointInput in = system_.joints().input(timed.joint, here, e);
     const auto look = [&](double time, double* out) { return good = signals_of(timed, in, time, out, fault); };
-    const std::size_t wrenches = system_.joint_layout(timed.joint).forces != 0 ? 12 : 0;
+    const std::size_t wrenches = system_.joints().layout(timed.joint).forces != 0 ? 12 : 0;
     const auto light = [&](std::size_t c, double step) {
       return c >= wrenches ? 0.0 : negligible(c % 6 < 3 ? Unit::force : Unit::torque, step);
     };
@@ -370,8 +370,8 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
 
 // Wrenches, rates of internal variables and residuals of the rows, at another time than the input's.
 bool InputActivity::signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault) {
-  const JointLayout& layout = system_.joint_layout(timed.joint);
-  const JointRef& joint = system_.joint(timed.joint);
+  const JointLayout& layout = system_.joints().layout(timed.joint);
+  const JointRef& joint = system_.joints().handle(timed.joint);
   in.t = t;
   bool good = true;
   if (layout.forces != 0) {

@@ -96,7 +96,7 @@ void suspect_materials(const System& system, Suspects& suspects) {
   const Model& model = system.model();
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& joint = model.joints[at(j)];
-    const JointLayout& layout = system.joint_layout(j);
+    const JointLayout& layout = system.joints().layout(j);
     const double modulus = layout.contact_modulus;
     const auto text = [&](const char* what) {
       return fmt::format("E and nu of joint '{}' make an E* of {:.3g} Pa: {}", joint.name, modulus, what);
@@ -150,7 +150,7 @@ void suspect_motion(const System& system, const Wreck& wreck, Suspects& suspects
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
     if (!prescribes(driver.kind)) continue;
-    const bool turns = system.joint_layout(driver.joint).coordinate == Coordinate::angle;
+    const bool turns = system.joints().layout(driver.joint).coordinate == Coordinate::angle;
     const Pace pace = pace_of(system, d, wreck);
     const double speed = turns ? pace.rate * arm : pace.rate;
     const std::string words = turns ? fmt::format("turns with {:.3g} rad/s, that is {:.2g} turns a minute", pace.rate,
@@ -190,7 +190,7 @@ void suspect_loads(const System& system, const Evaluation& e, const Wreck& wreck
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
     if (prescribes(driver.kind)) continue;
-    const bool turns = system.joint_layout(driver.joint).coordinate == Coordinate::angle;
+    const bool turns = system.joints().layout(driver.joint).coordinate == Coordinate::angle;
     const double effort = std::abs(e.motion[d].value);
     suspects.add((turns ? by_torque(effort) : by_force(effort)) / most_acceleration, [&] {
       return fmt::format("driver '{}' gives {:.3g} {} {}", driver.name, effort, turns ? "N m" : "N", against());
@@ -213,7 +213,7 @@ void suspect_loads(const System& system, const Evaluation& e, const Wreck& wreck
 // Rubber does bear a load, but not that of a machine of metal.
 void suspect_soft_joint(const System& system, const Wreck& wreck, Suspects& suspects) {
   if (wreck.joint < 0) return;
-  const double modulus = system.joint_layout(wreck.joint).contact_modulus;
+  const double modulus = system.joints().layout(wreck.joint).contact_modulus;
   suspects.add(soft / modulus, [&] {
     return fmt::format("E and nu of joint '{}' make an E* of {:.3g} Pa, as of rubber: are they meant in GPa",
                        system.model().joints[at(wreck.joint)].name, modulus);
@@ -222,12 +222,12 @@ void suspect_soft_joint(const System& system, const Wreck& wreck, Suspects& susp
 
 // Steps of one size alone can be too long.
 void suspect_step(const System& system, const Evaluation& e, const Wreck& wreck, Suspects& suspects) {
-  if (wreck.joint < 0 || !(system.joint_layout(wreck.joint).clearance > 0.0)) return;
+  if (wreck.joint < 0 || !(system.joints().layout(wreck.joint).clearance > 0.0)) return;
   const JointElement& element = system.model().joints[at(wreck.joint)];
   const MarkerKinematics &a = e.markers[at(element.marker_a)], &b = e.markers[at(element.marker_b)];
   const double speed =
       std::hypot(b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1], b.velocity[2] - a.velocity[2]);
-  const double clearance = system.joint_layout(wreck.joint).clearance, dt = wreck.dt;
+  const double clearance = system.joints().layout(wreck.joint).clearance, dt = wreck.dt;
   suspects.add(speed * dt / (most_of_clearance * clearance), [&] {
     return fmt::format(
         "in a step of {:.2g} s the surfaces of joint '{}' move by {:.2g} m, {:.2g} times the clearance: "

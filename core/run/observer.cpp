@@ -13,7 +13,6 @@
 #include "system/path_row.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
 bool Observer::observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
                        Fault& fault) {
@@ -29,9 +28,9 @@ bool Observer::observe(const Point& point, const Evaluation& e, std::span<const 
   }
   for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) observe_force(f, e, row);
   for (int f = 0; f < static_cast<int>(channels_.frames.size()); ++f) observe_frame(f, e, row);
-  double stored = system_.gravity_potential(e.q);
+  double stored = system_.inertia().gravity_potential(e.q);
   for (const double potential : e.potential) stored += potential;
-  row[at(channels_.energy.kinetic)] = system_.kinetic_energy(e.v);
+  row[at(channels_.energy.kinetic)] = system_.inertia().kinetic_energy(e.v);
   row[at(channels_.energy.potential)] = stored;
   return true;
 }
@@ -66,22 +65,22 @@ bool Observer::observe_joint(int index, const Point& point, const Evaluation& e,
     if (columns.speed >= 0) row[at(columns.speed)] = e.coordinate_rate[at(index)];
   }
   double wrench[6];
-  system_.reaction(index, e, lambda, wrench);
+  system_.constraints().reaction(index, e, lambda, wrench);
   write_wrench(wrench, &row[at(columns.force)]);
   if (columns.power >= 0) {
     const JointElement& joint = system_.model().joints[at(index)];
     row[at(columns.power)] = power(&e.wrench[12 * at(index)], e.markers[at(joint.marker_a)]) +
                              power(&e.wrench[12 * at(index) + 6], e.markers[at(joint.marker_b)]);
   }
-  const std::size_t own = system_.joint_layout(index).channels.size;
+  const std::size_t own = system_.joints().layout(index).channels.size;
   if (own == 0) return true;
   const Slice rows = system_.layout().rows(index);
   const Span<double> values(row.data() + columns.own, own);
-  if (system_.joint(index).observe(system_.input(index, point, e), {lambda.data() + rows.offset, at(rows.size)}, values,
-                                   fault.message)) {
+  if (system_.joints().handle(index).observe(system_.joints().input(index, point, e),
+                                             {lambda.data() + rows.offset, at(rows.size)}, values, fault.message)) {
     const std::size_t wild = first_wild(values);
     if (wild == own) return true;
-    const char* name = system_.joint_layout(index).channels[wild].name;
+    const char* name = system_.joints().layout(index).channels[wild].name;
     std::snprintf(fault.message.text, sizeof fault.message.text, "its channel '%s' is not a finite number", name);
   }
   fault.kind = Fault::Kind::plugin;
@@ -114,7 +113,7 @@ bool Observer::observe_path(int index, const Point& point, const Evaluation& e, 
   }
   const int marker = system_.model().kinematics[at(index)].marker;
   const PathColumns& columns = channels_.paths[at(index)];
-  const double turned = system_.marker_angle(marker, e.q) - wanted[2].value;
+  const double turned = system_.markers().angle(marker, e.q) - wanted[2].value;
   row[at(columns.error_x)] = e.markers[at(marker)].position[0] - wanted[0].value;
   row[at(columns.error_y)] = e.markers[at(marker)].position[1] - wanted[1].value;
   row[at(columns.error_angle)] = without_turns(turned);
@@ -141,7 +140,7 @@ void Observer::observe_frame(int index, const Evaluation& e, std::span<double> r
     std::copy_n(k.angular_velocity, 3, to + 10);
     return;
   }
-  const double values[6] = {k.position[0], k.position[1], system_.marker_angle(marker, e.q),
+  const double values[6] = {k.position[0], k.position[1], system_.markers().angle(marker, e.q),
                             k.velocity[0], k.velocity[1], k.angular_velocity[2]};
   std::copy_n(values, 6, row.begin() + channels_.frames[at(index)]);
 }

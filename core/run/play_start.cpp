@@ -69,7 +69,7 @@ Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number)
     const RandomWords words = philox({number, static_cast<std::uint64_t>(joint), 0, 0}, {seed, stream});
     const Vector3 ball = unit_ball(words, model.space);
     double* const e = offset.position;
-    const double reach = moved_in_play * system.joint_layout(joint).clearance;
+    const double reach = moved_in_play * system.joints().layout(joint).clearance;
     if (rests[at(joint)] && std::hypot(e[0], e[1], e[2]) > 0.0) return slide(ball, reach, e);
     for (std::size_t i = 0; i < 3; ++i) e[i] = share[at(joint)] * ((1.0 - moved_in_play) * e[i] + reach * ball[i]);
   };

@@ -29,8 +29,8 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       sinks_(sinks.begin(), sinks.end()),
       observer_(run.system, run.channels),
       statistics_(run.model, run.channels, run.adaptive),
-      clearances_(run.system, run.channels),
-      ledger_(run.system, run.channels),
+      clearances_(run.model, run.system.joints(), run.channels),
+      ledger_(run.system.joints(), run.channels),
       peaks_(statistics_.peak_values().size()),
       contact_rows_(run.system, run.channels, statistics_, run.adaptive),
       contact_peaks_(contact_rows_.largest().size()),
@@ -53,7 +53,8 @@ bool Recorder::observe_start() {
 bool Recorder::know_row() {
   if (row_is_known_) return true;
   Fault fault;
-  if (!run_.adaptive && !run_.system.complete(point(run_.accepted), run_.e_accepted))
+  if (!run_.adaptive &&
+      !run_.system.joints().evaluate_coordinates(point(run_.accepted), term_coordinate, run_.e_accepted))
     return failure_.fail_with(run_.e_accepted->fault, run_.accepted.t());
   if (!observer_.observe(point(run_.accepted), run_.e_accepted, run_.accepted.lambda(), row_, fault)) {
     return failure_.fail_with(fault, run_.accepted.t());
@@ -76,7 +77,7 @@ bool Recorder::record_step() {
     if (run_.adaptive) look_back();
     return true;
   }
-  run_.system.multiply(run_.e_accepted, run_.accepted.v(), residual_);
+  run_.system.jacobian().multiply(run_.e_accepted->jacobian, run_.accepted.v(), residual_);
   for (std::size_t r = 0; r < residual_.size(); ++r) {
     velocity = std::max(velocity, std::abs(residual_[r] - run_.e_accepted->nu[r]));
   }
@@ -122,7 +123,7 @@ bool Recorder::write_events() {
   }
   for (std::size_t i = 0; i < run_.events.happenings().size(); ++i) {
     const StepEvents::Happening& happening = run_.events.happenings()[i];
-    const EventRole role = event_role(run_.system.joint_layout(happening.joint), at(happening.event));
+    const EventRole role = event_role(run_.system.joints().layout(happening.joint), at(happening.event));
     const ContactRecord* ended = ledger_.ended(i);
     if (role == EventRole::contact_begin) statistics_.add_contact(happening.joint, happening.time);
     if (ended != nullptr && statistics_.counts(happening.time))
@@ -220,7 +221,7 @@ bool Recorder::write_row_at(double t) {
 bool Recorder::observe_inside(double t, const Ends& step) {
   if (run_.solver.regularity() < near_singular) return false;
   const double s = (t - step.start.t()) / (step.end.t() - step.start.t());
-  DenseStep(run_.system, step.start, step.e_start.internal_rate, step.end, step.e_end.internal_rate)
+  DenseStep(run_.model.space, step.start, step.e_start.internal_rate, step.end, step.e_end.internal_rate)
       .at(s, run_.between);
   run_.between.t() = t;
   Fault ignored;

@@ -13,13 +13,13 @@ constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
 }  // namespace
 
-SleepingJoints::SleepingJoints(const System& system, EvaluationContext& context) : system_(system), context_(context) {
-  context.sleeps.resize(system.model().joints.size());
-  const std::span<const ForceBlock> blocks = system.force_blocks();
+SleepingJoints::SleepingJoints(const Joints& joints, const Forces& forces, EvaluationContext& context)
+    : joints_(joints), context_(context) {
+  context.sleeps.resize(at(joints.count()));
+  const std::span<const ForceBlock> blocks = forces.blocks();
   for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {
     const int j = blocks[at(f)].joint;
-    const JointElement& element = system.model().joints[at(j)];
-    if (blocks[at(f)].internal == 0) candidates_.push_back({j, f, element.marker_a, element.marker_b});
+    if (blocks[at(f)].internal == 0) candidates_.push_back({j, f, joints[j].marker_a, joints[j].marker_b});
   }
 }
 
@@ -45,12 +45,9 @@ bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, F
     sleep.now = false;
     if (all_awake_ || e.acts[at(candidate.block)] != 0) continue;
     double distance = 0.0;
-    if (!system_.joint(candidate.joint)
-             .free_distance(system_.input(candidate.joint, start, e), distance, fault.message)) {
-      fault.kind = Fault::Kind::plugin;
-      fault.joint = candidate.joint;
-      return false;
-    }
+    const JointRecord& joint = joints_[candidate.joint];
+    if (!joint.joint.free_distance(Joints::input(joint, start, e), distance, fault.message))
+      return fault.blame(candidate.joint);
     if (!(distance > 0.0)) continue;
     sleep.radius = (1.0 - rounding_off) * distance;
     const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "system/system.h"
+#include "system/evaluation.h"
 
 namespace freeplay {
 
@@ -14,7 +14,7 @@ namespace freeplay {
 class SleepingJoints {
  public:
   /// Decides on the joints of `context`, which must outlive it.
-  SleepingJoints(const System& system, EvaluationContext& context);
+  SleepingJoints(const Joints& joints, const Forces& forces, EvaluationContext& context);
 
   /// Before a step of length dt from the state that `e` is evaluated at: who rests in it (EvaluationContext::sleeps).
   /// False, with `fault`, when a joint fails.
@@ -24,7 +24,7 @@ class SleepingJoints {
   bool stayed();
   bool held(double dt, const Evaluation& e);
 
-  /// Besides what System::rest() holds.
+  /// Besides EvaluationContext::sleeps.
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
     archive(self.candidates_, self.all_awake_);
@@ -32,7 +32,7 @@ class SleepingJoints {
 
  private:
   struct Candidate {
-    int joint, block;  ///< into System::force_blocks()
+    int joint, block;  ///< into Forces::blocks()
     int marker_a, marker_b;
     double room = 0.0, speed = 0.0;  ///< of one that rests: distance that is left [m], relative speed [m/s]
     template <class Self, class Archive>
@@ -42,7 +42,7 @@ class SleepingJoints {
   };
   void look(Candidate& candidate, const Evaluation& e) const;
 
-  const System& system_;
+  const Joints& joints_;
   EvaluationContext& context_;
   std::vector<Candidate> candidates_;
   bool all_awake_ = false;

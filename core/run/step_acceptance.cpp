@@ -25,8 +25,8 @@ bool StepAcceptance::begin() {
   if (!run_.system.evaluate(point(run_.accepted), all_terms, run_.e_accepted)) {
     return failure_.fail_with(run_.e_accepted->fault, run_.accepted.t());
   }
-  run_.system.fill_driven_jacobian(run_.e_accepted);
-  run_.system.recover_loads(run_.e_accepted, run_.accepted.lambda());
+  run_.system.constraints().fill_driven(run_.e_accepted);
+  run_.system.driven().recover_loads(run_.e_accepted, run_.accepted.lambda());
   if (!attempt_.start()) return false;
   Fault fault;
   if (!run_.events.at_start(run_.accepted, run_.e_accepted, fault)) return failure_.fail_with(fault, run_.accepted.t());
@@ -46,7 +46,7 @@ void StepAcceptance::add_energy() {
                             std::span<const double>(run_.trial.z()).last(at(run_.flows)));
   }
   if (run_.energy.add_smooth(dt, run_.e_trial, run_.trial.lambda())) return;
-  DenseStep(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+  DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
       .at(0.5, run_.between);
   std::ranges::copy(run_.trial.h(), run_.between.h().begin());  // as the attempt had it
   // A state that no joint can be asked at is left out of the sum: the ends speak for it.

@@ -18,10 +18,10 @@ constexpr double unnoticed_turn = 1e-3;  // of a body [rad]
 StepAttempt::StepAttempt(RunContext& run, RunFailure& failure)
     : run_(run), failure_(failure), scratch_(at(run.integrator_layout.scratch) + guard::marks) {
   for (int j = 0; j < static_cast<int>(run.model.joints.size()); ++j) {
-    if (run.system.joint_layout(j).history > 0) with_history_.push_back(j);
+    if (run.system.joints().layout(j).history > 0) with_history_.push_back(j);
     if (const int turn = run.system.layout().turn(j); turn >= 0) turns_.push_back({at(turn), at(j)});
   }
-  if (run.system.angles_follow_bodies())
+  if (run.system.joints().angles_follow_bodies())
     angle_then_.assign(run.e_accepted->q.size() / 3, std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -34,8 +34,8 @@ bool StepAttempt::commit_history() {
     if (run_.evaluations.is_asleep(j)) continue;
     const Slice h = run_.system.layout().history(j), rows = run_.system.layout().rows(j);
     const Span<double> history = all_history.part(at(h.offset), at(h.size));
-    if (!run_.system.joint(j).commit(run_.system.input(j, end, run_.e_trial), {lambda + rows.offset, at(rows.size)},
-                                     history, fault.message) ||
+    if (!run_.system.joints().handle(j).commit(run_.system.joints().input(j, end, run_.e_trial),
+                                               {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
         !keeps_finite({}, history, "commit", fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
@@ -71,10 +71,10 @@ bool StepAttempt::begin_steps(double dt, State& state) {
     if (run_.evaluations.is_asleep(j)) continue;
     const Slice h = run_.system.layout().history(j);
     MarkerAccelerations accelerations;
-    run_.system.marker_accelerations(j, run_.e_accepted, run_.accepted.a(), accelerations);
+    run_.system.joints().accelerations(j, run_.e_accepted, run_.accepted.a(), accelerations);
     const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
-    if (!run_.system.joint(j).begin_step(run_.system.input(j, here, run_.e_accepted), accelerations, dt, history,
-                                         run_.e_trial->fault.message) ||
+    if (!run_.system.joints().handle(j).begin_step(run_.system.joints().input(j, here, run_.e_accepted), accelerations,
+                                                   dt, history, run_.e_trial->fault.message) ||
         !keeps_finite({}, history, "begin_step", run_.e_trial->fault.message)) {
       run_.e_trial->fault.kind = Fault::Kind::plugin;
       run_.e_trial->fault.joint = j;
@@ -91,8 +91,8 @@ bool StepAttempt::evaluate_all(State& state, KeptEvaluation& e) {
   const unsigned in_step = terms_of_equations | term_event | (turns_are_due_ ? term_turn : 0u);
   const unsigned terms = run_.adaptive ? all_terms : in_step;
   if (!run_.system.evaluate(point(state), terms, run_.solver.evaluation(), e)) return false;
-  run_.system.fill_driven_jacobian(e);
-  run_.system.recover_loads(e, state.lambda());
+  run_.system.constraints().fill_driven(e);
+  run_.system.driven().recover_loads(e, state.lambda());
   return true;
 }
 

@@ -61,7 +61,7 @@ bool StepCorners::flow_inside(double t, std::span<double> powers) {
   const State &start = run_.accepted, &end = run_.trial;
   State& between = run_.between;
   const double s = (t - start.t()) / (end.t() - start.t());
-  DenseStep(run_.system, start, run_.e_accepted->internal_rate, end, run_.e_trial->internal_rate)
+  DenseStep(run_.model.space, start, run_.e_accepted->internal_rate, end, run_.e_trial->internal_rate)
       .at(std::min(s, 1.0), between);
   std::ranges::copy(end.h(), between.h().begin());  // as the attempt had it
   between.t() = t;
@@ -69,8 +69,8 @@ bool StepCorners::flow_inside(double t, std::span<double> powers) {
   run_.solver.use_history(between.h());
   if (!run_.solver.accelerate(view, {run_.z_rate.data(), run_.z_rate.size()})) return false;
   if (!run_.system.evaluate(point(between), terms_of_equations, run_.e_between)) return false;
-  run_.system.fill_driven_jacobian(run_.e_between);
-  run_.system.recover_loads(run_.e_between, between.lambda());
+  run_.system.constraints().fill_driven(run_.e_between);
+  run_.system.driven().recover_loads(run_.e_between, between.lambda());
   run_.energy.flow(run_.e_between, between.lambda(), powers);
   return true;
 }

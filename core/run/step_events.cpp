@@ -37,7 +37,7 @@ StepEvents::StepEvents(const System& system, const EvaluationContext& context, b
       inside_(system.model().joints.size(), 0) {
   std::size_t most_events = 0, all_fields = 0, all_events = 0;
   for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
-    const Span<const Event> events = system.joint_layout(j).events;
+    const Span<const Event> events = system.joints().layout(j).events;
     if (events.empty()) continue;
     watched_.push_back(j);
     first_event_.push_back(all_events);
@@ -63,15 +63,15 @@ StepEvents::StepEvents(const System& system, const EvaluationContext& context, b
 
 bool StepEvents::functions(int joint, const Point& point, const Evaluation& e, std::span<double> g,
                            std::span<double> rate, Fault& fault) const {
-  if (system_.joint(joint).events(system_.input(joint, point, e), {g.data(), g.size()}, {rate.data(), rate.size()},
-                                  fault.message)) {
+  if (system_.joints().handle(joint).events(system_.joints().input(joint, point, e), {g.data(), g.size()},
+                                            {rate.data(), rate.size()}, fault.message)) {
     // What is not armed is NaN; a difference of a number from itself is zero unless it is not finite.
     const auto wild = [&](std::size_t i) { return !std::isnan(g[i]) && (g[i] - g[i]) + (rate[i] - rate[i]) != 0.0; };
     std::size_t i = 0;
     while (i < g.size() && !wild(i)) ++i;
     if (i == g.size()) return true;
     std::snprintf(fault.message.text, sizeof fault.message.text, "its event '%s' has a %s that is not a finite number",
-                  system_.joint_layout(joint).events[i].name, std::isinf(g[i]) ? "value" : "rate");
+                  system_.joints().layout(joint).events[i].name, std::isinf(g[i]) ? "value" : "rate");
   }
   fault.kind = Fault::Kind::plugin;
   fault.joint = joint;
@@ -83,7 +83,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
   happenings_.clear();
   values_.clear();
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const Span<const Event> events = system_.joint_layout(watched_[w]).events;
+    const Span<const Event> events = system_.joints().layout(watched_[w]).events;
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
@@ -105,7 +105,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
 bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault) {
   const int joint = watched_[watched];
   const std::span armed = std::span(armed_).subspan(first_event_[watched]);
-  const Span<const Event> events = system_.joint_layout(joint).events;
+  const Span<const Event> events = system_.joints().layout(joint).events;
   const std::span g0 = std::span(g0_).first(events.size), r0 = std::span(r0_).first(events.size);
   const std::span g1 = std::span(g1_).first(events.size), r1 = std::span(r1_).first(events.size);
   const double dt = step.end.t - step.start.t;
@@ -144,7 +144,7 @@ bool StepEvents::handle_inside(int joint, int event, double s, const Step& step,
   const double dt = after.t() - before.t();
   // A contact wants its mass to know how long an impact of it lasts. The room for the state between is lent.
   double mobility[9];
-  const bool begins = event_role(system_.joint_layout(joint), at(event)) == EventRole::contact_begin;
+  const bool begins = event_role(system_.joints().layout(joint), at(event)) == EventRole::contact_begin;
   const bool moves = begins && step.mobility(step.self, joint, mobility);
   between_.t() = before.t() + s * dt;
   if (system_.model().space == Space::planar) {
@@ -152,7 +152,7 @@ bool StepEvents::handle_inside(int joint, int event, double s, const Step& step,
       between_.q()[i] = Hermite{before.q()[i], before.v()[i] * dt, after.q()[i], after.v()[i] * dt}.at(s);
     }
   } else {
-    DenseStep(system_, before, {}, after, {}).at(s, between_);
+    DenseStep(system_.model().space, before, {}, after, {}).at(s, between_);
   }
   for (std::size_t i = 0; i < before.v().size(); ++i) {
     between_.v()[i] = Hermite{before.v()[i], before.a()[i] * dt, after.v()[i], after.a()[i] * dt}.at(s);
@@ -169,7 +169,7 @@ bool StepEvents::handle_inside(int joint, int event, double s, const Step& step,
 bool StepEvents::functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g,
                                   std::vector<double>& rate, Fault& fault) const {
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const std::size_t first = first_event_[w], count = system_.joint_layout(watched_[w]).events.size;
+    const std::size_t first = first_event_[w], count = system_.joints().layout(watched_[w]).events.size;
     if (!functions(watched_[w], point, e, std::span(g).subspan(first, count), std::span(rate).subspan(first, count),
                    fault)) {
       return false;
@@ -191,7 +191,7 @@ bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault&
 
 // An event that was passed on at its very zero lies before the state, and not at the start of the step to come.
 void StepEvents::leave_zero(int joint, int event) {
-  const Event& layout = system_.joint_layout(joint).events[at(event)];
+  const Event& layout = system_.joints().layout(joint).events[at(event)];
   if (layout.locate == 0) return;
   const auto w = static_cast<std::size_t>(std::ranges::lower_bound(watched_, joint) - watched_.begin());
   double& value = start_[first_event_[w] + at(event)];
@@ -202,7 +202,7 @@ StepEvents::Passage StepEvents::expected_within(double dt) const {
   Passage first;
   if (!(dt <= much_longer * earlier_by_)) return first;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const Span<const Event> events = system_.joint_layout(watched_[w]).events;
+    const Span<const Event> events = system_.joints().layout(watched_[w]).events;
     for (std::size_t i = 0; i < events.size; ++i) {
       const std::size_t event = first_event_[w] + i;
       if (events[i].locate == 0 || std::isnan(earlier_[event]) || std::isnan(start_[event])) continue;
@@ -236,7 +236,7 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
   bool looked = false;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const int joint = watched_[w];
-    const Span<const Event> events = system_.joint_layout(joint).events;
+    const Span<const Event> events = system_.joints().layout(joint).events;
     const std::span gm = std::span(gm_).first(events.size), rm = std::span(rm_).first(events.size);
     bool asked = false;
     for (std::size_t i = 0; i < events.size; ++i) {
@@ -247,7 +247,8 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       seen_[event] = std::isnan(start_[event]) || std::isnan(end_[event]) ? 0 : 1;
       if (seen_[event] == 0 || !could_cross(event, sign, dt)) continue;
       if (!looked) {
-        DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(0.5, between_);
+        DenseStep(system_.model().space, before, e_before.internal_rate, after, e_after.internal_rate)
+            .at(0.5, between_);
         if (!system_.evaluate(point(between_), term_event, e_between_)) {
           fault = e_between_->fault;
           return false;
@@ -284,12 +285,13 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
 // Newton's steps on the interpolated motion, which knows more than the cubics of the function.
 bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                          Passage& found, Fault& fault) {
-  const Span<const Event> events = system_.joint_layout(found.joint).events;
+  const Span<const Event> events = system_.joints().layout(found.joint).events;
   const std::span g = std::span(gm_).first(events.size), rate = std::span(rm_).first(events.size);
   const double sign = events[at(found.event)].crossing == Crossing::rising ? 1.0 : -1.0;
   const double dt = after.t() - before.t();
   for (int step = 0; step < 2; ++step) {
-    DenseStep(system_, before, e_before.internal_rate, after, e_after.internal_rate).at(found.fraction, between_);
+    DenseStep(system_.model().space, before, e_before.internal_rate, after, e_after.internal_rate)
+        .at(found.fraction, between_);
     if (!system_.evaluate(point(between_), term_event, e_between_)) {
       fault = e_between_->fault;
       return false;
@@ -304,7 +306,7 @@ bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const 
 }
 
 bool StepEvents::at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault) {
-  const Span<const Event> events = system_.joint_layout(passage.joint).events;
+  const Span<const Event> events = system_.joints().layout(passage.joint).events;
   const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
   if (!functions(passage.joint, point(after), e_after, g, r, fault)) return false;
   const double sign = events[at(passage.event)].crossing == Crossing::rising ? 1.0 : -1.0;
@@ -317,7 +319,7 @@ bool StepEvents::apply_at_end(const Passage& hunted, double late, State& after, 
                               Mobility mobility, void* self, Fault& fault) {
   if (hunted.joint < 0) return true;
   for (const int joint : watched_) {
-    const Span<const Event> events = system_.joint_layout(joint).events;
+    const Span<const Event> events = system_.joints().layout(joint).events;
     const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
     const auto happens = [&](int i) {
       const double sign = events[at(i)].crossing == Crossing::rising ? 1.0 : -1.0, past = sign * g[at(i)];
@@ -347,15 +349,16 @@ bool StepEvents::apply_at_end(const Passage& hunted, double late, State& after, 
 bool StepEvents::handle(int joint, int event, const Point& here, const Evaluation& e, State& state, Fault& fault,
                         const double* mobility) {
   const Slice z = system_.layout().internal(joint), h = system_.layout().history(joint);
-  const std::size_t first = values_.size(), count = system_.joint_layout(joint).events[at(event)].fields.size;
+  const std::size_t first = values_.size(), count = system_.joints().layout(joint).events[at(event)].fields.size;
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
-  JointInput in = system_.input(joint, here, e);
+  JointInput in = system_.joints().input(joint, here, e);
   in.mobility = mobility;
   const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
                      history = Span<double>(state.h()).part(at(h.offset), at(h.size));
-  if (!system_.joint(joint).on_event(event, in, internal, history, {values_.data() + first, count}, fault.message) ||
+  if (!system_.joints().handle(joint).on_event(event, in, internal, history, {values_.data() + first, count},
+                                               fault.message) ||
       !keeps_finite(internal, history, "on_event", fault.message) ||
-      !fields_make_sense(system_.joint_layout(joint).events[at(event)], {values_.data() + first, count},
+      !fields_make_sense(system_.joints().layout(joint).events[at(event)], {values_.data() + first, count},
                          fault.message)) {
     fault.kind = Fault::Kind::plugin;
     fault.joint = joint;
@@ -370,7 +373,7 @@ bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
   values_.clear();
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const int joint = watched_[w];
-    const Span<const Event> events = system_.joint_layout(joint).events;
+    const Span<const Event> events = system_.joints().layout(joint).events;
     const std::span g = std::span(g0_).first(events.size), r = std::span(r0_).first(events.size);
     if (!functions(joint, point(start), e, g, r, fault)) return false;
     for (std::size_t i = 0; i < events.size; ++i) {

@@ -48,10 +48,10 @@ void StepInside::know_inside() {
     run_.energy.flow(run_.e_accepted, run_.accepted.lambda(), std::span(start_rate_).subspan(joints));
     run_.energy.flow(run_.e_trial, run_.trial.lambda(), std::span(end_rate_).subspan(joints));
   }
-  const DenseStep by_ends(run_.system, run_.accepted, start_rate_, run_.trial, end_rate_);
+  const DenseStep by_ends(run_.model.space, run_.accepted, start_rate_, run_.trial, end_rate_);
   const auto look = [&](std::size_t place) {
     const double s = InnerMotion::places[place];
-    DenseStep(run_.system, run_.accepted, start_rate_, run_.trial, end_rate_, &run_.inner).at(s, run_.between);
+    DenseStep(run_.model.space, run_.accepted, start_rate_, run_.trial, end_rate_, &run_.inner).at(s, run_.between);
     StateView view = run_.between.view();
     run_.solver.use_history(run_.between.h());
     if (!run_.solver.accelerate(view, {run_.z_rate.data(), run_.z_rate.size()})) return false;
@@ -99,9 +99,9 @@ double StepInside::error_by_missing(double s) {
 bool StepInside::settle_inside(double t) {
   const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
   if (run_.inner.known()) {
-    DenseStep(run_.system, run_.accepted, start_rate_, run_.trial, end_rate_, &run_.inner).at(s, run_.between);
+    DenseStep(run_.model.space, run_.accepted, start_rate_, run_.trial, end_rate_, &run_.inner).at(s, run_.between);
   } else {
-    DenseStep(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+    DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
         .at(s, run_.between);
   }
   run_.between.t() = t;
@@ -116,7 +116,7 @@ bool StepInside::look_inside(double t) {
   if (!run_.inner.known()) {
     const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
     // How far the ends alone lead astray, their own accelerations say.
-    DenseStep(run_.system, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+    DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
         .missing(s, run_.between, {}, defect_, {});
     if (!(error_by_missing(s) <= astray_inside)) {
       know_inside();

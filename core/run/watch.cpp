@@ -33,7 +33,7 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     : system_(system), channels_(channels), planar_(system.model().space == Space::planar) {
   const Model& model = system.model();
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const JointLayout& layout = system.joint_layout(j);
+    const JointLayout& layout = system.joints().layout(j);
     has_rows_.push_back(layout.constraint_rows > 0 && model.joints[at(j)].gear < 0 ? 1 : 0);
     if (!(layout.clearance > 0.0) || channels.joints[at(j)].penetration < 0) continue;
     const bool known = layout.smaller_radius > 0.0;
@@ -135,7 +135,7 @@ void RunWatch::add_drivers(std::span<const double> row, const Evaluation& e) {
   const Model& model = system_.model();
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
-    const bool turns = system_.joint_layout(driver.joint).coordinate == Coordinate::angle;
+    const bool turns = system_.joints().layout(driver.joint).coordinate == Coordinate::angle;
     if (!prescribes(driver.kind)) {
       const double effort = std::abs(row[at(channels_.drivers[d].effort)]);
       seen_.drive_effort = std::max(seen_.drive_effort, turns ? effort / seen_.size : effort);
@@ -150,12 +150,12 @@ void RunWatch::add_drivers(std::span<const double> row, const Evaluation& e) {
 bool RunWatch::never_moved(int joint) const {
   const auto contact = std::ranges::find(contacts_, joint, &Contact::joint);
   if (contact == contacts_.end() || !(contact->depth.most < 0.0)) return false;
-  return contact->depth.span() <= unmoved * system_.joint_layout(joint).clearance;
+  return contact->depth.span() <= unmoved * system_.joints().layout(joint).clearance;
 }
 
 TrustReason RunWatch::why(int joint, std::span<const double> row) const {
   const auto contact = std::ranges::find(contacts_, joint, &Contact::joint);
-  const JointLayout& layout = system_.joint_layout(joint);
+  const JointLayout& layout = system_.joints().layout(joint);
   TrustReason reason{.id = {}, .level = Trust::bad, .message = {}};
   reason.element = fmt::format("joint '{}'", system_.model().joints[at(joint)].name);
   const double penetration = row[at(contact->penetration)];

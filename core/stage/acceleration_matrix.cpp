@@ -18,7 +18,7 @@ constexpr double regular_enough = 1e-7;  // pivot of the normal matrix below whi
 }  // namespace
 
 void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
-  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
   dependent_.assign(dependent.begin(), dependent.end());
   whole_.reset();
   by_normal_ = false;
@@ -28,7 +28,7 @@ void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
   sort_couplings(owners);
 
   // Prescribed bodies have no pieces there.
-  std::vector<double> mass(system_.mass().begin(), system_.mass().end());
+  std::vector<double> mass(system_.inertia().mass().begin(), system_.inertia().mass().end());
   for (const Prescribed& body : prescribed_) std::fill_n(&mass[at(width * body.who.body)], width, 1.0);
   has_normal_ = std::ranges::all_of(mass, [](double m) { return m > 0.0; }) &&
                 normal_.set_pattern(mass, width, static_cast<int>(free_rows_.size()), free_pieces);
@@ -40,11 +40,11 @@ void AccelerationMatrix::set_pattern(std::span<const char> dependent) {
 }
 
 AccelerationMatrix::Owners AccelerationMatrix::find_prescribed() {
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   const std::size_t rows = dependent_.size();
   Owners owners{std::vector<int>(rows, -1), std::vector<int>(at(system_.layout().nv() / width), -1)};
   prescribed_.clear();
-  for (const PrescribedBody& body : prescribed_bodies(system_, dependent_)) {
+  for (const PrescribedBody& body : prescribed_bodies(system_.jacobian(), dependent_)) {
     const int index = static_cast<int>(prescribed_.size());
     owners.of_body[at(body.body)] = index;
     for (int c = 0; c < width; ++c) owners.of_row[at(body.rows[at(c)])] = index;
@@ -58,7 +58,7 @@ AccelerationMatrix::Owners AccelerationMatrix::find_prescribed() {
 }
 
 std::vector<NormalMatrix::Piece> AccelerationMatrix::place_pieces(const Owners& owners) {
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   const std::vector<Source> sources = sorted_sources(owners);
   offsets_.clear();
   additions_.clear();
@@ -90,9 +90,9 @@ std::vector<NormalMatrix::Piece> AccelerationMatrix::place_pieces(const Owners& 
 }
 
 std::vector<AccelerationMatrix::Source> AccelerationMatrix::sorted_sources(const Owners& owners) const {
-  const int width = system_.body_velocities();
+  const int width = system_.layout().body_velocities();
   std::vector<Source> sources;
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
     for (int r = 0; r < block.rows; ++r) {
       if (dependent_[at(block.row + r)]) continue;
       sources.push_back({owners.of_body[at(block.body)] >= 0, block.row + r, block.body, block.offset + r * width});
@@ -138,7 +138,7 @@ void AccelerationMatrix::gather(std::span<const double> jacobian) {
 }
 
 double AccelerationMatrix::factor(Evaluation& e) {
-  const bool planar = system_.body_velocities() == 3;
+  const bool planar = system_.layout().body_velocities() == 3;
   planar ? gather<3>(e.jacobian) : gather<6>(e.jacobian);
   const double normal = has_normal_ ? normal_.factor(numbers_) : 0.0;
   by_normal_ = normal > regular_enough;
@@ -177,7 +177,7 @@ void AccelerationMatrix::restore(ArchiveReader& archive) {
   }
   if (!by_normal_) return;
   normal_.factor(numbers_);
-  system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>();
+  system_.layout().body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>();
 }
 
 template <int width>
@@ -224,7 +224,8 @@ void AccelerationMatrix::substitute(std::span<double> x, std::span<double> l) {
     const Prescribed& body = prescribed_[p];
     const std::size_t first = width * at(body.who.body);
     Vector left = Eigen::Map<const Vector>(&forces_[width * p]);
-    for (std::size_t c = 0; c < width; ++c) left[static_cast<int>(c)] -= system_.mass()[first + c] * a[first + c];
+    for (std::size_t c = 0; c < width; ++c)
+      left[static_cast<int>(c)] -= system_.inertia().mass()[first + c] * a[first + c];
     for (std::size_t i = body.first_motion_part; i < body.end_motion_part; ++i) {
       const double* g = &numbers_[width * by_body_[i].piece];
       for (int k = 0; k < width; ++k) left[k] -= g[k] * lambda[by_body_[i].row];
@@ -245,7 +246,7 @@ void AccelerationMatrix::solve_whole(std::span<double> x, std::span<double> l) {
 void AccelerationMatrix::solve(std::span<double> x, std::span<double> l) {
   if (!by_normal_) return solve_whole(x, l);
   if (all_free_) return normal_.solve(numbers_, x, l);
-  system_.body_velocities() == 3 ? substitute<3>(x, l) : substitute<6>(x, l);
+  system_.layout().body_velocities() == 3 ? substitute<3>(x, l) : substitute<6>(x, l);
 }
 
 }  // namespace freeplay

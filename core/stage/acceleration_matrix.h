@@ -58,7 +58,7 @@ class AccelerationMatrix {
   struct Owners {
     std::vector<int> of_row, of_body;
   };
-  /// What a row has in the columns of one body, in Evaluation::jacobian.
+  /// What a row has in the columns of one body, in ConstraintValues::jacobian.
   struct Source {
     bool held;  // by a prescribed body
     int row, body, offset;
@@ -83,7 +83,7 @@ class AccelerationMatrix {
   const System& system_;
   std::vector<char> dependent_;
   /// Phi_q in pieces, numbers of one row in the columns of one body, first those of free rows and bodies; where they
-  /// stand in Evaluation::jacobian, and further numbers that are added to some.
+  /// stand in ConstraintValues::jacobian, and further numbers that are added to some.
   std::vector<double> numbers_;
   std::vector<int> offsets_;
   struct Addition {

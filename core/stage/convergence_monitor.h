@@ -17,7 +17,7 @@ struct JacobianRecord {
   double noise = 0.0;        ///< size of updates that were noise with new factors [1/s^2]
   int noise_age = 0;         ///< stages since it was seen
   int noisy_updates = 0;     ///< with these factors, old
-  std::uint64_t acting = 0;  ///< Evaluation::acting of the last update
+  std::uint64_t acting = 0;  ///< ForceValues::acting of the last update
 
   /// Factors for other equations: what was seen of noise is of no use.
   void begin() {
@@ -64,7 +64,7 @@ class ConvergenceMonitor {
     fresh_ = true;
     record_->rate = 1.0;
   }
-  /// Before an update: the forces that act (Evaluation::acting). Rates and noise seen with others are of no use.
+  /// Before an update: the forces that act (ForceValues::acting). Rates and noise seen with others are of no use.
   void forces_act(std::uint64_t acting) {
     same_forces_ = acting == record_->acting;
     if (updates_ == 0 && !same_forces_) record_->rate = 1.0, record_->noise = 0.0;

@@ -4,19 +4,19 @@
 
 namespace freeplay {
 
-IndependentRows::IndependentRows(const System& system)
-    : system_(system), rank_of_(system.layout().nc(), system.layout().nv()) {
-  dependent_.assign(static_cast<std::size_t>(system.layout().nc()), 0);
+IndependentRows::IndependentRows(const ConstraintJacobian& jacobian)
+    : jacobian_(jacobian), rank_of_(jacobian.layout().nc(), jacobian.layout().nv()) {
+  dependent_.assign(static_cast<std::size_t>(jacobian.layout().nc()), 0);
 }
 
-bool IndependentRows::find(const Evaluation& e) {
-  system_.jacobian_entries(e, entries_);
+bool IndependentRows::find(const ConstraintValues& e) {
+  jacobian_.list(e.jacobian, entries_);
   rank_of_.analyse(entries_);
   return adopt();
 }
 
-void IndependentRows::find_more(const Evaluation& e, double error) {
-  system_.jacobian_entries(e, entries_);
+void IndependentRows::find_more(const ConstraintValues& e, double error) {
+  jacobian_.list(e.jacobian, entries_);
   if (rank_of_.analyse(entries_, error) > rank_) adopt();
 }
 
@@ -26,13 +26,13 @@ bool IndependentRows::adopt() {
   rank_ = rank_of_.rank();
   const bool same = std::ranges::equal(rank_of_.dependent(), dependent_);
   std::ranges::copy(rank_of_.dependent(), dependent_.begin());
-  any_dependent_ = rank_ < system_.layout().nc();
+  any_dependent_ = rank_ < jacobian_.layout().nc();
   if (!same) ++choice_;
   return !same;
 }
 
-int IndependentRows::weakest(const Evaluation& e) {
-  system_.jacobian_entries(e, entries_);
+int IndependentRows::weakest(const ConstraintValues& e) {
+  jacobian_.list(e.jacobian, entries_);
   rank_of_.analyse(entries_);
   return rank_of_.weakest();
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "linear/row_rank.h"
-#include "system/system.h"
+#include "system/constraints.h"
 
 namespace freeplay {
 
@@ -17,7 +17,7 @@ class IndependentRows {
  public:
   static constexpr double singular_pivot = 1e-13;  ///< smallest pivot over the largest
 
-  explicit IndependentRows(const System& system);
+  explicit IndependentRows(const ConstraintJacobian& jacobian);
 
   /// Nonzero for equations that the others determine.
   std::span<const char> dependent() const { return dependent_; }
@@ -26,16 +26,16 @@ class IndependentRows {
   int choice() const { return choice_; }
   /// Whether a choice has been made.
   bool is_known() const { return rank_ >= 0; }
-  void keep_all() { rank_ = system_.layout().nc(); }
+  void keep_all() { rank_ = jacobian_.layout().nc(); }
   /// Makes the choice anew from Phi_q of `e`. Returns whether it is another one than before.
-  bool find(const Evaluation& e);
+  bool find(const ConstraintValues& e);
   /// The same, but only a rank that is larger than before counts. `error`: see RowRank::analyse().
-  void find_more(const Evaluation& e, double error);
+  void find_more(const ConstraintValues& e, double error);
   /// Multipliers of least norm for the same forces on the bodies: efforts of drivers first, then reactions. Phi_q is
   /// that of the last find_more().
-  void least_norm(std::span<double> lambda) { rank_of_.least_norm(lambda, system_.layout().first_driver_row()); }
+  void least_norm(std::span<double> lambda) { rank_of_.least_norm(lambda, jacobian_.layout().first_driver_row()); }
   /// Row that comes closest to depending on the others, or -1. Slow.
-  int weakest(const Evaluation& e);
+  int weakest(const ConstraintValues& e);
 
   void begin_attempt() { regularity_ = 1.0; }
   /// The smallest pivot of the index-1 matrix at another position.
@@ -60,7 +60,7 @@ class IndependentRows {
  private:
   bool adopt();
 
-  const System& system_;
+  const ConstraintJacobian& jacobian_;
   RowRank rank_of_;
   std::vector<SparseEntry> entries_;
   std::vector<char> dependent_;

@@ -141,9 +141,9 @@ double IndexOneSolver::refine_once(std::span<double> x_a, std::span<double> x_c,
   const std::size_t nv = x_a.size(), nc = x_c.size();
   const std::span<double> motion = std::span(update_).first(nv), pressure = std::span(update_).subspan(nv);
   std::ranges::fill(motion, 0.0);
-  system_.add_transposed(e_, x_c, motion);
-  system_.multiply(e_, x_a, pressure);
-  for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.mass()[i] * x_a[i] - motion[i];
+  system_.jacobian().add_transposed(e_->jacobian, x_c, motion);
+  system_.jacobian().multiply(e_->jacobian, x_a, pressure);
+  for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.inertia().mass()[i] * x_a[i] - motion[i];
   for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent_[r] ? 0.0 : right_c_[r] - pressure[r];
   solve_linear(motion, pressure);
   for (std::size_t i = 0; i < nv; ++i) x_a[i] += motion[i];
@@ -154,7 +154,7 @@ double IndexOneSolver::refine_once(std::span<double> x_a, std::span<double> x_c,
   if (multipliers) {
     // Multipliers that vanish are right to the rounding of the forces and inertias that leave nothing over.
     double forces = std::max(largest(x_c), largest(right_a_));
-    for (std::size_t i = 0; i < nv; ++i) forces = std::max(forces, std::abs(system_.mass()[i] * x_a[i]));
+    for (std::size_t i = 0; i < nv; ++i) forces = std::max(forces, std::abs(system_.inertia().mass()[i] * x_a[i]));
     change = std::max(change, pressed / std::max(forces, smallest));
   }
   // What becomes exactly zero has no relative change.
@@ -165,11 +165,11 @@ template <int width>
 bool IndexOneSolver::equations_hold(std::span<const double> x_a, std::span<const double> x_c) {
   const std::size_t nv = x_a.size();
   for (std::size_t i = 0; i < nv; ++i) {
-    const double inertia = system_.mass()[i] * x_a[i];
+    const double inertia = system_.inertia().mass()[i] * x_a[i];
     work_[i] = right_a_[i] - inertia;
     size_[i] = std::abs(right_a_[i]) + std::abs(inertia);
   }
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
     const double* entry = &e_->jacobian[at(block.offset)];
     double *left = &work_[at(width * block.body)], *size = &size_[at(width * block.body)];
     for (int r = block.row; r < block.row + block.rows; ++r, entry += width) {
@@ -191,7 +191,7 @@ template <int width>
 bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
                                   std::span<double> left) {
   const auto each_number = [&](std::size_t r, auto&& use) {
-    for (const System::RowPiece& piece : system_.row_pieces(r)) {
+    for (const ConstraintJacobian::RowPiece& piece : system_.jacobian().row_pieces(r)) {
       const double *entry = &e_->jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
       for (int c = 0; c < width; ++c) use(entry[c] * rate[c]);
     }
@@ -212,13 +212,13 @@ bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const
 
 bool IndexOneSolver::rows_hold(std::span<const double> right, std::span<const double> x_a, double tolerance,
                                std::span<double> left) {
-  return system_.body_velocities() == 3 ? rows_hold_in<3>(right, x_a, tolerance, left)
-                                        : rows_hold_in<6>(right, x_a, tolerance, left);
+  return system_.layout().body_velocities() == 3 ? rows_hold_in<3>(right, x_a, tolerance, left)
+                                                 : rows_hold_in<6>(right, x_a, tolerance, left);
 }
 
 bool IndexOneSolver::holds_to_rounding(std::span<const double> x_a, std::span<const double> x_c) {
   return rows_hold(right_c_, x_a, 8.0, std::span(work_).first(right_c_.size())) &&
-         (system_.body_velocities() == 3 ? equations_hold<3>(x_a, x_c) : equations_hold<6>(x_a, x_c));
+         (system_.layout().body_velocities() == 3 ? equations_hold<3>(x_a, x_c) : equations_hold<6>(x_a, x_c));
 }
 
 bool IndexOneSolver::velocities_hold(std::span<const double> v) { return rows_hold(e_->nu, v, 4.0, right_c_); }
@@ -261,7 +261,7 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   }
   if (flows_ != nullptr) {
     std::ranges::copy(state.lambda, loads_.begin());
-    system_.recover_loads(e_, loads_);
+    system_.driven().recover_loads(e_, loads_);
     flows_->flow(e_, loads_, z_rate.part(e_->internal_rate.size(), at(flows_->flows())));
   }
   return true;
@@ -328,7 +328,7 @@ bool IndexOneSolver::project_position(StateView& state) {
 
 bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<double> along) {
   if (!(equations_.rows().attempt_regularity() < near_singular && has_factors() && !right_c_.empty())) return false;
-  for (std::size_t i = 0; i < error.size(); ++i) along[i] = system_.mass()[i] * error[i];
+  for (std::size_t i = 0; i < error.size(); ++i) along[i] = system_.inertia().mass()[i] * error[i];
   const std::span<double> multipliers = std::span(update_).subspan(error.size());
   std::ranges::fill(multipliers, 0.0);
   solve_linear(along, multipliers);
@@ -348,19 +348,19 @@ bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> o
     double wrench[6] = {};
     for (const int end : {0, 1}) {
       wrench[direction] = end == 0 ? -1.0 : 1.0;
-      if (system_.unknown_of(markers[end]) != ground) {
-        system_.add_wrench(markers[end], wrench, e_, right_a_);
+      if (system_.markers().unknown(markers[end]) != ground) {
+        system_.markers().apply(markers[end], wrench, e_, right_a_);
       }
     }
     if (!move_by_forces()) return false;
-    const std::size_t width = at(system_.body_velocities());
+    const std::size_t width = at(system_.layout().body_velocities());
     for (const int end : {0, 1}) {
-      const BodyId body = system_.unknown_of(markers[end]);
+      const BodyId body = system_.markers().unknown(markers[end]);
       if (body == ground) continue;
       for (std::size_t i = 0; i < directions; ++i) {
         double g[6] = {}, row[6];
         g[i] = end == 0 ? -1.0 : 1.0;
-        system_.marker_row(markers[end], g, e_, row);
+        system_.markers().row(markers[end], g, e_, row);
         for (std::size_t c = 0; c < width; ++c) out[3 * i + direction] += row[c] * increment_[width * at(body) + c];
       }
     }

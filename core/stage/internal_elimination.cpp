@@ -35,16 +35,16 @@ void solve_small(double* matrix, int size, double* right, int columns) {
 
 }  // namespace
 
-InternalElimination::InternalElimination(const System& system)
-    : system_(system), columns_(2 * system.body_velocities()), residual_(at(system.layout().nz()), 0.0) {
+InternalElimination::InternalElimination(const Layout& layout, const Forces& forces)
+    : layout_(layout), forces_(forces), columns_(2 * layout.body_velocities()), residual_(at(layout.nz()), 0.0) {
   std::size_t total = 0, widest = 0;
-  for (std::size_t f = 0; f < system.force_blocks().size(); ++f) {
-    const ForceBlock& block = system.force_blocks()[f];
+  for (std::size_t f = 0; f < forces.blocks().size(); ++f) {
+    const ForceBlock& block = forces.blocks()[f];
     if (block.internal == 0) continue;
     const std::size_t nz = at(block.internal);
     blocks_.push_back({f,
                        block.internal,
-                       system.layout().internal(block.joint).offset,
+                       layout.internal(block.joint).offset,
                        {block.a, block.b},
                        total,
                        total + nz * nz,
@@ -57,8 +57,8 @@ InternalElimination::InternalElimination(const System& system)
 
 void InternalElimination::prepare(Evaluation& e, double beta_q, double beta_v, double beta_z) {
   for (const Block& block : blocks_) {
-    const InternalDerivatives d(system_.force_blocks()[block.force_block], system_.body_velocities(),
-                                e.internal_derivatives);
+    const InternalDerivatives d =
+        internal_derivatives(forces_.blocks()[block.force_block], layout_.body_velocities(), e.internal_derivatives);
     const int nz = block.size;
     const std::size_t square = at(nz * nz), columns = at(nz + columns_);
     double* matrix = &numbers_[numbers_.size() - square - at(nz) * columns];

@@ -15,7 +15,7 @@ namespace freeplay {
 /// Blocks of one factored matrix. Sized once; joints without internal variables cost nothing.
 class InternalElimination {
  public:
-  explicit InternalElimination(const System& system);
+  InternalElimination(const Layout& layout, const Forces& forces);
   bool empty() const { return blocks_.empty(); }
 
   /// Takes W, B and beta_z f_z W from the derivatives of `e`.
@@ -59,7 +59,8 @@ class InternalElimination {
     return numbers_[b.slope + static_cast<std::size_t>(z * columns_ + c)];
   }
 
-  const System& system_;
+  const Layout& layout_;
+  const Forces& forces_;
   int columns_;  // velocities of two bodies
   std::vector<Block> blocks_;
   std::vector<double> numbers_, residual_;

@@ -18,16 +18,16 @@ constexpr int largest_whole = 20;  // unknowns: taking some of them out costs mo
 
 // Every entry that factor() fills, in its order, at its place in the whole system.
 std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) const {
-  const int nv = system_.layout().nv(), nc = system_.layout().nc(), width = system_.body_velocities();
+  const int nv = system_.layout().nv(), nc = system_.layout().nc(), width = system_.layout().body_velocities();
   std::size_t of_rows = 0;
-  for (const JacobianBlock& block : system_.jacobian_blocks()) of_rows += at(2 * width * block.rows);
+  for (const JacobianBlock& block : system_.jacobian().blocks()) of_rows += at(2 * width * block.rows);
   std::vector<MatrixEntry> all;
-  all.reserve(at(nv + nc) + (forces_ ? at(4 * width * width) * system_.force_blocks().size() + at(3 * nv) : 0) +
+  all.reserve(at(nv + nc) + (forces_ ? at(4 * width * width) * system_.forces().blocks().size() + at(3 * nv) : 0) +
               of_rows);
   for (int i = 0; i < nv; ++i) all.push_back({i, i});
   for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
   if (forces_) add_force_entries(all);
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
     for (int r = block.row; r < block.row + block.rows; ++r) {
       for (int c = width * block.body; c < width * (block.body + 1); ++c) {
         all.push_back(dependent[at(r)] ? nowhere : MatrixEntry{nv + r, c});
@@ -40,8 +40,8 @@ std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) c
 
 // Of forces, in space of gyroscopic moments, too.
 void StageMatrix::add_force_entries(std::vector<MatrixEntry>& all) const {
-  const int nv = system_.layout().nv(), width = system_.body_velocities();
-  for (const ForceBlock& block : system_.force_blocks()) {
+  const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
+  for (const ForceBlock& block : system_.forces().blocks()) {
     const BodyId bodies[2] = {block.a, block.b};
     for (int r = 0; r < 2 * width; ++r) {
       for (int c = 0; c < 2 * width; ++c) {
@@ -72,12 +72,13 @@ void StageMatrix::set_pattern(std::span<const char> dependent) {
 }
 
 StageMatrix::Division StageMatrix::divide(std::span<const MatrixEntry> all, std::span<const char> dependent) {
-  const int nv = system_.layout().nv(), size = nv + system_.layout().nc(), width = system_.body_velocities();
+  const int nv = system_.layout().nv(), size = nv + system_.layout().nc(), width = system_.layout().body_velocities();
   const bool tiny = size <= largest_whole;
   Division division{std::vector<int>(at(size), -1), std::vector<int>(at(size), -1),
                     std::vector<char>(at(size), tiny ? 1 : 0)};
   prescribed_.clear();
-  for (const PrescribedBody& body : tiny ? std::vector<PrescribedBody>{} : prescribed_bodies(system_, dependent)) {
+  for (const PrescribedBody& body :
+       tiny ? std::vector<PrescribedBody>{} : prescribed_bodies(system_.jacobian(), dependent)) {
     const int index = static_cast<int>(prescribed_.size());
     for (int c = 0; c < width; ++c) {
       division.owner[at(width * body.body + c)] = division.owner[at(nv + body.rows[at(c)])] = index;
@@ -101,7 +102,7 @@ StageMatrix::Division StageMatrix::divide(std::span<const MatrixEntry> all, std:
 
 // Phi_q of the rows of prescribed bodies in their own columns. The transposed blocks are left out.
 void StageMatrix::place_blocks(std::span<const MatrixEntry> all, const Division& division, std::span<int> slots) const {
-  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [row, column] = all[i];
     if (row < nv || !division.is_block(row, column, nv)) continue;
@@ -119,7 +120,7 @@ void StageMatrix::place_couplings(std::span<const MatrixEntry> all, const Divisi
     std::pair<int, int> when;  // kind and body
     std::size_t entry;
   };
-  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
   std::vector<Sorted> sorted;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [row, column] = all[i];
@@ -174,9 +175,9 @@ void StageMatrix::place_free(std::span<const MatrixEntry> all, const Division& d
 }
 
 void StageMatrix::share_out(const std::vector<int>& slots) {
-  const int nv = system_.layout().nv(), width = system_.body_velocities();
+  const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
   const auto first_forces = slots.begin() + nv + system_.layout().nc();
-  const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.force_blocks().size() : 0;
+  const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.forces().blocks().size() : 0;
   const auto first_turning = first_forces + static_cast<std::ptrdiff_t>(of_forces);
   const auto first_rows = first_turning + (forces_ && width == 6 ? 9 * (nv / 6) : 0);
   slots_ = {{slots.begin(), first_forces},
@@ -187,15 +188,15 @@ void StageMatrix::share_out(const std::vector<int>& slots) {
 
 double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double beta_z) {
   std::ranges::fill(values_, 0.0);
-  const std::span<const double> mass = system_.mass();
+  const std::span<const double> mass = system_.inertia().mass();
   for (std::size_t i = 0; i < slots_.constant.size(); ++i) {
     values_[at(slots_.constant[i])] += i < mass.size() ? mass[i] : 1.0;
   }
   if (forces_) fill_forces(e, beta_q, beta_v, beta_z);
   const int* slot = slots_.rows.data();
-  for (const JacobianBlock& block : system_.jacobian_blocks()) {
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
     const double* entry = &e.jacobian[at(block.offset)];
-    for (int i = 0; i < block.rows * system_.body_velocities(); ++i, ++entry) {
+    for (int i = 0; i < block.rows * system_.layout().body_velocities(); ++i, ++entry) {
       values_[at(*slot++)] += *entry;
       values_[at(*slot++)] += *entry;
     }
@@ -206,14 +207,14 @@ double StageMatrix::factor(Evaluation& e, double beta_q, double beta_v, double b
   for (std::size_t i = first_alone_; i < first_rest_; ++i) {
     if (values_[i] == 0.0 || !std::isfinite(values_[i])) smallest = 0.0;
   }
-  return std::min(smallest, system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>());
+  return std::min(smallest, system_.layout().body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>());
 }
 
 void StageMatrix::fill_forces(Evaluation& e, double beta_q, double beta_v, double beta_z) {
   const int* slot = slots_.forces.data();
   if (!internal_.empty()) {
     internal_.prepare(e, beta_q, beta_v, beta_z);
-    const std::size_t columns = at(2 * system_.body_velocities());
+    const std::size_t columns = at(2 * system_.layout().body_velocities());
     internal_.add_to_matrix([&](std::size_t block, int r, int c, double value) {
       values_[at(slot[columns * (columns * block + at(r)) + at(c)])] += value;
     });
@@ -241,7 +242,7 @@ double StageMatrix::invert_blocks() {
 
 void StageMatrix::restore(ArchiveReader& archive) {
   archive(values_, internal_, rest_);
-  system_.body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>();
+  system_.layout().body_velocities() == 3 ? invert_blocks<3>() : invert_blocks<6>();
 }
 
 void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const double> update,
@@ -254,7 +255,7 @@ void StageMatrix::subtract(std::size_t first, std::size_t end, std::span<const d
 }
 
 void StageMatrix::solve(std::span<double> right, std::span<double> update) {
-  system_.body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
+  system_.layout().body_velocities() == 3 ? substitute<3>(right, update) : substitute<6>(right, update);
 }
 
 template <int width>

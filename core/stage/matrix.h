@@ -22,7 +22,8 @@ namespace freeplay {
 class StageMatrix {
  public:
   /// Without `forces`, for betas of zero only: the index-1 matrix.
-  StageMatrix(const System& system, bool forces) : system_(system), forces_(forces), internal_(system) {}
+  StageMatrix(const System& system, bool forces)
+      : system_(system), forces_(forces), internal_(system.layout(), system.forces()) {}
 
   /// Leaves out the rows that are marked in `dependent`, whose multipliers then stay as they are. Allocates, and
   /// forgets the factors.

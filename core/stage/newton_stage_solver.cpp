@@ -118,8 +118,8 @@ void NewtonStageSolver::fill_right_side(const Stage& stage, const StateView& out
   const std::span<double> motion = std::span(right_).first(nv);
   if (first) floor_.follow_turns();
   std::fill(right_.begin(), right_.end(), 0.0);
-  system_.add_transposed(e, out.lambda, motion);
-  const std::span<const double> mass = system_.mass();
+  system_.jacobian().add_transposed(e.jacobian, out.lambda, motion);
+  const std::span<const double> mass = system_.inertia().mass();
   for (std::size_t i = 0; i < nv; ++i) right_[i] = e.force[i] - mass[i] * out.a[i] - right_[i];
   if (stage.level == ConstraintLevel::position) {
     const bool on_phi = floor_.phi_is_below(1.0);
@@ -147,7 +147,7 @@ void NewtonStageSolver::fill_velocity_residual(double beta_v, const StateView& o
   const Evaluation& e = equations_.evaluation();
   const std::span<const char> dependent = equations_.dependent();
   const std::span<double> right = std::span(right_).subspan(increment_.size());
-  system_.multiply(e, out.v, std::span(work_).first(right.size()));
+  system_.jacobian().multiply(e.jacobian, out.v, std::span(work_).first(right.size()));
   for (std::size_t r = 0; r < right.size(); ++r) right[r] = dependent[r] ? 0.0 : (e.nu[r] - work_[r]) / beta_v;
 }
 

@@ -5,12 +5,11 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
-std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent) {
-  const std::size_t bodies = system.model().bodies.size();
+std::vector<PrescribedBody> prescribed_bodies(const ConstraintJacobian& jacobian, std::span<const char> dependent) {
+  const std::size_t bodies = at(jacobian.layout().free_bodies());
   std::vector<std::vector<int>> rows_of(bodies), bodies_of(dependent.size());
-  for (const JacobianBlock& block : system.jacobian_blocks()) {
+  for (const JacobianBlock& block : jacobian.blocks()) {
     for (int r = block.row; r < block.row + block.rows; ++r) {
       std::vector<int>& touched = bodies_of[at(r)];
       if (dependent[at(r)] || std::ranges::count(touched, block.body) > 0) continue;
@@ -30,7 +29,7 @@ std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<co
     if (known[at(body)]) continue;
     std::vector<int> own;
     std::ranges::copy_if(rows_of[at(body)], std::back_inserter(own), [&](int r) { return open[at(r)] == 1; });
-    if (own.size() != at(system.body_velocities())) continue;
+    if (own.size() != at(jacobian.layout().body_velocities())) continue;
     known[at(body)] = 1;
     std::ranges::copy(own, found.emplace_back(PrescribedBody{body, {}}).rows.begin());
     for (const int r : rows_of[at(body)]) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "system/system.h"
+#include "system/jacobian.h"
 
 namespace freeplay {
 
@@ -16,8 +16,8 @@ struct PrescribedBody {
   std::array<int, 6> rows{};
 };
 
-/// Found from the pattern of Phi_q, rows marked in `dependent` left out. A body on which more such rows
+/// Rows marked in `dependent` are left out. A body on which more such rows
 /// act is not listed.
-std::vector<PrescribedBody> prescribed_bodies(const System& system, std::span<const char> dependent);
+std::vector<PrescribedBody> prescribed_bodies(const ConstraintJacobian& jacobian, std::span<const char> dependent);
 
 }  // namespace freeplay

@@ -6,7 +6,6 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
 RoundingFloor::RoundingFloor(StageEquations& equations, const ConvergenceParameters& parameters)
     : equations_(equations), system_(equations.system()), parameters_(parameters) {
@@ -29,7 +28,7 @@ RoundingFloor::RoundingFloor(StageEquations& equations, const ConvergenceParamet
 void RoundingFloor::measure() {
   const Evaluation& e = equations_.evaluation();
   const std::span<const double> unit = equations_.units();
-  const std::size_t width = at(system_.body_velocities());
+  const std::size_t width = at(system_.layout().body_velocities());
   coordinate_size_ = 1.0;
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const std::size_t body = i / width, c = i % width;
@@ -41,7 +40,7 @@ void RoundingFloor::measure() {
   }
   for (std::size_t r = 0; r < phi_.size(); ++r) {
     double largest_term = 0.0;
-    for (const System::RowPiece& piece : system_.row_pieces(r)) {
+    for (const ConstraintJacobian::RowPiece& piece : system_.jacobian().row_pieces(r)) {
       for (std::size_t c = 0; c < width; ++c) {
         largest_term =
             std::max(largest_term, std::abs(e.jacobian[at(piece.offset) + c]) * coordinate_[at(piece.velocity) + c]);

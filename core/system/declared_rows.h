@@ -1,64 +1,48 @@
-// DeclaredRows: rows and coordinates that planar joints declare (JointLayout::planar_rows, planar_coordinate), made for
-// all joints at once.
+// DeclaredRows: rows that planar joints declare (JointLayout::planar_rows), made for all joints at once.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "freeplay/joint.h"
-#include "system/planar_kinematics.h"
+#include "system/joint_ends.h"
+#include "system/markers.h"
 
 namespace freeplay {
-struct Evaluation;
-struct Point;
+struct ConstraintValues;
 }  // namespace freeplay
 
 namespace freeplay::planar {
 
+struct SlideLine;
+
 class DeclaredRows {
  public:
-  /// Markers (into Evaluation::markers) and bodies of a joint.
-  struct Ends {
-    int marker_a = 0, marker_b = 0;
-    BodyId body_a = ground, body_b = ground;
-  };
-  /// `row`: its first. `block_a`, `block_b`: where its rows in the columns of its bodies begin in Evaluation::jacobian,
-  /// three numbers each; -1 on ground.
-  void add_rows(Span<const PlanarRow> rows, const Ends& ends, int row, int block_a, int block_b);
-  /// `terms`: evaluations in which it is wanted. `turn`: into h, the angle whose nearest turn it takes; -1 for that of
-  /// zero.
-  void add_coordinate(Coordinate kind, const Ends& ends, int joint, unsigned terms, int turn);
+  /// `row`: its first. `offset_a`, `offset_b`: where its rows in the columns of its bodies begin in
+  /// ConstraintValues::jacobian, three numbers each; -1 on ground.
+  void add(Span<const PlanarRow> rows, const JointEnds& ends, int row, int offset_a, int offset_b);
 
   /// Numbers that no motion changes.
-  void write_constants(Evaluation& e) const;
-  /// phi and Phi_q where `e` has bodies and arms; `mounts` by marker.
-  void fill_rows(std::span<const Mount> mounts, Evaluation& e) const;
-  void fill_nu(Evaluation& e) const;
-  void fill_gamma(std::span<const Mount> mounts, Evaluation& e) const;
+  void write_constants(ConstraintValues& rows) const;
+  /// phi and Phi_q where bodies and arms are; `mounts` by marker.
+  void fill(std::span<const Mount> mounts, const MarkerValues& bodies, ConstraintValues& rows) const;
+  void fill_nu(ConstraintValues& rows) const;
+  void fill_gamma(std::span<const Mount> mounts, const MarkerValues& bodies, ConstraintValues& rows) const;
   /// Of Phi_q the part that motions change.
-  void fill_jacobian(std::span<const Mount> mounts, Evaluation& e) const;
-  void fill_coordinates(const Point& point, std::span<const Mount> mounts, unsigned terms, Evaluation& e) const;
+  void fill_jacobian(std::span<const Mount> mounts, const MarkerValues& bodies, ConstraintValues& rows) const;
 
  private:
   struct RowPair {
-    int marker_a, marker_b, row, block_a, block_b;
+    int marker_a, marker_b, row, offset_a, offset_b;
   };
   struct Row {
-    Ends ends;
-    int row, block_a, block_b;
+    JointEnds ends;
+    int row, offset_a, offset_b;
   };
-  struct JointCoordinate {
-    Ends ends;
-    int joint, turn;
-    unsigned terms;
-  };
-  struct Slide;
-  static void fill(const RowPair& pair, Evaluation& e);
-  static void fill(const Row& row, const Slide& slide, Evaluation& e);
+  static void fill(const RowPair& pair, const MarkerValues& bodies, ConstraintValues& rows);
+  static void fill(const Row& row, const SlideLine& slide, ConstraintValues& rows);
   std::vector<RowPair> origins_;
   std::vector<Row> across_, turns_;
-  std::vector<JointCoordinate> angles_, positions_;
-  unsigned terms_ = 0;  // evaluations in which any of them is wanted
 };
 
 }  // namespace freeplay::planar

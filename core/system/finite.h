@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "freeplay/joint.h"
+#include "system/joint_ends.h"
+#include "system/markers.h"
 
 namespace freeplay {
 
@@ -47,6 +49,11 @@ inline bool is_finite(const MarkerKinematics& k) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) sum += k.position[i] + k.velocity[i] + k.angular_velocity[i];
   return std::isfinite(sum);
+}
+/// Whether the markers of a joint are: else its answer may be anything.
+inline bool are_finite(const JointEnds& ends, const MarkerValues& values) {
+  return is_finite(values.markers[static_cast<std::size_t>(ends.marker_a)]) &&
+         is_finite(values.markers[static_cast<std::size_t>(ends.marker_b)]);
 }
 
 }  // namespace freeplay

@@ -5,7 +5,6 @@
 #include "system/spatial_kinematics.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
 Layout::Layout(const Model& model, Variant variant, std::span<const planar::DrivenBody> driven) {
   const bool planar = model.space == Space::planar;

@@ -32,6 +32,8 @@ class Layout {
   int free_bodies() const { return free_bodies_; }
   /// Where the coordinates and velocities of a body stand, counted in bodies; that of ground is `ground`.
   int place(BodyId body) const { return body == ground ? ground : places_[static_cast<std::size_t>(body)]; }
+  /// That place if it is one of the unknowns, else `ground`.
+  BodyId unknown(BodyId place) const { return place < free_bodies_ ? place : ground; }
   BodyId body_at(int place) const { return bodies_[static_cast<std::size_t>(place)]; }
   /// Of one body: 3 and 3 in the plane, 7 and 6 in space.
   int body_coordinates() const { return body_coordinates_; }

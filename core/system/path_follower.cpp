@@ -121,7 +121,7 @@ bool PathFollower::assemble(double t, Work& work, MotionFault& fault) const noex
     }
     return false;
   }
-  system_.jacobian_entries(work.e, work.entries);
+  system_.jacobian().list(work.e.jacobian, work.entries);
   work.solver.matrix.setZero();
   for (const SparseEntry& entry : work.entries) {
     if (const int row = row_of_[at(entry.row())]; row >= 0) work.solver.matrix(row, entry.col()) += entry.value();
@@ -217,7 +217,7 @@ bool PathFollower::evaluate(double t, Span<TimeValue> out, FollowedMotion::Work&
     const int j = model_.drivers[at(d)].joint;
     const JointElement& joint = model_.joints[at(j)];
     double row[6], bias = 0.0;
-    system_.coordinate_row(j, work.e, row, bias);
+    system_.joints().coordinate_row(j, work.e, row, bias);
     TimeValue& value = out[at(d)];
     value = {work.e.coordinate[at(j)], 0.0, bias};
     const BodyId bodies[2] = {model_.markers[at(joint.marker_a)].body, model_.markers[at(joint.marker_b)].body};
@@ -245,7 +245,7 @@ bool PathFollower::frame(int kinematics, double t, PathPose& pose, FollowedMotio
   planar::marker_acceleration(body == ground ? rest : &work.state.a()[3 * at(body)], e.arms[at(marker)], acceleration);
   pose[0] = {k.position[0], k.velocity[0], acceleration[0]};
   pose[1] = {k.position[1], k.velocity[1], acceleration[1]};
-  pose[2] = {system_.marker_angle(marker, work.state.q()), k.angular_velocity[2], acceleration[5]};
+  pose[2] = {system_.markers().angle(marker, work.state.q()), k.angular_velocity[2], acceleration[5]};
   return true;
 }
 

@@ -6,7 +6,6 @@
 #include "base/index.h"
 
 namespace freeplay {
-namespace {}  // namespace
 
 void PathRow::entries(const Evaluation& e, double* row) const {
   double g[6] = {};
@@ -16,7 +15,7 @@ void PathRow::entries(const Evaluation& e, double* row) const {
 
 double PathRow::residual(const System& system, const Point& point, const Evaluation& e, double path) const {
   if (component < 2) return e.markers[at(marker)].position[component] - path;
-  const double error = system.marker_angle(marker, point.q) - path;
+  const double error = system.markers().angle(marker, point.q) - path;
   return without_turns(error);
 }
 

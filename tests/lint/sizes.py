@@ -13,11 +13,6 @@ LONGEST_FILE, LONGEST_FUNCTION, MOST_FUNCTIONS = 450, 60, 25
 # What may be larger, each with the reason: a path, "path function" or "path class".
 EXCEPTIONS = {
     "core/run/statistics.h Statistics": "an accessor for each figure of the summary",
-    "core/system/system.h": "to be divided by the parts of the equations",
-    "core/system/system.h System": "to be divided by the parts of the equations",
-    "core/system/system.cpp System::System": "to be divided by the parts of the equations",
-    "core/system/system.cpp Evaluation::Evaluation": "to be divided by the parts of the equations",
-    "core/system/driven.cpp System::place_driven": "to be divided by the parts of the equations",
     "tests/validation/inverse_dynamics_test.cpp instants": "a table of published numbers",
 }
 

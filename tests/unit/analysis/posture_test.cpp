@@ -249,7 +249,7 @@ TEST(Posture, RatesAreThoseOfDifferencesAlongAPath) {
       const double first = (8.0 * (f[3] - f[1]) - (f[4] - f[0])) / (12.0 * h);
       EXPECT_NEAR(e.coordinate_rate[static_cast<std::size_t>(j)], first, 1e-7 * (1.0 + std::abs(first)));
       double row[6], acceleration = 0.0;
-      bench.mechanism.system().coordinate_row(j, e, row, acceleration);
+      bench.mechanism.system().joints().coordinate_row(j, e, row, acceleration);
       const JointElement& joint = bench.model->joints[static_cast<std::size_t>(j)];
       const BodyId bodies[2] = {bench.model->markers[static_cast<std::size_t>(joint.marker_a)].body,
                                 bench.model->markers[static_cast<std::size_t>(joint.marker_b)].body};

@@ -80,11 +80,11 @@ class Play {
     const JointInput i = in(t);
     joint_.call(&abi::JointTable::commit, &i, Span<const double>(), hs());
   }
-  struct EventValues {
+  struct ProbedEvents {
     double g[2], rate[2];
   };
-  EventValues events() const {
-    EventValues e{};
+  ProbedEvents events() const {
+    ProbedEvents e{};
     const JointInput i = in();
     joint_.call(&abi::JointTable::events, &i, Span<double>(e.g), Span<double>(e.rate));
     return e;

@@ -27,7 +27,7 @@ TEST(DenseStep, GivesBackAQuinticWithItsDerivatives) {
   fill(start, 0.3);
   fill(end, 1.1);
   const System system(*model);
-  const DenseStep step(system, start, {}, end, {});
+  const DenseStep step(system.model().space, start, {}, end, {});
   for (const double s : {0.0, 0.2, 0.5, 0.9, 1.0}) {
     step.at(s, between);
     fill(known, 0.3 + 0.8 * s);
@@ -61,14 +61,14 @@ TEST(DenseStep, GivesBackAPolynomialOfDegreeEightWhereAccelerationsInsideAreKnow
   const std::vector<double> start_rate{fill_more(start, 0.3)}, end_rate{fill_more(end, 1.1)};
   const System system(*model);
   InnerMotion inner(start.v().size(), 1);
-  const DenseStep by_ends(system, start, start_rate, end, end_rate);
+  const DenseStep by_ends(system.model().space, start, start_rate, end, end_rate);
   for (std::size_t place = 0; place < InnerMotion::places.size(); ++place) {
     const double s = InnerMotion::places[place];
     const std::vector<double> rate{fill_more(known, 0.3 + 0.8 * s)};
     by_ends.missing(s, known, rate, inner.missing(place), inner.missing_rate(place));
   }
   inner.fit();
-  const DenseStep step(system, start, start_rate, end, end_rate, &inner);
+  const DenseStep step(system.model().space, start, start_rate, end, end_rate, &inner);
   for (const double s : {0.0, 0.1, 0.35, 0.5, 0.8, 1.0}) {
     step.at(s, between);
     fill_more(known, 0.3 + 0.8 * s);

@@ -93,7 +93,7 @@ TEST(GearMotion, RowIsDerivativeOnMovingJoints) {
     }
     EXPECT_TRUE(system.evaluate(point(state), term_position | term_velocity | term_acceleration, e));
     rate->assign(static_cast<std::size_t>(system.layout().nc()), 0.0);
-    system.multiply(e, state.v(), *rate);
+    system.jacobian().multiply(e.jacobian, state.v(), *rate);
     return e.phi[row];
   };
   const double h = 1e-5;
@@ -103,7 +103,7 @@ TEST(GearMotion, RowIsDerivativeOnMovingJoints) {
   EXPECT_NEAR(now[row], (high - low) / (2.0 * h), 1e-8);
   std::vector<double> a(nv), product(before.size());
   for (std::size_t i = 0; i < nv; ++i) a[i] = 0.1 * (static_cast<double>(i) + 1.0);
-  system.multiply(e, a, product);
+  system.jacobian().multiply(e.jacobian, a, product);
   EXPECT_NEAR(product[row] - e.gamma[row], (after[row] - before[row]) / (2.0 * h), 1e-7);
 }
 

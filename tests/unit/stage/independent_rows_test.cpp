@@ -31,7 +31,7 @@ struct Door : ::testing::Test {
 };
 
 TEST_F(Door, HasTwoRedundantEquations) {
-  IndependentRows rows(system);
+  IndependentRows rows(system.jacobian());
   EXPECT_FALSE(rows.is_known());
   EXPECT_FALSE(rows.any_dependent());
   EXPECT_TRUE(rows.find(e));
@@ -40,7 +40,7 @@ TEST_F(Door, HasTwoRedundantEquations) {
 }
 
 TEST_F(Door, KeepsItsChoice) {
-  IndependentRows rows(system);
+  IndependentRows rows(system.jacobian());
   rows.find(e);
   EXPECT_EQ(1, rows.choice());
   EXPECT_FALSE(rows.find(e));
@@ -48,7 +48,7 @@ TEST_F(Door, KeepsItsChoice) {
 }
 
 TEST_F(Door, SharesTheLoadEvenly) {
-  IndependentRows rows(system);
+  IndependentRows rows(system.jacobian());
   rows.find(e);
   rows.find_more(e, 0.0);
   double lambda[] = {6.0, 4.0, 0.0, 0.0};
@@ -58,7 +58,7 @@ TEST_F(Door, SharesTheLoadEvenly) {
 }
 
 TEST_F(Door, IsAsRegularAsTheSmallestPivotOfAnAttempt) {
-  IndependentRows rows(system);
+  IndependentRows rows(system.jacobian());
   rows.note_pivot(2.0);
   rows.note_pivot(0.5);
   rows.note_pivot(1.0);
@@ -70,7 +70,7 @@ TEST_F(Door, IsAsRegularAsTheSmallestPivotOfAnAttempt) {
 }
 
 TEST_F(Door, IsSingularWhereMoreEquationsDependOnOthers) {
-  IndependentRows rows(system);
+  IndependentRows rows(system.jacobian());
   rows.keep_all();  // four independent ones before
   rows.note_pivot(1.0);
   rows.find(e);

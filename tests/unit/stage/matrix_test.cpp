@@ -39,7 +39,8 @@ std::vector<std::string> names(const Model& model, const std::vector<PrescribedB
 std::vector<std::string> prescribed_in(const std::string& text) {
   const auto model = load(text);
   const System system(*model);
-  return names(*model, prescribed_bodies(system, std::vector<char>(static_cast<std::size_t>(system.layout().nc()), 0)));
+  return names(*model, prescribed_bodies(system.jacobian(),
+                                         std::vector<char>(static_cast<std::size_t>(system.layout().nc()), 0)));
 }
 
 TEST(PrescribedBodies, AreDrivenCranksAndWhatStandsOnThem) {
@@ -54,7 +55,7 @@ TEST(PrescribedBodies, LoseWhatARowLeftOutHeld) {
   const System system(*model);
   std::vector<char> dependent(static_cast<std::size_t>(system.layout().nc()), 0);
   dependent[static_cast<std::size_t>(system.layout().driver_row(1))] = 1;
-  EXPECT_THAT(names(*model, prescribed_bodies(system, dependent)), ElementsAre("a"));
+  EXPECT_THAT(names(*model, prescribed_bodies(system.jacobian(), dependent)), ElementsAre("a"));
 }
 
 /// The matrix written out, and its solution.
@@ -62,9 +63,9 @@ Eigen::VectorXd dense_solution(const System& system, const Evaluation& e, double
                                const Eigen::VectorXd& right) {
   const int nv = system.layout().nv(), nc = system.layout().nc();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(nv + nc, nv + nc);
-  for (int i = 0; i < nv; ++i) matrix(i, i) = system.mass()[static_cast<std::size_t>(i)];
+  for (int i = 0; i < nv; ++i) matrix(i, i) = system.inertia().mass()[static_cast<std::size_t>(i)];
   std::size_t next = 0;
-  for (const ForceBlock& block : system.force_blocks()) {
+  for (const ForceBlock& block : system.forces().blocks()) {
     const BodyId bodies[2] = {block.a, block.b};
     for (int r = 0; r < 6; ++r) {
       for (int c = 0; c < 6; ++c, ++next) {
@@ -75,7 +76,7 @@ Eigen::VectorXd dense_solution(const System& system, const Evaluation& e, double
     }
   }
   std::vector<SparseEntry> entries;
-  system.jacobian_entries(e, entries);
+  system.jacobian().list(e.jacobian, entries);
   for (const SparseEntry& entry : entries) {
     matrix(nv + entry.row(), entry.col()) += entry.value();
     matrix(entry.col(), nv + entry.row()) += entry.value();

@@ -124,8 +124,8 @@ class Reduced : public ::testing::Test {
     EXPECT_TRUE(solver_.project_velocity(view)) << solver_.trouble();
     EXPECT_TRUE(solver_.accelerate(view, z_rate_)) << solver_.trouble();
     EXPECT_TRUE(free_.evaluate(point(state_), term_position | term_velocity | term_force, e_));
-    free_.fill_driven_jacobian(e_);
-    free_.recover_loads(e_, state_.lambda());
+    free_.constraints().fill_driven(e_);
+    free_.driven().recover_loads(e_, state_.lambda());
     EXPECT_EQ(e.fault.kind, Fault::Kind::none);
     // The same for the whole mechanism.
     all_ = start_.state;
@@ -162,7 +162,7 @@ TEST_F(Reduced, EveryConstraintOfTheWholeHolds) {
   Evaluation e(whole_);
   ASSERT_TRUE(whole_.evaluate(point(all_), term_position | term_velocity, e));
   std::vector<double> rate(e.phi.size());
-  whole_.multiply(e, all_.v(), rate);
+  whole_.jacobian().multiply(e.jacobian, all_.v(), rate);
   for (std::size_t r = 0; r < rate.size(); ++r) {
     EXPECT_NEAR(e.phi[r], 0.0, 1e-14) << r;
     EXPECT_NEAR(rate[r], e.nu[r], 1e-13) << r;
@@ -176,7 +176,7 @@ TEST_F(Reduced, WhatIsCompletedLaterIsWhatAWholeLookGives) {
   ASSERT_TRUE(free_.evaluate(point(state_), term_position | term_force, part));
   free_.complete_rates(term_velocity, part);
   free_.complete_rates(term_acceleration, part);
-  ASSERT_TRUE(free_.complete(point(state_), part));
+  ASSERT_TRUE(free_.joints().evaluate_coordinates(point(state_), term_coordinate, part));
   EXPECT_EQ(part.nu, whole.nu);
   EXPECT_EQ(part.gamma, whole.gamma);
   EXPECT_EQ(part.coordinate, whole.coordinate);
@@ -244,8 +244,8 @@ TEST_F(Reduced, ReactionsAreThoseOfTheWhole) {
   ASSERT_TRUE(whole_.evaluate(point(all_), term_position | term_force, e));
   for (int j = 0; j < static_cast<int>(model_->joints.size()); ++j) {
     double here[6], there[6];
-    free_.reaction(j, e_, state_.lambda(), here);
-    whole_.reaction(j, e, all_.lambda(), there);
+    free_.constraints().reaction(j, e_, state_.lambda(), here);
+    whole_.constraints().reaction(j, e, all_.lambda(), there);
     for (int i = 0; i < 6; ++i) EXPECT_NEAR(here[i], there[i], 1e-11) << model_->joints[at(j)].name << " " << i;
   }
 }
@@ -259,7 +259,7 @@ TEST_F(Reduced, PowerThatDrivenBodiesGiveIsThatOfTheDrivers) {
   Evaluation e(whole_);
   ASSERT_TRUE(whole_.evaluate(point(all_), term_position | term_force, e));
   for (std::size_t i = 0; i < all_.v().size(); ++i) {
-    gained += (whole_.mass()[i] * all_.a()[i] - e.force[i]) * all_.v()[i];
+    gained += (whole_.inertia().mass()[i] * all_.a()[i] - e.force[i]) * all_.v()[i];
   }
   EXPECT_GT(std::abs(given), 1.0);
   EXPECT_NEAR(given, gained, 1e-11);
@@ -272,7 +272,7 @@ TEST_F(Reduced, ImpulsesAreThoseOfTheWhole) {
   for (std::size_t i = at(3 * first); i < e_.v.size(); ++i) change.push_back(0.3 * e_.v[i]);
   for (int r = 0; r < free_.layout().nc(); ++r) impulse[at(r)] = 0.1 + 0.2 * r;
   const std::vector<double> given = impulse;
-  free_.recover_impulses(e_, change, impulse);
+  free_.driven().recover_impulses(e_, change, impulse);
   for (int r = 0; r < free_.layout().nc(); ++r) EXPECT_EQ(impulse[at(r)], given[at(r)]);
   // On every driven body: M dv + Phi_q^T mu = 0, by Phi_q of the whole.
   Evaluation e(whole_);
@@ -285,11 +285,11 @@ TEST_F(Reduced, ImpulsesAreThoseOfTheWhole) {
   for (int d = 0; d < static_cast<int>(model_->drivers.size()); ++d) {
     mu[at(whole_.layout().driver_row(d))] = impulse[at(free_.layout().driver_row(d))];
   }
-  whole_.add_transposed(e, mu, sum);
+  whole_.jacobian().add_transposed(e.jacobian, mu, sum);
   for (int place = first; place < first + static_cast<int>(change.size()) / 3; ++place) {
     const int b = free_.layout().body_at(place);
     for (int i = 0; i < 3; ++i) {
-      const double momentum = whole_.mass()[at(3 * b + i)] * change[at(3 * (place - first) + i)];
+      const double momentum = whole_.inertia().mass()[at(3 * b + i)] * change[at(3 * (place - first) + i)];
       EXPECT_NEAR(momentum + sum[at(3 * b + i)], 0.0, 1e-12) << model_->bodies[at(b)].name << " " << i;
     }
   }

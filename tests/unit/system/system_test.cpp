@@ -63,7 +63,7 @@ class Equations : public ::testing::TestWithParam<Case> {
   }
   void dense_jacobian(const Evaluation& e, std::vector<double>& out) const {
     std::vector<SparseEntry> entries;
-    system_.jacobian_entries(e, entries);
+    system_.jacobian().list(e.jacobian, entries);
     for (const SparseEntry& entry : entries) {
       out[static_cast<std::size_t>(entry.row()) * q_.size() + static_cast<std::size_t>(entry.col())] += entry.value();
     }
@@ -73,7 +73,7 @@ class Equations : public ::testing::TestWithParam<Case> {
     Evaluation e(system_);
     EXPECT_TRUE(system_.evaluate(point, term_position | term_velocity, e));
     std::vector<double> rate(e.phi.size());
-    system_.multiply(e, point.v, rate);
+    system_.jacobian().multiply(e.jacobian, point.v, rate);
     for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= e.nu[i];
     return rate;
   }
@@ -118,7 +118,7 @@ TEST_P(Equations, TransposedProductIsThatOfTheDenseJacobian) {
   for (std::size_t r = 0; r < nc; ++r) {
     for (std::size_t k = 0; k < nv; ++k) want[k] += jacobian[r * nv + k] * lambda[r];
   }
-  system_.add_transposed(e, lambda, sum);
+  system_.jacobian().add_transposed(e.jacobian, lambda, sum);
   for (std::size_t k = 0; k < nv; ++k) EXPECT_NEAR(sum[k], want[k], 1e-13 * (1.0 + std::abs(want[k])));
 }
 
@@ -188,7 +188,7 @@ TEST(ForceDerivatives, OfAJointInContactAreThoseOfTheForces) {
   };
   ASSERT_TRUE(system.evaluate({0.0, q, v, {}, h}, term_force | term_derivative, e));
   const std::vector<double> by_q = e.force_q, by_v = e.force_v;
-  const JointInput in = system.input(0, {0.0, q, v, {}, h}, e);
+  const JointInput in = system.joints().input(0, {0.0, q, v, {}, h}, e);
   ASSERT_GT(std::hypot(in.b->position[0] - in.a->position[0], in.b->position[1] - in.a->position[1]), 2.2e-3);
 
   double worst = 0.0;
