@@ -51,7 +51,7 @@ class FreeMotions {
 
   /// A wheel on its own bearing on ground that nothing turns, as one whose gear was forgotten.
   void find_idle(const MatrixXd& spins, LeftFree& found) const {
-    const int width = closed_.body_velocities();
+    const int width = closed_.layout().body_velocities();
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (spins.middleRows(width * b, width).norm() <= counts_as_motion || !rests_on_ground(b)) continue;
       found.doubtful = b;

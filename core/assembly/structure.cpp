@@ -240,7 +240,7 @@ class Examination {
     const bool held = std::ranges::any_of(model_.drivers, [](const Driver& driver) { return prescribes(driver.kind); });
     if (held || model_.drivers.empty()) return;
     const MatrixXd free = kernel(open);
-    const int width = released_.body_velocities();
+    const int width = released_.layout().body_velocities();
     const auto moves = [&](int marker) {
       const BodyId b = body_of(marker);
       return b != ground && free.cols() > 0 && free.middleRows(width * b, width).norm() > counts_as_motion;

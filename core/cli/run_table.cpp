@@ -32,7 +32,7 @@ struct Figures {
   std::string operator()(const char* part, const std::string& name, const char* quantity, double value,
                          const char* unit, std::optional<std::size_t> peak = {}, FigureStyle style = {}) const {
     if (const Json* const spread = spread_of(part, name, quantity)) return range_text(*spread, unit);
-    return figure_text(value, unit, peak ? record.statistics.noise().of(*peak) : 0.0, style);
+    return figure_text(value, unit, peak ? record.statistics.largest().noise().of(*peak) : 0.0, style);
   }
   /// A number of events of a joint.
   std::string count(int joint, const char* quantity, long value) const {
@@ -48,8 +48,8 @@ struct Figures {
   }
   /// Whether the largest force of a joint has a noise that is shown: its sums and counts are then as uncertain.
   bool is_chaotic(int joint) const {
-    const std::size_t peak = record.statistics.peak_values().force(joint);
-    return has_shown_noise(record.statistics.joint(joint).max_force, record.statistics.noise().of(peak));
+    const std::size_t peak = record.statistics.largest().places().force(joint);
+    return has_shown_noise(record.statistics.joint(joint).max_force, record.statistics.largest().noise().of(peak));
   }
 
  private:
@@ -120,7 +120,7 @@ void add_joints(const RunRecord& record, TextTable& table) {
   table.add_row(std::move(head));
   const bool any = record.statistics.any();
   const Figures figure{record};
-  const PeakValues& peaks = record.statistics.peak_values();
+  const PeakValues& peaks = record.statistics.largest().places();
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!is_listed(joints[i])) continue;
     const JointStatistics seen = seen_of(i);
@@ -181,7 +181,7 @@ std::string twin_line(const Json& twin) {
 void add_gears(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "gear"), "max |force|", "max |torque|"});
   const Figures figure{record};
-  const PeakValues& peaks = record.statistics.peak_values();
+  const PeakValues& peaks = record.statistics.largest().places();
   for (const Gear& gear : record.model.gears) {
     const JointElement& second = record.model.joints[static_cast<std::size_t>(gear.second)];
     const bool turns = second.ideal_layout.coordinate == Coordinate::angle;
@@ -196,7 +196,7 @@ void add_gears(const RunRecord& record, TextTable& table) {
 void add_forces(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "force"), "max |F|", "max |torque|", "work"});
   const Figures figure{record};
-  const PeakValues& peaks = record.statistics.peak_values();
+  const PeakValues& peaks = record.statistics.largest().places();
   for (int f = 0; f < static_cast<int>(record.model.force_elements.size()); ++f) {
     const ForceStatistics seen = record.statistics.force(f);
     const bool pure_force = seen.max_torque == 0.0, pure_torque = seen.max_force == 0.0 && !pure_force;
@@ -222,7 +222,7 @@ void add_drivers(const RunRecord& record, TextTable& table) {
                              : "max |effort|",
                  "rms"});
   const Figures figure{record};
-  const PeakValues& peaks = record.statistics.peak_values();
+  const PeakValues& peaks = record.statistics.largest().places();
   for (std::size_t i = 0; i < drivers.size(); ++i) {
     const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
     const char* unit = is_slide(record.model, drivers[i]) ? "N" : "N*m";
@@ -235,7 +235,7 @@ void add_drivers(const RunRecord& record, TextTable& table) {
 void add_paths(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "path"), "max error", "rms", "max angle", "rms"});
   const Figures figure{record};
-  const PeakValues& peaks = record.statistics.peak_values();
+  const PeakValues& peaks = record.statistics.largest().places();
   for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
     const PathStatistics seen = record.statistics.path(static_cast<int>(i));
     const std::string& name = record.model.kinematics[i].name;

@@ -39,20 +39,20 @@ void add_peak(const std::string& name, const char* unit, double before, double w
 /// striking first.
 std::vector<Peak> larger_before(const RunRecord& record) {
   const Statistics& statistics = record.statistics;
-  const auto before = statistics.largest_before(), within = statistics.largest();
+  const auto before = statistics.largest().before(), within = statistics.largest().in_window();
   const Model& model = record.model;
   std::vector<Peak> peaks;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const std::size_t i = statistics.peak_values().force(static_cast<int>(j));
+    const std::size_t i = statistics.largest().places().force(static_cast<int>(j));
     if (!model.joints[j].is_force && model.joints[j].gear < 0)
-      add_peak(model.joints[j].name, "N", before[i], within[i], statistics.noise().of(i), peaks);
+      add_peak(model.joints[j].name, "N", before[i], within[i], statistics.largest().noise().of(i), peaks);
   }
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
-    const std::size_t i = statistics.peak_values().effort(static_cast<int>(d));
+    const std::size_t i = statistics.largest().places().effort(static_cast<int>(d));
     const JointElement& joint = model.joints[static_cast<std::size_t>(model.drivers[d].joint)];
     const bool angle = joint.layout.coordinate == Coordinate::angle;
-    add_peak("driver " + model.drivers[d].name, angle ? "N*m" : "N", before[i], within[i], statistics.noise().of(i),
-             peaks);
+    add_peak("driver " + model.drivers[d].name, angle ? "N*m" : "N", before[i], within[i],
+             statistics.largest().noise().of(i), peaks);
   }
   std::ranges::stable_sort(peaks, std::ranges::greater{}, &Peak::ratio);
   return peaks;
@@ -72,9 +72,9 @@ std::string before_window(const RunRecord& record) {
 /// Where rows are farther apart than a peak lasts.
 std::string missed_by_rows(const RunRecord& record) {
   const Statistics& statistics = record.statistics;
-  const auto all = statistics.largest(), written = statistics.largest_written();
+  const auto all = statistics.largest().in_window(), written = statistics.largest().written();
   const std::vector<JointElement>& joints = record.model.joints;
-  const auto force = [&](std::size_t j) { return statistics.peak_values().force(static_cast<int>(j)); };
+  const auto force = [&](std::size_t j) { return statistics.largest().places().force(static_cast<int>(j)); };
   double largest = 0.0;
   for (std::size_t j = 0; j < joints.size(); ++j) largest = std::max(largest, all[force(j)]);
   std::size_t worst = joints.size();
@@ -84,7 +84,7 @@ std::string missed_by_rows(const RunRecord& record) {
     if (!joints[j].is_force && peak > of_interest * largest && share < least) worst = j, least = share;
   }
   if (worst == joints.size() || !(written[force(worst)] >= 0.0)) return {};
-  const double noise = statistics.noise().of(force(worst));
+  const double noise = statistics.largest().noise().of(force(worst));
   const std::string seen = digits(written[force(worst)], noise);
   return fmt::format("  rows {:g} s apart miss peaks between them: they show {} N of the {} in {}\n",
                      record.model.settings.interval, seen, figure_text(all[force(worst)], "N", noise),

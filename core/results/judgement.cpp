@@ -157,8 +157,8 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
   const JointElement& joint = record.model.joints[at(j)];
   const JointLayout& layout = joint.layout;
   const JointStatistics seen = record.statistics.joint(j);
-  const std::span<const double> discarded = record.statistics.largest_before();
-  const PeakValues& values = record.statistics.peak_values();
+  const std::span<const double> discarded = record.statistics.largest().before();
+  const PeakValues& values = record.statistics.largest().places();
   const double depth = std::fmax(seen.max_penetration, discarded[values.penetration(j)]);
   const double force = std::fmax(seen.max_normal_force, discarded[values.normal_force(j)]);
   const double radius = layout.smaller_radius;

@@ -52,8 +52,8 @@ class LoadJudge {
 
   /// Over the whole run, whatever `discard` says; 0 where nothing was seen.
   double largest(std::size_t peak) const {
-    const Statistics& seen = record_.statistics;
-    return std::max({seen.any() ? seen.largest()[peak] : 0.0, seen.largest_before()[peak], 0.0});
+    const LargestValues& seen = record_.statistics.largest();
+    return std::max({record_.statistics.any() ? seen.in_window()[peak] : 0.0, seen.before()[peak], 0.0});
   }
 
   void look_at(double force, double torque, double limit, const std::string& element) {
@@ -63,7 +63,7 @@ class LoadJudge {
   }
 
   void look_at_forces() {
-    const PeakValues& peaks = record_.statistics.peak_values();
+    const PeakValues& peaks = record_.statistics.largest().places();
     for (int f = 0; f < static_cast<int>(model_.force_elements.size()); ++f) {
       const bool applied = model_.force_elements[at(f)].applied >= 0;
       look_at(largest(peaks.applied_force(f)), largest(peaks.applied_torque(f)),
@@ -75,7 +75,7 @@ class LoadJudge {
     for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
       const Driver& driver = model_.drivers[d];
       if (prescribes(driver.kind)) continue;
-      const double effort = largest(record_.statistics.peak_values().effort(static_cast<int>(d)));
+      const double effort = largest(record_.statistics.largest().places().effort(static_cast<int>(d)));
       const bool turns = driver.kind == DriverKind::torque;
       look_at(turns ? 0.0 : effort, turns ? effort : 0.0, most_of_load, fmt::format("driver '{}'", driver.name));
     }
@@ -93,7 +93,7 @@ class LoadJudge {
     double fastest = fastest_body;
     int body = -1;
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
-      const double speed = largest(record_.statistics.peak_values().speed(b));
+      const double speed = largest(record_.statistics.largest().places().speed(b));
       if (speed > fastest) fastest = speed, body = b;
     }
     if (body < 0 || !is_on_ground()) return;

@@ -269,8 +269,8 @@ Json trust_part(const Verdict& trust) {
 /// The window of the statistics, and the largest values before it: null where nothing was left out.
 Json statistics_part(const RunRecord& record) {
   const StatisticsWindow window = record.statistics.window();
-  const auto largest = record.statistics.largest_before();
-  const PeakValues& peaks = record.statistics.peak_values();
+  const auto largest = record.statistics.largest().before();
+  const PeakValues& peaks = record.statistics.largest().places();
   const auto value = [&](std::size_t i) { return json_number(largest[i]); };
   Json joints = Json::object(), drivers = Json::object();
   for (std::size_t j = 0; j < record.model.joints.size(); ++j) {
@@ -289,9 +289,9 @@ Json statistics_part(const RunRecord& record) {
 
 /// By how much peaks may differ in another run; null where nothing can touch.
 Json noise_part(const RunRecord& record) {
-  const PeakNoise& noise = record.statistics.noise();
+  const PeakNoise& noise = record.statistics.largest().noise();
   if (!noise.active()) return nullptr;
-  const PeakValues& peaks = record.statistics.peak_values();
+  const PeakValues& peaks = record.statistics.largest().places();
   const auto value = [&](std::size_t i) { return json_number(noise.of(i)); };
   const Model& model = record.model;
   Json joints = Json::object(), drivers = Json::object(), forces = Json::object(), paths = Json::object();

@@ -29,7 +29,7 @@ ContactRows::ContactRows(const System& system, const Channels& channels, const S
       last_held_of_grid_(long_ago) {
   if (levels_ == 0) return;
   for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
-    const JointLayout& layout = system.joint_layout(j);
+    const JointLayout& layout = system.joints().layout(j);
     const JointColumns& columns = channels.joints[at(j)];
     if (columns.normal_force < 0 || contact_count(layout) == 0) continue;
     OfJoint& joint = joints_.emplace_back();

@@ -31,7 +31,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       statistics_(run.model, run.channels, run.adaptive),
       clearances_(run.model, run.system.joints(), run.channels),
       ledger_(run.system.joints(), run.channels),
-      peaks_(statistics_.peak_values().size()),
+      peaks_(statistics_.largest().places().size()),
       contact_rows_(run.system, run.channels, statistics_, run.adaptive),
       contact_peaks_(contact_rows_.largest().size()),
       storm_(run.model.joints.size(), storm_limits(run.settings, run.adaptive)),
@@ -70,7 +70,7 @@ bool Recorder::record_step() {
   run_.watch.add_open(position);
   if (!(position <= open_rows * run_.system.size())) return failure_.fail(4, failure_.why_open(position));
   const bool counts = statistics_.counts(run_.accepted.t());
-  if (!counts && !statistics_.noise().active()) return true;
+  if (!counts && !statistics_.largest().noise().active()) return true;
   if (!know_row()) return false;
   if (!counts) {
     statistics_.note(row_);
@@ -91,7 +91,7 @@ bool Recorder::record_step() {
 
 // Into the step that was just accepted.
 void Recorder::look_back() {
-  if (run_.ended_abruptly) return peaks_.restart(run_.accepted.t(), statistics_.values());
+  if (run_.ended_abruptly) return peaks_.restart(run_.accepted.t(), statistics_.largest().last());
   const Ends step{run_.trial, run_.e_trial, run_.accepted, run_.e_accepted};
   if (contact_rows_.active()) see_contact_end(row_);
   seek_peaks(step);
@@ -247,12 +247,12 @@ bool Recorder::look_for_peak(double s, const Ends& step, bool wanted_row) {
 // The step ends with the values that statistics saw last.
 void Recorder::seek_peaks(const Ends& step) {
   const bool counts = statistics_.counts(step.end.t());
-  if (statistics_.counts(step.start.t()) != counts) return peaks_.restart(step.end.t(), statistics_.values());
-  peaks_.end_step(step.end.t(), statistics_.values());
-  const auto largest = counts ? statistics_.largest() : statistics_.largest_before();
+  if (statistics_.counts(step.start.t()) != counts) return peaks_.restart(step.end.t(), statistics_.largest().last());
+  peaks_.end_step(step.end.t(), statistics_.largest().last());
+  const auto largest = counts ? statistics_.largest().in_window() : statistics_.largest().before();
   for (double s = peaks_.next(largest); s > 0.0; s = peaks_.next(largest)) {
     if (!look_for_peak(s, step, false)) return;
-    peaks_.seen(s, statistics_.values());
+    peaks_.seen(s, statistics_.largest().last());
   }
 }
 
@@ -270,7 +270,7 @@ void Recorder::seek_contact_peaks(const Ends& step) {
 
 // An event or a kink changes what acts at the end of the step that was just made: until there it goes on smoothly.
 bool Recorder::note_abrupt_end() {
-  if (!statistics_.counts(run_.trial.t()) && !statistics_.noise().active()) return true;
+  if (!statistics_.counts(run_.trial.t()) && !statistics_.largest().noise().active()) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
   Fault fault;
   if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))

@@ -9,11 +9,6 @@
 namespace freeplay {
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double nothing = -std::numeric_limits<double>::infinity();
-
-void raise(std::span<const double> values, std::vector<double>& largest) {
-  for (std::size_t i = 0; i < values.size(); ++i) largest[i] = std::max(largest[i], values[i]);
-}
 }  // namespace
 
 void Statistics::Mean::add(double value, double dt, bool first, bool by_parabolas) {
@@ -45,13 +40,7 @@ double Statistics::Mean::rms(double duration) const { return std::sqrt(std::max(
 
 Statistics::Statistics(const Model& model, const Channels& channels, bool long_steps)
     : channels_(channels),
-      peaks_(model, channels),
-      noise_(model, peaks_.size()),
-      values_(peaks_.size()),
-      largest_(peaks_.size(), nothing),
-      before_(peaks_.size(), nothing),
-      written_(peaks_.size(), nothing),
-      of_written_(peaks_.size()),
+      largest_(model, channels),
       discard_until_(model.settings.start + model.settings.discard),
       joints_(model.joints.size()),
       forces_(model.force_elements.size()),
@@ -68,26 +57,18 @@ bool Statistics::begins_inside(double from, double to) const {
   return !counts(from) && counts(to) && discard_until_ - from < (1.0 - 1e-9) * (to - from);
 }
 
-void Statistics::take_largest(double t) {
-  if (!counts(t)) return raise(values_, before_);
-  raise(values_, largest_);
-  noise_.see(t, values_);
-}
-
 void Statistics::note(std::span<const double> row) {
-  peaks_.of(row, values_);
-  take_largest(row[at(channels_.time)]);
+  const double t = row[at(channels_.time)];
+  largest_.see(row, t, counts(t));
 }
 
 void Statistics::note_written(std::span<const double> row) {
   note(row);
-  if (counts(row[at(channels_.time)])) raise(values_, written_);
+  if (counts(row[at(channels_.time)])) largest_.note_written();
 }
 
 void Statistics::note_written_later(std::span<const double> row) {
-  if (!counts(row[at(channels_.time)])) return;
-  peaks_.of(row, of_written_);
-  raise(of_written_, written_);
+  if (counts(row[at(channels_.time)])) largest_.note_written_later(row);
 }
 
 void Statistics::add(std::span<const double> row, std::span<const double> driver_work,
@@ -123,22 +104,24 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
   }
 }
 
-// With the values of the row in `values_`.
+// Of the row that was noted last.
 void Statistics::add_means(std::span<const double> row, double dt, bool first) {
+  const PeakValues& places = largest_.places();
+  const std::span<const double> values = largest_.last();
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
     JointSums& sums = joints_[at(j)];
-    sums.force.add(values_[peaks_.force(j)], dt, first, long_steps_);
+    sums.force.add(values[places.force(j)], dt, first, long_steps_);
     if (channels_.joints[at(j)].contact < 0) continue;
     const double contact = row[at(channels_.joints[at(j)].contact)];
     if (!first) sums.contact_time += 0.5 * dt * (sums.last_contact + contact);
     sums.last_contact = contact;
   }
   for (int d = 0; d < static_cast<int>(drivers_.size()); ++d) {
-    drivers_[at(d)].effort.add(values_[peaks_.effort(d)], dt, first, long_steps_);
+    drivers_[at(d)].effort.add(values[places.effort(d)], dt, first, long_steps_);
   }
   for (int p = 0; p < static_cast<int>(paths_.size()); ++p) {
-    paths_[at(p)].position.add(values_[peaks_.position_error(p)], dt, first, long_steps_);
-    paths_[at(p)].angle.add(values_[peaks_.angle_error(p)], dt, first, long_steps_);
+    paths_[at(p)].position.add(values[places.position_error(p)], dt, first, long_steps_);
+    paths_[at(p)].angle.add(values[places.angle_error(p)], dt, first, long_steps_);
   }
 }
 
@@ -167,38 +150,48 @@ void Statistics::add_contact(int joint, double time) {
 }
 
 JointStatistics Statistics::joint(int index) const {
+  const PeakValues& places = largest_.places();
+  const std::span<const double> largest = largest_.in_window();
   const JointSums& sums = joints_[at(index)];
   if (!any()) return {nan, nan, nan, nan, nan, nan, nan, 0, nan};
   JointStatistics out{
-      largest_[peaks_.force(index)], sums.force.rms(duration_), nan, nan, nan, nan, sums.loss, sums.contacts,
-      largest_[peaks_.torque(index)]};
+      largest[places.force(index)], sums.force.rms(duration_), nan, nan, nan, nan, sums.loss, sums.contacts,
+      largest[places.torque(index)]};
   const JointColumns& columns = channels_.joints[at(index)];
   if (columns.contact < 0 || columns.normal_force < 0 || columns.penetration < 0) return out;
-  out.max_normal_force = largest_[peaks_.normal_force(index)];
-  out.max_penetration = largest_[peaks_.penetration(index)];
-  if (columns.eccentricity_x >= 0) out.max_eccentricity = largest_[peaks_.eccentricity(index)];
+  out.max_normal_force = largest[places.normal_force(index)];
+  out.max_penetration = largest[places.penetration(index)];
+  if (columns.eccentricity_x >= 0) out.max_eccentricity = largest[places.eccentricity(index)];
   out.contact_fraction = sums.contact_time / duration_;
   return out;
 }
 
 ForceStatistics Statistics::force(int index) const {
+  const PeakValues& places = largest_.places();
+  const std::span<const double> largest = largest_.in_window();
   if (!any()) return {nan, nan, nan};
-  return {largest_[peaks_.applied_force(index)], largest_[peaks_.applied_torque(index)], forces_[at(index)].work};
+  return {largest[places.applied_force(index)], largest[places.applied_torque(index)], forces_[at(index)].work};
 }
 
 DriverStatistics Statistics::driver(int index) const {
+  const PeakValues& places = largest_.places();
+  const std::span<const double> largest = largest_.in_window();
   if (!any()) return {nan, nan, nan};
   const DriverSums& sums = drivers_[at(index)];
-  return {largest_[peaks_.effort(index)], sums.effort.rms(duration_), sums.work};
+  return {largest[places.effort(index)], sums.effort.rms(duration_), sums.work};
 }
 
 PathStatistics Statistics::path(int index) const {
+  const PeakValues& places = largest_.places();
+  const std::span<const double> largest = largest_.in_window();
   if (!any()) return {nan, nan, nan, nan};
   const PathSums& sums = paths_[at(index)];
-  return {largest_[peaks_.position_error(index)], sums.position.rms(duration_), largest_[peaks_.angle_error(index)],
+  return {largest[places.position_error(index)], sums.position.rms(duration_), largest[places.angle_error(index)],
           sums.angle.rms(duration_)};
 }
 
-double Statistics::body_max_speed(int index) const { return any() ? largest_[peaks_.speed(index)] : nan; }
+double Statistics::body_max_speed(int index) const {
+  return any() ? largest_.in_window()[largest_.places().speed(index)] : nan;
+}
 
 }  // namespace freeplay

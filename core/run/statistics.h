@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "run/peak_noise.h"
-#include "run/peak_values.h"
+#include "run/largest_values.h"
 
 namespace freeplay {
 
@@ -60,7 +59,7 @@ class Statistics {
   void note_written_later(std::span<const double> row);
   void add_contact(int joint, double time);
   /// Any event of a joint, with its fields.
-  void note_event(int joint, int event, std::span<const double> fields) { noise_.event(joint, event, fields); }
+  void note_event(int joint, int event, std::span<const double> fields) { largest_.note_event(joint, event, fields); }
 
   JointStatistics joint(int index) const;
   /// `index` into Model::force_elements.
@@ -71,14 +70,7 @@ class Statistics {
   StatisticsWindow window() const { return {discard_until_, any() ? last_time_ : discard_until_}; }
   bool any() const { return duration_ > 0.0; }
   long instants() const { return instants_; }  ///< that statistics are of
-  const PeakValues& peak_values() const { return peaks_; }
-  const PeakNoise& noise() const { return noise_; }             ///< of the largest values, by PeakValues
-  std::span<const double> values() const { return values_; }    ///< of the last row
-  std::span<const double> largest() const { return largest_; }  ///< by PeakValues, in the window
-  std::span<const double> largest_before() const {
-    return before_;
-  }  ///< before it; negative: there was none. Of written rows alone where nothing can touch
-  std::span<const double> largest_written() const { return written_; }  ///< of rows in the window
+  const LargestValues& largest() const { return largest_; }
   long contacts() const { return contacts_; }
   long contacts_total() const { return contacts_total_; }
   double position_residual() const { return position_; }
@@ -87,7 +79,7 @@ class Statistics {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.noise_, self.values_, self.largest_, self.before_, self.written_, self.last_time_, self.duration_);
+    archive(self.largest_, self.last_time_, self.duration_);
     archive(self.seen_, self.instants_, self.joints_, self.forces_, self.drivers_, self.paths_, self.contacts_);
     archive(self.contacts_total_, self.position_, self.velocity_, self.energy_);
   }
@@ -138,13 +130,10 @@ class Statistics {
       archive(self.position, self.angle);
     }
   };
-  void take_largest(double t);
   void add_means(std::span<const double> row, double dt, bool first);
 
   const Channels& channels_;
-  PeakValues peaks_;
-  PeakNoise noise_;
-  std::vector<double> values_, largest_, before_, written_, of_written_;
+  LargestValues largest_;
   double discard_until_;
   double last_time_ = 0.0, duration_ = 0.0;
   bool seen_ = false;
