@@ -41,12 +41,17 @@ WORDS = {"no-memory": "the system gives no more memory", "no-threads": "the syst
 
 
 class Room(ProgramTest):
+    @staticmethod
+    def write_little():
+        """A program that does not refuse is ended before it fills the disk."""
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100 << 20, 100 << 20))
+
     def test_more_than_half_of_the_room_is_refused_before_anything_is_made(self):
         cases = {"rows": MANY_ROWS % ("1e6", "1e-6"), "bodies": MANY_BODIES % 199999}
         for name, text in cases.items():
             with self.subTest(name):
                 model = self.write(name + ".yaml", text)
-                out, err = self.freeplay("run", model, "--out", name, code=6)
+                out, err = self.freeplay("run", model, "--out", name, code=6, preexec_fn=self.write_little)
                 self.assertRegex(err, r"the run would write about [\d.]+ [TP]B \([\d.e+]+ rows of \d+ columns\) into '%s', more than "
                                       r"half of the [\d.]+ \wB that are free there \[too-large\]" % name)
                 self.assertIn("--yes", err)
