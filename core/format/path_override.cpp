@@ -63,7 +63,7 @@ PathOverrides::PathOverrides(const BuildOptions& options, Diagnostics& diagnosti
     } else {
       documents_.push_back(Document::scalar(file, text));
     }
-    std::erase_if(entries_, [&](const Entry& entry) { return entry.path == name; });
+    std::erase_if(entries_, [&path = name](const Entry& entry) { return entry.path == path; });
     entries_.push_back({name, file, &documents_.back().root(), false, {}, {}});
   }
 }
