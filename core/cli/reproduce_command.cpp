@@ -107,7 +107,7 @@ class Reproduction {
   std::string text(bool same) const {
     std::string text = fmt::format("{}: made by {}, rerun by {}\n", printable(made_.path.string()),
                                    program_words(made_.record), program_words(this_program()));
-    for (const char* name : {"freeplay", "compiler", "build", "plugin_abi", "platform"}) {
+    for (const char* name : {"freeplay", "compiler", "build", "plugin_abi", "platform", "arithmetic"}) {
       const Json now = rerun_.is_object() ? rerun_.value(name, Json()) : Json();
       const Json then = made_.record.value(name, Json());
       if (now.is_null() || now == then) continue;

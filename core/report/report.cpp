@@ -125,7 +125,7 @@ Json record_of(const ReportRequest& request, const std::vector<ReportedRun>& run
   const Json made = first.contains("provenance") ? first["provenance"] : Json::object();
   Json record = {
       {"freeplay", program_version}, {"schema", schema_version}, {"build", request.build}, {"compiler", compiler}};
-  for (const char* field : {"plugin_abi", "platform"}) record[field] = made.value(field, Json());
+  for (const char* field : {"plugin_abi", "platform", "arithmetic"}) record[field] = made.value(field, Json());
   record["made"] = "report";
   std::string command = "freeplay report";
   for (const ReportedRun& run : runs) command += " " + run.name;

@@ -1,32 +1,19 @@
 #include "results/checkpoints.h"
 
-#include <fstream>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "base/arithmetic.h"
 #include "base/version.h"
 #include "base/whole_file.h"
 #include "freeplay/plugin.h"
 
 namespace freeplay {
-namespace {
-
-/// Its name as the system gives it: elementary functions of the C library choose by processor.
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
-}  // namespace
 
 Json program_of_checkpoints() {
-  return {{"version", program_version}, {"compiler", compiler}, {"processor", processor()}};
+  return {{"version", program_version}, {"compiler", compiler}, {"arithmetic", arithmetic_fingerprint()}};
 }
 
 void Checkpoints::begin() { write_whole_file(file_, bytes_of({.made = made_})); }

@@ -10,7 +10,7 @@
 
 namespace freeplay {
 
-/// Version, build and processor: what the bytes of a run may depend on besides its model.
+/// Version, build and arithmetic: what the bytes of a run may depend on besides its model.
 Json program_of_checkpoints();
 
 /// Writes checkpoints in the thread of `recording`, once all rows and events that they count are safe on the disk. The

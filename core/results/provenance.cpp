@@ -6,6 +6,7 @@
 
 #include <sys/utsname.h>
 
+#include "base/arithmetic.h"
 #include "base/sha256.h"
 #include "base/version.h"
 #include "freeplay/plugin.h"
@@ -60,13 +61,21 @@ Json plugins(const Model& model) {
 Json provenance(const Model& model, const Making& making) {
   Json inputs = Json::array();
   for (const InputFile& input : model.inputs) inputs.push_back({{"name", input.name}, {"sha256", sha256(input.text)}});
-  return {{"freeplay", program_version},   {"schema", schema_version},
-          {"build", making.build},         {"compiler", compiler},
-          {"plugin_abi", abi_version},     {"platform", platform()},
-          {"made", making.made},           {"command", making.command},
-          {"arguments", making.arguments}, {"model", {{"name", model.name}, {"sha256", sha256(model.text)}}},
-          {"inputs", std::move(inputs)},   {"plugins", plugins(model)},
-          {"seed", making.seed},           {"hashes", nullptr},
+  return {{"freeplay", program_version},
+          {"schema", schema_version},
+          {"build", making.build},
+          {"compiler", compiler},
+          {"plugin_abi", abi_version},
+          {"platform", platform()},
+          {"arithmetic", arithmetic_fingerprint()},
+          {"made", making.made},
+          {"command", making.command},
+          {"arguments", making.arguments},
+          {"model", {{"name", model.name}, {"sha256", sha256(model.text)}}},
+          {"inputs", std::move(inputs)},
+          {"plugins", plugins(model)},
+          {"seed", making.seed},
+          {"hashes", nullptr},
           {"data_sha256", nullptr}};
 }
 

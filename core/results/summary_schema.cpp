@@ -170,6 +170,7 @@ Json provenance_part() {
        {"compiler", text()},
        {"plugin_abi", integer()},
        {"platform", text()},
+       {"arithmetic", {{"type", "string"}, {"pattern", "^[0-9a-f]{16}$"}}},
        {"made", text()},
        {"command", text()},
        {"arguments", list_of(text())},
