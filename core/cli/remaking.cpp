@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/kept_input.h"
+#include "base/sha256.h"
 #include "base/whole_file.h"
 #include "cli/commands.h"
 #include "cli/loading.h"
@@ -64,11 +65,14 @@ std::vector<std::string> words_of(const MadeFile& made, const Json& list) {
   return words;
 }
 
-bool is_in_plugin_folder(const fs::path& name) {
-  return std::ranges::any_of(plugin_folders(), [&](const fs::path& folder) {
+/// Those of that name in the folders for plugins.
+std::vector<fs::path> installed_plugins(const fs::path& name) {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : plugin_folders()) {
     std::error_code ignored;
-    return fs::is_regular_file(folder / name, ignored);
-  });
+    if (fs::is_regular_file(folder / name, ignored)) files.push_back(folder / name);
+  }
+  return files;
 }
 
 const char* ending_of(MadeKind kind) {
@@ -141,10 +145,18 @@ std::vector<std::string> Remaking::plugin_words(const Json& run) const {
   const LoadOptions options = loading(common_);
   for (const Json& plugin : run.value("plugins", Json::array())) {
     const fs::path file = plugin.value("file", "");
-    const auto same_name = [&](const std::string& other) { return fs::path(other).filename() == file.filename(); };
-    if (std::ranges::any_of(common_.plugins, same_name) || is_in_plugin_folder(file.filename())) continue;
+    const Json digits = plugin.value("sha256", Json());
+    const auto is_recorded = [&](const fs::path& other) { return Json(sha256_of_file(other.string())) == digits; };
+    const auto stands_for_it = [&](const fs::path& other) {
+      return other.filename() == file.filename() || is_recorded(other);
+    };
+    if (std::ranges::any_of(common_.plugins, stands_for_it)) continue;
+    // That of the same bytes goes before one of the same name.
+    const std::vector<fs::path> installed = installed_plugins(file.filename());
+    const bool same_there = is_recorded(file);
+    if (std::ranges::any_of(installed, is_recorded) || (!installed.empty() && !same_there)) continue;
     std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) {
+    if (!same_there && !fs::is_regular_file(file, ignored)) {
       throw Error(
           Error::Category::plugin, "plugin-not-found",
           fmt::format("'{}' was made with the plugin '{}', which is not there", made_.path.string(), file.string()), {},
