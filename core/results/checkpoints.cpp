@@ -13,6 +13,8 @@
 namespace freeplay {
 namespace {
 
+constexpr const char* hashes_of_checkpoint = "kept";
+
 /// Its name as the system gives it: elementary functions of the C library choose by processor.
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -27,6 +29,14 @@ std::string processor() {
 
 Json program_of_checkpoints() {
   return {{"version", program_version}, {"compiler", compiler}, {"processor", processor()}};
+}
+
+KeptPart kept_part_of(const Checkpoint& from) {
+  const Json hashes = from.made.value(hashes_of_checkpoint, Json::object());
+  return {.rows = from.rows(),
+          .events = from.events,
+          .row_digits = hashes.value("rows", ""),
+          .event_digits = hashes.value("events", "")};
 }
 
 void Checkpoints::begin() { write_whole_file(file_, bytes_of({.made = made_})); }
@@ -48,7 +58,10 @@ void Checkpoints::add(RunState state) {
   const auto checkpoint =
       std::make_shared<Checkpoint>(Checkpoint{.made = made_, .state = std::move(state), .events = recording_.events()});
   recording_.save(checkpoint->files);
-  recording_.when_safe([checkpoint, path = file_] { write_whole_file(path, bytes_of(*checkpoint), true); });
+  recording_.when_safe([checkpoint, path = file_, &recording = recording_] {
+    checkpoint->made[hashes_of_checkpoint] = recording.hashes();
+    write_whole_file(path, bytes_of(*checkpoint), true);
+  });
 }
 
 }  // namespace freeplay

@@ -67,7 +67,7 @@ Recording::Recording(ResultDirectory directory, const Model& model, const Channe
   for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
 }
 
-RecordThread::Start Recording::continued_writers(const Model& model, const KeptPart& part) {
+RecordThread::Writers Recording::continued_writers(const Model& model, const KeptPart& part) {
   if (part.rows == 0 && part.events == 0) {  // not even a header may be there
     directory_.remove("summary.json");
     return start_writers(model);
@@ -77,23 +77,22 @@ RecordThread::Start Recording::continued_writers(const Model& model, const KeptP
       read_kept(directory_.path(), part, format, layout_, {.expected_rows = expected_rows(model.settings)});
   cut_back(directory_.path(), kept, format);
   directory_.remove("summary.json");
-  RecordThread::Start start{.writers = {}, .rows = static_cast<long>(part.rows), .last_time = kept.last_time};
+  RecordThread::Writers writers;
   auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_, kept.event_text);
   row_hash_ = kept.row_hash.get();
   event_text_ = events.get();
   hdf5_ = kept.hdf5.get();
-  start.writers.push_back(std::move(kept.row_hash));
-  start.writers.push_back(std::move(events));
+  writers.push_back(std::move(kept.row_hash));
+  writers.push_back(std::move(events));
   if (format != ResultFormat::hdf5) {
-    start.writers.push_back(
-        std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_, GrowingFile::Begin::append));
+    writers.push_back(std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_, kept.text_rows));
   }
-  if (hdf5_ != nullptr) start.writers.push_back(std::move(kept.hdf5));
-  return start;
+  if (hdf5_ != nullptr) writers.push_back(std::move(kept.hdf5));
+  return writers;
 }
 
-RecordThread::Start Recording::start_writers(const Model& model) {
-  std::vector<std::unique_ptr<RecordWriter>> writers;
+RecordThread::Writers Recording::start_writers(const Model& model) {
+  RecordThread::Writers writers;
   const ResultFormat format = model.settings.format;
   auto hash = std::make_unique<RowHash>();
   auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_);
@@ -110,7 +109,7 @@ RecordThread::Start Recording::start_writers(const Model& model) {
     hdf5_ = hdf5.get();
     writers.push_back(std::move(hdf5));
   }
-  return {.writers = std::move(writers)};
+  return writers;
 }
 
 void Recording::when_safe(std::function<void()> then) { thread_.when_safe(std::move(then)); }

@@ -56,6 +56,7 @@ class Recording {
   /// False once a file could not be written, or was removed.
   bool ok() const { return thread_.ok(); }
   /// Once all rows and events so far are safe on the disk, calls `then` in the thread that writes; does not wait.
+  /// hashes() are then of these alone.
   void when_safe(std::function<void()> then);
   /// False where nothing keeps other processes out of the directory.
   bool guarded() const { return directory_.guarded(); }
@@ -67,9 +68,8 @@ class Recording {
   /// Ends the growing files. Returns the first failure to write any of them, empty without: "cannot write 'FILE':
   /// REASON".
   std::string close();
-  /// After close(): rows that every file holds, and the time of the last.
-  long rows() const { return thread_.rows(); }
-  double last_time() const { return thread_.last_time(); }
+  /// After close(): rows that every file holds.
+  HeldRows held() const { return thread_.held(); }
   /// Processor time of the thread that writes [s].
   double text_seconds() const { return thread_.thread_seconds(); }
   /// The fields `provenance` and `hashes` of the summary.
@@ -95,8 +95,8 @@ class Recording {
   };
   Recording(ResultDirectory directory, const Model& model, const Channels& channels, const Making& making,
             const KeptPart* kept);
-  RecordThread::Start start_writers(const Model& model);
-  RecordThread::Start continued_writers(const Model& model, const KeptPart& kept);
+  RecordThread::Writers start_writers(const Model& model);
+  RecordThread::Writers continued_writers(const Model& model, const KeptPart& kept);
 
   ResultDirectory directory_;
   RunLog log_;

@@ -39,8 +39,8 @@ RecordLayout small_layout() {
   return layout;
 }
 
-RecordBlock some_rows(std::size_t first, std::size_t count) {
-  RecordBlock block;
+RecordBuffer some_rows(std::size_t first, std::size_t count) {
+  RecordBuffer block;
   for (std::size_t i = first; i < first + count; ++i) {
     const double x = static_cast<double>(i);
     block.rows.insert(block.rows.end(), {0.1 * x, i % 7 == 3 ? no_number : std::sin(x), -x / 3.0});
@@ -84,7 +84,7 @@ std::vector<double> times(ResultReader& reader, const RowWindow& window) {
 TEST(Hdf5Result, GivesBackEveryBitOverSeveralChunks) {
   const ScratchFolder folder;
   const RecordLayout layout = small_layout();
-  const RecordBlock rows = some_rows(0, 300);
+  const RecordBuffer rows = some_rows(0, 300);
   Hdf5Writer writer(folder.file("results.h5"), layout, {.expected_rows = 10});
   writer.write(some_rows(0, 70));
   writer.flush();
@@ -99,7 +99,7 @@ TEST(Hdf5Result, GivesBackNamesUnitsWordsAndAttributes) {
   const ScratchFolder folder;
   const RecordLayout layout = small_layout();
   Hdf5Writer writer(folder.file("results.h5"), layout, {});
-  writer.write({.rows = {0.0, 1.0, 2.0}, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}});
+  writer.write(RecordBuffer{.rows = {0.0, 1.0, 2.0}, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}});
   writer.finish({}, "{}");
   const auto reader = ResultReader::open(folder.path());
   const RecordLayout& read = reader->layout();
@@ -171,7 +171,7 @@ TEST(CsvResult, IsWhatTheTextWriterWrote) {
   const RecordLayout layout = small_layout();
   RowTextWriter rows(folder.file("results.csv"), layout);
   EventTextWriter events(folder.file("events.csv"), layout);
-  const RecordBlock block{.rows = some_rows(0, 20).rows, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}};
+  const RecordBuffer block{.rows = some_rows(0, 20).rows, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}};
   rows.write(block);
   events.write(block);
   rows.close();
