@@ -151,19 +151,20 @@ std::vector<std::string> Remaking::plugin_words(const Json& run) const {
       return other.filename() == file.filename() || is_recorded(other);
     };
     if (std::ranges::any_of(common_.plugins, stands_for_it)) continue;
-    // That of the same bytes goes before one of the same name.
-    const std::vector<fs::path> installed = installed_plugins(file.filename());
-    const bool same_there = is_recorded(file);
-    if (std::ranges::any_of(installed, is_recorded) || (!installed.empty() && !same_there)) continue;
+    // That of the same bytes goes before one of the same name, and one in a folder for plugins before another.
+    std::vector<fs::path> found = installed_plugins(file.filename());
     std::error_code ignored;
-    if (!same_there && !fs::is_regular_file(file, ignored)) {
+    if (fs::is_regular_file(file, ignored)) found.push_back(file);
+    if (found.empty()) {
       throw Error(
           Error::Category::plugin, "plugin-not-found",
           fmt::format("'{}' was made with the plugin '{}', which is not there", made_.path.string(), file.string()), {},
           "say where it is with --plugin LIB");
     }
-    require_plugin_allowed(file, options);
-    words.insert(words.end(), {"--plugin", file.string()});
+    const auto same = std::ranges::find_if(found, is_recorded);
+    const fs::path& chosen = same != found.end() ? *same : found.front();
+    require_plugin_allowed(chosen, options);
+    words.insert(words.end(), {"--plugin", chosen.string()});
   }
   return words;
 }
