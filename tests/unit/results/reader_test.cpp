@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -139,6 +140,42 @@ TEST(Hdf5Result, KeepsFlushedRowsOfAWriterThatDied) {
   int status = 0;
   ::waitpid(child, &status, 0);
   EXPECT_EQ(bits(some_rows(0, 77).rows), bits(rows_of(*ResultReader::open(folder.file("results.h5")))));
+}
+
+TEST(Hdf5Result, OfADamagedFileIsReadOrRefused) {
+  const ScratchFolder folder;
+  const RecordLayout layout = small_layout();
+  Hdf5Writer growing(folder.file("growing.h5"), layout, {}),
+      whole(folder.file("whole.h5"), layout, {.expected_rows = 100, .grows = false});
+  for (Hdf5Writer* writer : {&growing, &whole}) {
+    writer->write(some_rows(0, 100));
+    writer->finish({}, "{}");
+  }
+  std::mt19937 random(1);
+  int read = 0, refused = 0;
+  for (const char* name : {"growing.h5", "whole.h5"}) {
+    const std::string bytes = folder.read(name);
+    for (int i = 0; i < 300; ++i) {
+      std::string damaged = bytes;
+      for (int left = i % 3 == 0 ? 1 : 30; left > 0; --left) {
+        damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
+      }
+      folder.write("damaged.h5", damaged);
+      try {
+        const auto reader = ResultReader::open(folder.file("damaged.h5"));
+        rows_of(*reader);
+        events_of(*reader);
+        reader->summary();
+        ++read;
+      } catch (const Error& error) {
+        EXPECT_EQ("unreadable-result", error.id());
+        EXPECT_THAT(error.message(), HasSubstr("damaged.h5' cannot be read: "));
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_GT(refused, 100);
 }
 
 TEST(Hdf5Result, KeepsBearingTables) {
