@@ -211,6 +211,9 @@ class RunJob {
   void fail_writing(const std::string& failure, Outcome& outcome) const {
     outcome.status = RunStatus::failed;
     outcome.exit_code = 6;
+    outcome.reason = failure;
+    outcome.rows = 0;
+    if (!recording_.in_place()) return;
     const HeldRows held = recording_.held();
     outcome.rows = held.count;
     const std::string rows = held.count > 0 ? fmt::format("rows up to t = {:g} s", held.last_time) : "no rows";
@@ -279,7 +282,7 @@ class RunJob {
     } else if (!common_.quiet) {
       print(run_table(record) + moved_text(*loaded_.model, assembled_.start.report) +
             (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()) +
-            glance(path_, options_.report));
+            (outcome.exit_code == 6 ? "" : glance(path_, options_.report)));
     }
     if (options_.profile) {
       const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
@@ -392,7 +395,10 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   if (!options.model_name.empty()) loaded.model->name = options.model_name;
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (resumed != nullptr) require_same_making(*resumed, *loaded.model);
-  if (!options.dry_run && resumed == nullptr) check_result_directory(path, options.force);
+  if (!options.dry_run && resumed == nullptr) {
+    check_result_directory(path, options.force);
+    if (options.out.empty() && !options.force) require_no_other_model(path, *loaded.model);
+  }
   if (options.twin && loaded.model->clearance_joints() == 0) {
     throw Error(
         Error::Category::usage, "no-clearance",

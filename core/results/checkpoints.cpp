@@ -39,7 +39,10 @@ KeptPart kept_part_of(const Checkpoint& from) {
           .event_digits = hashes.value("events", "")};
 }
 
-void Checkpoints::begin() { write_whole_file(file_, bytes_of({.made = made_})); }
+void Checkpoints::begin() {
+  recording_.require_directory();
+  write_whole_file(file_, bytes_of({.made = made_}));
+}
 
 void Checkpoints::go_on(const Checkpoint& from) {
   made_["resumed"] = from.made.value("resumed", 0) + 1;
@@ -59,6 +62,7 @@ void Checkpoints::add(RunState state) {
       std::make_shared<Checkpoint>(Checkpoint{.made = made_, .state = std::move(state), .events = recording_.events()});
   recording_.save(checkpoint->files);
   recording_.when_safe([checkpoint, path = file_, &recording = recording_] {
+    recording.require_directory();
     checkpoint->made[hashes_of_checkpoint] = recording.hashes();
     write_whole_file(path, bytes_of(*checkpoint), true);
   });

@@ -60,6 +60,10 @@ class Recording {
   void when_safe(std::function<void()> then);
   /// False where nothing keeps other processes out of the directory.
   bool guarded() const { return directory_.guarded(); }
+  /// False once the directory or a file that grows was removed, or another took its place.
+  bool in_place() const;
+  /// Throws Error{file} unless the directory is there.
+  void require_directory() const { directory_.require_there(); }
   RunLog& log() { return log_; }
   const ContactAdvice& advice() const { return advice_; }
   /// Tables of /bearing, for seal().
@@ -103,6 +107,7 @@ class Recording {
   Json provenance_;
   std::vector<std::size_t> picked_;
   RecordLayout layout_;
+  ResultFormat format_;
   std::int64_t events_given_;
   // Of the thread, which owns them.
   RowHash* row_hash_ = nullptr;
