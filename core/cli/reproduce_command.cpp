@@ -77,7 +77,7 @@ std::vector<std::string> other_plugins(const MadeFile& then, const MadeFile& now
     const auto other = after.find(name);
     if (other != after.end() && other->second == digits) continue;
     found.push_back(fmt::format("the plugin '{}' is another: SHA-256 {} recorded, {} now", name, digits.substr(0, 12),
-                                other != after.end() ? other->second.substr(0, 12) : "none"));
+                                other != after.end() ? other->second.substr(0, 12) : "not there"));
   }
   return found;
 }
