@@ -54,7 +54,9 @@ Json nothing_known(const Json& schema) {
 class Sealing {
  public:
   explicit Sealing(const fs::path& directory)
-      : directory_(directory), owner_(directory), reader_(ResultReader::open(directory)) {}
+      : directory_(directory), owner_(directory), reader_(ResultReader::open(directory)) {
+    require_readable_hdf5();
+  }
 
   Sealed execute() {
     const bool has_summary = there_is(directory_ / "summary.json");
@@ -87,6 +89,19 @@ class Sealing {
 
  private:
   static constexpr std::int64_t most_lines = std::numeric_limits<std::int64_t>::max();
+
+  /// Where results.csv stood in for it nothing would be said of it.
+  void require_readable_hdf5() const {
+    const fs::path file = directory_ / "results.h5";
+    if (!there_is(file)) return;
+    try {
+      open_hdf5(file);
+    } catch (const Error& error) {
+      throw Error(
+          error.category(), error.id(), error.message(), error.location(),
+          there_is(directory_ / "results.csv") ? "results.csv has the same rows: move results.h5 away, then seal" : "");
+    }
+  }
 
   std::vector<fs::path> unfinished() const {
     std::vector<fs::path> files;

@@ -85,6 +85,14 @@ class Results(ProgramTest):
             _, stderr = self.freeplay("seal", "r", code=6)
             self.assertIn("[result-in-use]", stderr)
             run.kill()
+        shutil.copytree(self.path("r"), self.path("damaged"))
+        with open(self.path("damaged", "results.h5"), "r+b") as file:
+            file.write(b"damaged")
+        _, stderr = self.freeplay("seal", "damaged", code=6)
+        self.assertIn("damaged/results.h5' cannot be read", stderr)
+        self.assertNotIn("summary.json", os.listdir(self.path("damaged")))
+        os.remove(self.path("damaged", "results.h5"))
+        self.freeplay("seal", "damaged")
         with open(self.path("r", "results.csv"), "a", encoding="utf-8") as file:
             file.write("0.1,half a li")
         out, _ = self.freeplay("seal", "r")
