@@ -90,6 +90,14 @@ class Resume(ProgramTest):
         self.freeplay("run", "--resume", name, "--quiet")
         self.assert_same(name, "whole")
 
+    def test_a_run_that_was_killed_twice_after_its_last_row_begins_again(self):
+        self.whole("--end", "0.1 s")
+        shutil.copytree(self.path("whole"), self.path("again"))
+        os.remove(self.path("again", "summary.json"))  # killed before it was written
+        self.write(os.path.join("again", "results.csv"), "".join(self.read("again", "results.csv").splitlines(True)[:9]))
+        self.freeplay("run", "--resume", "again", "--quiet")  # whose rows another one was killed at
+        self.assert_same("again", "whole")
+
     def test_a_limit_of_file_sizes_leaves_rows_that_are_named_and_gone_on_from(self):
         self.whole("--end", "0.3 s", "--format", "both")
         for format_, largest in (("both", "results.csv"), ("hdf5", "results.h5")):
