@@ -146,7 +146,8 @@ ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(pa
 
 void ResultDirectory::require_there() const {
   if (!there())
-    fail(fmt::format("cannot write '{}': it was removed or replaced while the run went on", path_.string()));
+    fail(fmt::format("cannot write '{}': it or its run.log was removed or replaced while the run went on",
+                     path_.string()));
 }
 
 void ResultDirectory::write(std::string_view name, std::string_view text) const {
