@@ -29,11 +29,6 @@ enum Question : std::uint64_t {
 };
 enum AnswerKind : std::uint64_t { done, failed, no_more_memory };
 
-void append_text(std::string& out, std::string_view text) {
-  append_bytes(out, static_cast<std::uint64_t>(text.size()));
-  out += text;
-}
-
 /// Bytes that come from a process of this program.
 class Message {
  public:
@@ -59,14 +54,14 @@ void append(std::string& out, const std::vector<RecordColumn>& columns) {
   append_bytes(out, static_cast<std::uint64_t>(columns.size()));
   for (const RecordColumn& column : columns) {
     for (const std::string* text : {&column.name, &column.unit, &column.long_name, &column.source}) {
-      append_text(out, *text);
+      append_bytes(out, std::string_view(*text));
     }
   }
 }
 
 void append(std::string& out, const std::vector<std::string>& words) {
   append_bytes(out, static_cast<std::uint64_t>(words.size()));
-  for (const std::string& word : words) append_text(out, word);
+  for (const std::string& word : words) append_bytes(out, std::string_view(word));
 }
 
 std::string bytes_of_layout(const RecordLayout& layout) {
@@ -76,8 +71,8 @@ std::string bytes_of_layout(const RecordLayout& layout) {
   for (const auto* words : {&layout.joints, &layout.kinds, &layout.bearings}) append(out, *words);
   append_bytes(out, static_cast<std::uint64_t>(layout.attributes.size()));
   for (const auto& [name, text] : layout.attributes) {
-    append_text(out, name);
-    append_text(out, text);
+    append_bytes(out, std::string_view(name));
+    append_bytes(out, std::string_view(text));
   }
   return out;
 }
@@ -180,7 +175,7 @@ class Hdf5OfProcess : public ResultReader {
   }
   std::vector<double> bearing(const std::string& quantity) override {
     std::string text;
-    append_text(text, quantity);
+    append_bytes(text, std::string_view(quantity));
     const auto numbers = ask(bearing_of, text).body;
     return {numbers.begin(), numbers.end()};
   }
