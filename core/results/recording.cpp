@@ -155,7 +155,11 @@ void Recording::bearing(const ClearanceStatistics& clearances) {
   }
 }
 
-Json Recording::hashes() const { return {{"rows", row_hash_->digits()}, {"events", event_text_->digits()}}; }
+Json Recording::hashes() const {
+  // Of all that was given to the files; where one of them failed they hold less.
+  if (!ok()) return {{"rows", nullptr}, {"events", nullptr}};
+  return {{"rows", row_hash_->digits()}, {"events", event_text_->digits()}};
+}
 
 std::vector<std::string> Recording::files() {
   names_ = directory_.files();

@@ -76,7 +76,7 @@ class Recording {
   HeldRows held() const { return thread_.held(); }
   /// Processor time of the thread that writes [s].
   double text_seconds() const { return thread_.thread_seconds(); }
-  /// The fields `provenance` and `hashes` of the summary.
+  /// The fields `provenance` and `hashes` of the summary; these are unknown where a file could not be written.
   const Json& provenance() const { return provenance_; }
   Json hashes() const;
 

@@ -428,6 +428,7 @@ simulation: {end: 10 ms, step: 1 ms}
         summary = self.summary("r")
         self.assertEqual(("failed", 6), (summary["status"], summary["exit_code"]))
         self.assertLess(summary["counts"]["rows"], 20000)
+        self.assertEqual({"rows": None, "events": None}, summary["hashes"])
         os.remove(self.path("r", "summary.json"))
         _, err = self.freeplay("run", model, "--out", "r", code=6)
         self.assertIn("error: 'r' holds the result of a run that did not end: it has no summary.json", err)
