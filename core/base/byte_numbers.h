@@ -23,6 +23,12 @@ void append_bytes(std::string& out, const std::vector<T>& numbers) {
   for (const T number : numbers) append_bytes(out, number);
 }
 
+/// Its length, then its bytes.
+inline void append_bytes(std::string& out, std::string_view text) {
+  append_bytes(out, static_cast<std::uint64_t>(text.size()));
+  out += text;
+}
+
 /// Takes such numbers from the front of bytes. `refuse` is called, and throws, where there are too few.
 template <class Refuse>
 class ByteNumbers {
@@ -44,6 +50,7 @@ class ByteNumbers {
     numbers.resize(static_cast<std::size_t>(count));
     for (T& number : numbers) next(number);
   }
+  void next(std::string& out) { out = text(next()); }
   /// So many bytes as they are.
   std::string_view text(std::uint64_t size) {
     if (size > bytes_.size()) refuse_();

@@ -96,6 +96,7 @@ std::string GrowingFile::failure() const {
 void GrowingFile::close() {
   if (descriptor_ >= 0) {
     flush();
+    if (failure_ != 0) ::fdatasync(descriptor_);  // what was written before stays, whatever happens to the machine
     look_after();
     if (::close(descriptor_) != 0 && failure_ == 0) failure_ = errno;
     descriptor_ = -1;

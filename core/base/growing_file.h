@@ -36,6 +36,8 @@ class GrowingFile {
   void close();
 
   bool ok() const { return failure_ == 0 && !removed_; }
+  /// Whether lines wait to be written.
+  bool waits() const { return !text_.empty(); }
   /// "cannot write 'FILE': REASON"; empty while all is well.
   std::string failure() const;
 

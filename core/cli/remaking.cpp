@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/kept_input.h"
+#include "base/sha256.h"
 #include "base/whole_file.h"
 #include "cli/commands.h"
 #include "cli/loading.h"
@@ -64,11 +65,14 @@ std::vector<std::string> words_of(const MadeFile& made, const Json& list) {
   return words;
 }
 
-bool is_in_plugin_folder(const fs::path& name) {
-  return std::ranges::any_of(plugin_folders(), [&](const fs::path& folder) {
+/// Those of that name in the folders for plugins.
+std::vector<fs::path> installed_plugins(const fs::path& name) {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : plugin_folders()) {
     std::error_code ignored;
-    return fs::is_regular_file(folder / name, ignored);
-  });
+    if (fs::is_regular_file(folder / name, ignored)) files.push_back(folder / name);
+  }
+  return files;
 }
 
 const char* ending_of(MadeKind kind) {
@@ -141,17 +145,26 @@ std::vector<std::string> Remaking::plugin_words(const Json& run) const {
   const LoadOptions options = loading(common_);
   for (const Json& plugin : run.value("plugins", Json::array())) {
     const fs::path file = plugin.value("file", "");
-    const auto same_name = [&](const std::string& other) { return fs::path(other).filename() == file.filename(); };
-    if (std::ranges::any_of(common_.plugins, same_name) || is_in_plugin_folder(file.filename())) continue;
+    const Json digits = plugin.value("sha256", Json());
+    const auto is_recorded = [&](const fs::path& other) { return Json(sha256_of_file(other.string())) == digits; };
+    const auto stands_for_it = [&](const fs::path& other) {
+      return other.filename() == file.filename() || is_recorded(other);
+    };
+    if (std::ranges::any_of(common_.plugins, stands_for_it)) continue;
+    // That of the same bytes goes before one of the same name, and one in a folder for plugins before another.
+    std::vector<fs::path> found = installed_plugins(file.filename());
     std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) {
+    if (fs::is_regular_file(file, ignored)) found.push_back(file);
+    if (found.empty()) {
       throw Error(
           Error::Category::plugin, "plugin-not-found",
           fmt::format("'{}' was made with the plugin '{}', which is not there", made_.path.string(), file.string()), {},
           "say where it is with --plugin LIB");
     }
-    require_plugin_allowed(file, options);
-    words.insert(words.end(), {"--plugin", file.string()});
+    const auto same = std::ranges::find_if(found, is_recorded);
+    const fs::path& chosen = same != found.end() ? *same : found.front();
+    require_plugin_allowed(chosen, options);
+    words.insert(words.end(), {"--plugin", chosen.string()});
   }
   return words;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -57,16 +58,26 @@ Json without_texts(Json record) {
   return record;
 }
 
+/// Plugins of all runs, by name; the digits of each as they are shown.
+std::map<std::string, std::string> plugins_of(const MadeFile& made) {
+  std::map<std::string, std::string> digits;
+  for (const Json& run : runs_of(made)) {
+    for (const Json& plugin : run.value("plugins", Json::array())) {
+      digits[text_at(plugin, "name")] = text_at(plugin, "sha256");
+    }
+  }
+  return digits;
+}
+
 /// Plugins that are others now, as sentences.
-std::vector<std::string> other_plugins(const Json& then, const Json& now) {
+std::vector<std::string> other_plugins(const MadeFile& then, const MadeFile& now) {
   std::vector<std::string> found;
-  const Json after = now.value("plugins", Json::array());
-  for (const Json& plugin : then.value("plugins", Json::array())) {
-    const auto same = [&](const Json& other) { return other.value("name", "") == plugin.value("name", ""); };
-    const auto other = std::ranges::find_if(after, same);
-    if (other == after.end() || text_at(*other, "sha256") == text_at(plugin, "sha256")) continue;
-    found.push_back(fmt::format("the plugin '{}' is another: SHA-256 {} recorded, {} now", text_at(plugin, "name"),
-                                text_at(plugin, "sha256").substr(0, 12), text_at(*other, "sha256").substr(0, 12)));
+  const std::map<std::string, std::string> after = plugins_of(now);
+  for (const auto& [name, digits] : plugins_of(then)) {
+    const auto other = after.find(name);
+    if (other != after.end() && other->second == digits) continue;
+    found.push_back(fmt::format("the plugin '{}' is another: SHA-256 {} recorded, {} now", name, digits.substr(0, 12),
+                                other != after.end() ? other->second.substr(0, 12) : "not there"));
   }
   return found;
 }
@@ -82,7 +93,9 @@ class Reproduction {
       Remaking remaking(made_, common_, options.out, options.yes);
       if (!remaking.make()) return give_up(remaking.end());
       checks_ = compare_again(made_, remaking.again(), remaking.results());
-      rerun_ = read_made_file(remaking.again()).record;
+      const MadeFile again = read_made_file(remaking.again());
+      rerun_ = again.record;
+      other_plugins_ = other_plugins(made_, again);
     }
     const bool same = faults_.empty() && std::ranges::all_of(checks_, &ReproductionCheck::same);
     if (common_.json) {
@@ -113,9 +126,7 @@ class Reproduction {
       if (now.is_null() || now == then) continue;
       text += fmt::format("  another {}: {} recorded, {} now\n", name, then.dump(), now.dump());
     }
-    if (rerun_.is_object()) {
-      for (const std::string& sentence : other_plugins(made_.record, rerun_)) text += "  " + sentence + "\n";
-    }
+    for (const std::string& sentence : other_plugins_) text += "  " + sentence + "\n";
     for (const RecordFault& fault : faults_) text += "  " + fault.what + "\n";
     if (!made_.ended) text += "  its run had not ended: compared as far as it goes\n";
     TextTable table;
@@ -146,6 +157,7 @@ class Reproduction {
   const CommonOptions& common_;
   std::vector<RecordFault> faults_;
   std::vector<ReproductionCheck> checks_;
+  std::vector<std::string> other_plugins_;
   Json rerun_ = nullptr;  // null where nothing was made
 };
 

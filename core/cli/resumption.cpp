@@ -121,8 +121,8 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
     out.nothing_to_do = fmt::format("{} at {:g} s", status, reached);
     return out;
   }
-  require_rows(directory, made);
   if (later != end) {
+    if (!status.empty()) require_rows(directory, made);
     out.goes_on = false;
     out.options.end = asked.end;
     out.options.force = true;

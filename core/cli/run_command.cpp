@@ -87,11 +87,10 @@ class RunJob {
         twin_(twin),
         path_(std::move(path)),
         channels_(*loaded.model),
-        recording_(
-            from == nullptr
-                ? Recording(path_, options.force, *loaded.model, channels_, making(options, common, *loaded.model))
-                : Recording::go_on(path_, *loaded.model, channels_, making(options, common, *loaded.model),
-                                   {.rows = from->rows(), .events = from->events})),
+        recording_(from == nullptr ? Recording(path_, options.force, *loaded.model, channels_,
+                                               making(options, common, *loaded.model))
+                                   : Recording::go_on(path_, *loaded.model, channels_,
+                                                      making(options, common, *loaded.model), kept_part_of(*from))),
         sinks_(recording_.sinks()),
         checkpoints_(recording_, path_, made(options, common, *loaded.model), checkpoint_period(options)) {
     if (from == nullptr || !from->state) {
@@ -212,13 +211,14 @@ class RunJob {
   void fail_writing(const std::string& failure, Outcome& outcome) const {
     outcome.status = RunStatus::failed;
     outcome.exit_code = 6;
-    outcome.rows = recording_.rows();
     outcome.reason = failure;
-    if (outcome.rows == 0) return;
-    outcome.reason += fmt::format(
-        "; rows up to t = {:g} s are safe; free some space and go on with "
-        "freeplay run --resume {}",
-        recording_.last_time(), path_.string());
+    outcome.rows = 0;
+    if (!recording_.in_place()) return;
+    const HeldRows held = recording_.held();
+    outcome.rows = held.count;
+    const std::string rows = held.count > 0 ? fmt::format("rows up to t = {:g} s", held.last_time) : "no rows";
+    outcome.reason = fmt::format("{}; {} are safe; free some space and go on with freeplay run --resume {}", failure,
+                                 rows, path_.string());
   }
 
   /// The summary of a large model takes memory, and a second run as much as this one did: matrices go first.
@@ -282,7 +282,7 @@ class RunJob {
     } else if (!common_.quiet) {
       print(run_table(record) + moved_text(*loaded_.model, assembled_.start.report) +
             (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()) +
-            glance(path_, options_.report));
+            (outcome.exit_code == 6 ? "" : glance(path_, options_.report)));
     }
     if (options_.profile) {
       const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
@@ -395,7 +395,10 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   if (!options.model_name.empty()) loaded.model->name = options.model_name;
   const std::filesystem::path path = result_path(options, *loaded.model);
   if (resumed != nullptr) require_same_making(*resumed, *loaded.model);
-  if (!options.dry_run && resumed == nullptr) check_result_directory(path, options.force);
+  if (!options.dry_run && resumed == nullptr) {
+    check_result_directory(path, options.force);
+    if (options.out.empty() && !options.force) require_no_other_model(path, *loaded.model);
+  }
   if (options.twin && loaded.model->clearance_joints() == 0) {
     throw Error(
         Error::Category::usage, "no-clearance",

@@ -1,6 +1,8 @@
 #include "format/simulation_section.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -54,6 +56,7 @@ class SimulationSection {
       settings_.interval = (settings_.end - settings_.start) / 1000.0;
     }
     settings_.interval = options.interval.value_or(settings_.interval);
+    check_interval();
     if (!options.channels.empty()) settings_.channels = options.channels;
     create_integrator();
     complete_steps();
@@ -172,15 +175,15 @@ class SimulationSection {
 
   void read_output(const CheckedValue& value) {
     MapReader map(value, "output");
-    const auto interval = map.find("interval");
+    interval_ = map.find("interval");
     const auto channels = map.find("channels");
     const auto frames = map.find("frames");
     const auto format = map.find("format");
     const auto rows_in_contact = map.find("rows_in_contact");
     discard_ = map.find("discard");
-    if (interval) settings_.interval = interval->quantity(dimension::time, positive).value_or(settings_.interval);
+    if (interval_) settings_.interval = interval_->quantity(dimension::time, positive).value_or(settings_.interval);
     const double span = settings_.end - settings_.start;
-    if (interval && !draft_.options.interval) doubt_interval(*interval, settings_.interval, span);
+    if (interval_ && !draft_.options.interval) doubt_interval(*interval_, settings_.interval, span);
     if (channels) read_channels(*channels);
     if (frames) read_frames(*frames);
     if (format) read_format(*format);
@@ -189,6 +192,18 @@ class SimulationSection {
     }
     if (discard_) settings_.discard = discard_->quantity(dimension::time, not_negative).value_or(0.0);
     map.finish();
+  }
+
+  /// Rows have times of their own: doubles tell them apart.
+  void check_interval() const {
+    const double farthest = std::max(std::abs(settings_.start), std::abs(settings_.end));
+    const double least = 2.0 * (std::nextafter(farthest, std::numeric_limits<double>::infinity()) - farthest);
+    if (settings_.interval >= least) return;
+    const std::string words =
+        fmt::format("{:g} s between rows is less than times of {:g} s can differ by; it must be at least {:.2g} s",
+                    settings_.interval, farthest, least);
+    if (interval_ && !draft_.options.interval) return interval_->fail("out-of-range", words);
+    throw Error(Error::Category::usage, "usage", "--interval: " + words);
   }
 
   /// A run whose end leaves nothing to tables.
@@ -321,7 +336,7 @@ class SimulationSection {
   Draft& draft_;
   Settings& settings_;
   bool frames_good_ = true;
-  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_, discard_;
+  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_, discard_, interval_;
 };
 
 }  // namespace

@@ -35,6 +35,14 @@ void require_twins(const Registry& registry, std::size_t named, const LoadOption
 
 fs::path name_of(const std::string& file) { return fs::path(file).filename(); }
 
+bool lies_in_plugin_folder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return std::ranges::any_of(plugin_folders(), [&](const fs::path& one) {
+    std::error_code ignored;
+    return fs::equivalent(one, folder, ignored);
+  });
+}
+
 /// The libraries of one command, in the order in which they are looked for.
 class Loader {
  public:
@@ -77,11 +85,13 @@ class Loader {
  private:
   void load_named(const std::string& word, const std::string& model_file) {
     fs::path file;
+    const auto same_name = [&](const std::string& other) { return name_of(other) == name_of(word); };
+    const bool option_stands_for_it = std::ranges::any_of(options_.plugins, same_name);
     try {
       file = find_plugin(word, fs::path(model_file).parent_path());
+      if (option_stands_for_it && lies_in_plugin_folder(file)) return;
     } catch (const Error&) {
-      const auto same_name = [&](const std::string& other) { return name_of(other) == name_of(word); };
-      if (std::ranges::any_of(options_.plugins, same_name)) return;  // the option stands for it
+      if (option_stands_for_it) return;
       const std::vector<std::string> kept = kept_plugins(model_file);
       const auto there = std::ranges::find_if(kept, same_name);
       std::error_code ignored;
@@ -94,14 +104,6 @@ class Loader {
 
   const LoadOptions& options_;
 };
-
-bool lies_in_plugin_folder(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  return std::ranges::any_of(plugin_folders(), [&](const fs::path& one) {
-    std::error_code ignored;
-    return fs::equivalent(one, folder, ignored);
-  });
-}
 
 bool is_option(const fs::path& file, const LoadOptions& options) {
   return std::ranges::any_of(options.plugins, [&](const std::string& word) {

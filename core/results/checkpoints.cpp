@@ -11,12 +11,28 @@
 #include "freeplay/plugin.h"
 
 namespace freeplay {
+namespace {
+
+constexpr const char* hashes_of_checkpoint = "kept";
+
+}  // namespace
 
 Json program_of_checkpoints() {
   return {{"version", program_version}, {"compiler", compiler}, {"arithmetic", arithmetic_fingerprint()}};
 }
 
-void Checkpoints::begin() { write_whole_file(file_, bytes_of({.made = made_})); }
+KeptPart kept_part_of(const Checkpoint& from) {
+  const Json hashes = from.made.value(hashes_of_checkpoint, Json::object());
+  return {.rows = from.rows(),
+          .events = from.events,
+          .row_digits = hashes.value("rows", ""),
+          .event_digits = hashes.value("events", "")};
+}
+
+void Checkpoints::begin() {
+  recording_.require_directory();
+  write_whole_file(file_, bytes_of({.made = made_}));
+}
 
 void Checkpoints::go_on(const Checkpoint& from) {
   made_["resumed"] = from.made.value("resumed", 0) + 1;
@@ -35,7 +51,11 @@ void Checkpoints::add(RunState state) {
   const auto checkpoint =
       std::make_shared<Checkpoint>(Checkpoint{.made = made_, .state = std::move(state), .events = recording_.events()});
   recording_.save(checkpoint->files);
-  recording_.when_safe([checkpoint, path = file_] { write_whole_file(path, bytes_of(*checkpoint), true); });
+  recording_.when_safe([checkpoint, path = file_, &recording = recording_] {
+    recording.require_directory();
+    checkpoint->made[hashes_of_checkpoint] = recording.hashes();
+    write_whole_file(path, bytes_of(*checkpoint), true);
+  });
 }
 
 }  // namespace freeplay

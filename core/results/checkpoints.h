@@ -6,12 +6,16 @@
 #include <utility>
 
 #include "results/checkpoint.h"
+#include "results/kept_part.h"
 #include "results/recording.h"
 
 namespace freeplay {
 
 /// Version, build and arithmetic: what the bytes of a run may depend on besides its model.
 Json program_of_checkpoints();
+
+/// What stays of the files of a run that goes on from it.
+KeptPart kept_part_of(const Checkpoint& from);
 
 /// Writes checkpoints in the thread of `recording`, once all rows and events that they count are safe on the disk. The
 /// run only copies numbers.

@@ -9,7 +9,9 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/sha256.h"
 #include "base/whole_file.h"
+#include "results/reader.h"
 
 namespace freeplay {
 namespace {
@@ -28,10 +30,13 @@ void require(const std::error_code& error, const char* what, const fs::path& pat
   if (error) fail(fmt::format("cannot {} '{}': {}", what, path.string(), error.message()));
 }
 
-bool holds_result(const fs::path& path) {
+Json summary_in(const fs::path& path) {
   std::ifstream file(path / "summary.json");
-  if (!file) return false;
-  const Json summary = Json::parse(file, nullptr, false);
+  return file ? Json::parse(file, nullptr, false) : Json();
+}
+
+bool holds_result(const fs::path& path) {
+  const Json summary = summary_in(path);
   return summary.is_object() && summary.contains("freeplay") && summary["freeplay"].is_object() &&
          summary["freeplay"].contains("schema");
 }
@@ -47,6 +52,26 @@ bool holds_unfinished_result(const fs::path& path) {
     log = log || name == "run.log";
   }
   return log && !error;
+}
+
+bool holds_rows(const fs::path& file) {
+  constexpr std::size_t time[] = {0};
+  std::error_code error;
+  if (!fs::exists(file, error) || fs::file_size(file, error) == 0) return bool(error);
+  try {
+    return !ResultReader::open(file)->open_rows(time)->next().empty();
+  } catch (const Error&) {
+    return true;  // for all that is known
+  }
+}
+
+/// Whether an unfinished result has nothing to lose.
+bool holds_no_rows(const fs::path& path) {
+  for (const fs::path& folder : {path, path / "twin"}) {
+    if (holds_rows(folder / "results.csv") || holds_rows(folder / "results.h5")) return false;
+  }
+  std::error_code error;
+  return !fs::exists(path / "summary.json", error);
 }
 
 const fs::path& made(const fs::path& path, bool force) {
@@ -88,11 +113,24 @@ void check_result_directory(const fs::path& path, bool force) {
   require_no_owner(path);
   if (empty || force || holds_result(path)) return;
   if (holds_unfinished_result(path)) {
+    if (holds_no_rows(path)) return;
     fail(fmt::format("'{}' holds the result of a run that did not end: it has no summary.json", path.string()),
          "go on with freeplay run --resume, replace it with --force, or choose another directory with --out");
   }
   fail(fmt::format("'{}' holds other files than a result", path.string()),
        "choose another directory with --out, or write beside them with --force");
+}
+
+void require_no_other_model(const fs::path& path, const Model& model) {
+  const Json summary = summary_in(path);
+  const Json of_model = summary.is_object() ? summary.value("model", Json()) : Json();
+  if (!of_model.is_object() || !of_model.value("file", Json()).is_string()) return;
+  const fs::path file = of_model["file"].get<std::string>();
+  std::error_code error;
+  if (!fs::exists(file, error) || fs::equivalent(file, model.file, error) || error) return;
+  if (of_model.value("sha256", Json()) == Json(sha256(model.text))) return;
+  fail(fmt::format("'{}' holds the result of another model of that name, '{}'", path.string(), file.string()),
+       "choose another directory with --out, or replace it with --force");
 }
 
 ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(path)), owner_(made(path_, force)) {
@@ -106,11 +144,19 @@ ResultDirectory::ResultDirectory(fs::path path, bool force) : path_(std::move(pa
   }
 }
 
+void ResultDirectory::require_there() const {
+  if (!there())
+    fail(fmt::format("cannot write '{}': it or its run.log was removed or replaced while the run went on",
+                     path_.string()));
+}
+
 void ResultDirectory::write(std::string_view name, std::string_view text) const {
+  require_there();
   write_whole_file(path_ / name, text);
 }
 
 void ResultDirectory::remove(std::string_view name) const {
+  require_there();
   std::error_code error;
   fs::remove(path_ / name, error);
   require(error, "remove", path_ / name);

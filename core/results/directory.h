@@ -21,9 +21,12 @@ std::string result_name(std::string_view model_name, bool ideal);
 std::string model_copy_name(const Model& model);
 
 /// Throws Error{file} unless a result may go to `path`: it does not exist, is empty, holds an earlier result (a
-/// summary.json of this program), or `force` allows to write beside other files; and no process writes into it. Changes
-/// nothing.
+/// summary.json of this program) or what runs left that were ended before they had rows, or `force` allows to write
+/// beside other files; and no process writes into it. Changes nothing.
 void check_result_directory(const std::filesystem::path& path, bool force);
+
+/// Throws Error{file} where `path` holds the result of another model file that is still there.
+void require_no_other_model(const std::filesystem::path& path, const Model& model);
 
 /// A directory that this process alone writes a result into.
 class ResultDirectory {
@@ -36,6 +39,10 @@ class ResultDirectory {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(std::string_view name) const { return path_ / name; }
+  /// False once it was removed, or another took its place.
+  bool there() const { return owner_.holds(path_); }
+  /// Throws Error{file} unless it is there.
+  void require_there() const;
   /// Writes a whole file under a temporary name and renames it, so that it is there complete or not at all. A name such
   /// as "inputs/motor.csv" stands in a folder of the directory.
   /// Throws Error{file}.

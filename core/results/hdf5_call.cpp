@@ -51,6 +51,8 @@ Hdf5Lock::Hdf5Lock() : lock_(library()) {
   static_cast<void>(ready);
 }
 
+void renew_hdf5_lock() { new (&library()) std::recursive_mutex; }
+
 void require_memory_for_hdf5(std::size_t more) {
   const std::size_t bytes = (std::size_t{16} << 20) + more;
   void* some = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -27,6 +27,9 @@ class Hdf5Lock {
   std::lock_guard<std::recursive_mutex> lock_;
 };
 
+/// In a process that was started while the lock was held: there it is free.
+void renew_hdf5_lock();
+
 /// Throws std::bad_alloc where the system would not give what calls may want, `more` bytes besides what every one may:
 /// the library ends the program when it gets less.
 void require_memory_for_hdf5(std::size_t more = 0);

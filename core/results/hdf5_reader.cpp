@@ -1,3 +1,5 @@
+#include "results/hdf5_reader.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -7,7 +9,6 @@
 
 #include "base/error.h"
 #include "results/hdf5_call.h"
-#include "results/reader.h"
 
 namespace freeplay {
 namespace {
@@ -16,6 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr hsize_t block_rows = 4096;                        // a multiple of any chunk
 constexpr std::size_t most_numbers = std::size_t{1} << 20;  // of a block
+// The library waits 1 ns, 2 ns, 4 ns ... for what does not fit its checksum, as while it is written: half a second in
+// all, where its own hundred attempts would never end in a damaged file.
+constexpr unsigned most_attempts = 29;
 
 herr_t note_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
@@ -107,15 +111,15 @@ class Hdf5Rows : public RowSource {
   std::vector<double> column_, block_;
 };
 
-class Hdf5Reader : public ResultReader {
+class Hdf5File : public OpenHdf5 {
  public:
-  explicit Hdf5Reader(const fs::path& path) : ResultReader(path.string()) {
+  explicit Hdf5File(const fs::path& path) : OpenHdf5(path.string()) {
     guarded(file_, [&] {
       open_file();
       read_layout();
     });
   }
-  ~Hdf5Reader() override {
+  ~Hdf5File() override {
     const Hdf5Lock lock;
     Hdf5Id last = std::move(id_);
   }
@@ -132,14 +136,13 @@ class Hdf5Reader : public ResultReader {
     });
   }
 
-  void events(const Take& take) override {
+  std::unique_ptr<RowSource> open_events() override {
     if (layout_.events.empty()) unreadable_result(file_, "it has no events");
-    const std::unique_ptr<RowSource> source = guarded(file_, [&] {
+    return guarded(file_, [&] {
       std::vector<Hdf5Id> datasets;
       for (const RecordColumn& column : layout_.events) datasets.push_back(open("/events/" + column.name));
       return std::make_unique<Hdf5Rows>(file_, std::move(datasets), event_count_);
     });
-    for (auto block = source->next(); !block.empty(); block = source->next()) take(block);
   }
 
   std::vector<double> bearing(const std::string& quantity) override {
@@ -173,6 +176,7 @@ class Hdf5Reader : public ResultReader {
     checked(H5Pset_file_locking(access, 0, 1));
     const hid_t plain = H5Fopen(file_.c_str(), H5F_ACC_RDONLY, access);
     sealed_ = plain >= 0;
+    checked(H5Pset_metadata_read_attempts(access, most_attempts));
     id_ = Hdf5Id(plain >= 0 ? plain : H5Fopen(file_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access), H5Fclose);
   }
 
@@ -245,6 +249,6 @@ class Hdf5Reader : public ResultReader {
 
 }  // namespace
 
-std::unique_ptr<ResultReader> open_hdf5(const fs::path& path) { return std::make_unique<Hdf5Reader>(path); }
+std::unique_ptr<OpenHdf5> open_hdf5_here(const fs::path& path) { return std::make_unique<Hdf5File>(path); }
 
 }  // namespace freeplay

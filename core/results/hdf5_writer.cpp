@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr hsize_t least_chunk = 64, largest_chunk = 1024, event_chunk = 256, summary_chunk = 8192, bearing_chunk = 16;
-constexpr std::size_t first_field = 3;  // of events: after time, joint and kind
+constexpr std::size_t enough_to_flush = 1 << 18;  // bytes of rows
+constexpr std::size_t first_field = 3;            // of events: after time, joint and kind
 
 constexpr BearingQuantity quantities[] = {
     {"contact_time", "s", "time in contact by bearing sector"},
@@ -66,6 +67,7 @@ struct Hdf5Writer::File {
   hid_t file = -1;
   std::vector<hid_t> columns, event_columns;
   hid_t event = -1;
+  HeldRows held;
 
  private:
   void make();
@@ -265,7 +267,9 @@ void Hdf5Writer::File::write(const RecordBlock& block) {
     times.push_back(block.rows[at]);
     for (std::size_t c = 1; c < width; ++c) waiting[c * chunk + in_chunk] = block.rows[at + c];
     ++rows;
-    if (++in_chunk == chunk) write_columns();
+    if (++in_chunk < chunk) continue;
+    write_columns();
+    if (grows && times.size() * width * sizeof(double) >= enough_to_flush) flush();
   }
   events.insert(events.end(), block.events.begin(), block.events.end());
 }
@@ -313,10 +317,11 @@ void Hdf5Writer::File::flush() {
     extend(columns.front(), rows);
     put(columns.front(), H5T_NATIVE_DOUBLE, rows - times.size(), times.size(), times.data());
     checked(H5Dflush(columns.front()));
-    times.clear();
   }
   if (some_events) extend(event, events_written);
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  if (!times.empty()) held = {static_cast<long>(rows), times.back()};
+  times.clear();
 }
 
 void Hdf5Writer::File::sync() const {
@@ -371,6 +376,11 @@ void Hdf5Writer::fail(const char* reason) {
   failure_ = fmt::format("cannot write '{}': {}", path_.string(), reason);
   std::error_code ignored;
   fs::remove(part_of(path_), ignored);
+  if (file_ == nullptr) return;
+  try {
+    file_->sync();                // what was handed over before is to stay
+  } catch (const Hdf5Failure&) {  // the first failure is the one to report
+  }
 }
 
 template <class Act>
@@ -386,6 +396,7 @@ void Hdf5Writer::attempt(Act&& act) {
   } catch (const std::bad_alloc&) {
     fail(std::strerror(ENOMEM));
   }
+  if (file_ != nullptr) held_ = file_->held;
 }
 
 void Hdf5Writer::write(const RecordBlock& block) {

@@ -42,6 +42,7 @@ class Hdf5Writer : public RecordWriter {
   /// Hands over the rest; the file stays open for finish().
   void close() override { flush(); }
   void look_after() override;
+  const HeldRows* held() const override { return &held_; }
   const std::string& failure() const override { return failure_; }
   /// Gives the file its name, with what was written so far.
   void put_in_place();
@@ -60,6 +61,7 @@ class Hdf5Writer : public RecordWriter {
   const RecordLayout& layout_;
   Options options_;
   std::unique_ptr<File> file_;
+  HeldRows held_;
   std::string failure_;
 };
 

@@ -13,7 +13,9 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "results/reader.h"
+#include "results/text_writers.h"
 
 namespace freeplay {
 namespace {
@@ -63,28 +65,63 @@ std::int64_t first_events(ResultReader& reader, std::int64_t count, Take&& take)
   return given;
 }
 
-template <class Note>
-void copy_hdf5(const fs::path& file, const KeptPart& part, const RecordLayout& layout, KeptFiles& kept, Note&& note) {
-  if (part.rows == 0 && part.events == 0) return kept.hdf5->flush();
+void require_unchanged(const fs::path& file, const char* things, const std::string& there, const std::string& then) {
+  if (there == then) return;
+  throw Error(Error::Category::file, "bad-checkpoint",
+              fmt::format("'{}' was changed: its {} are not those that the checkpoint counts", file.string(), things),
+              {}, "run the model again");
+}
+
+/// Fingerprint of events as that of the text of events.csv.
+class EventHash {
+ public:
+  explicit EventHash(const RecordLayout& layout) : layout_(layout) {
+    line_ = text_header(layout.events);
+    hash_.add(line_.data(), line_.size());
+  }
+  void add(std::span<const double> events) {
+    for (std::size_t i = 0; i < events.size(); i += layout_.events.size()) {
+      const std::span<const double> event = events.subspan(i, layout_.events.size());
+      if (!(event[1] >= 0.0 && event[1] < static_cast<double>(layout_.joints.size())) ||
+          !(event[2] >= 0.0 && event[2] < static_cast<double>(layout_.kinds.size()))) {
+        continue;  // of no joint or kind: not an event that was written
+      }
+      line_.clear();
+      EventTextWriter::append(line_, layout_, event);
+      line_ += '\n';
+      hash_.add(line_.data(), line_.size());
+    }
+  }
+  std::string digits() const { return hash_.digits(); }
+
+ private:
+  const RecordLayout& layout_;
+  std::string line_;
+  Sha256 hash_;
+};
+
+void copy_hdf5(const fs::path& file, const KeptPart& part, const RecordLayout& layout, Hdf5Writer& copy,
+               RowHash& row_hash) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) require_enough(file, "rows", 0, std::max<std::int64_t>(part.rows, 1));
   const auto reader = ResultReader::open(file);
   require_columns(file, reader->layout(), layout);
   if (reader->layout().events.size() != layout.events.size()) refuse(file, "it has other columns of events");
-  RecordBlock block;
+  EventHash event_hash(layout);
   const std::int64_t rows = first_rows(*reader, part.rows, [&](std::span<const double> some) {
-    block.rows.assign(some.begin(), some.end());
-    kept.hdf5->write(block);
-    note(some);
+    copy.write({.rows = some, .events = {}});
+    row_hash.write({.rows = some, .events = {}});
   });
-  block.rows.clear();
   const std::int64_t events = first_events(*reader, part.events, [&](std::span<const double> some) {
-    block.events.assign(some.begin(), some.end());
-    kept.hdf5->write(block);
+    copy.write({.rows = {}, .events = some});
+    event_hash.add(some);
   });
   require_enough(file, "rows", rows, part.rows);
   require_enough(file, "events", events, part.events);
-  kept.hdf5->flush();
+  require_unchanged(file, "rows", row_hash.digits(), part.row_digits);
+  require_unchanged(file, "events", event_hash.digits(), part.event_digits);
+  copy.flush();
+  if (!copy.failure().empty()) throw Error(Error::Category::file, "cannot-write", copy.failure());
 }
 
 }  // namespace
@@ -129,33 +166,51 @@ void cut_file(const fs::path& file, std::uintmax_t bytes) {
               fmt::format("cannot write '{}': {}", file.string(), std::strerror(reason)));
 }
 
+namespace {
+
+/// The rows of results.csv, whose text is to be that of their numbers.
+void read_text(const fs::path& file, const KeptPart& part, const RecordLayout& layout, KeptFiles& kept) {
+  Sha256 text_hash, number_hash;
+  const WholeLines lines = whole_lines(file, part.rows + 1, &text_hash);
+  require_enough(file, "rows", lines.lines - 1, part.rows);
+  kept.row_bytes = lines.bytes;
+  const auto reader = ResultReader::open(file);
+  require_columns(file, reader->layout(), layout);
+  std::string text = text_header(layout.columns);
+  first_rows(*reader, part.rows, [&](std::span<const double> some) {
+    kept.row_hash->write({.rows = some, .events = {}});
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      append_number(text, some[i]);
+      text += (i + 1) % layout.columns.size() == 0 ? '\n' : ',';
+    }
+    number_hash.add(text.data(), text.size());
+    text.clear();
+    kept.text_rows = {static_cast<long>(part.rows), some[some.size() - layout.columns.size()]};
+  });
+  require_unchanged(file, "rows", kept.row_hash->digits(), part.row_digits);
+  require_unchanged(file, "rows", text_hash.digits(), number_hash.digits());
+}
+
+}  // namespace
+
 KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultFormat format, const RecordLayout& layout,
                     const Hdf5Writer::Options& options) {
   KeptFiles kept;
-  kept.row_hash = std::make_unique<RowHash>();
-  const fs::path events = directory / "events.csv", rows = directory / "results.csv";
+  const fs::path events = directory / "events.csv";
   const WholeLines event_lines = whole_lines(events, part.events + 1, &kept.event_text);
   require_enough(events, "events", event_lines.lines - 1, part.events);
+  require_unchanged(events, "events", kept.event_text.digits(), part.event_digits);
   kept.event_bytes = event_lines.bytes;
-  const auto note = [&](std::span<const double> some) {
-    kept.row_hash->write({.rows = {some.begin(), some.end()}, .events = {}});
-    kept.last_time = some[some.size() - layout.columns.size()];
-  };
-  if (format != ResultFormat::hdf5) {
-    const WholeLines lines = whole_lines(rows, part.rows + 1);
-    require_enough(rows, "rows", lines.lines - 1, part.rows);
-    kept.row_bytes = lines.bytes;
-    const auto reader = ResultReader::open(rows);
-    require_columns(rows, reader->layout(), layout);
-    if (format == ResultFormat::csv) first_rows(*reader, part.rows, note);
-  }
+  kept.row_hash = std::make_unique<RowHash>();
+  if (format != ResultFormat::hdf5) read_text(directory / "results.csv", part, layout, kept);
   if (format == ResultFormat::csv) return kept;
-  const fs::path file = directory / "results.h5";
+  auto row_hash = std::make_unique<RowHash>();
   Hdf5Writer::Options later = options;
   later.named_later = true;
+  const fs::path file = directory / "results.h5";
   kept.hdf5 = std::make_unique<Hdf5Writer>(file, layout, later);
-  copy_hdf5(file, part, layout, kept, note);
-  if (!kept.hdf5->failure().empty()) throw Error(Error::Category::file, "cannot-write", kept.hdf5->failure());
+  copy_hdf5(file, part, layout, *kept.hdf5, *row_hash);
+  kept.row_hash = std::move(row_hash);
   return kept;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "base/sha256.h"
 #include "model/model.h"
@@ -13,9 +14,10 @@
 
 namespace freeplay {
 
-/// How many rows and events stay.
+/// How many rows and events stay, and their fingerprints: those of RowHash and of the text of events.csv.
 struct KeptPart {
   std::int64_t rows = 0, events = 0;
+  std::string row_digits{}, event_digits{};
 };
 
 /// Writers that hold what was kept.
@@ -23,12 +25,12 @@ struct KeptFiles {
   std::unique_ptr<RowHash> row_hash;
   Sha256 event_text;
   std::unique_ptr<Hdf5Writer> hdf5;               ///< under a temporary name; null without
-  double last_time = 0.0;                         ///< of the rows kept
   std::uintmax_t row_bytes = 0, event_bytes = 0;  ///< of the text files
+  HeldRows text_rows;                             ///< of results.csv
 };
 
 /// Reads the kept part of the files in `directory` and copies that of results.h5 into a new file. Changes none of those
-/// that are there. Throws Error{file} "bad-checkpoint" where one holds less, or other columns.
+/// that are there. Throws Error{file} "bad-checkpoint" where one holds less, other columns, or other numbers.
 KeptFiles read_kept(const std::filesystem::path& directory, const KeptPart& kept, ResultFormat format,
                     const RecordLayout& layout, const Hdf5Writer::Options& options);
 

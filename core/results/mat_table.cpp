@@ -1,10 +1,15 @@
 #include "results/mat_table.h"
 
+#include <cstdint>
 #include <memory>
+#include <new>
 #include <string_view>
 
+#include <fmt/format.h>
 #include <matio.h>
 
+#include "base/byte_numbers.h"
+#include "base/servant_process.h"
 #include "results/reader.h"
 
 namespace freeplay {
@@ -33,9 +38,8 @@ std::vector<double> numbers_in(const matvar_t& variable) {
   return {first, first + bytes_of(variable) / sizeof(double)};
 }
 
-}  // namespace
-
-MatTable read_mat(const std::filesystem::path& path) {
+/// In a process of its own: on a damaged file the library may crash or never come back.
+MatTable read_here(const std::filesystem::path& path) {
   const std::unique_ptr<mat_t, decltype(&Mat_Close)> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close);
   if (file == nullptr) unreadable_result(path.string(), "it is no MAT-file that can be read");
   MatTable table;
@@ -50,6 +54,56 @@ MatTable read_mat(const std::filesystem::path& path) {
     if (name == "provenance") table.provenance = text_in(variable.get());
   }
   return table;
+}
+
+enum Found : std::uint64_t { table_found, none_found, no_room };
+
+std::string message_of(const MatTable& table) {
+  std::string bytes;
+  for (const auto* words : {&table.channels, &table.units}) {
+    append_bytes(bytes, static_cast<std::uint64_t>(words->size()));
+    for (const std::string& word : *words) append_bytes(bytes, std::string_view(word));
+  }
+  append_bytes(bytes, std::string_view(table.provenance));
+  append_bytes(bytes, table.time);
+  append_bytes(bytes, table.data);
+  return bytes;
+}
+
+MatTable table_of(std::string_view bytes) {
+  MatTable table;
+  ByteNumbers numbers(bytes, [] { throw ServantGone("crashes"); });
+  for (auto* words : {&table.channels, &table.units}) {
+    for (std::uint64_t left = numbers.next(); left > 0; --left) numbers.next(words->emplace_back());
+  }
+  numbers.next(table.provenance);
+  numbers.next(table.time);
+  numbers.next(table.data);
+  return table;
+}
+
+}  // namespace
+
+MatTable read_mat(const std::filesystem::path& path) {
+  ServantProcess reader([&]() -> ServantProcess::Serve {
+    return [&path](std::string_view, const ServantProcess::Send& send) {
+      try {
+        send(table_found, message_of(read_here(path)));
+      } catch (const std::bad_alloc&) {
+        send(no_room, {});
+      } catch (const std::exception&) {
+        send(none_found, {});
+      }
+    };
+  });
+  try {
+    const ServantProcess::Answer answer = reader.ask({});
+    if (answer.kind == no_room) throw std::bad_alloc();
+    if (answer.kind == table_found) return table_of(answer.text());
+  } catch (const ServantGone& gone) {
+    unreadable_result(path.string(), fmt::format("it is damaged: matio {} while it reads it", gone.what()));
+  }
+  unreadable_result(path.string(), "it is no MAT-file that can be read");
 }
 
 }  // namespace freeplay

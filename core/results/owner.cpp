@@ -43,6 +43,13 @@ std::string holder(int descriptor) {
               "wait until it has ended, or choose another directory with --out");
 }
 
+bool is_open_file(int descriptor, const fs::path& path) {
+  struct stat open {
+  }, there{};
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &there) == 0 && open.st_ino == there.st_ino &&
+         open.st_dev == there.st_dev;
+}
+
 /// Whether the lock is held now; `guarded`: whether there are locks at all.
 bool lock(int descriptor, bool& guarded) {
   int result = 0;
@@ -65,10 +72,7 @@ Owner::Owner(const fs::path& directory) {
     }
     if (!lock(descriptor_, guarded_)) refuse_in_use(directory, std::exchange(descriptor_, -1));
     // Between opening and locking the file may have been removed: then the lock is one of a file without a name.
-    struct stat held {
-    }, there{};
-    if (::fstat(descriptor_, &held) != 0 || ::stat(log.c_str(), &there) != 0) return;
-    if (held.st_ino == there.st_ino && held.st_dev == there.st_dev) return;
+    if (is_open_file(descriptor_, log)) return;
     ::close(std::exchange(descriptor_, -1));
   }
 }
@@ -76,6 +80,8 @@ Owner::Owner(const fs::path& directory) {
 Owner::~Owner() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
+
+bool Owner::holds(const fs::path& directory) const { return is_open_file(descriptor_, directory / "run.log"); }
 
 void require_no_owner(const fs::path& directory) {
   const fs::path log = directory / "run.log";

@@ -19,6 +19,8 @@ class Owner {
 
   /// False on a file system without locks: nothing keeps others away.
   bool guarded() const { return guarded_; }
+  /// Whether the lock is still that of the directory: it was neither removed nor replaced.
+  bool holds(const std::filesystem::path& directory) const;
 
  private:
   int descriptor_ = -1;

@@ -28,7 +28,13 @@ constexpr std::size_t first_column[] = {0};
 std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) unreadable_result(path.string(), "there is no such file or directory");
-  if (!fs::is_directory(path, ignored)) return path.extension() == ".h5" ? open_hdf5(path) : open_csv(path);
+  if (!fs::is_directory(path, ignored)) {
+    const fs::path ending = path.extension();
+    return ending == ".h5"     ? open_hdf5(path)
+           : ending == ".mat"  ? open_mat(path)
+           : ending == ".json" ? open_json(path)
+                               : open_csv(path);
+  }
   const bool text = fs::exists(path / "results.csv", ignored);
   if (fs::exists(path / "results.h5", ignored)) {
     try {

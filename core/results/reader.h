@@ -33,8 +33,8 @@ class ResultReader {
  public:
   using Take = std::function<void(std::span<const double>)>;
 
-  /// A result directory (its results.h5, or results.csv where that cannot be read), a CSV or an HDF5 file. Throws
-  /// Error{file} "unreadable-result" that says why, as the functions below do.
+  /// A result directory (its results.h5, or results.csv where that cannot be read), a CSV or an HDF5 file, a MAT-file
+  /// or JSON of `export`. Throws Error{file} "unreadable-result" that says why, as the functions below do.
   static std::unique_ptr<ResultReader> open(const std::filesystem::path& path);
   virtual ~ResultReader() = default;
 
@@ -97,5 +97,8 @@ class RowPicker {
 
 std::unique_ptr<ResultReader> open_csv(const std::filesystem::path& path);
 std::unique_ptr<ResultReader> open_hdf5(const std::filesystem::path& path);
+/// Tables of rows that were exported.
+std::unique_ptr<ResultReader> open_mat(const std::filesystem::path& path);
+std::unique_ptr<ResultReader> open_json(const std::filesystem::path& path);
 
 }  // namespace freeplay

@@ -27,7 +27,20 @@ struct RecordLayout {
 
 /// Some rows and events, each one after the other.
 struct RecordBlock {
+  std::span<const double> rows, events;
+};
+
+/// The same, collected.
+struct RecordBuffer {
   std::vector<double> rows, events;
+
+  operator RecordBlock() const { return {rows, events}; }
+};
+
+/// Rows that a file holds whatever comes after.
+struct HeldRows {
+  long count = 0;
+  double last_time = 0.0;
 };
 
 /// One file that rows and events go to, used by one thread. The first failure is kept, and nothing is written after it.
@@ -42,6 +55,8 @@ class RecordWriter {
   virtual void close() = 0;
   /// Notes as a failure that the file was removed or replaced.
   virtual void look_after() = 0;
+  /// What was handed over, at least; null for what holds no rows.
+  virtual const HeldRows* held() const { return nullptr; }
   /// "cannot write 'DIR/FILE': REASON"; empty while all is well.
   virtual const std::string& failure() const = 0;
 };

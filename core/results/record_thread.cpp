@@ -18,16 +18,10 @@ constexpr std::size_t often_up_to = 2000;  // columns; with more, flushes take l
 
 }  // namespace
 
-RecordThread::RecordThread(std::size_t width, Start start)
-    : width_(width),
-      writers_(std::move(start.writers)),
-      given_(start.rows),
-      rows_(start.rows),
-      time_given_(start.last_time),
-      last_time_(start.last_time) {
-  for (RecordBlock* block : {&waiting_, &writing_}) {
-    block->rows.reserve(2 * worth_waking + width_);
-    block->events.reserve(worth_waking);
+RecordThread::RecordThread(std::size_t width, Writers writers) : width_(width), writers_(std::move(writers)) {
+  for (Waiting* waiting : {&waiting_, &writing_}) {
+    waiting->numbers.rows.reserve(2 * worth_waking + width_);
+    waiting->numbers.events.reserve(worth_waking);
   }
   thread_ = std::thread([this] { serve(); });
 }
@@ -37,21 +31,22 @@ RecordThread::~RecordThread() { close(); }
 void RecordThread::add_row(std::span<const double> values, std::span<const std::size_t> picked) {
   std::unique_lock lock(mutex_);
   if (gone_) return;
-  for (const std::size_t index : picked) waiting_.rows.push_back(values[index]);
-  if (waiting_.rows.size() < worth_waking) return;
+  std::vector<double>& rows = waiting_.numbers.rows;
+  for (const std::size_t index : picked) rows.push_back(values[index]);
+  if (rows.size() < worth_waking) return;
   changed_.notify_all();
-  changed_.wait(lock, [this] { return gone_ || waiting_.rows.size() < std::max(too_many, 2 * width_); });
+  changed_.wait(lock, [&] { return gone_ || rows.size() < std::max(too_many, 2 * width_); });
 }
 
 void RecordThread::add_event(std::span<const double> numbers) {
   const std::lock_guard lock(mutex_);
   if (gone_) return;
-  waiting_.events.insert(waiting_.events.end(), numbers.begin(), numbers.end());
+  waiting_.numbers.events.insert(waiting_.numbers.events.end(), numbers.begin(), numbers.end());
 }
 
 void RecordThread::when_safe(std::function<void()> then) {
   const std::lock_guard lock(mutex_);
-  asked_.push_back(std::move(then));
+  waiting_.asked.push_back({waiting_.numbers.rows.size(), waiting_.numbers.events.size(), std::move(then)});
   changed_.notify_all();
 }
 
@@ -83,13 +78,6 @@ void RecordThread::each(Act&& act) {
   }
 }
 
-/// What a file took of a flush that another one refused does not count.
-void RecordThread::note_safe() {
-  if (!good_) return;
-  rows_ = given_;
-  last_time_ = time_given_;
-}
-
 void RecordThread::attempt(const std::function<void()>& then) {
   try {
     then();
@@ -99,6 +87,23 @@ void RecordThread::attempt(const std::function<void()>& then) {
   }
 }
 
+void RecordThread::write(const Waiting& waiting) {
+  const std::span<const double> rows = waiting.numbers.rows, events = waiting.numbers.events;
+  std::size_t row = 0, event = 0;  // numbers written
+  const auto write_until = [&](std::size_t row_end, std::size_t event_end) {
+    const RecordBlock block{rows.subspan(row, row_end - row), events.subspan(event, event_end - event)};
+    each([&](RecordWriter& writer) { writer.write(block); });
+    row = row_end;
+    event = event_end;
+  };
+  for (const Asked& asked : waiting.asked) {
+    write_until(asked.rows, asked.events);
+    each([](RecordWriter& writer) { writer.sync(); });
+    if (good_) attempt(asked.then);
+  }
+  write_until(rows.size(), events.size());
+}
+
 void RecordThread::write_all() {
   const auto flush_every = flush_again * static_cast<int>(1 + width_ / often_up_to);
   Clock::time_point flushed = Clock::now();
@@ -106,36 +111,34 @@ void RecordThread::write_all() {
   for (bool last = false; !last;) {
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, look_again,
-                        [this] { return waiting_.rows.size() >= worth_waking || !asked_.empty() || ending_; });
+      changed_.wait_for(lock, look_again, [this] {
+        return waiting_.numbers.rows.size() >= worth_waking || !waiting_.asked.empty() || ending_;
+      });
       last = ending_;
       std::swap(waiting_, writing_);
-      std::swap(asked_, asking_);
     }
     changed_.notify_all();
-    each([this](RecordWriter& writer) { writer.write(writing_); });
-    if (!writing_.rows.empty()) {
-      given_ += static_cast<long>(writing_.rows.size() / width_);
-      time_given_ = writing_.rows[writing_.rows.size() - width_];
-    }
-    if (!asking_.empty()) {
-      each([](RecordWriter& writer) { writer.sync(); });
-      note_safe();
-    }
-    for (const auto& then : asking_) {
-      if (good_) attempt(then);
-    }
+    write(writing_);
     if (last || Clock::now() - flushed >= flush_every) {
       flushed = Clock::now();
       each([](RecordWriter& writer) { writer.look_after(); });
       each([](RecordWriter& writer) { writer.flush(); });
-      note_safe();
     }
-    writing_.rows.clear();
-    writing_.events.clear();
-    asking_.clear();
+    writing_.numbers.rows.clear();
+    writing_.numbers.events.clear();
+    writing_.asked.clear();
   }
+  if (!good_) each([](RecordWriter& writer) { writer.sync(); });  // what is there is to stay
   each([](RecordWriter& writer) { writer.close(); });
+}
+
+HeldRows RecordThread::held() const {
+  const HeldRows* least = nullptr;
+  for (const auto& writer : writers_) {
+    const HeldRows* held = writer->held();
+    if (held != nullptr && (least == nullptr || held->count < least->count)) least = held;
+  }
+  return least != nullptr ? *least : HeldRows{};
 }
 
 std::string RecordThread::close() {

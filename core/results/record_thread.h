@@ -21,15 +21,10 @@ namespace freeplay {
 /// to the system at least once a second, and sees within two that a file was removed.
 class RecordThread {
  public:
-  /// Writers, and the rows that they hold already.
-  struct Start {
-    std::vector<std::unique_ptr<RecordWriter>> writers;
-    long rows = 0;
-    double last_time = 0.0;
-  };
+  using Writers = std::vector<std::unique_ptr<RecordWriter>>;
 
   /// `width`: numbers of a row.
-  RecordThread(std::size_t width, Start start);
+  RecordThread(std::size_t width, Writers writers);
   ~RecordThread();
   RecordThread(const RecordThread&) = delete;
   RecordThread& operator=(const RecordThread&) = delete;
@@ -37,39 +32,45 @@ class RecordThread {
   /// One row: the numbers of `values` at `picked`. Waits where far too many have not been written yet.
   void add_row(std::span<const double> values, std::span<const std::size_t> picked);
   void add_event(std::span<const double> numbers);
-  /// Once all that was added is safe on the disk, calls `then` in the thread. Does not wait; `then` is not called after
-  /// a failure of a writer; an Error that it throws is one.
+  /// Once all that was added so far is safe on the disk, calls `then` in the thread, before any more is written. Does
+  /// not wait; `then` is not called after a failure of a writer; an Error that it throws is one.
   void when_safe(std::function<void()> then);
 
   bool ok() const { return good_.load(std::memory_order_relaxed); }
   /// Writes the rest, ends the thread and closes the files. Returns the first failure, empty without.
   std::string close();
-  /// After close(): rows up to the last flush that every file took, the time of the last one, and processor time that
-  /// the thread took [s].
-  long rows() const { return rows_; }
-  double last_time() const { return last_time_; }
+  /// After close(): the rows that every file holds, and processor time that the thread took [s].
+  HeldRows held() const;
   double thread_seconds() const { return thread_seconds_; }
 
  private:
+  /// What waits for the thread, and what is asked for once the first numbers of it are safe.
+  struct Asked {
+    std::size_t rows, events;
+    std::function<void()> then;
+  };
+  struct Waiting {
+    RecordBuffer numbers;
+    std::vector<Asked> asked;
+  };
+
   void serve();
   void write_all();
+  void write(const Waiting& waiting);
   void attempt(const std::function<void()>& then);
-  void note_safe();
   template <class Act>
   void each(Act&& act);
 
   std::size_t width_;
-  std::vector<std::unique_ptr<RecordWriter>> writers_;  // of the thread
-  RecordBlock waiting_, writing_;                       // the second is the thread's
-  std::vector<std::function<void()>> asked_, asking_;   // as the blocks
+  Writers writers_;            // of the thread
+  Waiting waiting_, writing_;  // the second is the thread's
   std::mutex mutex_;
   std::condition_variable changed_;
   bool ending_ = false, gone_ = false;  // the second: the thread ended before it was asked to
   std::atomic<bool> good_ = true;
   std::string failure_;  // of the thread, until it ended
   std::string no_memory_ = "cannot write the results: the system gives no more memory";  // none is left to make it then
-  long given_, rows_;  // to the writers; flushed by all of them
-  double time_given_, last_time_, thread_seconds_ = 0.0;
+  double thread_seconds_ = 0.0;
   std::thread thread_;
 };
 

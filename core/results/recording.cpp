@@ -54,6 +54,7 @@ Recording::Recording(ResultDirectory directory, const Model& model, const Channe
       provenance_(freeplay::provenance(model, making)),
       picked_(select_channels(channels, model.settings.channels)),
       layout_(layout_of(model, channels, picked_, provenance_)),
+      format_(model.settings.format),
       events_given_(kept == nullptr ? 0 : kept->events),
       thread_(picked_.size(), kept == nullptr ? start_writers(model) : continued_writers(model, *kept)),
       events_(model, layout_,
@@ -67,57 +68,66 @@ Recording::Recording(ResultDirectory directory, const Model& model, const Channe
   for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);
 }
 
-RecordThread::Start Recording::continued_writers(const Model& model, const KeptPart& part) {
+RecordThread::Writers Recording::continued_writers(const Model& model, const KeptPart& part) {
   if (part.rows == 0 && part.events == 0) {  // not even a header may be there
     directory_.remove("summary.json");
     return start_writers(model);
   }
-  const ResultFormat format = model.settings.format;
   KeptFiles kept =
-      read_kept(directory_.path(), part, format, layout_, {.expected_rows = expected_rows(model.settings)});
-  cut_back(directory_.path(), kept, format);
+      read_kept(directory_.path(), part, format_, layout_, {.expected_rows = expected_rows(model.settings)});
+  cut_back(directory_.path(), kept, format_);
   directory_.remove("summary.json");
-  RecordThread::Start start{.writers = {}, .rows = static_cast<long>(part.rows), .last_time = kept.last_time};
+  RecordThread::Writers writers;
   auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_, kept.event_text);
   row_hash_ = kept.row_hash.get();
   event_text_ = events.get();
   hdf5_ = kept.hdf5.get();
-  start.writers.push_back(std::move(kept.row_hash));
-  start.writers.push_back(std::move(events));
-  if (format != ResultFormat::hdf5) {
-    start.writers.push_back(
-        std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_, GrowingFile::Begin::append));
+  writers.push_back(std::move(kept.row_hash));
+  writers.push_back(std::move(events));
+  if (format_ != ResultFormat::hdf5) {
+    writers.push_back(std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_, kept.text_rows));
   }
-  if (hdf5_ != nullptr) start.writers.push_back(std::move(kept.hdf5));
-  return start;
+  if (hdf5_ != nullptr) writers.push_back(std::move(kept.hdf5));
+  return writers;
 }
 
-RecordThread::Start Recording::start_writers(const Model& model) {
-  std::vector<std::unique_ptr<RecordWriter>> writers;
-  const ResultFormat format = model.settings.format;
+RecordThread::Writers Recording::start_writers(const Model& model) {
+  RecordThread::Writers writers;
   auto hash = std::make_unique<RowHash>();
   auto events = std::make_unique<EventTextWriter>(directory_.file("events.csv"), layout_);
   row_hash_ = hash.get();
   event_text_ = events.get();
   writers.push_back(std::move(hash));
   writers.push_back(std::move(events));
-  if (format != ResultFormat::hdf5) {
+  if (format_ != ResultFormat::hdf5) {
     writers.push_back(std::make_unique<RowTextWriter>(directory_.file("results.csv"), layout_));
   }
-  if (format != ResultFormat::csv) {
+  if (format_ != ResultFormat::csv) {
     const Hdf5Writer::Options options{.expected_rows = expected_rows(model.settings), .grows = true};
     auto hdf5 = std::make_unique<Hdf5Writer>(directory_.file("results.h5"), layout_, options);
     hdf5_ = hdf5.get();
     writers.push_back(std::move(hdf5));
   }
-  return {.writers = std::move(writers)};
+  return writers;
 }
 
 void Recording::when_safe(std::function<void()> then) { thread_.when_safe(std::move(then)); }
 
+bool Recording::in_place() const {
+  std::error_code error;
+  const auto is_there = [&](const char* name) { return std::filesystem::exists(directory_.file(name), error); };
+  return directory_.there() && is_there("events.csv") && (format_ == ResultFormat::hdf5 || is_there("results.csv")) &&
+         (format_ == ResultFormat::csv || is_there("results.h5"));
+}
+
 std::string Recording::close() {
   events_.finish();
   std::string failure = thread_.close();
+  try {
+    directory_.require_there();
+  } catch (const Error& error) {
+    failure = error.message();  // whatever came of it
+  }
   try {
     log_.close();
   } catch (const Error& error) {
@@ -145,7 +155,11 @@ void Recording::bearing(const ClearanceStatistics& clearances) {
   }
 }
 
-Json Recording::hashes() const { return {{"rows", row_hash_->digits()}, {"events", event_text_->digits()}}; }
+Json Recording::hashes() const {
+  // Of all that was given to the files; where one of them failed they hold less.
+  if (!ok()) return {{"rows", nullptr}, {"events", nullptr}};
+  return {{"rows", row_hash_->digits()}, {"events", event_text_->digits()}};
+}
 
 std::vector<std::string> Recording::files() {
   names_ = directory_.files();

@@ -56,9 +56,14 @@ class Recording {
   /// False once a file could not be written, or was removed.
   bool ok() const { return thread_.ok(); }
   /// Once all rows and events so far are safe on the disk, calls `then` in the thread that writes; does not wait.
+  /// hashes() are then of these alone.
   void when_safe(std::function<void()> then);
   /// False where nothing keeps other processes out of the directory.
   bool guarded() const { return directory_.guarded(); }
+  /// False once the directory or a file that grows was removed, or another took its place.
+  bool in_place() const;
+  /// Throws Error{file} unless the directory is there.
+  void require_directory() const { directory_.require_there(); }
   RunLog& log() { return log_; }
   const ContactAdvice& advice() const { return advice_; }
   /// Tables of /bearing, for seal().
@@ -67,12 +72,11 @@ class Recording {
   /// Ends the growing files. Returns the first failure to write any of them, empty without: "cannot write 'FILE':
   /// REASON".
   std::string close();
-  /// After close(): rows that every file holds, and the time of the last.
-  long rows() const { return thread_.rows(); }
-  double last_time() const { return thread_.last_time(); }
+  /// After close(): rows that every file holds.
+  HeldRows held() const { return thread_.held(); }
   /// Processor time of the thread that writes [s].
   double text_seconds() const { return thread_.thread_seconds(); }
-  /// The fields `provenance` and `hashes` of the summary.
+  /// The fields `provenance` and `hashes` of the summary; these are unknown where a file could not be written.
   const Json& provenance() const { return provenance_; }
   Json hashes() const;
 
@@ -95,14 +99,15 @@ class Recording {
   };
   Recording(ResultDirectory directory, const Model& model, const Channels& channels, const Making& making,
             const KeptPart* kept);
-  RecordThread::Start start_writers(const Model& model);
-  RecordThread::Start continued_writers(const Model& model, const KeptPart& kept);
+  RecordThread::Writers start_writers(const Model& model);
+  RecordThread::Writers continued_writers(const Model& model, const KeptPart& kept);
 
   ResultDirectory directory_;
   RunLog log_;
   Json provenance_;
   std::vector<std::size_t> picked_;
   RecordLayout layout_;
+  ResultFormat format_;
   std::int64_t events_given_;
   // Of the thread, which owns them.
   RowHash* row_hash_ = nullptr;

@@ -1,16 +1,31 @@
 // RowHash: the fingerprint of all rows, whatever files they go to.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "base/sha256.h"
 #include "results/record.h"
 
 namespace freeplay {
 
-/// SHA-256 of the numbers of all rows as little-endian doubles, row by row.
+/// SHA-256 of the numbers of all rows as little-endian doubles, row by row; what is no number counts as one quiet NaN,
+/// as text has it.
 class RowHash : public RecordWriter {
  public:
   void write(const RecordBlock& block) override {
-    if (!block.rows.empty()) hash_.add(block.rows.data(), block.rows.size() * sizeof(double));
+    std::span<const double> rows = block.rows;
+    if (std::ranges::any_of(rows, [](double x) { return std::isnan(x); })) {
+      plain_.assign(rows.begin(), rows.end());
+      std::ranges::replace_if(
+          plain_, [](double x) { return std::isnan(x); }, std::numeric_limits<double>::quiet_NaN());
+      rows = plain_;
+    }
+    if (!rows.empty()) hash_.add(rows.data(), rows.size_bytes());
   }
   void flush() override {}
   void sync() override {}
@@ -21,6 +36,7 @@ class RowHash : public RecordWriter {
 
  private:
   Sha256 hash_;
+  std::vector<double> plain_;
   std::string none_;
 };
 

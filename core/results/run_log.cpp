@@ -30,6 +30,7 @@ void RunLog::write(std::string_view kind, std::string_view message) {
     file_.end_line();
     message.remove_prefix(std::min(line.size() + 1, message.size()));
   }
+  file_.flush();  // messages are few, and what a killed run said is to be there
 }
 
 }  // namespace freeplay

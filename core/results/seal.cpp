@@ -54,7 +54,9 @@ Json nothing_known(const Json& schema) {
 class Sealing {
  public:
   explicit Sealing(const fs::path& directory)
-      : directory_(directory), owner_(directory), reader_(ResultReader::open(directory)) {}
+      : directory_(directory), owner_(directory), reader_(ResultReader::open(directory)) {
+    require_readable_hdf5();
+  }
 
   Sealed execute() {
     const bool has_summary = there_is(directory_ / "summary.json");
@@ -88,6 +90,19 @@ class Sealing {
  private:
   static constexpr std::int64_t most_lines = std::numeric_limits<std::int64_t>::max();
 
+  /// Where results.csv stood in for it nothing would be said of it.
+  void require_readable_hdf5() const {
+    const fs::path file = directory_ / "results.h5";
+    if (!there_is(file)) return;
+    try {
+      open_hdf5(file);
+    } catch (const Error& error) {
+      throw Error(
+          error.category(), error.id(), error.message(), error.location(),
+          there_is(directory_ / "results.csv") ? "results.csv has the same rows: move results.h5 away, then seal" : "");
+    }
+  }
+
   std::vector<fs::path> unfinished() const {
     std::vector<fs::path> files;
     for (const char* name : {"results.csv", "events.csv"}) {
@@ -104,23 +119,17 @@ class Sealing {
       hdf5_ = std::make_unique<Hdf5Writer>(directory_ / "results.h5", reader_->layout(),
                                            Hdf5Writer::Options{.named_later = true});
     }
-    RecordBlock block;
-    const auto give = [&](RecordWriter& writer) { writer.write(block); };
     std::vector<std::size_t> all(width);
     std::iota(all.begin(), all.end(), std::size_t{0});
     reader_->rows(all, {}, [&](std::span<const double> rows) {
-      block.rows.assign(rows.begin(), rows.end());
-      give(row_hash_);
-      if (hdf5_ != nullptr) give(*hdf5_);
+      const RecordBlock block{.rows = rows, .events = {}};
+      row_hash_.write(block);
+      if (hdf5_ != nullptr) hdf5_->write(block);
       rows_ += static_cast<std::int64_t>(rows.size() / width);
       time_ = rows[rows.size() - width];
     });
-    block.rows.clear();
     if (hdf5_ == nullptr || reader_->layout().events.empty()) return;
-    reader_->events([&](std::span<const double> events) {
-      block.events.assign(events.begin(), events.end());
-      give(*hdf5_);
-    });
+    reader_->events([&](std::span<const double> events) { hdf5_->write({.rows = {}, .events = events}); });
     require_written();
   }
 
@@ -140,7 +149,7 @@ class Sealing {
     const Json text = attribute("provenance");
     if (text.is_string()) return json_of_text(text.get<std::string>());
     try {
-      return read_checkpoint(directory_).made;
+      return read_checkpoint(directory_).made.value("provenance", Json());
     } catch (const Error&) {
       return nullptr;
     }

@@ -31,6 +31,7 @@ Json numbers(std::initializer_list<const char*> names) {
 
 /// SHA-256.
 Json digits() { return {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}; }
+Json digits_or_null() { return {{"type", {"string", "null"}}, {"pattern", "^[0-9a-f]{64}$"}}; }
 
 Json model_part() {
   return record({{"name", text()},
@@ -161,7 +162,6 @@ Json statistics_part() {
 }
 
 Json provenance_part() {
-  const Json digits_or_null = {{"type", {"string", "null"}}, {"pattern", "^[0-9a-f]{64}$"}};
   const Json file = record({{"name", text()}, {"sha256", digits()}});
   return record(
       {{"freeplay", text()},
@@ -177,10 +177,10 @@ Json provenance_part() {
        {"model", file},
        {"inputs", list_of(file)},
        {"plugins",
-        list_of(record({{"name", text()}, {"version", text()}, {"file", text()}, {"sha256", digits_or_null}}))},
+        list_of(record({{"name", text()}, {"version", text()}, {"file", text()}, {"sha256", digits_or_null()}}))},
        {"seed", integer_or_null()},
-       {"hashes", record({{"rows", digits()}, {"events", digits()}})},
-       {"data_sha256", digits_or_null}});
+       {"hashes", record({{"rows", digits_or_null()}, {"events", digits_or_null()}})},
+       {"data_sha256", digits_or_null()}});
 }
 
 }  // namespace
@@ -219,7 +219,7 @@ Json summary_schema() {
        {"trust", trust_part()},
        {"noise", noise_part()},
        {"repeat", repeat_part()},
-       {"hashes", record({{"rows", digits()}, {"events", digits()}})},
+       {"hashes", record({{"rows", digits_or_null()}, {"events", digits_or_null()}})},
        {"provenance", provenance_part()},
        {"twin", twin_part()},
        {"performance", record({{"wall_seconds", number()},

@@ -114,18 +114,12 @@ void write_hdf5(TableView& table, ResultReader& reader, const Json& provenance, 
   std::erase_if(layout.attributes, [](const auto& attribute) { return attribute.first == "provenance"; });
   layout.attributes.emplace_back("provenance", provenance.dump(-1, ' ', false, Json::error_handler_t::replace));
   Hdf5Writer writer(path, layout, {.expected_rows = 1024, .grows = false});
-  RecordBlock block;
   table.rows([&](std::span<const double> rows) {
-    block.rows.assign(rows.begin(), rows.end());
-    writer.write(block);
+    writer.write({.rows = rows, .events = {}});
     writer.flush();
   });
-  block.rows.clear();
   if (!layout.events.empty()) {
-    reader.events([&](std::span<const double> events) {
-      block.events.assign(events.begin(), events.end());
-      writer.write(block);
-    });
+    reader.events([&](std::span<const double> events) { writer.write({.rows = {}, .events = events}); });
   }
   writer.finish({}, "");
   if (!writer.failure().empty()) throw Error(Error::Category::file, "cannot-write", writer.failure());

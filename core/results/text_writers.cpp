@@ -7,12 +7,18 @@
 
 namespace freeplay {
 
+std::string text_header(std::span<const RecordColumn> columns) {
+  std::string header;
+  for (const RecordColumn& column : columns) (header += column.name) += ',';
+  header.back() = '\n';
+  return header;
+}
+
 TextWriter::TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns,
                        GrowingFile::Begin begin)
     : width_(columns.size()), file_(path, begin) {
   if (begin == GrowingFile::Begin::append) return;
-  for (const RecordColumn& column : columns) (header_ += column.name) += ',';
-  header_.back() = '\n';
+  header_ = text_header(columns);
   file_.line() += std::string_view(header_).substr(0, header_.size() - 1);
   file_.end_line();
 }
@@ -34,6 +40,8 @@ void RowTextWriter::write(const RecordBlock& block) {
     append_number(file_.line(), block.rows[i]);
     if ((i + 1) % width_ == 0) {
       file_.end_line();
+      given_ = {given_.count + 1, block.rows[i + 1 - width_]};
+      if (!file_.waits()) note();
     } else {
       file_.line() += ',';
     }
@@ -41,15 +49,23 @@ void RowTextWriter::write(const RecordBlock& block) {
   note();
 }
 
+void RowTextWriter::note() {
+  TextWriter::note();
+  if (failure().empty() && !file_.waits()) held_ = given_;
+}
+
+void EventTextWriter::append(std::string& line, const RecordLayout& layout, std::span<const double> event) {
+  append_number(line, event[0]);
+  ((line += ',') += layout.joints[static_cast<std::size_t>(event[1])]) += ',';
+  line += layout.kinds[static_cast<std::size_t>(event[2])];
+  for (const double field : event.subspan(3)) append_number(line += ',', field);
+}
+
 void EventTextWriter::write(const RecordBlock& block) {
   for (std::size_t i = 0; i < block.events.size(); i += width_) {
-    const std::span<const double> event = std::span(block.events).subspan(i, width_);
     std::string& line = file_.line();
     const std::size_t begin = line.size();
-    append_number(line, event[0]);
-    ((line += ',') += layout_.joints[static_cast<std::size_t>(event[1])]) += ',';
-    line += layout_.kinds[static_cast<std::size_t>(event[2])];
-    for (const double field : event.subspan(3)) append_number(line += ',', field);
+    append(line, layout_, block.events.subspan(i, width_));
     hash_.add(line.data() + begin, line.size() - begin);
     hash_.add("\n", 1);
     file_.end_line();

@@ -9,6 +9,9 @@
 
 namespace freeplay {
 
+/// The first line of a file with these columns.
+std::string text_header(std::span<const RecordColumn> columns);
+
 /// UTF-8, LF, comma, one header row, no quoting; a value that is NaN is an empty field.
 class TextWriter : public RecordWriter {
  public:
@@ -21,7 +24,8 @@ class TextWriter : public RecordWriter {
  protected:
   /// Throws Error{file}.
   TextWriter(const std::filesystem::path& path, std::span<const RecordColumn> columns, GrowingFile::Begin begin);
-  void note();
+  /// After each call of the file.
+  virtual void note();
 
   std::size_t width_;
   std::string header_;
@@ -35,15 +39,26 @@ class TextWriter : public RecordWriter {
 class RowTextWriter : public TextWriter {
  public:
   /// Throws Error{file}.
-  RowTextWriter(const std::filesystem::path& path, const RecordLayout& layout,
-                GrowingFile::Begin begin = GrowingFile::Begin::empty)
-      : TextWriter(path, layout.columns, begin) {}
+  RowTextWriter(const std::filesystem::path& path, const RecordLayout& layout)
+      : TextWriter(path, layout.columns, GrowingFile::Begin::empty) {}
+  /// Goes on in a file that holds `kept`.
+  RowTextWriter(const std::filesystem::path& path, const RecordLayout& layout, const HeldRows& kept)
+      : TextWriter(path, layout.columns, GrowingFile::Begin::append), given_(kept), held_(kept) {}
   void write(const RecordBlock& block) override;
+  const HeldRows* held() const override { return &held_; }
+
+ protected:
+  void note() override;
+
+ private:
+  HeldRows given_, held_;
 };
 
 /// events.csv, one line per event. `layout` outlives it.
 class EventTextWriter : public TextWriter {
  public:
+  /// Appends the line of one event, without its end.
+  static void append(std::string& line, const RecordLayout& layout, std::span<const double> event);
   /// Throws Error{file}.
   EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout)
       : TextWriter(path, layout.events, GrowingFile::Begin::empty), layout_(layout) {

@@ -40,9 +40,9 @@ void row(benchmark::State& state, const std::string& name, int windows) {
   std::vector<double> values(columns.size());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<double>(i) + 0.5);
   const RecordLayout layout = record_layout(*model, channels, columns);
-  std::vector<std::unique_ptr<RecordWriter>> writers;
+  RecordThread::Writers writers;
   writers.push_back(std::make_unique<RowTextWriter>("/dev/null", layout));
-  RecordThread thread(columns.size(), {.writers = std::move(writers)});
+  RecordThread thread(columns.size(), std::move(writers));
   for (auto _ : state) thread.add_row(values, columns);
   thread.close();
   state.counters["per_number"] = benchmark::Counter(
@@ -63,14 +63,14 @@ void write_seconds(benchmark::State& state, bool hdf5) {
   for (std::size_t i = 0; i < channels; ++i) values[i] = std::sin(static_cast<double>(i) + 0.5);
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("freeplay-bench-{}", ::getpid());
-  std::vector<std::unique_ptr<RecordWriter>> writers;
+  RecordThread::Writers writers;
   if (hdf5) {
     const Hdf5Writer::Options options{.expected_rows = 1000000, .grows = true};
     writers.push_back(std::make_unique<Hdf5Writer>(file, layout, options));
   } else {
     writers.push_back(std::make_unique<RowTextWriter>(file, layout));
   }
-  RecordThread thread(channels, {.writers = std::move(writers)});
+  RecordThread thread(channels, std::move(writers));
   values[0] = 0.0;
   for (auto _ : state) {
     for (std::size_t r = 0; r < rows; ++r) {

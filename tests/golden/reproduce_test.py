@@ -59,8 +59,8 @@ class Reproduce(ProgramTest):
         with open(self.path(*names), "wb") as file:
             file.write(changed)
 
-    def assert_same(self, name, *options):
-        out, err = self.freeplay("reproduce", name, *options)
+    def assert_same(self, name, *options, environment=None):
+        out, err = self.freeplay("reproduce", name, *options, environment=environment)
         self.assertEqual("", err)
         self.assertIn(": made by freeplay ", out)
         self.assertEqual("same bytes", out.splitlines()[-1])
@@ -375,6 +375,14 @@ class Reproduce(ProgramTest):
             file.write(b" ")
         out = self.assert_same("r", "--plugin", "moved/spring.so")
         self.assertRegex(out, r"the plugin '\S+' is another: SHA-256 \w{12} recorded, \w{12} now")
+        # The one of the same bytes goes before the one of the same name.
+        shutil.copy(SPRING, self.path("spring.so"))
+        environment = {**os.environ, "FREEPLAY_PLUGIN_PATH": self.path("moved")}
+        self.assertNotIn("another", self.assert_same("r", "--allow-plugins", environment=environment))
+        _, err = self.freeplay("reproduce", "r", code=5, environment=environment)
+        self.assertIn("[plugin-not-allowed]", err)
+        os.rename(self.path("spring.so"), self.path("renamed.so"))
+        self.assertIn("is another", self.assert_same("r", environment=environment))
         # By an option that the record holds, too.
         self.run_model("r", "--plugin", "moved/spring.so", model=self.write("twisted.yaml", TWISTED % ""))
         self.freeplay("reproduce", "r", code=5)

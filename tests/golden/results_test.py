@@ -85,6 +85,14 @@ class Results(ProgramTest):
             _, stderr = self.freeplay("seal", "r", code=6)
             self.assertIn("[result-in-use]", stderr)
             run.kill()
+        shutil.copytree(self.path("r"), self.path("damaged"))
+        with open(self.path("damaged", "results.h5"), "r+b") as file:
+            file.write(b"damaged")
+        _, stderr = self.freeplay("seal", "damaged", code=6)
+        self.assertIn("damaged/results.h5' cannot be read", stderr)
+        self.assertNotIn("summary.json", os.listdir(self.path("damaged")))
+        os.remove(self.path("damaged", "results.h5"))
+        self.freeplay("seal", "damaged")
         with open(self.path("r", "results.csv"), "a", encoding="utf-8") as file:
             file.write("0.1,half a li")
         out, _ = self.freeplay("seal", "r")
@@ -255,6 +263,14 @@ class Results(ProgramTest):
         self.run_model(end="1 ms")
         self.freeplay("compare", "r/results.csv", "r/results.h5", "--tolerance", "0", "--absolute", "0")
         self.freeplay("compare", "r", "r/results.csv", "--tolerance", "0", "--absolute", "0")
+        for ending in ("mat", "json", "hdf5"):
+            name = "t." + ending.replace("hdf5", "h5")
+            self.freeplay("export", "r", "--to", ending, "--out", name)
+            out, _ = self.freeplay("compare", "r", name, "--tolerance", "0", "--absolute", "0")
+            self.assertRegex(out, r"# \d+ channels in \d+ rows: 0 differ")
+            self.assertEqual(self.read("r", "results.csv"), self.freeplay("export", name, "--to", "csv")[0])
+        _, err = self.freeplay("compare", "r", "r/summary.json", code=6)
+        self.assertIn("r/summary.json' cannot be read: it holds no table of rows", err)
 
 
 if __name__ == "__main__":

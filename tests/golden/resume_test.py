@@ -4,6 +4,8 @@ import json
 import os
 import random
 import re
+import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -81,6 +83,47 @@ class Resume(ProgramTest):
                 self.freeplay("run", "--resume", name, "--quiet")
                 self.assert_same(name, "whole")
                 self.assertIn("resumed from t = ", self.read(name, "run.log"))
+
+    def test_rows_and_events_that_were_changed_are_found(self):
+        options = ("--end", "0.3 s", "--checkpoint", "0")
+        name = self.interrupted(signal.SIGTERM, self.whole(*options), *options)
+        for file in ("results.csv", "events.csv"):
+            changed = "changed-" + file
+            shutil.copytree(self.path(name), self.path(changed))
+            text = self.read(changed, file)
+            place = next(i for i in range(len(text) // 3, len(text)) if text[i] in "12345678")
+            self.write(os.path.join(changed, file), text[:place] + str(int(text[place]) + 1) + text[place + 1:])
+            _, err = self.freeplay("run", "--resume", changed, "--quiet", code=6)
+            self.assertIn("'%s' was changed" % os.path.join(changed, file), err)
+        self.freeplay("run", "--resume", name, "--quiet")
+        self.assert_same(name, "whole")
+
+    def test_a_run_that_was_killed_twice_after_its_last_row_begins_again(self):
+        self.whole("--end", "0.1 s")
+        shutil.copytree(self.path("whole"), self.path("again"))
+        os.remove(self.path("again", "summary.json"))  # killed before it was written
+        self.write(os.path.join("again", "results.csv"), "".join(self.read("again", "results.csv").splitlines(True)[:9]))
+        self.freeplay("run", "--resume", "again", "--quiet")  # whose rows another one was killed at
+        self.assert_same("again", "whole")
+
+    def test_a_limit_of_file_sizes_leaves_rows_that_are_named_and_gone_on_from(self):
+        self.whole("--end", "0.3 s", "--format", "both")
+        for format_, largest in (("both", "results.csv"), ("hdf5", "results.h5")):
+            limit = os.path.getsize(self.path("whole", largest)) // 2
+            name = "limited-" + format_
+            done = subprocess.run([PROGRAM, "run", CRANK, "--quiet", "--out", name, "--end", "0.3 s", "--format", format_],
+                                  cwd=self.folder, capture_output=True, text=True, check=False,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+            self.assertEqual(done.returncode, 6, done.stderr)
+            self.assertRegex(done.stderr, "rows up to t = [0-9.]+ s are safe; free some space and go on with freeplay run "
+                                          "--resume " + name)
+            summary = json.loads(self.read(name, "summary.json"))
+            rows, _ = self.freeplay("export", name, "--to", "csv", "--channels", "time")
+            self.assertGreater(summary["counts"]["rows"], 0)
+            self.assertLessEqual(summary["counts"]["rows"], rows.count("\n") - 1)
+            self.freeplay("run", "--resume", name, "--quiet")
+            if format_ == "both":
+                self.assert_same(name, "whole")
 
     def test_a_later_end_gives_the_run_to_that_end(self):
         self.run_model("whole", "--end", "24 ms", "--interval", "0.1 ms")

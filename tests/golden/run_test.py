@@ -347,6 +347,22 @@ simulation: {end: 10 ms, step: 1 ms}
         self.assertEqual(6, process.returncode, err)
         self.assertNotIn("internal", err)
 
+    def test_a_directory_that_another_takes_the_place_of_is_left_alone(self):
+        process = subprocess.Popen([PROGRAM, "run", mechanism("3-rrr"), "--end", "100 s", "--out", "here", "--checkpoint",
+                                    "0.2 s"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not self.grown("here", "results.csv") and time.monotonic() < deadline:
+            time.sleep(0.05)
+        self.assertIn(" runs ", self.read("here", "run.log"))  # messages are there as they come
+        os.rename(self.path("here"), self.path("there"))
+        os.mkdir(self.path("here"))
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(6, process.returncode, err)
+        self.assertRegex(err, r"cannot write 'here\S*': it (or its run.log )?was removed or replaced while .*\[cannot-write\]")
+        self.assertNotIn("free some space", err)
+        self.assertEqual([], os.listdir(self.path("here")))
+
     def test_progress_is_shown_on_a_terminal_only(self):
         main, terminal = pty.openpty()
         run = subprocess.Popen([PROGRAM, "run", mechanism("slider-crank"), "--end", "50 ms"], cwd=self.folder,
@@ -378,6 +394,32 @@ simulation: {end: 10 ms, step: 1 ms}
         rows = self.rows("r", "results.csv")
         self.assertEqual({len(rows[0])}, {len(row) for row in rows})
 
+    def test_a_default_name_does_not_replace_the_result_of_another_model(self):
+        first, second = self.pendulum(end="1 ms"), self.path("b", "pendulum.yaml")
+        os.mkdir(self.path("b"))
+        self.freeplay("run", first, "--quiet")
+        shutil.copy(self.path(first), second)
+        self.freeplay("run", second, "--quiet")
+        with open(second, "a", encoding="utf-8") as file:
+            file.write("# another one\n")
+        self.freeplay("run", second, "--quiet")
+        _, err = self.freeplay("run", first, "--quiet", code=6)
+        name = self.summary("results", os.listdir(self.path("results"))[0])["model"]["name"]
+        self.assertIn("'results/%s' holds the result of another model of that name, '%s'" % (name, second), err)
+        self.assertIn("--out", err)
+        self.freeplay("run", first, "--quiet", "--force")
+        os.remove(self.path(first))
+        self.freeplay("run", second, "--quiet")  # which was moved there, for all that is known
+
+    def test_rows_that_no_time_tells_apart_are_refused(self):
+        model = self.pendulum(end="1 s")
+        _, err = self.freeplay("run", model, "--interval", "1e-17 s", "--yes", "--quiet", code=2)
+        self.assertIn("--interval: 1e-17 s between rows is less than times of 1 s can differ by; it must be at least "
+                      "4.4e-16 s", err)
+        model = self.write("p.yaml", self.read("p.yaml").replace("interval: 10 ms", "interval: 1e-17 s"))
+        _, err = self.freeplay("run", model, "--yes", "--quiet", code=3)
+        self.assertIn("[out-of-range]", err)
+
     def test_what_a_failed_run_leaves_differs_from_other_files(self):
         model = self.pendulum(end="20 s")
         limit = (20000, 20000)
@@ -386,10 +428,16 @@ simulation: {end: 10 ms, step: 1 ms}
         summary = self.summary("r")
         self.assertEqual(("failed", 6), (summary["status"], summary["exit_code"]))
         self.assertLess(summary["counts"]["rows"], 20000)
+        self.assertEqual({"rows": None, "events": None}, summary["hashes"])
         os.remove(self.path("r", "summary.json"))
         _, err = self.freeplay("run", model, "--out", "r", code=6)
         self.assertIn("error: 'r' holds the result of a run that did not end: it has no summary.json", err)
         self.freeplay("run", model, "--out", "r", "--end", "1 ms", "--force")
+        # What was killed before it had a row is nothing to lose.
+        os.remove(self.path("r", "summary.json"))
+        os.remove(self.path("r", "results.h5"))
+        self.write(os.path.join("r", "results.csv"), self.read("r", "results.csv").split("\n")[0] + "\n")
+        self.freeplay("run", model, "--out", "r", "--end", "1 ms")
         os.remove(self.path("r", "summary.json"))
         self.write(os.path.join("r", "thesis.txt"), "two years of work")
         _, err = self.freeplay("run", model, "--out", "r", code=6)

@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 PositionMap small_map() {
   PositionMap map;
@@ -19,7 +19,7 @@ PositionMap small_map() {
   map.quantity = "error [um]";
   map.x = {0.0, 0.1, 0.2};
   map.y = {0.0, 0.1};
-  map.values = {1.0, 2.0, 3.0, nan, nan, 6.0};
+  map.values = {1.0, 2.0, 3.0, undefined, undefined, 6.0};
   map.points = {MapPoint::good,        MapPoint::good,     MapPoint::good,
                 MapPoint::unreachable, MapPoint::singular, MapPoint::good};
   return map;

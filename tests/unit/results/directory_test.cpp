@@ -1,5 +1,6 @@
 #include "results/directory.h"
 
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -36,6 +37,49 @@ TEST(ResultDirectory, RefusesOtherContentUnlessForced) {
   EXPECT_THROW(check_result_directory(folder.path(), false), Error);
   EXPECT_NO_THROW(check_result_directory(folder.path(), true));
   EXPECT_NO_THROW(check_result_directory(folder.file("not/there/yet"), false));
+}
+
+TEST(ResultDirectory, IsFreeWhereARunWasEndedBeforeItHadRows) {
+  const ScratchFolder folder;
+  const auto refused = [&] {
+    try {
+      check_result_directory(folder.path(), false);
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return std::string();
+  };
+  folder.write("run.log", "");
+  folder.write("model.yaml", "freeplay: 1\n");
+  folder.write(".results.h5.part", "some");
+  folder.write("events.csv", "");
+  folder.write("results.csv", "");
+  EXPECT_EQ("", refused());
+  folder.write("results.csv", "time,a\n");
+  EXPECT_EQ("", refused());
+  folder.write("results.csv", "time,a\n0,1\n");
+  EXPECT_NE(std::string::npos, refused().find("a run that did not end"));
+  folder.write("results.csv", "time,a\n");
+  folder.write("results.h5", "no longer to be read");
+  EXPECT_NE(std::string::npos, refused().find("a run that did not end"));
+  folder.write("results.h5", "");
+  std::filesystem::create_directory(folder.file("twin"));
+  folder.write("twin/results.csv", "time,a\n0,1\n");
+  EXPECT_NE(std::string::npos, refused().find("a run that did not end"));
+}
+
+TEST(ResultDirectory, WritesNothingIntoAnotherInItsPlace) {
+  const ScratchFolder folder;
+  const ResultDirectory directory(folder.file("a"), false);
+  EXPECT_TRUE(directory.there());
+  std::filesystem::rename(folder.file("a"), folder.file("b"));
+  EXPECT_FALSE(directory.there());
+  EXPECT_THROW(directory.write("summary.json", "text"), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a")));
+  const ResultDirectory other(folder.file("a"), false);
+  EXPECT_FALSE(directory.there());
+  EXPECT_THROW(directory.write("summary.json", "text"), Error);
+  EXPECT_EQ((std::vector<std::string>{"run.log"}), other.files());
 }
 
 TEST(ResultDirectory, WritesWholeFiles) {

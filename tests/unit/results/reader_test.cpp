@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -39,8 +40,8 @@ RecordLayout small_layout() {
   return layout;
 }
 
-RecordBlock some_rows(std::size_t first, std::size_t count) {
-  RecordBlock block;
+RecordBuffer some_rows(std::size_t first, std::size_t count) {
+  RecordBuffer block;
   for (std::size_t i = first; i < first + count; ++i) {
     const double x = static_cast<double>(i);
     block.rows.insert(block.rows.end(), {0.1 * x, i % 7 == 3 ? no_number : std::sin(x), -x / 3.0});
@@ -84,7 +85,7 @@ std::vector<double> times(ResultReader& reader, const RowWindow& window) {
 TEST(Hdf5Result, GivesBackEveryBitOverSeveralChunks) {
   const ScratchFolder folder;
   const RecordLayout layout = small_layout();
-  const RecordBlock rows = some_rows(0, 300);
+  const RecordBuffer rows = some_rows(0, 300);
   Hdf5Writer writer(folder.file("results.h5"), layout, {.expected_rows = 10});
   writer.write(some_rows(0, 70));
   writer.flush();
@@ -99,7 +100,7 @@ TEST(Hdf5Result, GivesBackNamesUnitsWordsAndAttributes) {
   const ScratchFolder folder;
   const RecordLayout layout = small_layout();
   Hdf5Writer writer(folder.file("results.h5"), layout, {});
-  writer.write({.rows = {0.0, 1.0, 2.0}, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}});
+  writer.write(RecordBuffer{.rows = {0.0, 1.0, 2.0}, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}});
   writer.finish({}, "{}");
   const auto reader = ResultReader::open(folder.path());
   const RecordLayout& read = reader->layout();
@@ -141,6 +142,42 @@ TEST(Hdf5Result, KeepsFlushedRowsOfAWriterThatDied) {
   EXPECT_EQ(bits(some_rows(0, 77).rows), bits(rows_of(*ResultReader::open(folder.file("results.h5")))));
 }
 
+TEST(Hdf5Result, OfADamagedFileIsReadOrRefused) {
+  const ScratchFolder folder;
+  const RecordLayout layout = small_layout();
+  Hdf5Writer growing(folder.file("growing.h5"), layout, {}),
+      whole(folder.file("whole.h5"), layout, {.expected_rows = 100, .grows = false});
+  for (Hdf5Writer* writer : {&growing, &whole}) {
+    writer->write(some_rows(0, 100));
+    writer->finish({}, "{}");
+  }
+  std::mt19937 random(1);
+  int read = 0, refused = 0;
+  for (const char* name : {"growing.h5", "whole.h5"}) {
+    const std::string bytes = folder.read(name);
+    for (int i = 0; i < 300; ++i) {
+      std::string damaged = bytes;
+      for (int left = i % 3 == 0 ? 1 : 30; left > 0; --left) {
+        damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
+      }
+      folder.write("damaged.h5", damaged);
+      try {
+        const auto reader = ResultReader::open(folder.file("damaged.h5"));
+        rows_of(*reader);
+        events_of(*reader);
+        reader->summary();
+        ++read;
+      } catch (const Error& error) {
+        EXPECT_EQ("unreadable-result", error.id());
+        EXPECT_THAT(error.message(), HasSubstr("damaged.h5' cannot be read: "));
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_GT(refused, 100);
+}
+
 TEST(Hdf5Result, KeepsBearingTables) {
   const ScratchFolder folder;
   const RecordLayout layout = small_layout();
@@ -171,7 +208,7 @@ TEST(CsvResult, IsWhatTheTextWriterWrote) {
   const RecordLayout layout = small_layout();
   RowTextWriter rows(folder.file("results.csv"), layout);
   EventTextWriter events(folder.file("events.csv"), layout);
-  const RecordBlock block{.rows = some_rows(0, 20).rows, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}};
+  const RecordBuffer block{.rows = some_rows(0, 20).rows, .events = {0.25, 1.0, 0.0, no_number, 0.5, 0.0, 1.0, 3.0}};
   rows.write(block);
   events.write(block);
   rows.close();
