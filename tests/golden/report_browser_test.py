@@ -164,6 +164,9 @@ class ReportInBrowser(ProgramTest):
         paper = "return getComputedStyle(document.body).backgroundColor"
         light = self.script(paper)
         self.browser.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        time.sleep(0.3)
+        self.assertNotEqual(light, self.script(paper))
+        self.browser.open(self.path("page.html"))
         self.assertNotEqual(light, self.script(paper))
         self.browser.command("Emulation.setEmulatedMedia", media="print", features=[])
         self.assertEqual(light, self.script(paper))
@@ -177,6 +180,29 @@ class ReportInBrowser(ProgramTest):
         for width in (360, 800, 1280):
             self.browser.command("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
             self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)
+
+    def test_tables_of_eight_runs_fit(self):
+        for k in range(8):
+            self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--set", "c=%d um" % (500 + k), "--out", "r%d" % k)
+        self.freeplay("report", *("r%d" % k for k in range(8)), "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        for section in ("side", "facts", "clearance"):
+            self.assertLessEqual(self.script("const e = document.querySelector('#' + arguments[0] + ' .wide'); return e.scrollWidth - e.clientWidth", section), 0, section)
+        self.assertEqual([8] * 2, self.script("return [...document.querySelectorAll('#side tr')].slice(0, 2).map(e => e.querySelectorAll('.number').length)"))
+
+    def test_the_command_is_copied(self):
+        self.open("slider-crank", options=("--end", "1 ms"))
+        self.script("document.querySelector('#model button').scrollIntoView({block: 'center'})")
+        self.browser.drag("#model button", (0.5, 0.5), (0.5, 0.5))
+        time.sleep(0.3)
+        self.assertEqual("Copied", self.script("return document.querySelector('#model button').textContent"))
+
+    def test_gaps_of_values_that_are_no_numbers(self):
+        self.write("r.csv", "time,a\n0,1\n1,inf\n2,3\n3,nan\n4,5\n")
+        self.freeplay("report", "r.csv", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        shown = self.script("freeplay.select(['a']); return [0, 1, 2, 3, 4].map(t => { freeplay.seek(t); return document.querySelector('#now span').textContent; })")
+        self.assertEqual(["1", "\u2013", "3", "\u2013", "5"], shown)
 
     def test_space_is_turned_by_mouse_and_keys(self):
         self.open("spatial/stewart")

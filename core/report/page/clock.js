@@ -57,7 +57,7 @@ function stepImpact(by) {
 function startClock() {
   const scrub = byId('scrub');
   if (scrub) {
-    byId('speed').append(...speeds.map(s => make('option', {value: s}, s + '\u00d7')));
+    byId('speed').append(...speeds.map(s => make('option', {value: s}, s + '×')));
     byId('speed').onchange = e => setSpeed(+e.target.value);
     byId('play').onclick = toggle;
     [['earlier', -1], ['later', 1]].forEach(([id, by]) => { byId(id).onclick = () => stepImpact(by); byId(id).hidden = !impactTimes.length; });

@@ -35,7 +35,7 @@ function startScene() {
 function exaggerate(factor) {
   scene.exaggerate = Math.max(1, Math.min(1000, factor || 1));
   byId('exaggerate').value = scene.exaggerate;
-  byId('factor').textContent = '\u00d7' + scene.exaggerate;
+  byId('factor').textContent = '×' + scene.exaggerate;
 }
 function changeExaggeration(up) {
   if (!scene.canvas) return;
@@ -159,7 +159,8 @@ function drawJoint(c, m, {joint, p, q, first, second}, project) {
   const {symbol} = joint;
   if (joint.clearance) return drawClearance(c, m, joint, p, first, project);
   if (symbol === 'tie') return;
-  if (symbol === 'weld') return shape(c, [[-4, -4], [4, -4], [4, 4], [-4, 4]].map(d => [p[0] + d[0], p[1] + d[1]]), palette.edge);
+  c.fillStyle = palette.edge;
+  if (symbol === 'weld') return c.fillRect(p[0] - 4, p[1] - 4, 8, 8);
   if (symbol !== 'slide') return disc(c, p, 4.2, palette.card, palette.edge, 1.6);
   const d = m.direction(joint.first, joint.axis), rod = (from, px) => [1, -1].map(s => project(from.map((x, i) => x + s * px / scene.scale * d[i])));
   if (joint.first < 0) line(c, rod(second, 60), palette.edge, 1.4);
@@ -209,7 +210,7 @@ function drawNotes(c, m, cell) {
     arrow(c, [right - 84, y], [right - 24, y], palette.blue);
     note(c, quantity(scene.newton, 'N'), right - 54, y - 8, palette.blue, 'center');
   }
-  if (several) note(c, m.run.title, x, cell.y + 22, palette.ink, 'left', '600');
+  note(c, titled(m.run), x, cell.y + 22, palette.ink, 'left', '600');
   if (!m.spatial) return;
   const turned = view(), at = [right - 42, cell.y + 46];
   ['x', 'y', 'z'].forEach((name, k) => {
