@@ -172,7 +172,7 @@ class Plot {
     std::vector<plot::Source> sources;
     for (std::size_t i = 0; i < readers_.size(); ++i) sources.push_back({names[i], readers_[i].get()});
     plot::Figure figure = plot::channel_figure(sources, request_);
-    figure.title = name_of_result(options_.path, summary_) + incomplete_words();
+    figure.title = name_of_result(options_.path, summary_) + unfinished_words(summary_);
     if (common_.json) {
       print_json(extremes(figure));
       if (options_.out.empty()) return 0;
@@ -217,6 +217,11 @@ class Plot {
 
   void set_channels() {
     summary_ = summary_beside(options_.path);
+    std::error_code ignored;
+    const fs::path folder = folder_of(options_.path);
+    if (!summary_.is_object() && fs::exists(folder / "run.log", ignored)) {
+      summary_ = summary_of_unfinished(folder, *readers_[0]);
+    }
     request_.over = options_.over;
     request_.channels = options_.channels;
     if (request_.view == plot::View::polar) {
@@ -265,15 +270,6 @@ class Plot {
       names += (i == 1 ? "" : ", ") + columns[i].name;
     }
     return names;
-  }
-
-  /// Of a result whose run did not come to its end.
-  std::string incomplete_words() const {
-    std::error_code ignored;
-    if (!fs::exists(folder_of(options_.path) / "run.log", ignored)) return "";
-    if (!summary_.is_object()) return " (the run goes on, or was killed)";
-    const std::string status = summary_.value("status", "");
-    return status == "completed" || status == "stopped" || status.empty() ? "" : fmt::format(" ({})", status);
   }
 
   Json extremes(const plot::Figure& figure) const {

@@ -11,6 +11,7 @@
 #include "load/result_model.h"
 #include "model/channel.h"
 #include "results/directory.h"
+#include "results/result_record.h"
 
 namespace freeplay {
 namespace {
@@ -54,10 +55,7 @@ void read_summary(ReportedRun& run, const fs::path& folder) {
   run.summary.erase("performance");
   if (!run.summary.empty()) return;
   run.note = "no summary.json: the run goes on or was killed, or its files are not all here";
-  run.summary["status"] = "incomplete";
-  for (const char* name : {"settings", "provenance"}) {
-    if (Json part = object(attribute(*run.reader, name)); !part.empty()) run.summary[name] = std::move(part);
-  }
+  run.summary = summary_of_unfinished(folder, *run.reader);
   const std::size_t time = 0;
   std::int64_t rows = 0;
   run.reader->rows({&time, 1}, {}, [&](std::span<const double> block) {

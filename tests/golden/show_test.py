@@ -6,7 +6,7 @@ import re
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import ROOT, ProgramTest, mechanism
+from program import ROOT, ProgramTest, drawing, mechanism
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -40,8 +40,8 @@ class Show(ProgramTest):
         self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.1 mm")[0])["joints"],
                          json.loads(self.freeplay("show", "r", "--json", "--set", "c=0.1 mm")[0])["joints"])
         self.freeplay("run", crank, "--ideal", "all", "--end", "20 us", "--out", "i", "--quiet")
-        self.assertEqual(self.freeplay("show", crank, "--ideal", "all", "--format", "svg"),
-                         self.freeplay("show", "i", "--format", "svg"))
+        self.assertEqual(drawing(self.freeplay("show", crank, "--ideal", "all", "--format", "svg")[0]),
+                         drawing(self.freeplay("show", "i", "--format", "svg")[0]))
 
     def test_a_result_directory_has_the_inputs_of_its_model(self):
         os.makedirs(self.path("models", "data"))
@@ -189,6 +189,28 @@ simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], o
     def points(path):
         return [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([-\d. ]+)", path.get("d"))]
 
+    def test_a_run_that_was_killed_is_shown_as_far_as_it_went(self):
+        for form in ("hdf5", "csv"):
+            self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--set", "c=0.4 mm", "--format", form, "--out", form)
+            whole = self.freeplay("show", form, "--json")[0]
+            drawn = self.freeplay("show", form, "--format", "svg", "--at", "1 ms")[0]
+            os.remove(self.path(form, "summary.json"))
+            self.assertEqual(whole, self.freeplay("show", form, "--json")[0])
+            killed = self.freeplay("show", form, "--format", "svg", "--at", "1 ms")[0]
+            self.assertIn("t = 1 ms (the run goes on, or was killed)", killed)
+            self.assertEqual(drawing(drawn), drawing(killed).replace(" (the run goes on, or was killed)", ""))
+
+    def test_a_picture_says_what_it_was_made_from(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "r")
+        summary = json.loads(self.read("r", "summary.json"))
+        for what, options in (("r", ["--at", "0.5 ms", "--trace", "crank/tip"]), ("r", []), (mechanism("slider-crank"), ["--set", "c=0.1 mm"])):
+            self.assertEqual({"file": "p.svg"}, json.loads(self.freeplay("show", what, "--format", "svg", *options, "--out", "p.svg", "--json")[0]))
+            record = json.loads(xml.fromstring(self.read("p.svg")).find(SVG + "metadata").text)
+            self.assertEqual(("show", ["--format", "svg", *options]), (record["made"], record["arguments"]))
+            self.assertEqual((summary["model"]["sha256"], what == "r"), (record["model"]["sha256"], "run" in record))
+            self.assertIn("freeplay: 1", record["model"]["text"])
+            self.assertEqual("same bytes", self.freeplay("reproduce", "p.svg")[0].splitlines()[-1])
+
     def test_an_instant_that_is_not_there_is_refused(self):
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--interval", "1 us", "--out", "r")
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "few", "--channels", "joint.*")
@@ -258,7 +280,7 @@ frames: {ground/far: [1, 0]}
 
     def test_drawing_in_the_readme_is_the_program_s(self):
         with open(os.path.join(ROOT, "docs", "images", "3-rrr.svg"), encoding="utf-8") as file:
-            self.assertEqual(file.read(), self.freeplay("show", mechanism("3-rrr"), "--format", "svg")[0])
+            self.assertEqual(file.read(), drawing(self.freeplay("show", mechanism("3-rrr"), "--format", "svg")[0]))
 
     def test_drawing_puts_a_point_where_it_is(self):
         # A rod of 1 m hangs horizontally from the origin: its pin, its middle and its end are on one level.
