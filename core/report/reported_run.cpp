@@ -56,13 +56,6 @@ void read_summary(ReportedRun& run, const fs::path& folder) {
   if (!run.summary.empty()) return;
   run.note = "no summary.json: the run goes on or was killed, or its files are not all here";
   run.summary = summary_of_unfinished(folder, *run.reader);
-  const std::size_t time = 0;
-  std::int64_t rows = 0;
-  run.reader->rows({&time, 1}, {}, [&](std::span<const double> block) {
-    rows += static_cast<std::int64_t>(block.size());
-    if (!block.empty()) run.summary["time"]["reached"] = block.back();
-  });
-  run.summary["counts"]["rows"] = rows;
 }
 
 /// What the model itself says, where the summary says nothing of it: the run goes on, or was killed.

@@ -1,6 +1,7 @@
 """Pages of results as a browser shows them."""
 import base64
 import json
+import math
 import re
 import struct
 import time
@@ -203,6 +204,26 @@ class ReportInBrowser(ProgramTest):
         self.browser.open(self.path("page.html"))
         shown = self.script("freeplay.select(['a']); return [0, 1, 2, 3, 4].map(t => { freeplay.seek(t); return document.querySelector('#now span').textContent; })")
         self.assertEqual(["1", "\u2013", "3", "\u2013", "5"], shown)
+
+    def labels(self, plot):
+        return self.script("return [...document.querySelectorAll(arguments[0] + ' .dygraph-axis-label-y')].map(e => e.textContent)", plot)
+
+    def test_labels_tell_values_apart(self):
+        self.write("r.csv", "time,a\n" + "".join("%r,%r\n" % (100 + 1e-6 * k, 1.000001 + 1e-8 * k) for k in range(100)))
+        self.freeplay("report", "r.csv", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        self.script("freeplay.select(['a'])")
+        shown = self.labels(".plot")
+        self.assertEqual(sorted(set(shown)), shown[::-1] if shown[0] > shown[-1] else shown)
+        self.assertGreater(len(shown), 2)
+        self.assertTrue(all(1.0000009 < float(label) < 1.0000021 for label in shown), shown)
+        times = self.script("return [...document.querySelectorAll('.plot .dygraph-axis-label-x')].map(e => e.textContent)")
+        self.assertEqual(len(times), len(set(times)))
+        self.open("slider-crank")
+        self.assertIn("N·m", self.script("return document.querySelector('#spectra figcaption').textContent"))
+        decades = [float(label) for label in self.labels(".spectrum")]
+        self.assertGreater(len(decades), 3)
+        self.assertTrue(all(abs(math.log10(value) % 1) < 1e-9 for value in decades), decades)
 
     def test_space_is_turned_by_mouse_and_keys(self):
         self.open("spatial/stewart")

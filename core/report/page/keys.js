@@ -37,10 +37,10 @@ function startKeys() {
 
 // One pass of what is seen, recorded by the browser.
 function startFilm() {
-  const button = byId('record'), type = window.MediaRecorder && ['video/webm;codecs=vp9', 'video/webm'].find(t => MediaRecorder.isTypeSupported(t));
+  const button = byId('record'), type = 'video/webm';
   let recorder = null, last = 0;
   if (!button) return;
-  button.hidden = !type;
+  button.hidden = !window.MediaRecorder || !MediaRecorder.isTypeSupported(type);
   button.onclick = () => {
     if (recorder) return recorder.stop();
     const pieces = [];

@@ -60,19 +60,22 @@ function addPlot(home, title, labels, curves, options) {
   home.append(make('figure', {}, head, plot));
   return new Dygraph(plot, merged(curves), {
     labels: ['x', ...keys], colors: signs.map(k => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[signs[k] % 8]}])),
-    strokeWidth: 1.3, legend: 'never', connectSeparatedPoints: true, axisLineColor: palette.soft, gridLineColor: palette.line,
+    strokeWidth: 1.3, axisLabelFontSize: 12, legend: 'never', connectSeparatedPoints: true, axisLineColor: palette.soft, gridLineColor: palette.line,
     highlightCallback: (_, x, at) => at.forEach(p => { values[+p.name.slice(1)].textContent = options.say(p.yval); }),
     unhighlightCallback: () => values.forEach(v => { v.textContent = ''; }), ...options
   });
 }
-const axis = (write, width) => ({axisLabelFormatter: write, axisLabelWidth: width, axisLabelFontSize: 12, pixelsPerLabel: width > 60 ? 84 : 28});
-const tidy = (s, digits, unit = '') => v => minus(String(+(v / 10 ** s.power).toPrecision(digits))) + unit;
+const axis = (write, width, room) => ({axisLabelFormatter: write, axisLabelWidth: width, pixelsPerLabel: room});
+// Digits that tell round numbers between two values apart.
+const digits = (a, b) => Math.min(15, Math.max(6, 3 + Math.log10(Math.max(Math.abs(a), Math.abs(b)) / (b - a || Infinity))));
+const tidy = (s, range, unit = '') => (v, _, options, g) => minus(String(+(v / 10 ** s.power).toPrecision(digits(...g[range]())))) + unit;
 
 function addGraph(home, title, names) {
   const series = names.flatMap(name => owners(name).map(run => ({run, name}))), unit = unitOf(names[0]), s = scale(Math.max(...names.map(peak)), unit);
+  const ends = series.flatMap(({run, name}) => [run.named.get(name).min, run.named.get(name).max]), width = 10 + 7 * digits(Math.min(...ends), Math.max(...ends));
   const label = ({run, name}) => [titled(run), parts(name).of || parts(name).what].filter(Boolean).join(' ');
   const graph = addPlot(home, title + (s.unit && ' [' + s.unit + ']'), series.map(label), series.map(({run, name}) => points(run, name)), {
-    say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 7, '\u00a0' + clockScale.unit), 76), y: axis(tidy(s, 6), 52)},
+    say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 'xAxisRange', '\u00a0' + clockScale.unit), 76, 84), y: axis(tidy(s, 'yAxisRange'), width, 28)},
     clickCallback: (_, t) => seek(t), drawCallback: g => { clock.range = g.xAxisRange(); moveCursors(clock.time); },
     underlayCallback: (c, area, g) => {  // what does not count
       const from = runs[0].get('/statistics/from'), x = from > timeStart ? Math.min(g.toDomXCoord(from), area.x + area.w) : area.x;
@@ -195,8 +198,8 @@ function drawSpectra() {
   for (const name of box ? new Set(runs.flatMap(r => r.spectra.map(s => s.name))) : []) {
     const series = runs.map(run => ({run, s: run.spectra.find(s => s.name === name)})).filter(x => x.s), unit = series[0].s.unit;
     const curves = series.map(({s}) => [decode(s.frequency, Float32Array), decode(s.amplitude, Float32Array).map(v => v || 1e-30)]), top = Math.max(...curves.flatMap(c => [...c[1]].filter(isFinite)));
-    const y = scale(top, unit), decade = v => Math.abs(Math.log10(v / 10 ** y.power) % 1) < 1e-6 ? tidy(y, 2)(v) : '';
+    const y = scale(top, unit), decades = [-5, -4, -3, -2, -1, 0, 1, 2, 3].map(k => ({v: 10 ** (k + y.power), label: plain(10 ** k, 2)}));
     spectra.push(addPlot(box, parts(name).of + ', ' + parts(name).what + ' [' + y.unit + ']', series.map(({run}) => titled(run)), curves,
-      {say: v => quantity(v, unit), signs: series.map(({run}) => run.index), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66), y: axis(decade, 52)}}));
+      {say: v => quantity(v, unit), signs: series.map(({run}) => run.index), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66, 84), y: {ticker: () => decades, axisLabelWidth: 52}}}));
   }
 }

@@ -1,8 +1,6 @@
 // The mechanism in motion: one cell of the canvas for each run, all at one scale.
 const scene = {canvas: byId('scene'), motions: [], yaw: -0.6, pitch: 0.35, exaggerate: 1, places: new Map()};
-const factors = [1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000];
 const flashSeconds = 0.25;  // on the screen
-const nearest = (list, wanted) => list.reduce((a, b) => Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a);
 
 function startScene() {
   if (!scene.canvas) return;
@@ -26,7 +24,7 @@ function startScene() {
   byId('labels').checked = Math.max(...scene.motions.map(m => m.joints.length)) <= 16;
   for (const option of ['forces', 'labels']) byId(option).onchange = drawScene;
   fit();
-  exaggerate(nearest(factors.filter(x => x !== 200), Math.max(1, 12 / (Math.max(...loose.map(j => j.clearance)) * scene.scale))));  // circles that can be seen
+  exaggerate(roundDown(Math.max(1, 16 / (Math.max(...loose.map(j => j.clearance)) * scene.scale))));  // circles that can be seen
   if (scene.spatial) turnable();
   onTime(drawScene);
   new ResizeObserver(() => { fit(); drawScene(); }).observe(scene.canvas);
@@ -35,11 +33,11 @@ function startScene() {
 function exaggerate(factor) {
   scene.exaggerate = Math.max(1, Math.min(1000, factor || 1));
   byId('exaggerate').value = scene.exaggerate;
-  byId('factor').textContent = '×' + scene.exaggerate;
+  byId('factor').textContent = '×' + plain(scene.exaggerate, 3);
 }
 function changeExaggeration(up) {
   if (!scene.canvas) return;
-  exaggerate(up ? factors.find(x => x > scene.exaggerate) || 1000 : factors.filter(x => x < scene.exaggerate).pop());
+  exaggerate(scene.exaggerate * (up ? 2 : 0.5));
   drawScene();
 }
 
