@@ -1,4 +1,5 @@
 """Channels of a result as pictures and as characters."""
+import cmath
 import errno
 import json
 import math
@@ -110,6 +111,17 @@ class Plot(ProgramTest):
         self.assertAlmostEqual(max(row[1] for row in table["rows"]), max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
         self.assertEqual(table["rows"][-1][0], panel.until)
 
+    def test_a_spectrum_is_that_of_the_window_that_is_given(self):
+        start = "2 ms"  # before the time that counts
+        panel = self.plot("driver.motor.torque", "--fft", "--from", start, "--until", "6 ms")[0]
+        known = [(t, x) for t, x in zip(self.columns["time"], self.columns["driver.motor.torque"]) if 0.002 - 1e-9 < t < 0.006 + 1e-9]
+        size = max(2 ** a * 3 ** b * 5 ** c for a in range(9) for b in range(6) for c in range(4) if 2 ** a * 3 ** b * 5 ** c <= len(known))
+        rows = [x for _, x in known[-size:]]
+        mean, weights = sum(rows) / size, [(1 - math.cos(2 * math.pi * i / size)) / 2 for i in range(size)]
+        largest = max(abs(sum(w * (x - mean) * cmath.exp(-2j * math.pi * k * i / size) for i, (w, x) in enumerate(zip(weights, rows))))
+                      for k in range(1, size // 2 + 1)) * 2 / sum(weights)
+        self.assertAlmostEqual(largest, max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
+
     def test_tables_by_sector_stand_around_their_joint(self):
         panel = self.plot("--polar", "wrist", "work")[0]
         table = json.loads(self.freeplay("export", "r", "--to", "json", "--table", "bearing")[0])
@@ -203,10 +215,44 @@ class Plot(ProgramTest):
                 self.assertIn(words, err)
                 self.assertEqual("", out)
 
-    def on_terminal(self, *arguments):
+    def dots(self, text):
+        """Columns of a curve on the terminal: the rows of its dots from below."""
+        lines = [line for line in text.splitlines() if line and all("\u2800" <= c <= "\u28ff" for c in line)]
+        self.assertEqual(12, len(lines))
+        bits = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+        return [[47 - 4 * i - k for i, line in enumerate(lines) for k in range(4) if (ord(line[x // 2]) - 0x2800) & bits[k][x % 2]]
+                for x in range(2 * len(lines[0]))]
+
+    def test_curves_of_characters_are_where_the_values_are(self):
+        wave = [math.sin(0.02 * i) if not 150 <= i < 180 else math.nan for i in range(400)]
+        self.write("wave.csv", "time,a\n" + "".join("%d,%s\n" % (i, x) for i, x in enumerate(wave)))
+        text, _ = self.freeplay("plot", "wave.csv", "a", "--text", environment={"LC_ALL": "C.UTF-8", "TERM": "xterm"})
+        columns = self.dots(text)
+        known = [x for x in wave if x == x]
+        # The axis ends at round numbers, a tenth apart or more.
+        low, high = -1.0, 1.0
+        self.assertTrue(low - 0.1 < min(known) and max(known) < high + 0.1)
+        for x, dots in enumerate(columns):
+            begin, end = 399 * x / len(columns), 399 * (x + 1) / len(columns)
+            inside = [wave[i] for i in range(400) if begin - 1 <= i <= end + 1]
+            if all(math.isnan(value) for value in inside):
+                self.assertEqual([], dots)
+            elif not any(math.isnan(value) for value in inside):
+                self.assertTrue(dots, x)
+                wanted = [(value - low) / (high - low) * 47 for value in inside]
+                self.assertGreater(min(dots), min(wanted) - 1.6)
+                self.assertLess(max(dots), max(wanted) + 1.6)
+        plain, _ = self.freeplay("plot", "wave.csv", "a", "--text", environment={"LC_ALL": "C"})
+        stars = [line for line in plain.splitlines() if set(line) <= set("* ")]
+        self.assertEqual(12, len(stars))
+        wide = len(columns) // 2
+        self.assertEqual([bool(columns[2 * x] + columns[2 * x + 1]) for x in range(wide)],
+                         [any(line[x : x + 1] == "*" for line in stars) for x in range(wide)])
+
+    def on_terminal(self, *arguments, locale="C.UTF-8"):
         main, other = pty.openpty()
         with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=other, stderr=subprocess.DEVNULL,
-                              env={**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm"}) as run:
+                              env={**os.environ, "LC_ALL": locale, "TERM": "xterm"}) as run:
             os.close(other)
             data = b""
             while True:
@@ -229,7 +275,14 @@ class Plot(ProgramTest):
         self.assertTrue(all(len({c for c in line if c in BARS}) > 2 for line in lines))
         piped, _ = self.freeplay("run", mechanism("slider-crank"), "--end", "5 ms", "--out", "s", "--force")
         self.assertFalse(any(c in BARS for c in piped))
-        self.assertIn("⠀", self.on_terminal("plot", "s", "joint.wrist.fn"))
+        self.assertGreater(sum(map(len, self.dots(self.on_terminal("plot", "s", "joint.wrist.fn").replace("\r", "")))), 50)
+        levels = "_.:-=+*#"
+        plain = self.on_terminal("run", mechanism("slider-crank"), "--end", "5 ms", "--out", "s", "--force", locale="C")
+        self.assertTrue(plain.isascii())
+        for line in lines:
+            words, bars = re.match(r"  (\S+ \S+) +(\S{40})  ", line).groups()
+            self.assertIn(words + " ", plain)
+            self.assertIn("  %s  " % "".join(levels[BARS.index(c)] for c in bars), plain)
 
 
 if __name__ == "__main__":
