@@ -109,14 +109,14 @@ Json summary_beside(const std::string& path) {
   return json.is_discarded() ? Json(nullptr) : json;
 }
 
-/// Radial clearance of a joint [m]; 0 where the result does not say.
-double clearance_of(const Json& summary, const std::string& joint) {
-  const auto number = summary.is_object()
-                          ? summary.value(Json::json_pointer("/joints"), Json::object()).value(joint, Json::object())
-                          : Json::object();
-  const Json clearance = number.value("clearance", Json(nullptr));
-  if (!clearance.is_object() || !clearance.value("radial_clearance", Json(nullptr)).is_number()) return 0.0;
-  return clearance["radial_clearance"];
+/// A dimension of a joint with play [m]; 0 where the result does not say, or it has none.
+double dimension_of(const Json& summary, const std::string& joint, const char* name) {
+  const Json one = summary.is_object()
+                       ? summary.value(Json::json_pointer("/joints"), Json::object()).value(joint, Json::object())
+                       : Json::object();
+  const Json clearance = one.value("clearance", Json(nullptr));
+  if (!clearance.is_object() || !clearance.value(name, Json(nullptr)).is_number()) return 0.0;
+  return clearance[name];
 }
 
 std::string name_of_result(const std::string& path, const Json& summary) {
@@ -238,9 +238,16 @@ class Plot {
     }
     if (!options_.orbit.empty()) {
       if (!request_.channels.empty()) refuse("--orbit JOINT has its channels: name no others");
-      request_.channels = {fmt::format("joint.{}.ex", options_.orbit), fmt::format("joint.{}.ey", options_.orbit)};
+      request_.joint = options_.orbit;
       require_journal(options_.orbit);
-      request_.clearance = clearance_of(summary_, options_.orbit);
+      for (const char* channel : {"ex", "ey", "ez"}) {
+        const std::string name = fmt::format("joint.{}.{}", options_.orbit, channel);
+        const bool there = readers_[0]->find(name) < readers_[0]->layout().columns.size();
+        // A pin in space lies along z of its bearing.
+        const bool along = channel[1] == 'z' && dimension_of(summary_, options_.orbit, "length") > 0.0;
+        if (there && !along) request_.channels.push_back(name);
+      }
+      request_.clearance = dimension_of(summary_, options_.orbit, "radial_clearance");
       if (request_.clearance == 0.0) {
         print_messages("freeplay: note: no summary.json says how large the clearance is: its circle is left out\n",
                        common_.no_color);

@@ -94,6 +94,21 @@ class Plot(ProgramTest):
         same = self.plot("joint.wrist.ex", "joint.wrist.ey", "--xy")[0]
         self.assertAlmostEqual(min(self.columns["joint.wrist.ey"]), min(y for _, y in same.lines[0]), delta=same.pixel[1])
 
+    def test_the_orbit_of_a_ball_is_seen_from_three_sides(self):
+        self.freeplay("run", mechanism("spatial/four-bar"), "--quiet", "--end", "2 ms", "--out", "space")
+        found = panels(self.freeplay("plot", "space", "--orbit", "B")[0])
+        self.assertEqual(["joint.B.ey", "joint.B.ez", "joint.B.ez"], [panel.channel for panel in found])
+        lines = [line.split(",") for line in self.read("space", "results.csv").splitlines()]
+        places = [[float(line[lines[0].index("joint.B.e" + axis)]) for line in lines[1:]] for axis in "xyz"]
+        for panel, (first, second) in zip(found, ((0, 1), (0, 2), (1, 2))):
+            self.assertAlmostEqual(1e-4, panel.circles[0], delta=2 * panel.pixel[0])
+            for values, at in ((places[first], 0), (places[second], 1)):
+                drawn = [point[at] for point in panel.lines[0]]
+                self.assertAlmostEqual(max(values), max(drawn), delta=panel.pixel[0])
+                self.assertAlmostEqual(min(values), min(drawn), delta=panel.pixel[0])
+        # A pin has its axis along z.
+        self.assertEqual(["joint.D.ey"], [panel.channel for panel in panels(self.freeplay("plot", "space", "--orbit", "D")[0])])
+
     def test_a_channel_is_drawn_over_another_one(self):
         panel = self.plot("joint.wrist.fn", "--x", "joint.main.angle")[0]
         peak = self.columns["joint.wrist.fn"].index(max(self.columns["joint.wrist.fn"]))
