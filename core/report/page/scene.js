@@ -24,7 +24,7 @@ function startScene() {
   byId('labels').checked = Math.max(...scene.motions.map(m => m.joints.length)) <= 16;
   for (const option of ['forces', 'labels']) byId(option).onchange = drawScene;
   fit();
-  exaggerate(roundDown(Math.max(1, 16 / (Math.max(...loose.map(j => j.clearance)) * scene.scale))));  // circles that can be seen
+  exaggerate(2 ** Math.floor(Math.log2(Math.max(1, 20 / (Math.max(...loose.map(j => j.clearance)) * scene.scale)))));  // circles that can be seen
   if (scene.spatial) turnable();
   onTime(drawScene);
   new ResizeObserver(() => { fit(); drawScene(); }).observe(scene.canvas);
