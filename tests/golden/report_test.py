@@ -197,6 +197,15 @@ class Report(ProgramTest):
         # The centre of mass is no end of the rod: points are counted from it.
         self.assertEqual([-0.5, 0.0], page.runs[0]["animation"]["bodies"][0]["points"][0])
 
+    def test_forces_along_an_axis_have_no_zigzag_between_two_points(self):
+        self.write("p.yaml", PENDULUM.replace("between: [ground, rod]}\n", "between: [ground, rod]}\n"
+                   "  end: {type: joint-stop, kind: rotational, between: [ground, rod], lower: -1, upper: 1, stiffness: 1}\n"
+                   "  coil: {type: spring-damper, kind: linear, between: [ground/up, rod], stiffness: 1}\nframes: {ground/up: [0, 1]}\n")
+                   % ("p", "x", "10 ms"))
+        self.freeplay("run", "p.yaml", "--quiet", "--out", "r")
+        symbols = {joint["name"]: joint["symbol"] for joint in self.report("r").runs[0]["animation"]["joints"]}
+        self.assertEqual({"pivot": "turn", "end": "force", "coil": "tie"}, symbols)
+
     def test_rows_without_anything_beside_them(self):
         self.run_model()
         os.mkdir(self.path("alone"))

@@ -245,6 +245,28 @@ frames: {ground/far: [1, 0]}
             self.assertAlmostEqual(first, float(a.get("r")) / apart, delta=1e-3)
             self.assertAlmostEqual(first / abs(ratio), float(b.get("r")) / apart, delta=1e-3)
 
+    def test_stops_are_bars_at_the_ends_of_a_way(self):
+        model = """freeplay: 1
+%sbodies: {a: {mass: 1, inertia: %s}, b: {mass: 1, inertia: %s, pose: {position: %s}}}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  P: {type: prismatic, between: [ground, b]}
+  turn: {type: joint-stop, kind: rotational, between: [ground, a], lower: -30 deg, upper: 90 deg, stiffness: 1}
+  way: {type: joint-stop, kind: linear, between: [ground, b], lower: 100 mm, upper: 300 mm, stiffness: 1}
+"""
+        for space, inertia, place in (("", 1, [0.2, 0]), ("space: spatial\n", [1, 1, 1], [0.2, 0, 0])):
+            out, _ = self.freeplay("show", self.write("m.yaml", model % (space, inertia, inertia, place)), "--format", "svg")
+            picture = xml.fromstring(out)
+            view = next((g for g in picture.iter(SVG + "g") if g.get("id") == "top"), picture)
+            bars = [[float(bar.get(k)) for k in ("x1", "y1", "x2", "y2")] for bar in self.kind(view, "line", "stop")]
+            angles = sorted(round(math.degrees(math.atan2(y1 - y2, x2 - x1))) for x1, y1, x2, y2 in bars[:2])
+            self.assertEqual([-30, 90], angles)
+            (x, y, *_), (far, *_) = bars[2:]
+            self.assertAlmostEqual(bars[2][0], bars[2][2], delta=0.1)
+            origin = float(next(c for c in picture.iter(SVG + "circle") if space == "").get("cx")) if not space else None
+            if origin is not None:
+                self.assertAlmostEqual(2, (far - x) / (x - origin), delta=0.01)
+
     def test_gears_in_space_are_drawn_by_their_pitch_circles(self):
         self.write("m.yaml", """freeplay: 1
 space: spatial

@@ -156,7 +156,7 @@ function drawTie(c, p, q, spring) {
 function drawJoint(c, m, {joint, p, q, first, second}, project) {
   const {symbol} = joint;
   if (joint.clearance) return drawClearance(c, m, joint, p, first, project);
-  if (symbol === 'tie') return;
+  if (symbol === 'tie' || symbol === 'force') return;
   c.fillStyle = palette.edge;
   if (symbol === 'weld') return c.fillRect(p[0] - 4, p[1] - 4, 8, 8);
   if (symbol !== 'slide') return disc(c, p, 4.2, palette.card, palette.edge, 1.6);
