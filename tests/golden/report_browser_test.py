@@ -2,14 +2,15 @@
 import base64
 import json
 import math
+import os
 import re
-import struct
+import tempfile
 import time
 import unittest
 
 from browser import Browser, needs_browser
 from page_reader import Page, numbers
-from program import ProgramTest, mechanism
+from program import ROOT, ProgramTest, mechanism
 
 LEFT, RIGHT, HOME, END = "\ue012", "\ue014", "\ue011", "\ue010"
 PICTURE = """const c = document.getElementById('scene'), d = c.getContext('2d', {willReadFrequently: true}).getImageData(0, 0, c.width, c.height).data;
@@ -256,6 +257,38 @@ class ReportInBrowser(ProgramTest):
         self.freeplay("report", "alone.csv", "--out", "page.html")
         self.browser.open(self.path("page.html"))
         self.assertGreater(self.script("return document.querySelectorAll('.plot canvas').length"), 1)
+
+    def test_the_picture_in_the_documentation_is_this_page(self):
+        self.open("4-rrr")
+        self.browser.command("Emulation.setDeviceMetricsOverride", width=1280, height=1000, deviceScaleFactor=1, mobile=False)
+        self.script("freeplay.seek(0.3836); document.getElementById('forces').click(); document.getElementById('mechanism').scrollIntoView()")
+        time.sleep(0.5)
+        top = self.script("return document.getElementById('mechanism').getBoundingClientRect().y + scrollY")
+        made, documented = self.browser.screenshot(0, top - 12, 1280, 760), os.path.join(ROOT, "docs", "images", "report.png")
+        with open(documented, "rb") as file:
+            pictures = [base64.b64encode(data).decode() for data in (made, file.read())]
+        # Other machines have other fonts: text is some percent of the picture.
+        differ = self.browser.ask("POST", "/execute/async", {"script": """const done = arguments[2], pixels = [];
+for (const [k, data] of [arguments[0], arguments[1]].entries()) {
+  const image = new Image();
+  image.onload = () => {
+    const canvas = document.createElement('canvas'), c = canvas.getContext('2d');
+    canvas.width = image.width; canvas.height = image.height;
+    c.drawImage(image, 0, 0);
+    pixels[k] = c.getImageData(0, 0, canvas.width, canvas.height).data;
+    if (!pixels[0] || !pixels[1]) return;
+    let n = pixels[0].length === pixels[1].length ? 0 : Infinity;
+    for (let i = 0; i < pixels[0].length; i += 4) if (Math.abs(pixels[0][i + 1] - pixels[1][i + 1]) > 48) ++n;
+    done(n / (pixels[0].length / 4));
+  };
+  image.src = 'data:image/png;base64,' + data;
+}""", "args": pictures})
+        if differ is None or differ > 0.05:
+            now = os.path.join(tempfile.gettempdir(), "report.png")
+            with open(now, "wb") as file:
+                file.write(made)
+            self.fail("%s of %s differ from the page as it is now, which is in %s: look at it, and put it there" % (
+                "all" if differ is None else "%.1f %%" % (100 * differ), documented, now))
 
     def test_film_is_recorded(self):
         self.open("slider-crank", options=("--end", "2 ms"))
