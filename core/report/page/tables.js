@@ -31,6 +31,7 @@ function startFacts() {
     ['Degrees of freedom', '/model/dof', String], ['Driven', '/model/dof_driven', String], ['Changed', changed], ['Integrator', '/settings/integrator/type'], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'],
     ['Status', '/status'], ['Stopped by', '/stop_reason'], ['Time reached', '/time/reached', instant], ['Counted from', '/statistics/from', 's'], ['Rows', '/counts/rows', String], ['Steps', '/counts/steps', String], ['Contacts', '/counts/contacts', String],
     ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm'], ['Warnings', warnings]])));
+  if (!several) document.querySelector('#facts table').className = 'one';
 }
 
 // Where a field of a part is largest in a run.
