@@ -11,8 +11,11 @@
 
 #include "base/error.h"
 #include "base/input_text.h"
+#include "cli/loading.h"
 #include "cli/output_file.h"
 #include "cli/terminal.h"
+#include "load/load.h"
+#include "load/result_model.h"
 #include "plot/channel_figure.h"
 #include "results/made_text.h"
 #include "results/result_record.h"
@@ -248,8 +251,9 @@ class Plot {
         if (there && !along) request_.channels.push_back(name);
       }
       request_.clearance = dimension_of(summary_, options_.orbit, "radial_clearance");
+      if (request_.clearance == 0.0) request_.clearance = clearance_in_model();
       if (request_.clearance == 0.0) {
-        print_messages("freeplay: note: no summary.json says how large the clearance is: its circle is left out\n",
+        print_messages("freeplay: note: no model or summary beside says how large the clearance is: no circle\n",
                        common_.no_color);
       }
     }
@@ -268,6 +272,25 @@ class Plot {
       }
     }
     require_word("joint with play", joint, journals);
+  }
+
+  /// Radial clearance as the model beside the rows has it, where the run goes on or was killed [m]; 0: there is none.
+  double clearance_in_model() const {
+    std::string file = folder_of(options_.path).string();
+    BuildOptions build;
+    LoadOptions quiet = loading(common_);
+    quiet.strict = false;
+    quiet.warn = quiet.note = {};
+    try {
+      use_model_of_result(file, summary_, build);
+      const LoadedModel loaded = load_model(file, build, quiet);
+      if (!loaded.model) return 0.0;
+      for (const JointElement& joint : loaded.model->joints) {
+        if (joint.name == options_.orbit) return std::max(joint.layout.clearance, 0.0);
+      }
+    } catch (const Error&) {  // then there is no circle
+    }
+    return 0.0;
   }
 
   std::string some_channels() const {

@@ -207,6 +207,14 @@ class Plot(ProgramTest):
         shutil.copytree(self.made, self.path("part"))
         os.remove(self.path("part", "summary.json"))
         self.assertIn("(the run goes on, or was killed)", self.freeplay("plot", "part", "joint.wrist.fn")[0])
+        out, err = self.freeplay("plot", "part", "--orbit", "wrist")
+        self.assertEqual("", err)
+        (panel,) = panels(out)
+        self.assertAlmostEqual(0.5e-3, panel.circles[0], delta=2 * panel.pixel[0])
+        os.remove(self.path("part", "model.yaml"))
+        out, err = self.freeplay("plot", "part", "--orbit", "wrist")
+        self.assertIn("how large the clearance is", err)
+        self.assertEqual([], panels(out)[0].circles)
 
     def test_what_cannot_be_drawn_is_refused(self):
         for arguments, code, words in (
