@@ -1,4 +1,5 @@
 """Pages that `freeplay report` and `run --report` write."""
+import base64
 import csv
 import json
 import math
@@ -47,7 +48,7 @@ class Report(ProgramTest):
         self.assertLessEqual(len(text.encode()), LIMIT)
         page = Page(text)
         self.assertIn("default-src 'none'", page.policy)
-        self.assertEqual([], page.links)
+        self.assertTrue(all(link.startswith("data:image/svg+xml;base64,") for link in page.links))
         self.assertEqual(page.data["provenance"]["data_sha256"], page.hash_of_runs())
         return page
 
@@ -178,6 +179,22 @@ class Report(ProgramTest):
         self.assertEqual(("A < B", "A < B"), (page.title, page.data["title"]))
         self.assertEqual(["--channels", "joint.wrist.*", "--channels", "energy.work", "--from", "1 ms", "--until", "2 ms", "--title", "A < B"],
                          page.data["provenance"]["arguments"])
+
+    def test_pictures_of_other_commands_are_on_the_page(self):
+        self.run_model()
+        self.freeplay("analyze", "error", mechanism("3-rrr"), "--grid", "x=-0.05:0.05:5", "--grid", "y=-0.05:0.05:5", "--svg", "map.svg")
+        self.write("evil.svg", '<svg xmlns="http://www.w3.org/2000/svg"><title>"a</title><script>window.pwned=1</script></svg>')
+        page = self.report("r", "--picture", "map.svg", "--picture", "evil.svg")
+        pictures = [base64.b64decode(link.partition("base64,")[2]).decode() for link in page.links]
+        self.assertEqual([self.read("map.svg"), self.read("evil.svg")], pictures)
+        self.assertIn("pictures", page.ids)
+        self.assertIn('alt="3-rrr: largest position error by clearance"', self.read("page.html"))
+        self.assertIn('alt="&quot;a"', self.read("page.html"))
+        self.assertNotIn("pwned", self.read("page.html"))
+        self.assertEqual("same bytes", self.freeplay("reproduce", "page.html")[0].splitlines()[-1])
+        for name, text, code, words in (("no.svg", "x", 6, "it is no SVG"), ("big.svg", "<svg>" + "x" * 1000000, 2, "[too-large]")):
+            self.write(name, text)
+            self.assertIn(words, self.freeplay("report", "r", "--picture", name, code=code)[1])
 
     def test_text_of_a_model_stays_text(self):
         evil = "</script><script>window.pwned=1</script><img src=x onerror=window.pwned=1>"

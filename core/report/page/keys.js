@@ -1,5 +1,5 @@
 // Keys, theme, film.
-const keyHelp = [['Space', 'play or pause'], ['← →', 'one frame; with Shift ten; in the focused picture of a spatial model: turn'], ['Home End', 'first or last frame'],
+const keyHelp = [['Space', 'play or pause'], ['← →', 'one frame; with Shift ten; in the focused picture of a mechanism in space: turn'], ['Home End', 'first or last frame'],
                  ['+ −', 'faster, slower'], ['E e', 'draw play larger, smaller'], ['z', 'all of the time'], ['t', 'light or dark'], ['?', 'these keys'],
                  ['drag in a plot', 'zoom to a span of time; double click: all of it'], ['click in a plot', 'go to that instant']];
 

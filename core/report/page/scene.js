@@ -6,7 +6,7 @@ function startScene() {
   if (!scene.canvas) return;
   scene.motions = runs.filter(r => r.animation).map(r => new Motion(r));
   scene.spatial = scene.motions.some(m => m.spatial);
-  scene.canvas.setAttribute('aria-label', 'In motion: ' + runs.map(r => r.title).join(', ') + (scene.spatial ? '; drag or use the arrow keys to turn the view' : ''));
+  scene.canvas.setAttribute('aria-label', 'In motion: ' + document.title);
   const sizes = scene.motions.flatMap(m => m.joints.filter(j => j.forces.length).map(j => {
     const n = m.spatial ? 3 : 2, all = Array.from({length: j.forces.length / n}, (_, k) => Math.hypot(...j.forces.subarray(n * k, n * k + n)));
     return all.filter(isFinite).sort((a, b) => a - b)[Math.floor(all.length * 0.9)] || 0;
