@@ -183,6 +183,16 @@ class ReportInBrowser(ProgramTest):
             self.browser.command("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
             self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)
 
+    def test_every_picture_is_on_paper(self):
+        self.open("slider-crank")
+        self.script("document.documentElement.dataset.theme = 'dark'")
+        time.sleep(0.3)
+        pictures = self.script("return document.querySelectorAll('#scene, .orbit, .polar, .plot, .spectrum').length")
+        self.assertGreater(pictures, 4)
+        paper = base64.b64decode(self.browser.command("Page.printToPDF", printBackground=True)["data"])
+        # Each has a mask besides; an empty canvas is left out.
+        self.assertGreaterEqual(len(re.findall(rb"/Subtype\s*/Image", paper)), 2 * pictures)
+
     def test_tables_of_eight_runs_fit(self):
         for k in range(8):
             self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--set", "c=%d um" % (500 + k), "--out", "r%d" % k)

@@ -7,7 +7,7 @@ function repaint() {
   byId('theme').textContent = dark() ? 'Light' : 'Dark';
   readPalette();
   drawScene();
-  if (chosen.size) drawGraphs();
+  for (const g of [...graphs, ...spectra]) g.dye();  // a new canvas would stay empty on paper
   drawCards(matchMedia('print').matches);  // on paper all of them
 }
 

@@ -58,12 +58,18 @@ function addPlot(home, title, labels, curves, options) {
   const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
-  return new Dygraph(plot, merged(curves), {
-    labels: ['x', ...keys], colors: signs.map(k => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[signs[k] % 8]}])),
-    strokeWidth: 1.3, axisLabelFontSize: 12, legend: 'never', connectSeparatedPoints: true, axisLineColor: palette.soft, gridLineColor: palette.line,
+  const look = () => ({colors: signs.map(k => palette.series[k % 8]), axisLineColor: palette.soft, gridLineColor: palette.line});
+  const graph = new Dygraph(plot, merged(curves), {
+    labels: ['x', ...keys], ...look(), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[signs[k] % 8]}])),
+    strokeWidth: 1.3, axisLabelFontSize: 12, legend: 'never', connectSeparatedPoints: true,
     highlightCallback: (_, x, at) => at.forEach(p => { values[+p.name.slice(1)].textContent = options.say(p.yval); }),
     unhighlightCallback: () => values.forEach(v => { v.textContent = ''; }), ...options
   });
+  graph.dye = () => {
+    head.querySelectorAll('path').forEach((e, k) => e.setAttribute('stroke', palette.series[signs[k] % 8]));
+    graph.updateOptions(look());
+  };
+  return graph;
 }
 const axis = (write, width, room) => ({axisLabelFormatter: write, axisLabelWidth: width, pixelsPerLabel: room});
 // Digits that tell round numbers between two values apart.

@@ -3,7 +3,7 @@ const at = (part, name, field) => '/' + part + '/' + escaped(name) + '/' + field
 const effort = x => ['position', 'force'].includes((x || {}).kind) ? 'N' : 'N*m';
 const right = text => ({number: text});
 const few = v => plain(v, 3);
-const has = path => runs.some(r => ![undefined, null].includes(r.get(path)));
+const has = path => runs.some(r => r.get(path) != null);
 const put = (id, ...content) => { if (byId(id)) byId(id).append(make('div', {class: 'wide'}, ...content)); };
 
 function startTop() {
@@ -29,7 +29,7 @@ function startFacts() {
   const warnings = r => (r.summary.warnings || []).length ? make('span', {}, ...r.summary.warnings.flatMap(w => [w, make('br')])) : '';
   put('facts', table(heads(), lines([['Model', '/model/space'], ['Bodies', '/model/bodies', String], ['Joints', '/model/joints', String], ['Joints with play', '/model/clearance_joints', String], ['Drivers', '/model/drivers', String],
     ['Degrees of freedom', '/model/dof', String], ['Driven', '/model/dof_driven', String], ['Changed', changed], ['Integrator', '/settings/integrator/type'], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'],
-    ['Status', '/status'], ['Stopped by', '/stop_reason'], ['Time reached', '/time/reached', instant], ['Counted from', '/statistics/from', 's'], ['Rows', '/counts/rows', String], ['Steps', '/counts/steps', String], ['Contacts', '/counts/contacts', String],
+    ['Status', '/status'], ['Time reached', '/time/reached', instant], ['Counted from', '/statistics/from', 's'], ['Rows', '/counts/rows', String], ['Steps', '/counts/steps', String], ['Contacts', '/counts/contacts', String],
     ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm'], ['Warnings', warnings]])));
   if (!several) document.querySelector('#facts table').className = 'one';
 }

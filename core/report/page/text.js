@@ -6,7 +6,7 @@ function make(tag, attributes = {}, ...children) {
     else if (name.startsWith('on')) e.addEventListener(name.slice(2), value);
     else if (value !== undefined && value !== false) e.setAttribute(name, value === true ? '' : value);
   }
-  e.append(...children.filter(c => c !== null && c !== undefined));
+  e.append(...children.filter(c => c != null));
   return e;
 }
 const byId = id => document.getElementById(id);
@@ -30,7 +30,7 @@ function scale(size, unit) {
 }
 
 function quantity(x, unit, digits = 4) {
-  if (x === null || x === undefined || Number.isNaN(x)) return '–';
+  if (x == null || Number.isNaN(x)) return '–';
   const s = scale(Math.abs(x), unit);
   return plain(x / 10 ** s.power, digits) + (s.unit && '\u00a0' + s.unit);
 }
@@ -41,7 +41,7 @@ function quantityRange(low, high, unit) {
   return f(low) + ' … ' + f(high) + (s.unit && '\u00a0' + s.unit);
 }
 
-const percent = x => x === null || x === undefined ? '–' : plain(100 * x, 3) + '\u00a0%';
+const percent = x => x == null ? '–' : plain(100 * x, 3) + '\u00a0%';
 const instant = t => quantity(t, 's', 5);
 
 // A number of a summary, in an element that says which.
