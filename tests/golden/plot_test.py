@@ -146,6 +146,14 @@ class Plot(ProgramTest):
         self.assertAlmostEqual(largest[place], math.hypot(x, y), delta=2 * panel.pixel[0])
         self.assertLess(abs(math.remainder(math.atan2(y, x) - largest[1], 2 * math.pi)), math.radians(3))
 
+    def test_rings_have_their_labels_where_no_curve_is(self):
+        group = next(g for g in ET.fromstring(self.freeplay("plot", "r", "--polar", "wrist", "impulse")[0]).iter(SVG + "g") if g.get("class") == "panel")
+        points = [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([^ML]+)", next(p for p in group.iter(SVG + "path") if p.get("class") == "line").get("d"))]
+        labels = [t for t in group.iter(SVG + "text") if "N*s" in (t.text or "") and t.get("paint-order")]
+        self.assertGreater(len(labels), 1)
+        largest = max(labels, key=lambda label: float(re.match(r"[\d.]+", label.text)[0]))
+        self.assertGreater(min(math.dist(p, (float(largest.get("x")), float(largest.get("y")) - 4)) for p in points), 12)
+
     def test_another_result_is_drawn_beside(self):
         shutil.copytree(self.made, self.path("other"))
         panel = self.plot("joint.wrist.fn", "--against", "other")[0]
