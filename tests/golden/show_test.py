@@ -200,6 +200,21 @@ simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], o
             self.assertIn("t = 1 ms (the run goes on, or was killed)", killed)
             self.assertEqual(drawing(drawn), drawing(killed).replace(" (the run goes on, or was killed)", ""))
 
+    def test_poses_that_are_no_numbers_are_left_out(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--interval", "0.1 ms", "--format", "csv", "--out", "r")
+        header, *rows = [line.split(",") for line in self.read("r", "results.csv").splitlines()]
+        for k, row in enumerate(rows):
+            if k % 3 == 1 or k > 17:
+                row[header.index("body.slider.x")] = "nan" if k % 2 else "inf"
+        self.write("r/results.csv", "\n".join(map(",".join, [header, *rows])) + "\n")
+        out, _ = self.freeplay("show", "r", "--format", "svg", "--every", "0.3 ms", "--trace", "slider/com", "--magnify", "wrist=60")
+        self.assertIsNone(re.search("nan|inf[^o]", drawing(out)))
+        self.assertIn("t = 1.7 ms", out)
+        for row in rows:
+            row[header.index("body.slider.x")] = "nan"
+        self.write("r/results.csv", "\n".join(map(",".join, [header, *rows])) + "\n")
+        self.assertIn("no row in which all poses are finite", self.freeplay("show", "r", "--format", "svg", "--at", "1 ms", code=2)[1])
+
     def test_a_picture_says_what_it_was_made_from(self):
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "r")
         summary = json.loads(self.read("r", "summary.json"))
