@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_runs = 8, most_buckets = 2000, least_buckets = 200, bucket_step = 100;
 
+constexpr std::size_t most_words = 40;            // characters of a name that tell runs of one model apart
 constexpr std::size_t most_pictures = 1'000'000;  // bytes
 
 /// Of all runs together.
@@ -51,8 +52,23 @@ void require_different(const std::vector<std::string>& results) {
   }
 }
 
-/// Names that differ.
+/// The parameters that a run was started with, as ", c = 0.2 mm".
+std::string words_of_settings(const ReportedRun& run) {
+  const Json set = run.summary.value(Json::json_pointer("/settings/set"), Json::object());
+  std::string words;
+  for (const auto& [name, value] : set.items()) {
+    words += fmt::format(", {} = {}", name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return words.size() <= most_words ? words : std::string();
+}
+
+/// Names that differ: by the parameters of the runs, else by a number.
 void name_apart(std::vector<ReportedRun>& runs) {
+  std::map<std::string, int> same;
+  for (const ReportedRun& run : runs) ++same[run.name];
+  for (ReportedRun& run : runs) {
+    if (same[run.name] > 1) run.name += words_of_settings(run);
+  }
   std::map<std::string, int> count;
   for (ReportedRun& run : runs) {
     const int number = ++count[run.name];

@@ -198,7 +198,7 @@ class ReportInBrowser(ProgramTest):
             self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--set", "c=%d um" % (500 + k), "--out", "r%d" % k)
         self.freeplay("report", *("r%d" % k for k in range(8)), "--out", "page.html")
         self.browser.open(self.path("page.html"))
-        for section in ("side", "facts", "clearance"):
+        for section in ("side", "facts", "plots", "clearance"):
             self.assertLessEqual(self.script("const e = document.querySelector('#' + arguments[0] + ' .wide'); return e.scrollWidth - e.clientWidth", section), 0, section)
         self.assertEqual([8] * 2, self.script("return [...document.querySelectorAll('#side tr')].slice(0, 2).map(e => e.querySelectorAll('.number').length)"))
 

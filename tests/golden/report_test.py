@@ -280,7 +280,9 @@ class Report(ProgramTest):
             results.append(self.run_model("--set", "c=%d um" % (100 + k), out="r%d" % k, end="2 ms", model=mechanism("3-rrr")))
         page = self.report(*results)
         self.assertEqual(8, len(page.runs))
-        self.assertEqual("3-rrr (8)", page.runs[7]["name"])
+        self.assertEqual("3-rrr, c = 107 um", page.runs[7]["name"])
+        same = self.report("r0", self.run_model("--set", "c=100 um", out="again", end="2 ms", model=mechanism("3-rrr")))
+        self.assertEqual(["3-rrr, c = 100 um", "3-rrr, c = 100 um (2)"], [run["name"] for run in same.runs])
         for run, result in zip(page.runs, results):
             names = {channel["name"] for channel in run["channels"]}
             self.assertEqual(set(self.table(result, "results.csv")) - {"time"}, names | set(run["left_out"]))
