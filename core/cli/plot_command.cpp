@@ -11,8 +11,11 @@
 
 #include "base/error.h"
 #include "base/input_text.h"
+#include "cli/loading.h"
 #include "cli/output_file.h"
 #include "cli/terminal.h"
+#include "load/load.h"
+#include "load/result_model.h"
 #include "plot/channel_figure.h"
 #include "results/made_text.h"
 #include "results/result_record.h"
@@ -109,14 +112,14 @@ Json summary_beside(const std::string& path) {
   return json.is_discarded() ? Json(nullptr) : json;
 }
 
-/// Radial clearance of a joint [m]; 0 where the result does not say.
-double clearance_of(const Json& summary, const std::string& joint) {
-  const auto number = summary.is_object()
-                          ? summary.value(Json::json_pointer("/joints"), Json::object()).value(joint, Json::object())
-                          : Json::object();
-  const Json clearance = number.value("clearance", Json(nullptr));
-  if (!clearance.is_object() || !clearance.value("radial_clearance", Json(nullptr)).is_number()) return 0.0;
-  return clearance["radial_clearance"];
+/// A dimension of a joint with play [m]; 0 where the result does not say, or it has none.
+double dimension_of(const Json& summary, const std::string& joint, const char* name) {
+  const Json one = summary.is_object()
+                       ? summary.value(Json::json_pointer("/joints"), Json::object()).value(joint, Json::object())
+                       : Json::object();
+  const Json clearance = one.value("clearance", Json(nullptr));
+  if (!clearance.is_object() || !clearance.value(name, Json(nullptr)).is_number()) return 0.0;
+  return clearance[name];
 }
 
 std::string name_of_result(const std::string& path, const Json& summary) {
@@ -172,7 +175,7 @@ class Plot {
     std::vector<plot::Source> sources;
     for (std::size_t i = 0; i < readers_.size(); ++i) sources.push_back({names[i], readers_[i].get()});
     plot::Figure figure = plot::channel_figure(sources, request_);
-    figure.title = name_of_result(options_.path, summary_) + incomplete_words();
+    figure.title = name_of_result(options_.path, summary_) + unfinished_words(summary_);
     if (common_.json) {
       print_json(extremes(figure));
       if (options_.out.empty()) return 0;
@@ -217,6 +220,11 @@ class Plot {
 
   void set_channels() {
     summary_ = summary_beside(options_.path);
+    std::error_code ignored;
+    const fs::path folder = folder_of(options_.path);
+    if (!summary_.is_object() && fs::exists(folder / "run.log", ignored)) {
+      summary_ = summary_of_unfinished(folder, *readers_[0]);
+    }
     request_.over = options_.over;
     request_.channels = options_.channels;
     if (request_.view == plot::View::polar) {
@@ -233,11 +241,19 @@ class Plot {
     }
     if (!options_.orbit.empty()) {
       if (!request_.channels.empty()) refuse("--orbit JOINT has its channels: name no others");
-      request_.channels = {fmt::format("joint.{}.ex", options_.orbit), fmt::format("joint.{}.ey", options_.orbit)};
+      request_.joint = options_.orbit;
       require_journal(options_.orbit);
-      request_.clearance = clearance_of(summary_, options_.orbit);
+      for (const char* channel : {"ex", "ey", "ez"}) {
+        const std::string name = fmt::format("joint.{}.{}", options_.orbit, channel);
+        const bool there = readers_[0]->find(name) < readers_[0]->layout().columns.size();
+        // A pin in space lies along z of its bearing.
+        const bool along = channel[1] == 'z' && dimension_of(summary_, options_.orbit, "length") > 0.0;
+        if (there && !along) request_.channels.push_back(name);
+      }
+      request_.clearance = dimension_of(summary_, options_.orbit, "radial_clearance");
+      if (request_.clearance == 0.0) request_.clearance = clearance_in_model();
       if (request_.clearance == 0.0) {
-        print_messages("freeplay: note: no summary.json says how large the clearance is: its circle is left out\n",
+        print_messages("freeplay: note: no model or summary beside says how large the clearance is: no circle\n",
                        common_.no_color);
       }
     }
@@ -258,6 +274,25 @@ class Plot {
     require_word("joint with play", joint, journals);
   }
 
+  /// Radial clearance as the model beside the rows has it, where the run goes on or was killed [m]; 0: there is none.
+  double clearance_in_model() const {
+    std::string file = folder_of(options_.path).string();
+    BuildOptions build;
+    LoadOptions quiet = loading(common_);
+    quiet.strict = false;
+    quiet.warn = quiet.note = {};
+    try {
+      use_model_of_result(file, summary_, build);
+      const LoadedModel loaded = load_model(file, build, quiet);
+      if (!loaded.model) return 0.0;
+      for (const JointElement& joint : loaded.model->joints) {
+        if (joint.name == options_.orbit) return std::max(joint.layout.clearance, 0.0);
+      }
+    } catch (const Error&) {  // then there is no circle
+    }
+    return 0.0;
+  }
+
   std::string some_channels() const {
     std::string names;
     const std::vector<RecordColumn>& columns = readers_[0]->layout().columns;
@@ -265,15 +300,6 @@ class Plot {
       names += (i == 1 ? "" : ", ") + columns[i].name;
     }
     return names;
-  }
-
-  /// Of a result whose run did not come to its end.
-  std::string incomplete_words() const {
-    std::error_code ignored;
-    if (!fs::exists(folder_of(options_.path) / "run.log", ignored)) return "";
-    if (!summary_.is_object()) return " (the run goes on, or was killed)";
-    const std::string status = summary_.value("status", "");
-    return status == "completed" || status == "stopped" || status.empty() ? "" : fmt::format(" ({})", status);
   }
 
   Json extremes(const plot::Figure& figure) const {

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array makers{"run", "export", "analyze", "plot", "report"};
+constexpr std::array makers{"run", "export", "analyze", "plot", "report", "show"};
 /// What a record may not ask for, wherever it is from: to write elsewhere, to run code, to leave out questions.
 constexpr std::array forbidden{"--out",    "--svg",           "--force", "--yes",   "--resume",
                                "--plugin", "--allow-plugins", "--json",  "--quiet", "--checkpoint"};
@@ -204,6 +204,13 @@ bool Remaking::analyze(const Json& run) {
   return true;
 }
 
+bool Remaking::draw(const Json& run) {
+  std::vector<std::string> words{"show", stage(run, 0).string(), "--out", again_.string()};
+  const std::vector<std::string> more = words_of(made_, run.value("arguments", Json()));
+  words.insert(words.end(), more.begin(), more.end());
+  return execute(std::move(words), run);
+}
+
 /// From results, which are made first.
 bool Remaking::derive() {
   for (const Json& run : runs_of(made_)) {
@@ -238,7 +245,8 @@ bool Remaking::make() {
     return run_model(made_.record, 0, out_);
   }
   again_ = out_ / (made_.path.stem().string() + ending_of(made_.kind));
-  return command_ == "analyze" ? analyze(made_.record) : derive();
+  if (command_ == "analyze") return analyze(made_.record);
+  return command_ == "show" && !made_.record.contains("run") ? draw(made_.record) : derive();
 }
 
 }  // namespace freeplay

@@ -37,6 +37,7 @@ class Remaking {
   bool execute(std::vector<std::string> words, const Json& run);
   bool run_model(const Json& run, std::size_t number, const std::filesystem::path& out);
   bool analyze(const Json& run);
+  bool draw(const Json& run);
   bool derive();
 
   const MadeFile& made_;

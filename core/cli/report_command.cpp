@@ -14,7 +14,7 @@ namespace freeplay {
 namespace {
 
 struct ReportOptions {
-  std::vector<std::string> results, channels;
+  std::vector<std::string> results, channels, pictures;
   std::string out, from, until, title;
   bool force = false;
 };
@@ -37,6 +37,7 @@ int report(const ReportOptions& options, const CommonOptions& common) {
   request.results = options.results;
   request.out = options.out;
   request.channels = options.channels;
+  request.pictures = options.pictures;
   if (!options.from.empty()) request.window.from = signed_quantity("--from", options.from, dimension::time);
   if (!options.until.empty()) request.window.until = signed_quantity("--until", options.until, dimension::time);
   if (request.window.from > request.window.until) {
@@ -69,6 +70,8 @@ Command add_report_command(CLI::App& program, CommonOptions& common) {
                  "PATTERN");
   add_option(*app, "--from", options->from, "First time: \"10 ms\"", "T");
   add_option(*app, "--until", options->until, "Last time", "T");
+  add_repeatable(*app, "--picture", options->pictures,
+                 "SVG of analyze, plot or show that is to be on the page, too; repeatable", "FILE");
   add_option(*app, "--title", options->title, "Title of the page (names of the runs)", "TEXT");
   add_flag(*app, "--force", options->force, "Replace a file that is no report");
   add_common_options(*app, common);

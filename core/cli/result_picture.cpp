@@ -59,7 +59,7 @@ class Stroboscope {
   /// Where its angle stands; that of time where it counts time.
   std::size_t column() const { return column_; }
   bool flashes(double value) {
-    if (step_ == 0.0) return false;
+    if (step_ == 0.0 || !std::isfinite(value)) return false;
     if (!last_) last_ = value - step_;
     if (std::abs(value - *last_) < step_ * (1.0 - 1e-6)) return false;
     *last_ += std::copysign(step_ * std::floor(std::abs(value - *last_) / step_ + 1e-6), value - *last_);
@@ -109,11 +109,17 @@ class Reading {
     double time = std::nan(""), beyond = time;
     motion_.rows(at + same_instant * std::abs(at), strobe_.column(),
                  [&](double t, std::span<const double> q, double also) {
+                   beyond = t;
+                   if (!std::ranges::all_of(q, [](double x) { return std::isfinite(x); })) return true;
                    add(q, also);
                    time = t;
                    return true;
                  });
-    if (std::isnan(time)) bad_value("--at", options_.at, "the result has no row so early");
+    if (std::isnan(beyond)) bad_value("--at", options_.at, "the result has no row so early");
+    if (std::isnan(time)) {
+      throw Error(Error::Category::usage, "no-rows",
+                  fmt::format("'{}' has no row in which all poses are finite numbers", reader_->file()));
+    }
     if (std::isfinite(at)) require_row_after(at, time, beyond);
     out_.picture.q = out_.q;
     out_.picture.at_start = false;

@@ -13,9 +13,9 @@
 namespace freeplay {
 
 std::string glance(const std::filesystem::path& result, bool has_report) {
-  if (!stdout_is_terminal() || !stdout_takes_unicode()) return "";
+  if (!stdout_is_terminal()) return "";
   try {
-    const std::string lines = plot::sparklines(*ResultReader::open(result));
+    const std::string lines = plot::sparklines(*ResultReader::open(result), stdout_takes_unicode());
     if (has_report) return lines;
     return lines +
            fmt::format("  freeplay report {} makes a page of it: motion, orbits, plots\n", printable(result.string()));

@@ -1,9 +1,12 @@
 #include "cli/show_command.h"
 
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include <fmt/format.h>
 
+#include "base/input_text.h"
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/output_file.h"
@@ -14,9 +17,14 @@
 #include "drawing/model_text.h"
 #include "load/load.h"
 #include "load/result_model.h"
+#include "results/made_text.h"
+#include "results/provenance.h"
+#include "results/result_record.h"
 
 namespace freeplay {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct ShowOptions {
   std::string model, format, out;
@@ -24,53 +32,115 @@ struct ShowOptions {
   ModelOptions build;
 };
 
-int show(ShowOptions options, const CommonOptions& common) {
+void require_fitting(const ShowOptions& options, bool json) {
+  const auto refuse = [](const std::string& why) { throw Error(Error::Category::usage, "bad-value", why); };
   if (options.model.empty())
     throw Error(Error::Category::usage, "missing-argument", "show needs a model file or a result directory");
-  if (!options.format.empty()) require_word("format", options.format, {"text", "json", "dot", "svg"});
-  if (options.format.empty()) options.format = common.json ? "json" : "text";
-  if (common.json && options.format != "json") {
-    throw Error(Error::Category::usage, "bad-value", "--json and --format " + options.format + " exclude each other");
+  require_word("format", options.format, {"text", "json", "dot", "svg"});
+  const bool to_file = options.format == "svg" && !options.out.empty();
+  if (json && options.format != "json" && !to_file) {
+    refuse("--json and --format " + options.format + " exclude each other");
   }
   if (options.picture.any() && options.format != "svg") {
-    throw Error(Error::Category::usage, "bad-value", "--at, --every, --trace and --magnify need --format svg");
+    refuse("--at, --every, --trace and --magnify need --format svg");
   }
-  BuildOptions build = build_options(options.build);
-  const std::string directory = options.model;
-  const ResultWords result = use_model_of_result(options.model, build);
-  if (options.picture.any() && options.model == directory) {
-    throw Error(
-        Error::Category::usage, "bad-value",
-        fmt::format("--at, --every, --trace and --magnify need a result directory, and '{}' is a model", directory));
-  }
-  LoadedModel loaded = load_model(options.model, build, loading(common));
-  const auto integrator_of = [](const Model& model) -> std::string_view {
-    const Component* type = model.settings.integrator_parameters.component;
-    return type == nullptr ? "" : type->description.name;
-  };
-  if (loaded.model && !result.integrator.empty() && result.integrator != integrator_of(*loaded.model)) {
-    build.integrator = result.integrator;  // another than that of the file, with its default parameters
-    loaded = load_model(options.model, build, loading(common));
-  }
-  if (loaded.model && !result.name.empty()) loaded.model->name = result.name;
-  std::unique_ptr<AssembledModel> assembled;
-  if (loaded.exit_code == 0 && options.format == "svg") assembled = assemble_model(loaded);
-  if (loaded.exit_code != 0) return report_failure(loaded.diagnostics, loaded.exit_code, common);
-  if (result.name.empty()) print_messages(loaded.diagnostics.format(common.max_errors), common.no_color);
-  std::string text;
-  if (options.format == "svg") {
-    text = options.picture.any()
-               ? mechanism_svg(assembled->system, result_picture(directory, assembled->system, options.picture).picture)
-               : mechanism_svg(assembled->system, {assembled->start.state.q()});
-  } else {
-    const Json model = model_json(*loaded.model, options.format == "text" ? Quantities::text : Quantities::numbers);
-    text = options.format == "json"  ? json_text(model)
-           : options.format == "dot" ? model_graph(model)
-                                     : model_tree(model);
-  }
-  write_output(options.out, text);
-  return 0;
 }
+
+/// Of a result directory, or what stands for it where the run goes on or was killed; null of all else.
+Json summary_of(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return nullptr;
+  std::string text;
+  if (read_input((path / "summary.json").string(), text).empty()) {
+    if (Json summary = json_of(text); summary.is_object()) return summary;
+  }
+  if (!fs::exists(path / "run.log", ignored)) return nullptr;
+  return summary_of_unfinished(path, *ResultReader::open(path));
+}
+
+class Show {
+ public:
+  Show(ShowOptions options, const CommonOptions& common)
+      : options_(std::move(options)), common_(common), path_(options_.model) {
+    if (options_.format.empty()) options_.format = common.json ? "json" : "text";
+    require_fitting(options_, common.json);
+  }
+
+  int execute() {
+    summary_ = summary_of(path_);
+    read_model();
+    if (loaded_.exit_code == 0 && draws()) assembled_ = assemble_model(loaded_);
+    if (loaded_.exit_code != 0) return report_failure(loaded_.diagnostics, loaded_.exit_code, common_);
+    if (!is_result()) print_messages(loaded_.diagnostics.format(common_.max_errors), common_.no_color);
+    write_output(options_.out, draws() ? picture_with_record(picture(), record()) : text());
+    if (common_.json && draws()) print_json({{"file", options_.out}});
+    return 0;
+  }
+
+ private:
+  bool draws() const { return options_.format == "svg"; }
+  bool is_result() const { return summary_.is_object(); }
+
+  void read_model() {
+    BuildOptions build = build_options(options_.build);
+    std::string file = path_;
+    const ResultWords result = use_model_of_result(file, summary_, build);
+    if (options_.picture.any() && !is_result()) {
+      throw Error(
+          Error::Category::usage, "bad-value",
+          fmt::format("--at, --every, --trace and --magnify need a result directory, and '{}' is a model", path_));
+    }
+    loaded_ = load_model(file, build, loading(common_));
+    if (!loaded_.model) return;
+    const Component* type = loaded_.model->settings.integrator_parameters.component;
+    if (!result.integrator.empty() && (type == nullptr || result.integrator != type->description.name)) {
+      build.integrator = result.integrator;  // another than that of the file, with its default parameters
+      loaded_ = load_model(file, build, loading(common_));
+    }
+    if (loaded_.model && !result.name.empty()) loaded_.model->name = result.name;
+  }
+
+  std::string picture() {
+    if (!options_.picture.any()) return mechanism_svg(assembled_->system, {assembled_->start.state.q()});
+    ResultPicture drawn = result_picture(path_, assembled_->system, options_.picture);
+    drawn.picture.caption += unfinished_words(summary_);
+    return mechanism_svg(assembled_->system, drawn.picture);
+  }
+
+  std::string text() const {
+    const Json model = model_json(*loaded_.model, options_.format == "text" ? Quantities::text : Quantities::numbers);
+    return options_.format == "json"  ? json_text(model)
+           : options_.format == "dot" ? model_graph(model)
+                                      : model_tree(model);
+  }
+
+  /// What makes the picture again. How it was typed would make the bytes depend on where it goes.
+  Json record() const {
+    std::vector<std::string> arguments{"--format", "svg"};
+    const auto add = [&](const char* option, const std::vector<std::string>& values) {
+      for (const std::string& value : values) {
+        if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+      }
+    };
+    add("--at", {options_.picture.at});
+    add("--every", {options_.picture.every});
+    add("--trace", options_.picture.traces);
+    add("--magnify", options_.picture.magnify);
+    add("--set", options_.build.set);
+    add("--ideal", options_.build.ideal);
+    const char* command = "freeplay show";
+    if (is_result()) return record_of(path_, *ResultReader::open(path_), {"show", command, arguments});
+    add("--plugin", common_.plugins);
+    return provenance_with_texts(*loaded_.model, {"show", command, arguments, FREEPLAY_BUILD, nullptr});
+  }
+
+  ShowOptions options_;
+  const CommonOptions& common_;
+  const std::string path_;  // as given
+  Json summary_;
+  LoadedModel loaded_;
+  std::unique_ptr<AssembledModel> assembled_;
+};
 
 }  // namespace
 
@@ -91,7 +161,7 @@ Command add_show_command(CLI::App& program, CommonOptions& common) {
   add_file_option(*app, "--out", options->out, "Write into a file instead of stdout", "FILE");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
-  return {app, [options, &common] { return show(*options, common); }};
+  return {app, [options, &common] { return Show(*options, common).execute(); }};
 }
 
 }  // namespace freeplay

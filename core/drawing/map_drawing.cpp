@@ -44,6 +44,7 @@ class Drawing {
     draw_contours();
     draw_singular();
     draw_path();
+    body_ += label_text_;
     draw_axes();
     draw_legend();
     return body_ + "</svg>\n";
@@ -152,22 +153,21 @@ class Drawing {
 
   void draw_contours() {
     const std::vector<double> field = good_values();
-    std::string labels;
     for (const double level : levels_) {
       for (const std::vector<Point>& line : joined(contour(map_.x, map_.y, field, level))) {
         body_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"black\" stroke-width=\"0.8\"/>\n", line_of(line));
         if (const Point* place = label_place(line)) {
-          labels += fmt::format(
+          label_text_ += fmt::format(
               "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" stroke=\"white\" stroke-width=\"3\" "
               "paint-order=\"stroke\">{:.4g}</text>\n",
               px(at_x(place->x)), px(at_y(place->y) + 4.0), level);
         }
       }
     }
-    body_ += labels;
   }
 
-  /// The point of a line that is farthest from the labels so far; none where the line is short or all is taken.
+  /// The point of a line that is farthest from the labels so far, off the path; none where the line is short or all is
+  /// taken.
   const Point* label_place(const std::vector<Point>& line) {
     double length = 0.0;
     for (std::size_t i = 1; i < line.size(); ++i) {
@@ -181,6 +181,9 @@ class Drawing {
           std::min({at_x(p.x) - left, left + width_ - at_x(p.x), at_y(p.y) - top, top + height_ - at_y(p.y)}) + 10.0;
       for (const Point& other : labels_) {
         nearest = std::min(nearest, scale_ * std::hypot(p.x - other.x, p.y - other.y));
+      }
+      for (const auto& other : map_.path) {
+        nearest = std::min(nearest, scale_ * std::hypot(p.x - other[0], p.y - other[1]) + 12.0);
       }
       if (nearest > room) room = nearest, best = &p;
     }
@@ -287,7 +290,7 @@ class Drawing {
   std::vector<double> levels_;
   std::vector<Point> labels_;
   bool singular_ = false;
-  std::string body_;
+  std::string body_, label_text_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drawing/given_start.h"
+#include "drawing/joint_stops.h"
 #include "drawing/pitch_radii.h"
 #include "drawing/spatial_drawing.h"
 #include "svg/page.h"
@@ -91,6 +92,12 @@ class Drawing {
       if (!is_origin(one) || one.body != ground) all.push_back(world(one));
     }
     for (const Marker& one : model_.markers) all.push_back(world(one));
+    for (const JointElement& joint : model_.joints) {
+      const auto stops = stops_of(joint);
+      if (!stops || !stops->slides) continue;
+      const Point x{std::cos(angle_of(marker(joint.marker_a))), std::sin(angle_of(marker(joint.marker_a)))};
+      for (const double s : {stops->lower, stops->upper}) all.push_back(world(marker(joint.marker_a)) + s * x);
+    }
     const auto add = [&](BodyId id, std::span<const double> q) {
       const std::vector<Point> points = points_of(id, q);
       all.insert(all.end(), points.begin(), points.end());
@@ -225,7 +232,12 @@ class Drawing {
       if (one->body == ground && !(slides && one == &a && apart)) out_.hatch(at);
     }
     if (joint.layout.constraint_rows == 0 && !joint.has_play) {
-      out_.spring(from, to);
+      if (const auto stops = stops_of(joint)) {
+        const double turn = angle_of(a);
+        draw_stops(out_, *stops, from, {std::cos(turn), -std::sin(turn)}, {-std::sin(turn), -std::cos(turn)}, scale_);
+      } else {
+        out_.spring(from, to);
+      }
       out_.label(joint.name, 0.5 * (from + to), "font-style=\"italic\"");
     } else if (slides) {
       draw_slide(from, to, angle_of(a), angle_of(b), a.body == ground);

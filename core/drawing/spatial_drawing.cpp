@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drawing/given_start.h"
+#include "drawing/joint_stops.h"
 #include "drawing/pitch_radii.h"
 #include "drawing/spatial_scene.h"
 #include "drawing/view.h"
@@ -262,7 +263,12 @@ class Drawing {
     if (a.body == ground) page_.hatch(from);
     if (b.body == ground) page_.hatch(to);
     if (one.layout.constraint_rows == 0 && !one.has_play) {
-      page_.spring(from, to);
+      if (const auto stops = stops_of(one)) {
+        const Eigen::Matrix3d axes = scene_.axes_of(a);
+        draw_stops(page_, *stops, from, view_->flat(axes.col(0)), view_->flat(axes.col(1)), view_->scale());
+      } else {
+        page_.spring(from, to);
+      }
       return name(one.name, 0.5 * (from + to), "font-style=\"italic\"");
     }
     if (one.ideal_layout.constraint_rows == 1 && (scene_.world(a) - scene_.world(b)).norm() > 1e-6 * scene_.reach()) {

@@ -1,7 +1,6 @@
 #include "load/result_model.h"
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <system_error>
 
@@ -33,20 +32,12 @@ std::optional<double> number(const Json& object, const char* key) {
 
 }  // namespace
 
-ResultWords use_model_of_result(std::string& path, BuildOptions& build) {
+ResultWords use_model_of_result(std::string& path, const Json& summary, BuildOptions& build) {
   std::error_code ignored;
   const fs::path folder = path;
   if (!fs::is_directory(folder, ignored)) return {};
-  std::ifstream file(folder / "summary.json");
-  const Json summary = Json::parse(file, nullptr, false);
   const fs::path yaml = folder / "model.yaml", urdf = folder / "model.urdf";
-  const bool ended = summary.is_object() && summary.contains("settings");
-  if (!ended && fs::exists(folder / "run.log", ignored)) {
-    throw Error(Error::Category::input, "file-not-found",
-                fmt::format("the run into '{}' goes on, or was killed: it has no summary.json", path), {},
-                fmt::format("once it is over: freeplay seal {}", path));
-  }
-  if (!ended) no_result(path, "summary.json of a run");
+  if (!summary.is_object() || !summary.contains("settings")) no_result(path, "summary.json of a run");
   if (!fs::exists(yaml, ignored) && !fs::exists(urdf, ignored)) no_result(path, "model.yaml or model.urdf");
   path = (fs::exists(yaml, ignored) ? yaml : urdf).string();
   const Json& settings = summary["settings"];

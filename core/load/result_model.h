@@ -14,9 +14,9 @@ struct ResultWords {
 };
 
 /// Where `path` is a directory: makes it the model file in it, and adds to `build` the parameters and ideal joints of
-/// that run (summary.json), before those that are asked for, its end and its step or accuracy. Throws Error{input}
-/// "file-not-found" for a directory that holds no result.
-ResultWords use_model_of_result(std::string& path, BuildOptions& build);
+/// that run by its summary, before those that are asked for, its end and its step or accuracy. Throws Error{input}
+/// "file-not-found" for a directory that holds no result, of which the summary is null.
+ResultWords use_model_of_result(std::string& path, const Json& summary, BuildOptions& build);
 
 /// Adds to `build` what `settings` of a summary says: parameters and ideal joints before those that are asked for, the
 /// end and the step or accuracy.

@@ -44,7 +44,7 @@ class ChannelFigure {
     for (std::size_t s = 0; s < sources_.size(); ++s) ranges_.push_back(read_ranges(s));
     switch (request_.view) {
       case View::orbit:
-        draw_orbit();
+        draw_orbits();
         break;
       case View::over:
         draw_over();
@@ -81,7 +81,7 @@ class ChannelFigure {
       columns.push_back(over[0]);
     }
     for (const std::size_t channel : chosen_channels(reader, request_.channels)) columns.push_back(channel);
-    if (request_.view == View::orbit && columns.size() != 3) {
+    if (request_.view == View::orbit && request_.joint.empty() && columns.size() != 3) {
       throw Error(Error::Category::usage, "bad-value",
                   fmt::format("--xy draws one channel over another, and {} are given", columns.size() - 1));
     }
@@ -211,7 +211,14 @@ class ChannelFigure {
     }
   }
 
-  void draw_orbit() {
+  /// Of a ball seen along each of three axes.
+  void draw_orbits() {
+    for (std::size_t a = 0; a < channels(); ++a) {
+      for (std::size_t b = a + 1; b < channels(); ++b) draw_orbit(a, b);
+    }
+  }
+
+  void draw_orbit(std::size_t first, std::size_t second) {
     const auto range = [&](std::size_t c) {
       Extremes values = common([&](const Ranges& ranges) -> const Extremes& { return ranges.channels[c]; });
       if (request_.clearance > 0.0) {
@@ -219,19 +226,19 @@ class ChannelFigure {
       }
       return values;
     };
-    const Extremes wide = range(0), high = range(1);
-    const RecordColumn& over = column(0);
+    const Extremes wide = range(first), high = range(second);
+    const RecordColumn& over = column(first);
     const double ticks = std::max(3.0, std::min(request_.across, request_.down) / px_per_x_tick);
     const double longest = std::max(wide.most - wide.least, high.most - high.least);
     const auto axis = [&](const Extremes& of, const std::string& unit) {
       return svg::make_axis(of.least, of.most, unit, ticks * (of.most - of.least) / longest, svg::Fit::exact);
     };
-    Panel one = panel(1, axis(wide, over.unit), over.unit);
+    Panel one = panel(second, axis(wide, over.unit), over.unit);
     one.y = axis(high, one.unit);
     one.equal_scales = true;
     one.x_label = over.name;
     const double pixel = std::max(longest / std::max(1.0, std::min(request_.across, request_.down)), 1e-300);
-    add_trails(one, 1, 1, pixel, pixel);
+    add_trails(one, second, first_channel() + first, pixel, pixel);
     if (request_.clearance > 0.0) one.circles.push_back({request_.clearance, "clearance", true});
     figure_.panels.push_back(std::move(one));
   }

@@ -13,7 +13,7 @@ namespace freeplay::plot {
 enum class View {
   time,       ///< over time
   over,       ///< over another channel
-  orbit,      ///< the second over the first, with equal scales
+  orbit,      ///< each of two or three over those before it, with equal scales
   spectrum,   ///< amplitudes over frequency
   histogram,  ///< part of the time over value
   polar       ///< tables by bearing sector of a joint, around it
@@ -23,7 +23,7 @@ struct FigureRequest {
   View view = View::time;
   std::vector<std::string> channels;  ///< patterns; of polar: words of tables
   std::string over;                   ///< the other channel
-  std::string joint;                  ///< of polar
+  std::string joint;                  ///< of polar, and of the orbit of a journal
   double clearance = 0.0;             ///< circle of an orbit [m]; 0: none
   RowWindow window;
   double across = 800.0, down = 180.0;  ///< room of the lines of a panel [px]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ struct Circle {
   double radius = 0.0;
   std::string label;
   bool dashed = false;
+  double label_angle = std::numbers::pi / 2.0;  ///< where the label stands, from x on
 };
 
 struct Panel {

@@ -114,7 +114,8 @@ class PanelDrawing {
       out_ += fmt::format(
           "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#333\" paint-order=\"stroke\" stroke=\"white\" "
           "stroke-width=\"3\">{}</text>\n",
-          px(at_x(0.0)), px(at_y(0.0) - radius + 12.0), escaped(circle.label));
+          px(at_x(circle.radius * std::cos(circle.label_angle))),
+          px(at_y(circle.radius * std::sin(circle.label_angle)) + (circle.dashed ? 12.0 : 4.0)), escaped(circle.label));
     }
   }
 

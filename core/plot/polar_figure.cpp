@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -15,7 +16,9 @@ namespace freeplay::plot {
 namespace {
 
 constexpr double rings = 3.0, room = 1.08;
-constexpr int arc_points = 4;  // of a sector
+constexpr int arc_points = 4;        // of a sector
+constexpr int label_places = 8;      // around the joint
+constexpr double label_width = 0.4;  // half of what a label takes of a ring [rad]
 
 std::size_t place_of(const std::string& word, const std::vector<std::string>& words, const std::string& what,
                      const std::string& file) {
@@ -24,6 +27,24 @@ std::size_t place_of(const std::string& word, const std::vector<std::string>& wo
   const auto nearest = suggestion(word, words);
   throw Error(Error::Category::usage, "unknown-name", fmt::format("'{}' has no {} '{}'", file, what, word), {},
               nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(words, ", ")));
+}
+
+/// The direction in which lines reach least far, of those in which labels of rings may stand.
+double free_angle(const std::vector<Line>& lines) {
+  double best = 0.0, least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < label_places; ++k) {
+    const double angle = std::numbers::pi * (0.5 + 2.0 * k / label_places);
+    if (std::abs(std::cos(angle)) > 0.9) continue;  // labels side by side would meet
+    double reach = 0.0;
+    for (const Line& line : lines) {
+      for (const Point& p : line.points) {
+        const double away = std::remainder(std::atan2(p.y, p.x) - angle, 2.0 * std::numbers::pi);
+        if (std::abs(away) < label_width) reach = std::max(reach, std::hypot(p.x, p.y));
+      }
+    }
+    if (reach < least) least = reach, best = angle;
+  }
+  return best;
 }
 
 /// The outline of sectors as high as their values.
@@ -74,9 +95,10 @@ Figure polar_figure(const std::vector<Source>& sources, const FigureRequest& req
     if (!(largest > 0.0)) largest = 1.0;
     panel.x = panel.y = {-room * largest, room * largest, {0.0}, {""}, ""};
     panel.equal_scales = true;
+    const double beside = free_angle(panel.lines);
     for (const double ring : svg::round_numbers(0.0, largest, rings)) {
       const PrefixedUnit to = prefixed_unit(ring, panel.unit == "1" ? "" : panel.unit);
-      if (ring > 0.0) panel.circles.push_back({ring, fmt::format("{:g} {}", ring / to.factor, to.unit), false});
+      if (ring > 0.0) panel.circles.push_back({ring, fmt::format("{:g} {}", ring / to.factor, to.unit), false, beside});
     }
     panel.x_label = "0 deg is to the right";
     figure.panels.push_back(std::move(panel));

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t cells = 40, most_lines = 6;
 constexpr const char* bars[] = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+constexpr const char* plain_bars[] = {"_", ".", ":", "-", "=", "+", "*", "#"};  // the more ink the higher
 
 /// A column that may become a line.
 struct Candidate {
@@ -54,25 +55,26 @@ struct Seen {
   Extremes range;
 };
 
-std::string line_of(const Candidate& candidate, const Seen& seen, const std::string& unit, int wide) {
+std::string line_of(const Candidate& candidate, const Seen& seen, const std::string& unit, int wide, bool unicode) {
   const double low = std::min(0.0, seen.range.least), high = std::max(0.0, seen.range.most);
+  const char* const* levels = unicode ? bars : plain_bars;
   std::string text;
   double last = 0.0;
   for (const double value : seen.largest) {
     if (!std::isnan(value)) last = value;
     const double part = high > low ? (last - low) / (high - low) : 0.0;
-    text += bars[static_cast<std::size_t>(std::clamp(std::floor(part * 8.0), 0.0, 7.0))];
+    text += levels[static_cast<std::size_t>(std::clamp(std::floor(part * 8.0), 0.0, 7.0))];
   }
   const double size = std::max(std::abs(seen.range.least), std::abs(seen.range.most));
   const PrefixedUnit to = unit == "1" ? PrefixedUnit{} : prefixed_unit(size, unit);
-  return fmt::format("  {}{}  {}  {:.3g} … {:.3g} {}\n", candidate.words,
+  return fmt::format("  {}{}  {}  {:.3g} {} {:.3g} {}\n", candidate.words,
                      std::string(static_cast<std::size_t>(wide - character_count(candidate.words)), ' '), text,
-                     seen.range.least / to.factor, seen.range.most / to.factor, to.unit);
+                     seen.range.least / to.factor, unicode ? "…" : "...", seen.range.most / to.factor, to.unit);
 }
 
 }  // namespace
 
-std::string sparklines(ResultReader& reader) {
+std::string sparklines(ResultReader& reader, bool unicode) {
   const std::vector<Candidate> lines = candidates(reader);
   if (lines.empty()) return "";
   double from = std::nan(""), until = from;
@@ -93,7 +95,7 @@ std::string sparklines(ResultReader& reader) {
         const double value = block[1 + i];
         seen[i].range.add(block[0], value);
         double& largest = seen[i].largest[cell];
-        if (std::isnan(largest) || std::abs(value) > std::abs(largest)) largest = value;
+        if (std::isfinite(value) && !(std::abs(value) <= std::abs(largest))) largest = value;
       }
     }
   });
@@ -107,7 +109,7 @@ std::string sparklines(ResultReader& reader) {
   std::string text;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if ((lines[i].is_normal_force && i != strongest) || !seen[i].range.any()) continue;
-    text += line_of(lines[i], seen[i], reader.layout().columns[lines[i].column].unit, wide);
+    text += line_of(lines[i], seen[i], reader.layout().columns[lines[i].column].unit, wide, unicode);
   }
   return text;
 }

@@ -14,9 +14,12 @@ constexpr const char* plane_pose[] = {"x", "y", "angle"};
 constexpr const char* space_pose[] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
 constexpr const char* force_names[] = {"fx", "fy", "fz"};
 
-/// What a picture shows of a joint: turn, slide, rod, weld, or a tie without rows.
+/// What a picture shows of a joint: turn, slide, rod, weld; without rows a tie between two points, or a force along or
+/// about an axis, which has no picture.
 const char* symbol(const JointElement& joint, bool planar) {
-  if (joint.is_force || (joint.layout.constraint_rows == 0 && !joint.has_play)) return "tie";
+  if (joint.is_force || (joint.layout.constraint_rows == 0 && !joint.has_play)) {
+    return joint.layout.coordinate == Coordinate::none ? "tie" : "force";
+  }
   if (joint.ideal_layout.coordinate == Coordinate::position) return "slide";
   if (joint.ideal_layout.coordinate == Coordinate::angle) return "turn";
   if (joint.ideal_layout.constraint_rows == 1) return "rod";

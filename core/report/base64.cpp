@@ -1,5 +1,7 @@
 #include "report/base64.h"
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace freeplay {
@@ -22,7 +24,10 @@ std::string base64(std::string_view bytes) {
 
 std::string base64_floats(std::span<const double> numbers, double offset) {
   std::vector<float> floats(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i) floats[i] = static_cast<float>(numbers[i] - offset);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    floats[i] = static_cast<float>(numbers[i] - offset);
+    if (!std::isfinite(floats[i])) floats[i] = std::numeric_limits<float>::quiet_NaN();
+  }
   return base64_numbers<float>(floats);
 }
 

@@ -21,7 +21,7 @@ std::string base64_numbers(std::span<const Number> numbers) {
   return base64({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
 }
 
-/// Differences from `offset`, in single precision.
+/// Differences from `offset`, in single precision; NaN where they are infinite in it.
 std::string base64_floats(std::span<const double> numbers, double offset = 0.0);
 
 }  // namespace freeplay

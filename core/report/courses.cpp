@@ -40,7 +40,7 @@ void Courses::row(std::span<const double> row) {
   }
   ++row_;
   for (std::size_t c = 0; c < channels_; ++c) {
-    const double x = row[c + 1];
+    const double x = std::isfinite(row[c + 1]) ? row[c + 1] : nothing;
     // Written so that the first number replaces NaN.
     if (!(bucket_low_[c] <= x) && x == x) {
       bucket_low_[c] = x;

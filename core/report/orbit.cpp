@@ -26,7 +26,7 @@ void Orbit::keep(std::size_t row, const Vector3& point) {
 void Orbit::add(const Vector3& point) {
   const std::size_t row = row_++;
   const double far = point[0] * point[0] + point[1] * point[1] + point[2] * point[2];
-  if (far == far) {
+  if (std::isfinite(far)) {
     if (parts_ == 0 || !begun_) keep(row, point);
     if (!begun_ || far > far_) far_row_ = row, far_point_ = point, far_ = far;
     begun_ = true;

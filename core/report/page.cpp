@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "report/base64.h"
 #include "report/compact.h"
 #include "report/page_parts.h"
 
@@ -59,7 +60,7 @@ bool any_energy(const Json& run) {
 }
 
 /// Sections that are there only if some run has something for them.
-bool has_section(std::string_view name, const Json& runs) {
+bool has_section(std::string_view name, const Json& runs, bool pictures) {
   using Has = std::function<bool(const Json&)>;
   const auto field = [](const char* path) { return [path](const Json& run) { return filled(run, path); }; };
   static const std::map<std::string_view, Has> sections = {
@@ -68,11 +69,12 @@ bool has_section(std::string_view name, const Json& runs) {
       {"drivers", field("/summary/drivers")}, {"spectra", field("/spectra")},     {"energy", any_energy},
       {"advice", field("/summary/advice")},   {"model", field("/model")}};
   if (name == "side") return runs.size() > 1;
+  if (name == "pictures") return pictures;
   return std::ranges::any_of(runs, sections.at(name));
 }
 
 /// The text between `<!--[NAME]-->` and `<!--[/NAME]-->` stays where the section is there; the marks go.
-std::string with_sections(std::string_view html, const Json& runs) {
+std::string with_sections(std::string_view html, const Json& runs, bool pictures) {
   std::string out;
   for (;;) {
     const std::size_t begin = html.find("<!--[");
@@ -81,7 +83,7 @@ std::string with_sections(std::string_view html, const Json& runs) {
     const std::size_t name_end = html.find("]-->\n", begin);
     const std::string name(html.substr(begin + 5, name_end - begin - 5)), close = "<!--[/" + name + "]-->\n";
     const std::size_t end = html.find(close, begin);
-    if (has_section(name, runs)) out += html.substr(name_end + 5, end - name_end - 5);
+    if (has_section(name, runs, pictures)) out += html.substr(name_end + 5, end - name_end - 5);
     html.remove_prefix(end + close.size());
   }
 }
@@ -102,13 +104,26 @@ std::size_t page_frame_size() {
          parts.plot_style.size() + parts.plot_script.size();
 }
 
-std::string page_text(const std::string& title, const Json& runs, std::string_view data) {
+std::string picture_element(const std::string& svg) {
+  constexpr std::string_view begin = "<title>";
+  const std::size_t from = svg.find(begin);
+  std::string title;
+  if (from != std::string::npos) title = svg.substr(from + begin.size(), svg.find('<', from + 1) - from - begin.size());
+  for (std::size_t at = 0; (at = title.find('"', at)) != std::string::npos;) title.replace(at, 1, "&quot;");
+  return "<figure><img alt=\"" + title + "\" src=\"data:image/svg+xml;base64," + base64(svg) + "\"></figure>\n";
+}
+
+std::string page_text(const std::string& title, const Json& runs, std::string_view data, const std::string& pictures) {
   const PageParts parts = page_parts();
-  const std::string html = compact(with_sections(parts.html, runs), ""), name = escaped(title);
+  const std::string html = compact(with_sections(parts.html, runs, !pictures.empty()), ""), name = escaped(title);
   const std::string style = compact(parts.style, style_marks), script = compact(parts.script, script_marks);
-  const std::map<std::string_view, std::string_view> fields = {
-      {"title", name},    {"style", style}, {"plot_style", parts.plot_style}, {"plot_script", parts.plot_script},
-      {"script", script}, {"data", data}};
+  const std::map<std::string_view, std::string_view> fields = {{"title", name},
+                                                               {"style", style},
+                                                               {"plot_style", parts.plot_style},
+                                                               {"plot_script", parts.plot_script},
+                                                               {"script", script},
+                                                               {"data", data},
+                                                               {"pictures", pictures}};
   std::string out;
   out.reserve(largest_page);
   for (std::string_view rest = html;;) {

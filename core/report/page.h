@@ -18,8 +18,12 @@ std::string page_json(const Json& json);
 /// Bytes of the page without its data and title, whatever sections it has.
 std::size_t page_frame_size();
 
-/// `runs`: the list of runs, which decides about sections; `data`: the text of the data, by page_json().
-std::string page_text(const std::string& title, const Json& runs, std::string_view data);
+/// `runs`: the list of runs, which decides about sections; `data`: the text of the data, by page_json(); `pictures`: by
+/// picture_element(), one after the other.
+std::string page_text(const std::string& title, const Json& runs, std::string_view data, const std::string& pictures);
+
+/// An SVG with its title, as an image that can neither run nor load anything.
+std::string picture_element(const std::string& svg);
 
 /// Is a file that is there a page of this program?
 bool is_page(const std::filesystem::path& file);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/growing_file.h"
+#include "base/input_text.h"
 #include "base/sha256.h"
 #include "base/staged_file.h"
 #include "base/version.h"
@@ -24,6 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_runs = 8, most_buckets = 2000, least_buckets = 200, bucket_step = 100;
+
+constexpr std::size_t most_words = 40;            // characters of a name that tell runs of one model apart
+constexpr std::size_t most_pictures = 1'000'000;  // bytes
 
 /// Of all runs together.
 constexpr Shares whole_page{100'000, 16'000, 10'000, 40, 8'000, 300'000};
@@ -48,8 +52,23 @@ void require_different(const std::vector<std::string>& results) {
   }
 }
 
-/// Names that differ.
+/// The parameters that a run was started with, as ", c = 0.2 mm".
+std::string words_of_settings(const ReportedRun& run) {
+  const Json set = run.summary.value(Json::json_pointer("/settings/set"), Json::object());
+  std::string words;
+  for (const auto& [name, value] : set.items()) {
+    words += fmt::format(", {} = {}", name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return words.size() <= most_words ? words : std::string();
+}
+
+/// Names that differ: by the parameters of the runs, else by a number.
 void name_apart(std::vector<ReportedRun>& runs) {
+  std::map<std::string, int> same;
+  for (const ReportedRun& run : runs) ++same[run.name];
+  for (ReportedRun& run : runs) {
+    if (same[run.name] > 1) run.name += words_of_settings(run);
+  }
   std::map<std::string, int> count;
   for (ReportedRun& run : runs) {
     const int number = ++count[run.name];
@@ -158,15 +177,36 @@ std::string data_text(const std::string& title, Json record, const std::string& 
          ",\n\"runs\":" + runs + "\n}";
 }
 
+/// SVG files as elements of the page.
+std::string pictures_of(const ReportRequest& request) {
+  std::string all;
+  for (const std::string& file : request.pictures) {
+    std::string svg;
+    std::string why = read_input(file, svg);
+    if (why.empty() && (!svg.starts_with('<') || svg.find("<svg") == std::string::npos)) why = "it is no SVG";
+    if (!why.empty()) {
+      throw Error(Error::Category::file, "unreadable-input", fmt::format("the picture '{}': {}", file, why));
+    }
+    all += picture_element(svg);
+    if (all.size() > most_pictures) {
+      throw Error(Error::Category::usage, "too-large",
+                  fmt::format("'{}' is more than the {} bytes that pictures may have in a page", file, most_pictures),
+                  {}, "a map of fewer points is smaller");
+    }
+  }
+  return all;
+}
+
 std::string make_page(const ReportRequest& request, std::vector<ReportedRun>& runs,
                       std::vector<std::string>& left_out) {
   const std::string title = title_of(request, runs);
   const Json record = record_of(request, runs);
-  const std::size_t frame = page_frame_size() + 6 * title.size() + page_json(record).size() + 500;
+  const std::string pictures = pictures_of(request);
+  const std::size_t frame = page_frame_size() + pictures.size() + 6 * title.size() + page_json(record).size() + 500;
   PageRuns page_runs(runs, request, largest_page - std::min(frame, largest_page));
   for (;;) {
     const Json list = page_runs.read();
-    const std::string page = page_text(title, list, data_text(title, record, page_json(list)));
+    const std::string page = page_text(title, list, data_text(title, record, page_json(list)), pictures);
     left_out = page_runs.left_out();
     if (!page_runs.grow(page.size())) return page;
   }

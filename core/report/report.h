@@ -13,6 +13,7 @@ namespace freeplay {
 struct ReportRequest {
   std::vector<std::string> results;   ///< directories, or files of rows
   std::string out;                    ///< empty: report.html in the first result
+  std::vector<std::string> pictures;  ///< SVG files
   std::vector<std::string> channels;  ///< patterns; empty: all for which there is room
   RowWindow window;
   std::string title;                   ///< empty: names of the runs

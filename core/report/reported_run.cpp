@@ -11,6 +11,7 @@
 #include "load/result_model.h"
 #include "model/channel.h"
 #include "results/directory.h"
+#include "results/result_record.h"
 
 namespace freeplay {
 namespace {
@@ -54,9 +55,21 @@ void read_summary(ReportedRun& run, const fs::path& folder) {
   run.summary.erase("performance");
   if (!run.summary.empty()) return;
   run.note = "no summary.json: the run goes on or was killed, or its files are not all here";
-  for (const char* name : {"settings", "provenance"}) {
-    if (Json part = object(attribute(*run.reader, name)); !part.empty()) run.summary[name] = std::move(part);
-  }
+  run.summary = summary_of_unfinished(folder, *run.reader);
+}
+
+/// What the model itself says, where the summary says nothing of it: the run goes on, or was killed.
+void know_model(ReportedRun& run) {
+  if (!run.model || field(run.summary, "model").contains("bodies")) return;
+  const Model& model = *run.model;
+  Json known = {{"name", model.name},
+                {"space", model.space == Space::planar ? "planar" : "spatial"},
+                {"bodies", model.bodies.size()},
+                {"joints", model.joints.size()},
+                {"clearance_joints", std::ranges::count_if(model.joints, &JointElement::has_play)},
+                {"drivers", model.drivers.size()}};
+  known.update(field(run.summary, "model"));
+  run.summary["model"] = std::move(known);
 }
 
 void read_inputs(ReportedRun& run, const fs::path& folder) {
@@ -133,6 +146,7 @@ ReportedRun open_reported(const fs::path& path, const LoadOptions& options) {
   const fs::path folder = directory ? path : path.parent_path();
   read_summary(run, folder);
   read_model(run, folder, options);
+  know_model(run);
   read_inputs(run, folder);
   know_units(run);
   run.name = text_in(field(run.summary, "model"), "name");

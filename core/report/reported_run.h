@@ -16,7 +16,7 @@ struct ReportedRun {
   std::string name;  ///< of the model, with -ideal for an ideal run
   std::unique_ptr<ResultReader> reader;
   std::vector<RecordColumn> columns;  ///< of the reader, with units where the model knows them
-  /// summary.json without `performance`; settings and provenance alone where a run goes on or was killed.
+  /// summary.json without `performance`; what else is known where a run goes on or was killed.
   Json summary = Json::object();
   std::string model_text;
   Json inputs = Json::array();   ///< `{name, sha256, text}`

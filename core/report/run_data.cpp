@@ -61,6 +61,10 @@ void RunData::look_at_times() {
                 fmt::format("'{}' has no rows in this window", run_.reader->file()), {},
                 "change --from and --until, or wait until the run has written rows");
   }
+  if (summary_.value("status", "") == "incomplete") {  // as far as rows go
+    summary_["time"]["reached"] = last_;
+    summary_["counts"]["rows"] = rows_;
+  }
   interval_ = counted().interval;
   if (!(interval_ > 0.0) && rows_ > 1) interval_ = (last_ - first_) / static_cast<double>(rows_ - 1);
 }

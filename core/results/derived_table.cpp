@@ -1,5 +1,6 @@
 #include "results/derived_table.h"
 
+#include <cmath>
 #include <numbers>
 #include <span>
 
@@ -92,7 +93,8 @@ CountedTime counted_time(const ResultReader& reader, double first_time) {
 DerivedTable derived_table(ResultReader& reader, const std::string& table, const std::vector<std::size_t>& picked,
                            const RowWindow& window, double period, std::optional<double> phase) {
   const Columns columns = read_columns(reader, picked, window);
-  const CountedTime counted = counted_time(reader, columns.time().empty() ? 0.0 : columns.time().front());
+  CountedTime counted = counted_time(reader, columns.time().empty() ? 0.0 : columns.time().front());
+  if (std::isfinite(window.from)) counted.from = window.from;
   std::vector<RecordColumn> names;
   for (std::size_t i = 1; i < picked.size(); ++i) names.push_back(reader.layout().columns[picked[i]]);
   const auto grid = [&] { return RowGrid::of(columns.time(), counted.origin, counted.from, counted.interval); };

@@ -24,8 +24,9 @@ struct CountedTime {
 };
 CountedTime counted_time(const ResultReader& reader, double first_time);
 
-/// `spectra`, `poincare`, `lyapunov` of the columns `picked`, the first of which is time, in rows of `window`. `period`
-/// and `phase` [s] as in docs/results.md. Throws Error{numerical} "too-few-rows".
+/// `spectra`, `poincare`, `lyapunov` of the columns `picked`, the first of which is time, in rows of `window`, without
+/// its beginning in those of T_c. `period` and `phase` [s] as in docs/results.md. Throws Error{numerical}
+/// "too-few-rows".
 DerivedTable derived_table(ResultReader& reader, const std::string& table, const std::vector<std::size_t>& picked,
                            const RowWindow& window, double period, std::optional<double> phase);
 

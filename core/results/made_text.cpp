@@ -132,7 +132,8 @@ std::string picture_with_record(const std::string& picture, const Json& record) 
   const std::size_t svg = picture.find("<svg"), end = picture.find('>', svg);
   if (svg == std::string::npos || end == std::string::npos) return picture;
   std::string text = "\n<metadata>";
-  for (const char c : record.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  // In ASCII, so that no control character reaches a terminal.
+  for (const char c : record.dump(-1, ' ', true, Json::error_handler_t::replace)) {
     if (c == '<') {
       text += "&lt;";
     } else if (c == '>') {

@@ -31,11 +31,12 @@ Json record_of_summary(const std::string& text) {
   return summary.is_object() ? summary.value("provenance", Json()) : Json();
 }
 
-Json record_of_checkpoint(const fs::path& folder) {
+/// What a checkpoint says of the making of its run; empty where there is none.
+Json made_of_checkpoint(const fs::path& folder) {
   try {
-    return read_checkpoint(folder).made.value("provenance", Json());
+    return read_checkpoint(folder).made;
   } catch (const Error&) {
-    return nullptr;
+    return Json::object();
   }
 }
 
@@ -65,7 +66,7 @@ bool has_ended(const Json& summary) {
 Json record_of_directory(const fs::path& folder) {
   Json record = record_of_summary(text_of(folder / "summary.json"));
   if (!is_record(record)) record = record_of_rows(folder);
-  if (!is_record(record)) record = record_of_checkpoint(folder);
+  if (!is_record(record)) record = made_of_checkpoint(folder).value("provenance", Json());
   if (!is_record(record)) return nullptr;
   std::error_code ignored;
   record["model"]["text"] =
@@ -76,6 +77,26 @@ Json record_of_directory(const fs::path& folder) {
     input["text"] = text_of(folder / "inputs" / fs::path(input["name"].get<std::string>()).filename());
   }
   return record;
+}
+
+Json summary_of_unfinished(const fs::path& folder, const ResultReader& reader) {
+  Json summary = {{"status", "incomplete"}};
+  Json made = made_of_checkpoint(folder);
+  for (const char* name : {"settings", "provenance"}) {
+    Json part = json_of(attribute(reader, name));
+    if (!part.is_object()) part = made.value(name, Json());
+    if (part.is_object()) summary[name] = std::move(part);
+  }
+  if (is_record(summary.value("provenance", Json()))) {
+    summary["model"] = {{"name", summary["provenance"]["model"].value("name", Json())}};
+  }
+  return summary;
+}
+
+std::string unfinished_words(const Json& summary) {
+  const std::string status = summary.is_object() ? summary.value("status", "") : "";
+  if (status == "completed" || status == "stopped" || status.empty()) return "";
+  return status == "incomplete" ? " (the run goes on, or was killed)" : " (" + status + ")";
 }
 
 Json record_inside(ResultReader& reader) {

@@ -29,6 +29,13 @@ struct MadeOfResult {
 /// it that is exported again.
 Json record_of(const std::filesystem::path& path, ResultReader& reader, const MadeOfResult& made);
 
+/// What stands for the summary of a run that goes on or was killed: `status` "incomplete", `settings`, `provenance` and
+/// the model's name, as the file of rows or the checkpoint beside it has them.
+Json summary_of_unfinished(const std::filesystem::path& folder, const ResultReader& reader);
+
+/// " (failed)" of a run that did not come to its end, for headings; empty of one that did.
+std::string unfinished_words(const Json& summary);
+
 /// Whether a run with this summary came to its end: neither killed nor interrupted, and all was written.
 bool has_ended(const Json& summary);
 

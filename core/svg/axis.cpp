@@ -10,6 +10,7 @@
 namespace freeplay::svg {
 namespace {
 constexpr double most_steps = 1e5;     // of the largest value, beyond which labels are differences
+constexpr double narrowest = 1e-11;    // range of an axis, of the largest value: less are roundings
 constexpr double rounding = 1e-9;      // of a step
 constexpr int most_decimals = 12;      // of a label
 constexpr double written_out = 1e6;    // numbers without a unit up to here have no exponent,
@@ -54,7 +55,7 @@ Axis from_middle(Axis axis, std::string_view unit) {
 Axis make_axis(double least, double most, std::string_view unit, double ticks, Fit fit) {
   if (!std::isfinite(least) || !std::isfinite(most)) least = 0.0, most = 1.0;
   const double size = std::max(std::abs(least), std::abs(most));
-  if (!(most - least > 1e-12 * size)) {
+  if (!(most - least > narrowest * size)) {
     const double around = size > 0.0 ? 0.1 * size : 1.0;
     least -= around, most += around;
   }

@@ -1,4 +1,5 @@
 """Headless Chromium by chromedriver, with the standard library alone."""
+import base64
 import json
 import re
 import shutil
@@ -61,6 +62,11 @@ class Browser:
     def command(self, name, **parameters):
         """Of the DevTools protocol."""
         return self.ask("POST", "/goog/cdp/execute", {"cmd": name, "params": parameters})
+
+    def screenshot(self, left, top, width, height):
+        """PNG of a part of the page, which begins at its upper left."""
+        clip = {"x": left, "y": top, "width": width, "height": height, "scale": 1}
+        return base64.b64decode(self.command("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)["data"])
 
     def log(self, kind):
         return self.ask("POST", "/se/log", {"type": kind})

@@ -1,4 +1,5 @@
 """Channels of a result as pictures and as characters."""
+import cmath
 import errno
 import json
 import math
@@ -93,6 +94,21 @@ class Plot(ProgramTest):
         same = self.plot("joint.wrist.ex", "joint.wrist.ey", "--xy")[0]
         self.assertAlmostEqual(min(self.columns["joint.wrist.ey"]), min(y for _, y in same.lines[0]), delta=same.pixel[1])
 
+    def test_the_orbit_of_a_ball_is_seen_from_three_sides(self):
+        self.freeplay("run", mechanism("spatial/four-bar"), "--quiet", "--end", "2 ms", "--out", "space")
+        found = panels(self.freeplay("plot", "space", "--orbit", "B")[0])
+        self.assertEqual(["joint.B.ey", "joint.B.ez", "joint.B.ez"], [panel.channel for panel in found])
+        lines = [line.split(",") for line in self.read("space", "results.csv").splitlines()]
+        places = [[float(line[lines[0].index("joint.B.e" + axis)]) for line in lines[1:]] for axis in "xyz"]
+        for panel, (first, second) in zip(found, ((0, 1), (0, 2), (1, 2))):
+            self.assertAlmostEqual(1e-4, panel.circles[0], delta=2 * panel.pixel[0])
+            for values, at in ((places[first], 0), (places[second], 1)):
+                drawn = [point[at] for point in panel.lines[0]]
+                self.assertAlmostEqual(max(values), max(drawn), delta=panel.pixel[0])
+                self.assertAlmostEqual(min(values), min(drawn), delta=panel.pixel[0])
+        # A pin has its axis along z.
+        self.assertEqual(["joint.D.ey"], [panel.channel for panel in panels(self.freeplay("plot", "space", "--orbit", "D")[0])])
+
     def test_a_channel_is_drawn_over_another_one(self):
         panel = self.plot("joint.wrist.fn", "--x", "joint.main.angle")[0]
         peak = self.columns["joint.wrist.fn"].index(max(self.columns["joint.wrist.fn"]))
@@ -110,6 +126,17 @@ class Plot(ProgramTest):
         self.assertAlmostEqual(max(row[1] for row in table["rows"]), max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
         self.assertEqual(table["rows"][-1][0], panel.until)
 
+    def test_a_spectrum_is_that_of_the_window_that_is_given(self):
+        start = "2 ms"  # before the time that counts
+        panel = self.plot("driver.motor.torque", "--fft", "--from", start, "--until", "6 ms")[0]
+        known = [(t, x) for t, x in zip(self.columns["time"], self.columns["driver.motor.torque"]) if 0.002 - 1e-9 < t < 0.006 + 1e-9]
+        size = max(2 ** a * 3 ** b * 5 ** c for a in range(9) for b in range(6) for c in range(4) if 2 ** a * 3 ** b * 5 ** c <= len(known))
+        rows = [x for _, x in known[-size:]]
+        mean, weights = sum(rows) / size, [(1 - math.cos(2 * math.pi * i / size)) / 2 for i in range(size)]
+        largest = max(abs(sum(w * (x - mean) * cmath.exp(-2j * math.pi * k * i / size) for i, (w, x) in enumerate(zip(weights, rows))))
+                      for k in range(1, size // 2 + 1)) * 2 / sum(weights)
+        self.assertAlmostEqual(largest, max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
+
     def test_tables_by_sector_stand_around_their_joint(self):
         panel = self.plot("--polar", "wrist", "work")[0]
         table = json.loads(self.freeplay("export", "r", "--to", "json", "--table", "bearing")[0])
@@ -118,6 +145,14 @@ class Plot(ProgramTest):
         x, y = max(panel.lines[0], key=lambda p: math.hypot(*p))
         self.assertAlmostEqual(largest[place], math.hypot(x, y), delta=2 * panel.pixel[0])
         self.assertLess(abs(math.remainder(math.atan2(y, x) - largest[1], 2 * math.pi)), math.radians(3))
+
+    def test_rings_have_their_labels_where_no_curve_is(self):
+        group = next(g for g in ET.fromstring(self.freeplay("plot", "r", "--polar", "wrist", "impulse")[0]).iter(SVG + "g") if g.get("class") == "panel")
+        points = [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([^ML]+)", next(p for p in group.iter(SVG + "path") if p.get("class") == "line").get("d"))]
+        labels = [t for t in group.iter(SVG + "text") if "N*s" in (t.text or "") and t.get("paint-order")]
+        self.assertGreater(len(labels), 1)
+        largest = max(labels, key=lambda label: float(re.match(r"[\d.]+", label.text)[0]))
+        self.assertGreater(min(math.dist(p, (float(largest.get("x")), float(largest.get("y")) - 4)) for p in points), 12)
 
     def test_another_result_is_drawn_beside(self):
         shutil.copytree(self.made, self.path("other"))
@@ -180,7 +215,14 @@ class Plot(ProgramTest):
         shutil.copytree(self.made, self.path("part"))
         os.remove(self.path("part", "summary.json"))
         self.assertIn("(the run goes on, or was killed)", self.freeplay("plot", "part", "joint.wrist.fn")[0])
-        self.assertIn("freeplay seal part", self.freeplay("show", "part", "--format", "svg", code=3)[1])
+        out, err = self.freeplay("plot", "part", "--orbit", "wrist")
+        self.assertEqual("", err)
+        (panel,) = panels(out)
+        self.assertAlmostEqual(0.5e-3, panel.circles[0], delta=2 * panel.pixel[0])
+        os.remove(self.path("part", "model.yaml"))
+        out, err = self.freeplay("plot", "part", "--orbit", "wrist")
+        self.assertIn("how large the clearance is", err)
+        self.assertEqual([], panels(out)[0].circles)
 
     def test_what_cannot_be_drawn_is_refused(self):
         for arguments, code, words in (
@@ -204,10 +246,44 @@ class Plot(ProgramTest):
                 self.assertIn(words, err)
                 self.assertEqual("", out)
 
-    def on_terminal(self, *arguments):
+    def dots(self, text):
+        """Columns of a curve on the terminal: the rows of its dots from below."""
+        lines = [line for line in text.splitlines() if line and all("\u2800" <= c <= "\u28ff" for c in line)]
+        self.assertEqual(12, len(lines))
+        bits = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+        return [[47 - 4 * i - k for i, line in enumerate(lines) for k in range(4) if (ord(line[x // 2]) - 0x2800) & bits[k][x % 2]]
+                for x in range(2 * len(lines[0]))]
+
+    def test_curves_of_characters_are_where_the_values_are(self):
+        wave = [math.sin(0.02 * i) if not 150 <= i < 180 else math.nan for i in range(400)]
+        self.write("wave.csv", "time,a\n" + "".join("%d,%s\n" % (i, x) for i, x in enumerate(wave)))
+        text, _ = self.freeplay("plot", "wave.csv", "a", "--text", environment={"LC_ALL": "C.UTF-8", "TERM": "xterm"})
+        columns = self.dots(text)
+        known = [x for x in wave if x == x]
+        # The axis ends at round numbers, a tenth apart or more.
+        low, high = -1.0, 1.0
+        self.assertTrue(low - 0.1 < min(known) and max(known) < high + 0.1)
+        for x, dots in enumerate(columns):
+            begin, end = 399 * x / len(columns), 399 * (x + 1) / len(columns)
+            inside = [wave[i] for i in range(400) if begin - 1 <= i <= end + 1]
+            if all(math.isnan(value) for value in inside):
+                self.assertEqual([], dots)
+            elif not any(math.isnan(value) for value in inside):
+                self.assertTrue(dots, x)
+                wanted = [(value - low) / (high - low) * 47 for value in inside]
+                self.assertGreater(min(dots), min(wanted) - 1.6)
+                self.assertLess(max(dots), max(wanted) + 1.6)
+        plain, _ = self.freeplay("plot", "wave.csv", "a", "--text", environment={"LC_ALL": "C"})
+        stars = [line for line in plain.splitlines() if set(line) <= set("* ")]
+        self.assertEqual(12, len(stars))
+        wide = len(columns) // 2
+        self.assertEqual([bool(columns[2 * x] + columns[2 * x + 1]) for x in range(wide)],
+                         [any(line[x : x + 1] == "*" for line in stars) for x in range(wide)])
+
+    def on_terminal(self, *arguments, locale="C.UTF-8"):
         main, other = pty.openpty()
         with subprocess.Popen([PROGRAM, *arguments], cwd=self.folder, stdout=other, stderr=subprocess.DEVNULL,
-                              env={**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm"}) as run:
+                              env={**os.environ, "LC_ALL": locale, "TERM": "xterm"}) as run:
             os.close(other)
             data = b""
             while True:
@@ -230,7 +306,14 @@ class Plot(ProgramTest):
         self.assertTrue(all(len({c for c in line if c in BARS}) > 2 for line in lines))
         piped, _ = self.freeplay("run", mechanism("slider-crank"), "--end", "5 ms", "--out", "s", "--force")
         self.assertFalse(any(c in BARS for c in piped))
-        self.assertIn("⠀", self.on_terminal("plot", "s", "joint.wrist.fn"))
+        self.assertGreater(sum(map(len, self.dots(self.on_terminal("plot", "s", "joint.wrist.fn").replace("\r", "")))), 50)
+        levels = "_.:-=+*#"
+        plain = self.on_terminal("run", mechanism("slider-crank"), "--end", "5 ms", "--out", "s", "--force", locale="C")
+        self.assertTrue(plain.isascii())
+        for line in lines:
+            words, bars = re.match(r"  (\S+ \S+) +(\S{40})  ", line).groups()
+            self.assertIn(words + " ", plain)
+            self.assertIn("  %s  " % "".join(levels[BARS.index(c)] for c in bars), plain)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Runs the program under test, whose path is in FREEPLAY (what was built with it in FREEPLAY_BUILD), and keeps its files in a folder of their own."""
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -12,6 +13,11 @@ MECHANISMS = os.path.join(ROOT, "mechanisms")
 
 def mechanism(name):
     return os.path.join(MECHANISMS, name + ".yaml")
+
+
+def drawing(text):
+    """A picture without the record of how it was made, which has words of the compiler."""
+    return re.sub(r"\n<metadata>.*</metadata>", "", text, flags=re.S)
 
 
 class ProgramTest(unittest.TestCase):

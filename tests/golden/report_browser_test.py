@@ -1,14 +1,16 @@
 """Pages of results as a browser shows them."""
 import base64
 import json
+import math
+import os
 import re
-import struct
+import tempfile
 import time
 import unittest
 
 from browser import Browser, needs_browser
 from page_reader import Page, numbers
-from program import ProgramTest, mechanism
+from program import ROOT, ProgramTest, mechanism
 
 LEFT, RIGHT, HOME, END = "\ue012", "\ue014", "\ue011", "\ue010"
 PICTURE = """const c = document.getElementById('scene'), d = c.getContext('2d', {willReadFrequently: true}).getImageData(0, 0, c.width, c.height).data;
@@ -164,6 +166,9 @@ class ReportInBrowser(ProgramTest):
         paper = "return getComputedStyle(document.body).backgroundColor"
         light = self.script(paper)
         self.browser.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        time.sleep(0.3)
+        self.assertNotEqual(light, self.script(paper))
+        self.browser.open(self.path("page.html"))
         self.assertNotEqual(light, self.script(paper))
         self.browser.command("Emulation.setEmulatedMedia", media="print", features=[])
         self.assertEqual(light, self.script(paper))
@@ -177,6 +182,59 @@ class ReportInBrowser(ProgramTest):
         for width in (360, 800, 1280):
             self.browser.command("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
             self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)
+
+    def test_every_picture_is_on_paper(self):
+        self.open("slider-crank")
+        self.script("document.documentElement.dataset.theme = 'dark'")
+        time.sleep(0.3)
+        pictures = self.script("return document.querySelectorAll('#scene, .orbit, .polar, .plot, .spectrum').length")
+        self.assertGreater(pictures, 4)
+        paper = base64.b64decode(self.browser.command("Page.printToPDF", printBackground=True)["data"])
+        # Each has a mask besides; an empty canvas is left out.
+        self.assertGreaterEqual(len(re.findall(rb"/Subtype\s*/Image", paper)), 2 * pictures)
+
+    def test_tables_of_eight_runs_fit(self):
+        for k in range(8):
+            self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--set", "c=%d um" % (500 + k), "--out", "r%d" % k)
+        self.freeplay("report", *("r%d" % k for k in range(8)), "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        for section in ("side", "facts", "plots", "clearance"):
+            self.assertLessEqual(self.script("const e = document.querySelector('#' + arguments[0] + ' .wide'); return e.scrollWidth - e.clientWidth", section), 0, section)
+        self.assertEqual([8] * 2, self.script("return [...document.querySelectorAll('#side tr')].slice(0, 2).map(e => e.querySelectorAll('.number').length)"))
+
+    def test_the_command_is_copied(self):
+        self.open("slider-crank", options=("--end", "1 ms"))
+        self.script("document.querySelector('#model button').scrollIntoView({block: 'center'})")
+        self.browser.drag("#model button", (0.5, 0.5), (0.5, 0.5))
+        time.sleep(0.3)
+        self.assertEqual("Copied", self.script("return document.querySelector('#model button').textContent"))
+
+    def test_gaps_of_values_that_are_no_numbers(self):
+        self.write("r.csv", "time,a\n0,1\n1,inf\n2,3\n3,nan\n4,5\n")
+        self.freeplay("report", "r.csv", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        shown = self.script("freeplay.select(['a']); return [0, 1, 2, 3, 4].map(t => { freeplay.seek(t); return document.querySelector('#now span').textContent; })")
+        self.assertEqual(["1", "\u2013", "3", "\u2013", "5"], shown)
+
+    def labels(self, plot):
+        return self.script("return [...document.querySelectorAll(arguments[0] + ' .dygraph-axis-label-y')].map(e => e.textContent)", plot)
+
+    def test_labels_tell_values_apart(self):
+        self.write("r.csv", "time,a\n" + "".join("%r,%r\n" % (100 + 1e-6 * k, 1.000001 + 1e-8 * k) for k in range(100)))
+        self.freeplay("report", "r.csv", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        self.script("freeplay.select(['a'])")
+        shown = self.labels(".plot")
+        self.assertEqual(sorted(set(shown)), shown[::-1] if shown[0] > shown[-1] else shown)
+        self.assertGreater(len(shown), 2)
+        self.assertTrue(all(1.0000009 < float(label) < 1.0000021 for label in shown), shown)
+        times = self.script("return [...document.querySelectorAll('.plot .dygraph-axis-label-x')].map(e => e.textContent)")
+        self.assertEqual(len(times), len(set(times)))
+        self.open("slider-crank")
+        self.assertIn("N·m", self.script("return document.querySelector('#spectra figcaption').textContent"))
+        decades = [float(label) for label in self.labels(".spectrum")]
+        self.assertGreater(len(decades), 3)
+        self.assertTrue(all(abs(math.log10(value) % 1) < 1e-9 for value in decades), decades)
 
     def test_space_is_turned_by_mouse_and_keys(self):
         self.open("spatial/stewart")
@@ -209,6 +267,38 @@ class ReportInBrowser(ProgramTest):
         self.freeplay("report", "alone.csv", "--out", "page.html")
         self.browser.open(self.path("page.html"))
         self.assertGreater(self.script("return document.querySelectorAll('.plot canvas').length"), 1)
+
+    def test_the_picture_in_the_documentation_is_this_page(self):
+        self.open("4-rrr")
+        self.browser.command("Emulation.setDeviceMetricsOverride", width=1280, height=1000, deviceScaleFactor=1, mobile=False)
+        self.script("freeplay.seek(0.3836); document.getElementById('forces').click(); document.getElementById('mechanism').scrollIntoView()")
+        time.sleep(0.5)
+        top = self.script("return document.getElementById('mechanism').getBoundingClientRect().y + scrollY")
+        made, documented = self.browser.screenshot(0, top - 12, 1280, 760), os.path.join(ROOT, "docs", "images", "report.png")
+        with open(documented, "rb") as file:
+            pictures = [base64.b64encode(data).decode() for data in (made, file.read())]
+        # Other machines have other fonts: text is some percent of the picture.
+        differ = self.browser.ask("POST", "/execute/async", {"script": """const done = arguments[2], pixels = [];
+for (const [k, data] of [arguments[0], arguments[1]].entries()) {
+  const image = new Image();
+  image.onload = () => {
+    const canvas = document.createElement('canvas'), c = canvas.getContext('2d');
+    canvas.width = image.width; canvas.height = image.height;
+    c.drawImage(image, 0, 0);
+    pixels[k] = c.getImageData(0, 0, canvas.width, canvas.height).data;
+    if (!pixels[0] || !pixels[1]) return;
+    let n = pixels[0].length === pixels[1].length ? 0 : Infinity;
+    for (let i = 0; i < pixels[0].length; i += 4) if (Math.abs(pixels[0][i + 1] - pixels[1][i + 1]) > 48) ++n;
+    done(n / (pixels[0].length / 4));
+  };
+  image.src = 'data:image/png;base64,' + data;
+}""", "args": pictures})
+        if differ is None or differ > 0.05:
+            now = os.path.join(tempfile.gettempdir(), "report.png")
+            with open(now, "wb") as file:
+                file.write(made)
+            self.fail("%s of %s differ from the page as it is now, which is in %s: look at it, and put it there" % (
+                "all" if differ is None else "%.1f %%" % (100 * differ), documented, now))
 
     def test_film_is_recorded(self):
         self.open("slider-crank", options=("--end", "2 ms"))

@@ -1,8 +1,10 @@
 """Pages that `freeplay report` and `run --report` write."""
+import base64
 import csv
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -46,7 +48,7 @@ class Report(ProgramTest):
         self.assertLessEqual(len(text.encode()), LIMIT)
         page = Page(text)
         self.assertIn("default-src 'none'", page.policy)
-        self.assertEqual([], page.links)
+        self.assertTrue(all(link.startswith("data:image/svg+xml;base64,") for link in page.links))
         self.assertEqual(page.data["provenance"]["data_sha256"], page.hash_of_runs())
         return page
 
@@ -178,6 +180,22 @@ class Report(ProgramTest):
         self.assertEqual(["--channels", "joint.wrist.*", "--channels", "energy.work", "--from", "1 ms", "--until", "2 ms", "--title", "A < B"],
                          page.data["provenance"]["arguments"])
 
+    def test_pictures_of_other_commands_are_on_the_page(self):
+        self.run_model()
+        self.freeplay("analyze", "error", mechanism("3-rrr"), "--grid", "x=-0.05:0.05:5", "--grid", "y=-0.05:0.05:5", "--svg", "map.svg")
+        self.write("evil.svg", '<svg xmlns="http://www.w3.org/2000/svg"><title>"a</title><script>window.pwned=1</script></svg>')
+        page = self.report("r", "--picture", "map.svg", "--picture", "evil.svg")
+        pictures = [base64.b64decode(link.partition("base64,")[2]).decode() for link in page.links]
+        self.assertEqual([self.read("map.svg"), self.read("evil.svg")], pictures)
+        self.assertIn("pictures", page.ids)
+        self.assertIn('alt="3-rrr: largest position error by clearance"', self.read("page.html"))
+        self.assertIn('alt="&quot;a"', self.read("page.html"))
+        self.assertNotIn("pwned", self.read("page.html"))
+        self.assertEqual("same bytes", self.freeplay("reproduce", "page.html")[0].splitlines()[-1])
+        for name, text, code, words in (("no.svg", "x", 6, "it is no SVG"), ("big.svg", "<svg>" + "x" * 1000000, 2, "[too-large]")):
+            self.write(name, text)
+            self.assertIn(words, self.freeplay("report", "r", "--picture", name, code=code)[1])
+
     def test_text_of_a_model_stays_text(self):
         evil = "</script><script>window.pwned=1</script><img src=x onerror=window.pwned=1>"
         self.write("evil.yaml", PENDULUM % ('"</title>%s"' % evil, '"%s"' % evil, "10 ms"))
@@ -195,6 +213,15 @@ class Report(ProgramTest):
         self.assertIn("mechanism", page.ids)
         # The centre of mass is no end of the rod: points are counted from it.
         self.assertEqual([-0.5, 0.0], page.runs[0]["animation"]["bodies"][0]["points"][0])
+
+    def test_forces_along_an_axis_have_no_zigzag_between_two_points(self):
+        self.write("p.yaml", PENDULUM.replace("between: [ground, rod]}\n", "between: [ground, rod]}\n"
+                   "  end: {type: joint-stop, kind: rotational, between: [ground, rod], lower: -1, upper: 1, stiffness: 1}\n"
+                   "  coil: {type: spring-damper, kind: linear, between: [ground/up, rod], stiffness: 1}\nframes: {ground/up: [0, 1]}\n")
+                   % ("p", "x", "10 ms"))
+        self.freeplay("run", "p.yaml", "--quiet", "--out", "r")
+        symbols = {joint["name"]: joint["symbol"] for joint in self.report("r").runs[0]["animation"]["joints"]}
+        self.assertEqual({"pivot": "turn", "end": "force", "coil": "tie"}, symbols)
 
     def test_rows_without_anything_beside_them(self):
         self.run_model()
@@ -218,8 +245,12 @@ class Report(ProgramTest):
         killed = self.report("r")
         for page in (going_on, killed):
             self.assertIn("no summary.json", page.runs[0]["note"])
+            run = page.runs[0]
             self.assertIn("mechanism", page.ids)
             self.assertEqual(set(), {"clearance", "advice"} & page.ids)
+            known = run["summary"]
+            self.assertEqual(("incomplete", run["rows"], numbers(run["times"], "d")[-1]), (known["status"], known["counts"]["rows"], known["time"]["reached"]))
+            self.assertEqual({"name": "slider-crank", "space": "planar", "bodies": 3, "joints": 4, "clearance_joints": 1, "drivers": 1}, known["model"])
         self.assertLessEqual(going_on.runs[0]["rows"], killed.runs[0]["rows"])
         rows, count = self.table("r", "results.csv"), killed.runs[0]["rows"]
         self.compare_channels(killed.runs[0], {name: column[:count] for name, column in rows.items()})
@@ -236,13 +267,22 @@ class Report(ProgramTest):
             csv.writer(file, lineterminator="\n").writerows(rows)
         self.compare_channels(self.report("r").runs[0], self.table("r", "results.csv"))
 
+    def test_infinite_values_are_gaps(self):
+        self.write("r.csv", "time,a,b\n0,1,inf\n1,inf,-inf\n2,3,inf\n3,-inf,inf\n4,5,nan\n")
+        a, b = self.report("r.csv").runs[0]["channels"]
+        self.assertEqual((1, 5, None, None), (a["min"], a["max"], b["min"], b["max"]))
+        gaps = lambda channel: [math.isnan(x) for x in numbers(channel["values"], "f")]
+        self.assertEqual(([False, True] * 2 + [False], [True] * 5), (gaps(a), gaps(b)))
+
     def test_many_channels_and_runs_fit(self):
         results = []
         for k in range(8):
             results.append(self.run_model("--set", "c=%d um" % (100 + k), out="r%d" % k, end="2 ms", model=mechanism("3-rrr")))
         page = self.report(*results)
         self.assertEqual(8, len(page.runs))
-        self.assertEqual("3-rrr (8)", page.runs[7]["name"])
+        self.assertEqual("3-rrr, c = 107 um", page.runs[7]["name"])
+        same = self.report("r0", self.run_model("--set", "c=100 um", out="again", end="2 ms", model=mechanism("3-rrr")))
+        self.assertEqual(["3-rrr, c = 100 um", "3-rrr, c = 100 um (2)"], [run["name"] for run in same.runs])
         for run, result in zip(page.runs, results):
             names = {channel["name"] for channel in run["channels"]}
             self.assertEqual(set(self.table(result, "results.csv")) - {"time"}, names | set(run["left_out"]))
@@ -288,14 +328,16 @@ class Report(ProgramTest):
         self.assertFalse(os.path.exists(self.path("r", "report.html")))
 
     def test_what_is_written_for_the_page_is_small(self):
-        self.write("p.yaml", PENDULUM % ("p", "x", "10 ms"))
-        self.freeplay("run", "p.yaml", "--quiet", "--out", "r")
-        page = self.report("r")
+        for name in ("a", "b"):
+            self.run_model("--twin", end="14 ms", out=name)
+        page = self.report("a", "b")
         text = self.read("page.html")
         plots = next(script for script in page.scripts.values() if "dygraphs" in script)
         self.assertIn("@license", plots)  # the notice stays
         self.assertNotIn("sourceMappingURL", text)
-        self.assertLess(len(text) - len(plots) - len(page.scripts["freeplay-data"]), 64000)
+        self.assertEqual(set(), {"side", "twin", "spectra", "impacts"} - page.ids)
+        own = re.sub(r"\.dygraph-[^{}]*{[^}]*}", "", text.replace(plots, "").replace(page.scripts["freeplay-data"], ""))
+        self.assertLess(len(own.encode()), 60000)
 
 
 if __name__ == "__main__":

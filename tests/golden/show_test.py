@@ -6,7 +6,7 @@ import re
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import ROOT, ProgramTest, mechanism
+from program import ROOT, ProgramTest, drawing, mechanism
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -40,8 +40,8 @@ class Show(ProgramTest):
         self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.1 mm")[0])["joints"],
                          json.loads(self.freeplay("show", "r", "--json", "--set", "c=0.1 mm")[0])["joints"])
         self.freeplay("run", crank, "--ideal", "all", "--end", "20 us", "--out", "i", "--quiet")
-        self.assertEqual(self.freeplay("show", crank, "--ideal", "all", "--format", "svg"),
-                         self.freeplay("show", "i", "--format", "svg"))
+        self.assertEqual(drawing(self.freeplay("show", crank, "--ideal", "all", "--format", "svg")[0]),
+                         drawing(self.freeplay("show", "i", "--format", "svg")[0]))
 
     def test_a_result_directory_has_the_inputs_of_its_model(self):
         os.makedirs(self.path("models", "data"))
@@ -189,6 +189,43 @@ simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], o
     def points(path):
         return [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([-\d. ]+)", path.get("d"))]
 
+    def test_a_run_that_was_killed_is_shown_as_far_as_it_went(self):
+        for form in ("hdf5", "csv"):
+            self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--set", "c=0.4 mm", "--format", form, "--out", form)
+            whole = self.freeplay("show", form, "--json")[0]
+            drawn = self.freeplay("show", form, "--format", "svg", "--at", "1 ms")[0]
+            os.remove(self.path(form, "summary.json"))
+            self.assertEqual(whole, self.freeplay("show", form, "--json")[0])
+            killed = self.freeplay("show", form, "--format", "svg", "--at", "1 ms")[0]
+            self.assertIn("t = 1 ms (the run goes on, or was killed)", killed)
+            self.assertEqual(drawing(drawn), drawing(killed).replace(" (the run goes on, or was killed)", ""))
+
+    def test_poses_that_are_no_numbers_are_left_out(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "2 ms", "--interval", "0.1 ms", "--format", "csv", "--out", "r")
+        header, *rows = [line.split(",") for line in self.read("r", "results.csv").splitlines()]
+        for k, row in enumerate(rows):
+            if k % 3 == 1 or k > 17:
+                row[header.index("body.slider.x")] = "nan" if k % 2 else "inf"
+        self.write("r/results.csv", "\n".join(map(",".join, [header, *rows])) + "\n")
+        out, _ = self.freeplay("show", "r", "--format", "svg", "--every", "0.3 ms", "--trace", "slider/com", "--magnify", "wrist=60")
+        self.assertIsNone(re.search("nan|inf[^o]", drawing(out)))
+        self.assertIn("t = 1.7 ms", out)
+        for row in rows:
+            row[header.index("body.slider.x")] = "nan"
+        self.write("r/results.csv", "\n".join(map(",".join, [header, *rows])) + "\n")
+        self.assertIn("no row in which all poses are finite", self.freeplay("show", "r", "--format", "svg", "--at", "1 ms", code=2)[1])
+
+    def test_a_picture_says_what_it_was_made_from(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "r")
+        summary = json.loads(self.read("r", "summary.json"))
+        for what, options in (("r", ["--at", "0.5 ms", "--trace", "crank/tip"]), ("r", []), (mechanism("slider-crank"), ["--set", "c=0.1 mm"])):
+            self.assertEqual({"file": "p.svg"}, json.loads(self.freeplay("show", what, "--format", "svg", *options, "--out", "p.svg", "--json")[0]))
+            record = json.loads(xml.fromstring(self.read("p.svg")).find(SVG + "metadata").text)
+            self.assertEqual(("show", ["--format", "svg", *options]), (record["made"], record["arguments"]))
+            self.assertEqual((summary["model"]["sha256"], what == "r"), (record["model"]["sha256"], "run" in record))
+            self.assertIn("freeplay: 1", record["model"]["text"])
+            self.assertEqual("same bytes", self.freeplay("reproduce", "p.svg")[0].splitlines()[-1])
+
     def test_an_instant_that_is_not_there_is_refused(self):
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--interval", "1 us", "--out", "r")
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "few", "--channels", "joint.*")
@@ -222,6 +259,28 @@ frames: {ground/far: [1, 0]}
             apart = float(b.get("cx")) - float(a.get("cx"))
             self.assertAlmostEqual(first, float(a.get("r")) / apart, delta=1e-3)
             self.assertAlmostEqual(first / abs(ratio), float(b.get("r")) / apart, delta=1e-3)
+
+    def test_stops_are_bars_at_the_ends_of_a_way(self):
+        model = """freeplay: 1
+%sbodies: {a: {mass: 1, inertia: %s}, b: {mass: 1, inertia: %s, pose: {position: %s}}}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  P: {type: prismatic, between: [ground, b]}
+  turn: {type: joint-stop, kind: rotational, between: [ground, a], lower: -30 deg, upper: 90 deg, stiffness: 1}
+  way: {type: joint-stop, kind: linear, between: [ground, b], lower: 100 mm, upper: 300 mm, stiffness: 1}
+"""
+        for space, inertia, place in (("", 1, [0.2, 0]), ("space: spatial\n", [1, 1, 1], [0.2, 0, 0])):
+            out, _ = self.freeplay("show", self.write("m.yaml", model % (space, inertia, inertia, place)), "--format", "svg")
+            picture = xml.fromstring(out)
+            view = next((g for g in picture.iter(SVG + "g") if g.get("id") == "top"), picture)
+            bars = [[float(bar.get(k)) for k in ("x1", "y1", "x2", "y2")] for bar in self.kind(view, "line", "stop")]
+            angles = sorted(round(math.degrees(math.atan2(y1 - y2, x2 - x1))) for x1, y1, x2, y2 in bars[:2])
+            self.assertEqual([-30, 90], angles)
+            (x, y, *_), (far, *_) = bars[2:]
+            self.assertAlmostEqual(bars[2][0], bars[2][2], delta=0.1)
+            origin = float(next(c for c in picture.iter(SVG + "circle") if space == "").get("cx")) if not space else None
+            if origin is not None:
+                self.assertAlmostEqual(2, (far - x) / (x - origin), delta=0.01)
 
     def test_gears_in_space_are_drawn_by_their_pitch_circles(self):
         self.write("m.yaml", """freeplay: 1
@@ -258,7 +317,7 @@ frames: {ground/far: [1, 0]}
 
     def test_drawing_in_the_readme_is_the_program_s(self):
         with open(os.path.join(ROOT, "docs", "images", "3-rrr.svg"), encoding="utf-8") as file:
-            self.assertEqual(file.read(), self.freeplay("show", mechanism("3-rrr"), "--format", "svg")[0])
+            self.assertEqual(file.read(), drawing(self.freeplay("show", mechanism("3-rrr"), "--format", "svg")[0]))
 
     def test_drawing_puts_a_point_where_it_is(self):
         # A rod of 1 m hangs horizontally from the origin: its pin, its middle and its end are on one level.

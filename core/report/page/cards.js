@@ -31,9 +31,10 @@ const drawCards = all => cards.forEach(card => { if (all || card.visible) drawCa
 
 // `draw` gives caption, label, paint and mark of one of a list of each run.
 function startCards(section, list, kind, draw) {
-  const box = document.querySelector('#' + section + ' .cards');
-  for (const run of box ? runs.filter(r => r[list].length) : []) {
-    if (several) box.append(make('h3', {}, run.title));
+  const box = make('div', {class: 'cards'}), home = byId(section);
+  if (home) home.append(box);
+  for (const run of home ? runs.filter(r => r[list].length) : []) {
+    box.append(make('h3', {}, titled(run)));
     for (const one of run[list]) {
       const {caption, label, paint, mark} = draw(run, one), canvas = make('canvas', {class: kind, role: 'img', 'aria-label': label + ' of ' + one.joint, data: {run: run.index, joint: one.joint}});
       cards.push({canvas, back: document.createElement('canvas'), paint, mark});

@@ -3,7 +3,7 @@ const clock = {time: timeStart, playing: false, speed: 1, drawn: 0, range: [time
 const listeners = [], onTime = listener => listeners.push(listener);
 const frameTimes = runs.map(r => r.animation ? decode(r.animation.times, Float64Array) : r.times), frames = frameTimes[0];
 const clockScale = scale(Math.max(Math.abs(timeStart), Math.abs(timeEnd)), 's');
-const clockDigits = Math.max(0, Math.min(6, Math.ceil(4 - Math.log10((timeEnd - timeStart) / 10 ** clockScale.power || 1))));
+const clockDigits = Math.max(0, Math.min(9, Math.ceil(4 - Math.log10((timeEnd - timeStart) / 10 ** clockScale.power || 1))));
 
 function show(t) {
   clock.time = t;
@@ -57,7 +57,7 @@ function stepImpact(by) {
 function startClock() {
   const scrub = byId('scrub');
   if (scrub) {
-    byId('speed').append(...speeds.map(s => make('option', {value: s}, s + '\u00d7')));
+    byId('speed').append(...speeds.map(s => make('option', {value: s}, s + '×')));
     byId('speed').onchange = e => setSpeed(+e.target.value);
     byId('play').onclick = toggle;
     [['earlier', -1], ['later', 1]].forEach(([id, by]) => { byId(id).onclick = () => stepImpact(by); byId(id).hidden = !impactTimes.length; });
@@ -70,5 +70,5 @@ function startClock() {
     });
   }
   const wanted = (timeEnd - timeStart) / 10 || 1;
-  setSpeed(speeds.reduce((best, s) => Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best));
+  setSpeed(speeds.reduce((a, b) => Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a));
 }

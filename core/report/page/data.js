@@ -67,7 +67,7 @@ class Run {
 }
 
 const runs = data.runs.map((raw, index) => new Run(raw, index));
-const several = runs.length > 1;
+const several = runs.length > 1, titled = run => several ? run.title : '';  // where there is but one it needs no name
 const timeStart = Math.min(...runs.map(r => r.start)), timeEnd = Math.max(...runs.map(r => r.end));
 
 const escaped = key => key.replace(/~/g, '~0').replace(/\//g, '~1');

@@ -1,20 +1,22 @@
 // Keys, theme, film.
-const keyHelp = [['Space', 'play or pause'], ['\u2190 \u2192', 'one frame; with Shift ten; in the focused picture of a spatial model: turn'], ['Home End', 'first or last frame'],
-                 ['+ \u2212', 'faster, slower'], ['E e', 'draw play larger, smaller'], ['z', 'all of the time'], ['t', 'light or dark'], ['?', 'these keys'],
+const keyHelp = [['Space', 'play or pause'], ['← →', 'one frame; with Shift ten; in the focused picture of a mechanism in space: turn'], ['Home End', 'first or last frame'],
+                 ['+ −', 'faster, slower'], ['E e', 'draw play larger, smaller'], ['z', 'all of the time'], ['t', 'light or dark'], ['?', 'these keys'],
                  ['drag in a plot', 'zoom to a span of time; double click: all of it'], ['click in a plot', 'go to that instant']];
 
 function repaint() {
   byId('theme').textContent = dark() ? 'Light' : 'Dark';
   readPalette();
   drawScene();
-  if (chosen.size) drawGraphs();
+  for (const g of [...graphs, ...spectra]) g.dye();  // a new canvas would stay empty on paper
   drawCards(matchMedia('print').matches);  // on paper all of them
 }
 
-// The style sheet knows the theme of the system, and that paper is light; canvases and plots are painted again.
+// The theme of the system until another is chosen; the style sheet knows that paper is light.
 function startTheme() {
-  for (const query of ['(prefers-color-scheme: dark)', 'print']) matchMedia(query).addEventListener('change', repaint);
-  byId('theme').onclick = () => { document.documentElement.dataset.theme = dark() ? 'light' : 'dark'; repaint(); };
+  const choose = theme => { document.documentElement.dataset.theme = theme; repaint(); };
+  matchMedia('(prefers-color-scheme: dark)').onchange = e => choose(e.matches ? 'dark' : 'light');
+  matchMedia('print').onchange = repaint;
+  byId('theme').onclick = () => choose(dark() ? 'light' : 'dark');
   repaint();
 }
 
@@ -35,10 +37,10 @@ function startKeys() {
 
 // One pass of what is seen, recorded by the browser.
 function startFilm() {
-  const button = byId('record'), type = window.MediaRecorder && ['video/webm;codecs=vp9', 'video/webm'].find(t => MediaRecorder.isTypeSupported(t));
+  const button = byId('record'), type = 'video/webm';
   let recorder = null, last = 0;
   if (!button) return;
-  button.hidden = !type;
+  button.hidden = !window.MediaRecorder || !MediaRecorder.isTypeSupported(type);
   button.onclick = () => {
     if (recorder) return recorder.stop();
     const pieces = [];

@@ -1,6 +1,5 @@
 // Everything in its order, and the face for scripts.
 document.querySelector('.pair').classList.toggle('two', !several && !!byId('mechanism'));
-document.querySelector('.overview').classList.toggle('two', runs.length === 2);
 startTheme();
 startTop();
 startSide();

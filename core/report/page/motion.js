@@ -15,9 +15,8 @@ class Motion {
     this.offsets = new Map(this.joints.filter(j => j.clearance).map(j => [j, this.offsetsOf(j)]));
     this.box();
     const {columns, rows} = run.events, at = name => columns.indexOf(name), force = r => r[at('max_fn')] || 0;
-    this.flashes = Object.create(null);
-    this.largest = Math.max(...rows.map(force), 1e-300);
-    for (const r of rows) (this.flashes[r[at('joint')]] = this.flashes[r[at('joint')]] || []).push([r[0] - (r[at('duration')] || 0), Math.sqrt(force(r) / this.largest)]);
+    const largest = Math.max(...rows.map(force), 1e-300);
+    this.flashes = rows.map(r => [r[at('joint')], r[0] - (r[at('duration')] || 0), Math.sqrt(force(r) / largest)]);
   }
 
   numbers(body, frame) {
@@ -77,8 +76,10 @@ class Motion {
 
   // How bright the latest impact of a joint still is, 0 to 1.
   flash(joint) {
-    const ages = (this.flashes[joint.name] || []).map(([t, size]) => [(clock.time - t) / flashSeconds / clock.speed, size]);
-    return Math.max(0, ...ages.filter(([age]) => age >= 0 && age < 1).map(([age, size]) => (1 - age) * (0.3 + 0.7 * size)));
+    return Math.max(0, ...this.flashes.filter(f => f[0] === joint.name).map(([, t, size]) => {
+      const age = (clock.time - t) / flashSeconds / clock.speed;
+      return age >= 0 && (1 - age) * (0.3 + 0.7 * size);
+    }));
   }
 
   // Everything that is ever drawn lies between low and high.

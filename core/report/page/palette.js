@@ -24,9 +24,13 @@ function sharp(canvas) {
   return {context, width, height, ratio};
 }
 
-function line(c, points, colour, width = 1, dash = []) {
+function way(c, points) {
   c.beginPath();
   for (const p of points) c.lineTo(p[0], p[1]);
+}
+
+function line(c, points, colour, width = 1, dash = []) {
+  way(c, points);
   c.strokeStyle = colour;
   c.lineWidth = width;
   c.setLineDash(dash);
@@ -35,9 +39,7 @@ function line(c, points, colour, width = 1, dash = []) {
 }
 
 function shape(c, points, fill) {
-  c.beginPath();
-  for (const p of points) c.lineTo(p[0], p[1]);
-  c.closePath();
+  way(c, points);
   c.fillStyle = fill;
   c.fill();
 }
@@ -45,8 +47,11 @@ function shape(c, points, fill) {
 function disc(c, [x, y], radius, fill, stroke, width = 1) {
   c.beginPath();
   c.arc(x, y, radius, 0, 2 * Math.PI);
-  if (fill) { c.fillStyle = fill; c.fill(); }
-  if (stroke) { c.strokeStyle = stroke; c.lineWidth = width; c.stroke(); }
+  c.fillStyle = fill || 'transparent';
+  c.fill();
+  c.strokeStyle = stroke || 'transparent';
+  c.lineWidth = width;
+  c.stroke();
 }
 
 function note(c, text, x, y, colour, align = 'left', weight = '') {

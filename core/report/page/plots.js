@@ -47,11 +47,9 @@ function merged(curves) {
 }
 
 function swatch(k) {
-  const [svg, line] = ['svg', 'line'].map(tag => document.createElementNS('http://www.w3.org/2000/svg', tag)), set = (e, a) => Object.entries(a).forEach(([key, v]) => e.setAttribute(key, v));
-  set(svg, {viewBox: '0 0 26 8', 'aria-hidden': 'true'});
-  set(line, {x1: 0, y1: 4, x2: 26, y2: 4, stroke: palette.series[k % 8], 'stroke-width': 2.5, 'stroke-dasharray': (dashes[k % 8] || []).join(' ')});
-  svg.append(line);
-  return svg;
+  const e = make('i');
+  e.innerHTML = '<svg viewBox="0 0 26 8" aria-hidden="true"><path d="M0 4h26" stroke="' + palette.series[k % 8] + '" stroke-width="2.5" stroke-dasharray="' + (dashes[k % 8] || '') + '"/></svg>';
+  return e.firstChild;
 }
 
 // A plot with its heading, and a place for a value of each curve; `signs` are the colours and dashes of the curves.
@@ -60,23 +58,30 @@ function addPlot(home, title, labels, curves, options) {
   const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
+  const look = () => ({colors: signs.map(k => palette.series[k % 8]), axisLineColor: palette.soft, gridLineColor: palette.line});
   const graph = new Dygraph(plot, merged(curves), {
-    labels: ['x', ...keys], colors: signs.map(k => palette.series[k % 8]), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[signs[k] % 8]}])),
-    strokeWidth: 1.3, legend: 'never', connectSeparatedPoints: true, axisLineColor: palette.soft, gridLineColor: palette.line,
+    labels: ['x', ...keys], ...look(), series: Object.fromEntries(keys.map((key, k) => [key, {strokePattern: dashes[signs[k] % 8]}])),
+    strokeWidth: 1.3, axisLabelFontSize: 12, legend: 'never', connectSeparatedPoints: true,
     highlightCallback: (_, x, at) => at.forEach(p => { values[+p.name.slice(1)].textContent = options.say(p.yval); }),
     unhighlightCallback: () => values.forEach(v => { v.textContent = ''; }), ...options
   });
-  graph.values = values;
+  graph.dye = () => {
+    head.querySelectorAll('path').forEach((e, k) => e.setAttribute('stroke', palette.series[signs[k] % 8]));
+    graph.updateOptions(look());
+  };
   return graph;
 }
-const axis = (write, width) => ({axisLabelFormatter: write, axisLabelWidth: width, axisLabelFontSize: 12, pixelsPerLabel: width > 60 ? 84 : 28});
-const tidy = (s, digits, unit = '') => v => minus(String(+(v / 10 ** s.power).toPrecision(digits))) + unit;
+const axis = (write, width, room) => ({axisLabelFormatter: write, axisLabelWidth: width, pixelsPerLabel: room});
+// Digits that tell round numbers between two values apart.
+const digits = (a, b) => Math.min(15, Math.max(6, 3 + Math.log10(Math.max(Math.abs(a), Math.abs(b)) / (b - a || Infinity))));
+const tidy = (s, range, unit = '') => (v, _, options, g) => minus(String(+(v / 10 ** s.power).toPrecision(digits(...g[range]())))) + unit;
 
 function addGraph(home, title, names) {
   const series = names.flatMap(name => owners(name).map(run => ({run, name}))), unit = unitOf(names[0]), s = scale(Math.max(...names.map(peak)), unit);
-  const label = ({run, name}) => [several ? run.title : '', parts(name).of || parts(name).what].filter(Boolean).join(' ');
+  const ends = series.flatMap(({run, name}) => [run.named.get(name).min, run.named.get(name).max]), width = 10 + 7 * digits(Math.min(...ends), Math.max(...ends));
+  const label = ({run, name}) => [titled(run), parts(name).of || parts(name).what].filter(Boolean).join(' ');
   const graph = addPlot(home, title + (s.unit && ' [' + s.unit + ']'), series.map(label), series.map(({run, name}) => points(run, name)), {
-    say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 7, '\u00a0' + clockScale.unit), 76), y: axis(tidy(s, 6), 52)},
+    say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 'xAxisRange', '\u00a0' + clockScale.unit), 76, 84), y: axis(tidy(s, 'yAxisRange'), width, 28)},
     clickCallback: (_, t) => seek(t), drawCallback: g => { clock.range = g.xAxisRange(); moveCursors(clock.time); },
     underlayCallback: (c, area, g) => {  // what does not count
       const from = runs[0].get('/statistics/from'), x = from > timeStart ? Math.min(g.toDomXCoord(from), area.x + area.w) : area.x;
@@ -91,7 +96,6 @@ function addGraph(home, title, names) {
 
 function moveCursors(t) {
   for (const g of graphs) {
-    if (!g.line) continue;
     const x = g.toDomXCoord(t), area = g.getArea();
     g.line.hidden = x < area.x - 0.5 || x > area.x + area.w + 0.5;
     g.line.style.transform = 'translateX(' + x + 'px)';
@@ -99,7 +103,7 @@ function moveCursors(t) {
   }
 }
 
-// Channels that mean the same of different elements share a plot, eight curves at most. Energy has a plot of its own.
+// Channels that mean the same of different elements share a plot, eight curves at most.
 const most = Math.max(1, Math.floor(8 / runs.length));
 function drawGraphs() {
   if (sync) sync.detach();
@@ -107,11 +111,11 @@ function drawGraphs() {
   graphs = [];
   const groups = new Map(), energy = document.querySelector('#energy .graph'), home = byId('graphs');
   for (const name of chosen) {
-    const {kind, what} = parts(name), key = (kind === 'energy' ? '' : what) + kind + unitOf(name);
+    const {kind, what} = parts(name), key = what + kind + unitOf(name);
     groups.set(key, [...(groups.get(key) || []), name]);
   }
   home.replaceChildren();
-  for (const names of groups.values()) for (let k = 0; k < names.length; k += most) addGraph(home, parts(names[0]).kind === 'energy' ? 'Energy' : phrase(names[0]), names.slice(k, k + most));
+  for (const names of groups.values()) for (let k = 0; k < names.length; k += most) addGraph(home, phrase(names[0]), names.slice(k, k + most));
   if (energy) {
     energy.replaceChildren();
     const names = channelNames.filter(n => n.startsWith('energy.')).slice(0, most);
@@ -141,23 +145,19 @@ let cells = [];
 function drawNow() {
   cells = [];
   const lines = [...chosen].map(name => row(name, ...runs.map(run => {
+    if (!run.named.has(name)) return right('–');
     const e = make('span', {data: {run: run.index, channel: name}});
-    if (run.named.has(name)) cells.push({e, run, name});
-    return {number: run.named.has(name) ? e : '\u2013'};
+    cells.push({e, run, name});
+    return right(e);
   })));
-  byId('now').replaceChildren(...table(['Channel', ...runs.map(r => ({number: several ? r.title : 'at the cursor'}))], lines).childNodes);
+  byId('now').replaceChildren(...table(['Channel', ...runs.map(r => right(titled(r) || 'at the cursor'))], lines).childNodes);
   fillNow(clock.time);
 }
 function fillNow(t) {
   for (const {e, run, name} of cells) {
-    const v = run.value(name, t), unit = run.named.get(name).unit;
-    if (Array.isArray(v)) {
-      [e.dataset.low, e.dataset.high] = v;
-      e.textContent = v[0] === v[1] ? quantity(v[0], unit) : quantityRange(...v, unit);
-    } else {
-      e.dataset.value = v;
-      e.textContent = quantity(v, unit);
-    }
+    const v = run.value(name, t), {unit} = run.named.get(name);
+    if (run.buckets) [e.dataset.low, e.dataset.high] = v; else e.dataset.value = v;
+    e.textContent = run.buckets && v[0] !== v[1] ? quantityRange(...v, unit) : quantity(run.buckets ? v[0] : v, unit);
   }
 }
 
@@ -165,38 +165,28 @@ function fillNow(t) {
 function presets() {
   const like = pattern => channelNames.filter(n => pattern.test(n)), largest = names => [...names].sort((a, b) => peak(b) - peak(a)).slice(0, most).sort((a, b) => channelNames.indexOf(a) - channelNames.indexOf(b));
   const lists = {'Contact forces': largest(like(/^joint\..*\.fn$/)), Drivers: like(/^driver\..*\.(torque|force)$/).slice(0, most), 'Path errors': like(/^driver\..*\.e(x|y|angle)$/),
-                 Sliding: largest(like(/^joint\..*\.vt$/)), Penetration: largest(like(/^joint\..*\.delta$/)), Energy: like(/^energy\./), Bodies: like(/^body\.[^.]*\.(x|y|z|angle)$/).slice(0, 6)};
+                 Sliding: largest(like(/^joint\..*\.vt$/)), Penetration: largest(like(/^joint\..*\.delta$/)), Bodies: like(/^body\.[^.]*\.(x|y|z|angle)$/).slice(0, 6)};
   return Object.fromEntries(Object.entries(lists).filter(([, names]) => names.length));
 }
 
 function startChoice() {
-  const groups = new Map(), toggled = ({target: {checked, value}}) => { checked ? chosen.add(value) : chosen.delete(value); select([...chosen]); };
-  for (const name of channelNames) {
-    const {kind, of} = parts(name), key = kind + ' ' + of;
-    groups.set(key, [...(groups.get(key) || []), name]);
-  }
-  byId('channels').addEventListener('toggle', () => {
-    for (const [title, names] of groups) {
-      byId('choice').append(make('fieldset', {}, make('legend', {}, title), ...names.map(name =>
-        make('label', {}, make('input', {type: 'checkbox', value: name, checked: chosen.has(name), onchange: toggled}), parts(name).what))));
-    }
-  }, {once: true});
+  const box = byId('choice'), toggled = ({target: {checked, value}}) => { checked ? chosen.add(value) : chosen.delete(value); select([...chosen]); };
+  byId('channels').addEventListener('toggle', () => box.append(...channelNames.map(name =>
+    make('label', {}, make('input', {type: 'checkbox', value: name, checked: chosen.has(name), onchange: toggled}), name))), {once: true});
   byId('search').oninput = e => {
     const words = e.target.value.toLowerCase().split(/\s+/);
-    for (const label of document.querySelectorAll('#choice label')) label.hidden = !words.every(w => label.firstChild.value.toLowerCase().includes(w));
-    for (const set of document.querySelectorAll('#choice fieldset')) set.hidden = !set.querySelector('label:not([hidden])');
+    for (const label of box.children) label.hidden = !words.every(w => label.textContent.toLowerCase().includes(w));
   };
 }
 
 function startPlots() {
   const lists = presets(), coarse = runs.filter(r => r.buckets);
-  byId('presets').append(...Object.entries(lists).map(([title, names]) => make('button', {type: 'button', onclick: () => select(names)}, title)));
+  byId('presets').append(...Object.entries(lists).map(([title, names]) => make('button', {onclick: () => select(names)}, title)));
   byId('unzoom').onclick = unzoom;
   startChoice();
   byId('coarse').textContent = [
-    coarse.length && 'The page holds the smallest and the largest value of every ' + Math.ceil(Math.max(...coarse.map(r => r.rows / r.buckets))) +
-      ' rows, with every extreme, and all rows around the largest impacts. Values at the cursor are ranges for that reason.',
-    ...runs.filter(r => r.left_out.length).map(r => (several ? r.title + ': ' : '') + 'no room for ' + r.left_out.slice(0, 5).join(', ') + (r.left_out.length > 5 ? ' and ' + (r.left_out.length - 5) + ' more.' : '.'))
+    coarse.length && 'Drawn are the smallest and the largest value of every ' + Math.ceil(Math.max(...coarse.map(r => r.rows / r.buckets))) + ' rows, and all rows around the largest impacts.',
+    ...runs.filter(r => r.left_out.length).map(r => titled(r) + ' has no room for ' + r.left_out.slice(0, 5).join(', ') + (r.left_out.length > 5 ? ' and ' + (r.left_out.length - 5) + ' more.' : '.'))
   ].filter(Boolean).join(' ');
   const counted = Math.min(...runs.map(r => r.get('/statistics/from') || timeStart));
   if (counted > timeStart && counted < timeEnd) clock.range = [counted, timeEnd];
@@ -214,8 +204,8 @@ function drawSpectra() {
   for (const name of box ? new Set(runs.flatMap(r => r.spectra.map(s => s.name))) : []) {
     const series = runs.map(run => ({run, s: run.spectra.find(s => s.name === name)})).filter(x => x.s), unit = series[0].s.unit;
     const curves = series.map(({s}) => [decode(s.frequency, Float32Array), decode(s.amplitude, Float32Array).map(v => v || 1e-30)]), top = Math.max(...curves.flatMap(c => [...c[1]].filter(isFinite)));
-    const y = scale(top, unit), decade = v => Math.abs(Math.log10(v / 10 ** y.power) % 1) < 1e-6 ? tidy(y, 2)(v) : '';
-    spectra.push(addPlot(box, parts(name).of + ', ' + parts(name).what + ' [' + y.unit + ']', series.map(({run}) => several ? run.title : ''), curves,
-      {say: v => quantity(v, unit), signs: series.map(({run}) => run.index), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66), y: axis(decade, 52)}}));
+    const y = scale(top, unit), decades = [-5, -4, -3, -2, -1, 0, 1, 2, 3].map(k => ({v: 10 ** (k + y.power), label: plain(10 ** k, 2)}));
+    spectra.push(addPlot(box, parts(name).of + ', ' + parts(name).what + ' [' + y.unit + ']', series.map(({run}) => titled(run)), curves,
+      {say: v => quantity(v, unit), signs: series.map(({run}) => run.index), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66, 84), y: {ticker: () => decades, axisLabelWidth: 52}}}));
   }
 }

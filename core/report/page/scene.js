@@ -1,14 +1,12 @@
 // The mechanism in motion: one cell of the canvas for each run, all at one scale.
 const scene = {canvas: byId('scene'), motions: [], yaw: -0.6, pitch: 0.35, exaggerate: 1, places: new Map()};
-const factors = [1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000];
 const flashSeconds = 0.25;  // on the screen
-const nearest = (list, wanted) => list.reduce((a, b) => Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a);
 
 function startScene() {
   if (!scene.canvas) return;
   scene.motions = runs.filter(r => r.animation).map(r => new Motion(r));
   scene.spatial = scene.motions.some(m => m.spatial);
-  scene.canvas.setAttribute('aria-label', 'In motion: ' + runs.map(r => r.title).join(', ') + (scene.spatial ? '; drag or use the arrow keys to turn the view' : ''));
+  scene.canvas.setAttribute('aria-label', 'In motion: ' + document.title);
   const sizes = scene.motions.flatMap(m => m.joints.filter(j => j.forces.length).map(j => {
     const n = m.spatial ? 3 : 2, all = Array.from({length: j.forces.length / n}, (_, k) => Math.hypot(...j.forces.subarray(n * k, n * k + n)));
     return all.filter(isFinite).sort((a, b) => a - b)[Math.floor(all.length * 0.9)] || 0;
@@ -26,7 +24,7 @@ function startScene() {
   byId('labels').checked = Math.max(...scene.motions.map(m => m.joints.length)) <= 16;
   for (const option of ['forces', 'labels']) byId(option).onchange = drawScene;
   fit();
-  exaggerate(nearest(factors.filter(x => x !== 200), Math.max(1, 12 / (Math.max(...loose.map(j => j.clearance)) * scene.scale))));  // circles that can be seen
+  exaggerate(2 ** Math.floor(Math.log2(Math.max(1, 20 / (Math.max(...loose.map(j => j.clearance)) * scene.scale)))));  // circles that can be seen
   if (scene.spatial) turnable();
   onTime(drawScene);
   new ResizeObserver(() => { fit(); drawScene(); }).observe(scene.canvas);
@@ -35,11 +33,11 @@ function startScene() {
 function exaggerate(factor) {
   scene.exaggerate = Math.max(1, Math.min(1000, factor || 1));
   byId('exaggerate').value = scene.exaggerate;
-  byId('factor').textContent = '\u00d7' + scene.exaggerate;
+  byId('factor').textContent = '×' + plain(scene.exaggerate, 3);
 }
 function changeExaggeration(up) {
   if (!scene.canvas) return;
-  exaggerate(up ? factors.find(x => x > scene.exaggerate) || 1000 : factors.filter(x => x < scene.exaggerate).pop());
+  exaggerate(scene.exaggerate * (up ? 2 : 0.5));
   drawScene();
 }
 
@@ -158,8 +156,9 @@ function drawTie(c, p, q, spring) {
 function drawJoint(c, m, {joint, p, q, first, second}, project) {
   const {symbol} = joint;
   if (joint.clearance) return drawClearance(c, m, joint, p, first, project);
-  if (symbol === 'tie') return;
-  if (symbol === 'weld') return shape(c, [[-4, -4], [4, -4], [4, 4], [-4, 4]].map(d => [p[0] + d[0], p[1] + d[1]]), palette.edge);
+  if (symbol === 'tie' || symbol === 'force') return;
+  c.fillStyle = palette.edge;
+  if (symbol === 'weld') return c.fillRect(p[0] - 4, p[1] - 4, 8, 8);
   if (symbol !== 'slide') return disc(c, p, 4.2, palette.card, palette.edge, 1.6);
   const d = m.direction(joint.first, joint.axis), rod = (from, px) => [1, -1].map(s => project(from.map((x, i) => x + s * px / scene.scale * d[i])));
   if (joint.first < 0) line(c, rod(second, 60), palette.edge, 1.4);
@@ -209,7 +208,7 @@ function drawNotes(c, m, cell) {
     arrow(c, [right - 84, y], [right - 24, y], palette.blue);
     note(c, quantity(scene.newton, 'N'), right - 54, y - 8, palette.blue, 'center');
   }
-  if (several) note(c, m.run.title, x, cell.y + 22, palette.ink, 'left', '600');
+  note(c, titled(m.run), x, cell.y + 22, palette.ink, 'left', '600');
   if (!m.spatial) return;
   const turned = view(), at = [right - 42, cell.y + 46];
   ['x', 'y', 'z'].forEach((name, k) => {

@@ -2,37 +2,36 @@
 const at = (part, name, field) => '/' + part + '/' + escaped(name) + '/' + field;
 const effort = x => ['position', 'force'].includes((x || {}).kind) ? 'N' : 'N*m';
 const right = text => ({number: text});
-const whole = v => String(v), few = v => plain(v, 3);
-const has = path => runs.some(r => ![undefined, null].includes(r.get(path)));
-const put = (id, ...content) => { if (home(id)) home(id).append(...content); };
+const few = v => plain(v, 3);
+const has = path => runs.some(r => r.get(path) != null);
+const put = (id, ...content) => { if (byId(id)) byId(id).append(make('div', {class: 'wide'}, ...content)); };
 
 function startTop() {
   for (const run of runs) {
-    const {status, stop_reason, trust} = run.summary, verdict = trust ? trust.verdict : 'doubtful', reasons = trust ? trust.reasons : [];
-    byId('verdicts').append(make('div', {}, several ? make('b', {}, run.title) : null,
-      make('span', {}, (status || 'incomplete') + (stop_reason ? ' (' + stop_reason + ')' : ''), ' at ', run.get('/time/reached') === undefined ? instant(run.end) : shown(run, '/time/reached', instant)),
-      make('span', {class: 'chip ' + verdict}, {good: '\u2713', doubtful: '!', bad: '\u2715'}[verdict] + (trust ? ' trust: ' + verdict : ' no verdict')),
-      run.note ? make('span', {class: 'soft'}, run.note) : null,
+    const {stop_reason, trust} = run.summary, {verdict, reasons} = trust || {verdict: 'doubtful', reasons: []};
+    byId('verdicts').append(make('div', {}, make('b', {}, titled(run)),
+      make('span', {}, shown(run, '/status'), stop_reason ? ' (' + stop_reason + ')' : '', ' at ', shown(run, '/time/reached', instant)),
+      make('span', {class: 'chip ' + verdict}, {good: '✓', doubtful: '!', bad: '✕'}[verdict] + (trust ? ' trust: ' + verdict : ' no verdict')),
+      make('span', {class: 'soft'}, run.note),
       reasons.length ? make('ul', {}, ...reasons.map(r => make('li', {}, r.level + ': ' + r.message))) : null));
   }
   byId('contents').append(...[...document.querySelectorAll('main section')].map(s => make('a', {href: '#' + s.id}, s.querySelector('h2').textContent)));
 }
 
-// Lines of a table with a column per run, for those paths that some run has.
+// Lines of a table with a column per run, of a path of the summary or of what a function finds, for those that some run has.
 function lines(list) {
-  return list.filter(([, path, , own]) => own || has(path)).map(([label, path, write, own]) => row(label, ...runs.map(r => own ? own(r) : shown(r, path, write))));
+  return list.filter(([, path]) => path.call ? runs.some(path) : has(path)).map(([label, path, write]) => row(label, ...runs.map(r => path.call ? path(r) : shown(r, path, write))));
 }
-const heads = () => ['', ...runs.map(r => several ? r.title : '')];
+const heads = () => ['', ...runs.map(titled)];
 
 function startFacts() {
   const changed = r => [...Object.entries(r.get('/settings/set') || {}).map(([k, v]) => k + ' = ' + v), ...(r.get('/settings/ideal') || []).map(n => n + ' ideal')].join(', ');
-  const count = (r, what) => [shown(r, '/model/' + what, whole), ' ' + what.replace('clearance_joints', 'with play')];
-  put('facts', table(heads(), [...(has('/model') ? [row('Model', ...runs.map(r => make('span', {}, (r.get('/model/space') || '') + ', ', ...['bodies', 'joints', 'clearance_joints', 'drivers'].flatMap((w, k) => k ? [', ', ...count(r, w)] : count(r, w)))))] : []),
-    ...(runs.some(changed) ? [row('Changed', ...runs.map(changed))] : []), ...(has('/settings') ? [row('Integrator', ...runs.map(r => r.get('/settings/integrator/type') || '\u2013'))] : []),
-    ...lines([['Status', '/status', '', r => (r.get('/status') || 'incomplete') + (r.get('/stop_reason') ? ': ' + r.get('/stop_reason') : '')], ['Time reached', '/time/reached', instant], ['Degrees of freedom', '/model/dof', whole], ['Driven', '/model/dof_driven', whole], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'], ['Counted from', '/statistics/from', 's'],
-              ['Rows', '', '', r => r.get('/counts/rows') === undefined ? String(r.rows) : shown(r, '/counts/rows', whole)], ['Steps', '/counts/steps', whole], ['Contacts', '/counts/contacts', whole], ['Fewest steps in an impact', '/advice/min_steps_per_contact', few],
-              ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm']]),
-    ...(runs.some(r => (r.summary.warnings || []).length) ? [row('Warnings', ...runs.map(r => make('span', {}, ...(r.summary.warnings || []).flatMap(w => [w, make('br')]))))] : [])]));
+  const warnings = r => (r.summary.warnings || []).length ? make('span', {}, ...r.summary.warnings.flatMap(w => [w, make('br')])) : '';
+  put('facts', table(heads(), lines([['Model', '/model/space'], ['Bodies', '/model/bodies', String], ['Joints', '/model/joints', String], ['Joints with play', '/model/clearance_joints', String], ['Drivers', '/model/drivers', String],
+    ['Degrees of freedom', '/model/dof', String], ['Driven', '/model/dof_driven', String], ['Changed', changed], ['Integrator', '/settings/integrator/type'], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'],
+    ['Status', '/status'], ['Time reached', '/time/reached', instant], ['Counted from', '/statistics/from', 's'], ['Rows', '/counts/rows', String], ['Steps', '/counts/steps', String], ['Contacts', '/counts/contacts', String],
+    ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm'], ['Warnings', warnings]])));
+  if (!several) document.querySelector('#facts table').className = 'one';
 }
 
 // Where a field of a part is largest in a run.
@@ -45,15 +44,16 @@ function startSide() {
   const compare = ([label, path, unit]) => {
     const paths = runs.map(r => typeof path === 'string' ? path : largest(r, ...path)), values = runs.map((r, k) => r.get(paths[k]));
     if (!values.some(v => typeof v === 'number')) return [];
-    const percents = values.map(v => typeof v === 'number' && typeof values[0] === 'number' && values[0] !== 0 ? (v >= values[0] ? '+' : '\u2212') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '');
-    return [row(label, ...runs.flatMap((r, k) => [right(scattered(r, paths[k], unit)), ...(k ? [{number: make('span', {class: 'soft'}, percents[k])}] : [])]))];
+    const percents = values.map(v => typeof v === 'number' && values[0] ? (v >= values[0] ? '+' : '−') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '');
+    return [row(label, ...runs.map((r, k) => right(k ? make('span', {}, scattered(r, paths[k], unit), make('br'), make('span', {class: 'soft'}, percents[k])) : scattered(r, paths[k], unit))))];
   };
   const first = (part, most) => [...new Set(runs.flatMap(r => Object.keys(r.summary[part] || {})))].slice(0, most), torque = effort(Object.values(runs[0].summary.drivers || {})[0]);
-  const list = [...first('paths', 2).flatMap(n => [[n + ', largest error', at('paths', n, 'max_position'), 'm'], [n + ', rms error', at('paths', n, 'rms_position'), 'm'], [n + ', largest angle error', at('paths', n, 'max_angle'), 'rad'], [n + ', rms angle error', at('paths', n, 'rms_angle'), 'rad']]),
+  const errors = [['largest error', 'max_position', 'm'], ['rms error', 'rms_position', 'm'], ['largest angle error', 'max_angle', 'rad'], ['rms angle error', 'rms_angle', 'rad']];
+  const list = [...first('paths', 2).flatMap(n => errors.map(([words, field, unit]) => [n + ', ' + words, at('paths', n, field), unit])),
     ['largest joint force', ['joints', 'max_force'], 'N'], ['largest rms joint force', ['joints', 'rms_force'], 'N'], ['largest penetration', ['joints', 'max_delta'], 'm'], ['largest driver effort', ['drivers', 'max_abs'], torque],
-    ['largest rms driver effort', ['drivers', 'rms'], torque], ['contacts', '/counts/contacts', whole], ['energy lost in joints', '/energy/dissipated', 'J'], ['work of the drivers', '/energy/work', 'J'],
+    ['largest rms driver effort', ['drivers', 'rms'], torque], ['contacts', '/counts/contacts', String], ['energy lost in joints', '/energy/dissipated', 'J'], ['work of the drivers', '/energy/work', 'J'],
     ...first('drivers', 6).flatMap(n => [[n + ', largest effort', at('drivers', n, 'max_abs'), torque], [n + ', rms effort', at('drivers', n, 'rms'), torque]])];
-  put('side', table(['', ...runs.flatMap((r, k) => [right(r.title), ...(k ? [right('')] : [])])], list.flatMap(compare)));
+  put('side', table(['', ...runs.map(r => right(r.title))], list.flatMap(compare)));
 }
 
 // A row per element of a part, a group per run. Columns: heading, field or a function of the element, unit, whether it scatters.
@@ -71,28 +71,28 @@ function startFigures() {
     part.style.width = 100 * (play[w] || 0) + '%';
     return part;
   }));
-  put('clearance', figures('/joints', 'Joint', [['shares', bar], ['flight', 'play/flight', percent], ['impact', 'play/impact', percent], ['lasting', 'play/lasting', percent], ['impacts', 'play/impacts', whole],
+  put('clearance', figures('/joints', 'Joint', [['shares', bar], ['flight', 'play/flight', percent], ['impact', 'play/impact', percent], ['lasting', 'play/lasting', percent], ['impacts', 'play/impacts', String],
     ['fastest', 'play/max_approach_speed', 'm/s'], ['largest force', 'max_fn', 'N', true], ['mean force', 'play/mean_fn', 'N'], ['load at', 'play/load_angle', v => plain(v * 180 / Math.PI, 3) + '\u00a0deg'], ['penetration', 'max_delta', 'm'],
-    ['slid', 'play/sliding', 'm'], ['load \u00d7 slip', 'play/work', 'J'], ['largest p\u00b7v', 'play/pv_max', 'Pa*m/s']], 'play'));
+    ['slid', 'play/sliding', 'm'], ['load × slip', 'play/work', 'J'], ['largest p·v', 'play/pv_max', 'Pa*m/s']], 'play'));
   const pose = [['largest error', 'max_position', 'm', true], ['rms', 'rms_position', 'm'], ['largest angle', 'max_angle', 'rad', true], ['rms', 'rms_angle', 'rad']];
   put('twin', figures('/twin/drivers', 'Driver', [['largest difference', 'max'], ['rms', 'rms'], ['ripple', 'ripple', percent]]), figures('/twin/bodies', 'Body', pose));
   put('drivers', figures('/drivers', 'Driver', [['gives', x => x.kind], ['largest effort', 'max_abs', null, true], ['rms', 'rms'], ['work', 'work', 'J']]), has('/paths') ? figures('/paths', 'Path', pose) : '');
   put('energy', table(heads(), lines([['Kinetic, at the end', '/energy/kinetic', 'J'], ['Potential, at the end', '/energy/potential', 'J'], ['Work of drivers and forces', '/energy/work', 'J'], ['Lost', '/energy/dissipated', 'J'], ['Residual', '/energy/residual', 'J']])),
-    make('div', {class: 'columns'}, has('/drivers') ? figures('/drivers', 'Work of driver', [['', 'work', 'J']]) : '', has('/joints') ? figures('/joints', 'Lost in joint', [['', 'dissipated', 'J']], 'dissipated') : ''));
+    make('div', {class: 'columns'}, has('/drivers') ? figures('/drivers', 'Work of driver', [['', 'work', 'J']]) : '', has('/joints') ? figures('/joints', 'Lost in joint', [['', 'dissipated', 'J']], 'dissipated') : ''), make('div', {class: 'graph'}));
   const step = r => r.get('/advice/step');
-  put('advice', table(heads(), lines([['Impacts with too few steps', '/advice/under_resolved', whole], ['Fewest steps in an impact', '/advice/min_steps_per_contact', few],
-    ['Step that would do', '', '', r => step(r) ? shown(r, '/advice/step', 's') : 'the one taken'], ...(runs.some(step) ? [['Command', '', '', r => step(r) ? make('code', {}, r.rerun + ' --step "' + step(r).toPrecision(2) + ' s"') : '']] : [])])));
+  put('advice', table(heads(), lines([['Impacts with too few steps', '/advice/under_resolved', String], ['Fewest steps in an impact', '/advice/min_steps_per_contact', few],
+    ['Step that would do', r => step(r) ? shown(r, '/advice/step', 's') : 'the one taken'], ['Command', r => step(r) && make('code', {}, r.rerun + ' --step "' + step(r).toPrecision(2) + ' s"')]])));
 }
 
 function startImpacts() {
   const wanted = [['joint', 'Joint', ''], ['max_fn', 'largest force', 'N'], ['approach_speed', 'approach', 'm/s'], ['duration', 'lasted', 's'], ['impulse', 'impulse', 'N*s'], ['energy_lost', 'energy lost', 'J'], ['steps', 'steps', '1']];
-  for (const {title, events: {columns: names, rows, total}} of byId('impacts') ? runs.filter(r => r.events.rows.length) : []) {
-    const columns = wanted.map(([f, label, unit]) => [names.indexOf(f), label, unit]).filter(c => c[0] >= 0), peak = names.indexOf('max_fn'), top = Math.max(...rows.map(r => r[peak] || 0)), times = rows.map(r => r[0]);
-    const bars = r => { const part = make('i', {class: 'part'}); part.style.width = 60 * (r[peak] || 0) / top + 'px'; return part; };
+  for (const run of runs.filter(r => r.events.rows.length)) {
+    const {columns: names, rows, total} = run.events;
+    const columns = wanted.map(([f, label, unit]) => [names.indexOf(f), label, unit]).filter(c => c[0] >= 0), times = rows.map(r => r[0]);
     const list = rows.map(r => make('tr', {class: 'pick', tabindex: 0, onclick: () => seek(r[0]), onkeydown: e => { if (e.key === 'Enter') seek(r[0]); }}, cell(instant(r[0]), 'th'),
-      ...columns.map(([k, , unit]) => cell(unit ? right(quantity(r[k], unit)) : String(r[k]))), cell(bars(r))));
-    put('impacts', make('p', {class: 'lead'}, (several ? title + ': ' : '') + (total > rows.length ? 'the ' + rows.length + ' largest of ' : '') + total + ' contacts that ended, in order of time'),
-      make('div', {class: 'scroll', tabindex: 0}, table(['Ended', ...columns.map(c => c[2] ? right(c[1]) : c[1]), 'force'], list)));
+      ...columns.map(([k, , unit]) => cell(unit ? right(quantity(r[k], unit)) : String(r[k])))));
+    put('impacts', make('p', {class: 'lead'}, titled(run) + ' ' + (total > rows.length ? 'the ' + rows.length + ' largest of ' : '') + total + ' contacts that ended, in order of time'),
+      make('div', {class: 'scroll', tabindex: 0}, table(['Ended', ...columns.map(c => c[2] ? right(c[1]) : c[1])], list)));
     let near = list[0];
     onTime(t => {
       near.classList.remove('near');
@@ -104,9 +104,8 @@ function startImpacts() {
 
 function startModel() {
   for (const run of runs.filter(r => r.model)) {
-    put('model', several ? make('h3', {}, run.title) : '', make('p', {class: 'command'}, 'Run it again: ', make('code', {}, run.rerun), make('button', {type: 'button', class: 'controls', onclick: e => copy(run.rerun, e.target)}, 'Copy')), make('pre', {tabindex: 0}, run.model));
+    put('model', make('h3', {}, titled(run)), make('p', {class: 'command'}, 'Run it again: ', make('code', {}, run.rerun), make('button', {class: 'controls', onclick: e => copy(run.rerun, e.target)}, 'Copy')), make('pre', {tabindex: 0}, run.model));
   }
-  const flat = (x, path) => x !== null && typeof x === 'object' ? Object.entries(x).flatMap(([k, v]) => k === 'text' ? [] : flat(v, path ? path + ' ' + k : k)) : x === null ? [] : [[path, String(x)]];
-  const records = [data.provenance, ...runs.map(r => r.summary.provenance || {})].map(x => new Map(flat(x, '')));
-  put('provenance', table(['', 'this page', ...runs.map(r => r.title)], [...new Set(records.flatMap(m => [...m.keys()]))].map(k => row(k, ...records.map(m => make('code', {}, m.get(k) || ''))))));
+  const record = (title, parts) => [make('h3', {}, title), make('pre', {tabindex: 0}, JSON.stringify(parts, (key, part) => key === 'text' ? undefined : part, 1))];
+  put('provenance', ...record('This page', data.provenance), ...runs.filter(r => r.get('/provenance')).flatMap(r => record(r.title, r.get('/provenance'))));
 }

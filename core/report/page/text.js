@@ -2,17 +2,16 @@
 function make(tag, attributes = {}, ...children) {
   const e = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
-    if (name === 'class') e.className = value;
-    else if (name === 'data') Object.assign(e.dataset, value);
+    if (name === 'data') Object.assign(e.dataset, value);
     else if (name.startsWith('on')) e.addEventListener(name.slice(2), value);
     else if (value !== undefined && value !== false) e.setAttribute(name, value === true ? '' : value);
   }
-  e.append(...children.filter(c => c !== null && c !== undefined));
+  e.append(...children.filter(c => c != null));
   return e;
 }
 const byId = id => document.getElementById(id);
 
-const minus = text => text.replace('-', '\u2212');
+const minus = text => text.replace('-', '−');
 
 function plain(x, digits = 4) {
   if (x === 0) return '0';
@@ -21,7 +20,7 @@ function plain(x, digits = 4) {
 }
 
 const prefixes = {'-12': 'p', '-9': 'n', '-6': 'µ', '-3': 'm', 0: '', 3: 'k', 6: 'M', 9: 'G'};
-const people = unit => unit.replace(/\*/g, '\u00b7');
+const people = unit => unit.replace(/\*/g, '·');
 
 // Power of ten and unit that suit numbers of this size.
 function scale(size, unit) {
@@ -31,24 +30,24 @@ function scale(size, unit) {
 }
 
 function quantity(x, unit, digits = 4) {
-  if (x === null || x === undefined || Number.isNaN(x)) return '\u2013';
+  if (x == null || Number.isNaN(x)) return '–';
   const s = scale(Math.abs(x), unit);
   return plain(x / 10 ** s.power, digits) + (s.unit && '\u00a0' + s.unit);
 }
 
 function quantityRange(low, high, unit) {
-  if (Number.isNaN(low)) return '\u2013';
+  if (Number.isNaN(low)) return '–';
   const s = scale(Math.max(Math.abs(low), Math.abs(high)), unit), f = x => plain(x / 10 ** s.power);
-  return f(low) + ' \u2026 ' + f(high) + (s.unit && '\u00a0' + s.unit);
+  return f(low) + ' … ' + f(high) + (s.unit && '\u00a0' + s.unit);
 }
 
-const percent = x => x === null || x === undefined ? '\u2013' : plain(100 * x, 3) + '\u00a0%';
+const percent = x => x == null ? '–' : plain(100 * x, 3) + '\u00a0%';
 const instant = t => quantity(t, 's', 5);
 
 // A number of a summary, in an element that says which.
 function shown(run, path, write, attributes = {}) {
   const value = run.get(path);
-  if (typeof value !== 'number') return make('span', {class: 'soft'}, '\u2013');
+  if (typeof value !== 'number') return make('span', {}, value || '–');
   const text = typeof write === 'function' ? write(value) : quantity(value, write);
   return make('span', {...attributes, data: {run: run.index, path, value: String(value)}}, text);
 }
@@ -57,7 +56,7 @@ function shown(run, path, write, attributes = {}) {
 function scattered(run, path, unit) {
   const noise = '/noise' + path, by = run.get(noise), value = run.get(path);
   const e = make('span', {}, shown(run, path, by > 0 ? v => quantity(v, unit, Math.max(2, Math.min(4, 2 + Math.floor(Math.log10(Math.abs(value) / by))))) : unit));
-  if (by > 0) e.append(' \u00b1\u00a0', shown(run, noise, v => quantity(v, unit, 2), {class: 'soft', title: 'scatter by chance of impacts'}));
+  if (by > 0) e.append(' ±\u00a0', shown(run, noise, v => quantity(v, unit, 2), {class: 'soft', title: 'scatter by chance of impacts'}));
   return e;
 }
 
@@ -67,13 +66,7 @@ const cell = (c, tag = 'td') => make(tag, {class: c !== content(c) ? 'number' : 
 const row = (first, ...cells) => make('tr', {}, cell(first, 'th'), ...cells.map(c => cell(c)));
 const table = (head, ...bodies) => make('table', {}, make('thead', {}, make('tr', {}, ...head.map(h => make('th', {scope: 'col', class: h !== content(h) ? 'number' : ''}, content(h))))),
                                            ...bodies.filter(rows => rows.length).map(rows => make('tbody', {}, ...rows)));
-const home = id => document.querySelector('#' + id + ' [data-table]');
 
 function copy(text, button) {
-  const area = make('textarea', {}, text);
-  button.after(area);
-  area.select();
-  document.execCommand('copy');
-  area.remove();
-  button.textContent = 'Copied';
+  navigator.clipboard.writeText(text).then(() => { button.textContent = 'Copied'; });
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <regex>
+#include <string>
 
 #include <gmock/gmock.h>
 
@@ -51,6 +53,33 @@ TEST(MapDrawing, OfNothingReachableIsAllHatched) {
   map.points.assign(6, MapPoint::unreachable);
   EXPECT_THAT(map_svg(map), HasSubstr("out of reach"));
   EXPECT_THAT(map_svg(map), Not(HasSubstr("nan")));
+}
+
+/// A map of x + y with a path along the diagonal of its middle; its contours cross it.
+PositionMap crossed_map() {
+  PositionMap map;
+  map.title = map.quantity = "sum";
+  for (int i = 0; i <= 20; ++i) map.x.push_back(0.01 * i), map.y.push_back(0.01 * i);
+  for (const double x : map.x) {
+    for (const double y : map.y) map.values.push_back(x + y);
+    map.path.push_back({x, x});
+  }
+  map.points.assign(map.values.size(), MapPoint::good);
+  return map;
+}
+
+TEST(MapDrawing, HasNoLabelUnderItsPath) {
+  const PositionMap map = crossed_map();
+  const std::string text = map_svg(map);
+  const std::regex label(R"re(<text x="([\d.]+)" y="([\d.]+)" text-anchor="middle" stroke="white")re");
+  const double scale = 620.0 / 0.2, left = 80.0, top = 50.0;
+  int labels = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), label), end; at != end; ++at, ++labels) {
+    const double x = (std::stod((*at)[1]) - left) / scale, y = 0.2 - (std::stod((*at)[2]) - 4.0 - top) / scale;
+    EXPECT_GT(scale * std::abs(x - y) / std::sqrt(2.0), 12.0) << (*at)[0];
+    EXPECT_GT(static_cast<std::size_t>(at->position()), text.find("#0050a0"));
+  }
+  EXPECT_GT(labels, 3);
 }
 
 }  // namespace

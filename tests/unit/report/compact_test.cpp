@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "report/page_parts.h"
-
 namespace freeplay {
 namespace {
 
@@ -27,12 +25,6 @@ TEST(Compact, KeepsTheEndOfALineThatMayEndAStatement) {
 TEST(Compact, LeavesBlanksOfStylesWhereTheyMeanSomething) {
   EXPECT_EQ(compact("a > b, c { margin: 0 1px; }\n@media (width: 1px) { d { e: f } }", style_marks),
             "a > b,c{margin:0 1px;}\n@media (width:1px){d{e:f}}");
-}
-
-TEST(Compact, OfThePageIsBelowSixtyFourThousandBytes) {
-  const PageParts parts = page_parts();
-  EXPECT_LT(compact(parts.script, script_marks).size() + compact(parts.style, style_marks).size() + parts.html.size(),
-            64000u);
 }
 
 }  // namespace

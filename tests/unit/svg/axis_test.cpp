@@ -1,5 +1,8 @@
 #include "svg/axis.h"
 
+#include <cmath>
+#include <set>
+
 #include <gmock/gmock.h>
 
 namespace freeplay::svg {
@@ -33,6 +36,18 @@ TEST(Axis, TellsSmallDifferencesOfLargeValuesApart) {
   const Axis axis = make_axis(1000.00001, 1000.00004, "N", 3.0, Fit::exact);
   EXPECT_THAT(axis.labels, ElementsAre("-20", "-10", "0", "10"));
   EXPECT_EQ("uN from 1000.00003 N", axis.unit);
+}
+
+TEST(Axis, HasDifferentLabelsHoweverNarrowItIs) {
+  for (const double offset : {1.0, 1e9, -273.15}) {
+    for (const double part : {1.5e-12, 2e-11, 1e-9, 1e-6, 1e-3}) {
+      for (const Fit fit : {Fit::exact, Fit::round}) {
+        const Axis axis = make_axis(offset, offset + part * std::abs(offset), "1", 6.0, fit);
+        EXPECT_GT(axis.labels.size(), 2u) << offset << " " << part;
+        EXPECT_EQ(axis.labels.size(), std::set(axis.labels.begin(), axis.labels.end()).size()) << offset << " " << part;
+      }
+    }
+  }
 }
 
 TEST(Axis, HasNoPrefixBeforeAUnitThatBeginsWithANumber) {
