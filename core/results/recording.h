@@ -96,7 +96,7 @@ class Recording {
   Recording(ResultDirectory directory, const Model& model, const Channels& channels, const Making& making,
             const KeptPart* kept);
   RecordThread::Start start_writers(const Model& model);
-  RecordThread::Start continued_writers(const Model& model, const KeptPart& kept);
+  RecordThread::Start continued_writers(const Model& model, const KeptPart& part);
 
   ResultDirectory directory_;
   RunLog log_;
