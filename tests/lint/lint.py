@@ -64,7 +64,7 @@ def layering_findings(_):
 def tidy_findings(options):
     units = Units(options.build)
     chosen = units.all() if options.all else units.of(changed(options.since))
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         texts = pool.map(lambda unit: run("clang-tidy", "-p", units.folder, "--quiet", unit), chosen)
     found = {}
     for path, line, words in re.findall(r"^(\S+?):(\d+):\d+: (?:warning|error): (.*)$", "".join(texts), re.M):

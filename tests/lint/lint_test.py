@@ -71,6 +71,7 @@ class Lint(unittest.TestCase):
         face = "struct A {\n" + "".join("int f%d();\nint f%d(int x);\n" % (i, i) for i in range(26)) + "};\n"
         self.assertEqual("a.cpp:1: A has 26 public functions, at most 25", str(sizes.too_large("a.cpp", face)[0]))
         self.assertEqual("a.cpp: 451 lines, at most 450", str(sizes.too_large("a.cpp", "\n" * 451)[0]))
+        self.assertEqual("a.py: 451 lines, at most 450", str(sizes.too_large("a.py", "\n" * 451)[0]))
 
     def test_every_exception_of_size_is_still_needed(self):
         for key in list(sizes.EXCEPTIONS):
