@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "drawing/joint_freedom.h"
+#include "system/joint_freedom.h"
 #include "system/system.h"
 
 namespace freeplay {
