@@ -13,14 +13,14 @@ namespace {
 using namespace play;
 using space::PairInFirstAxes;
 
-constexpr Event contact_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"upper_contact_end", Crossing::falling, 1, event_fields},
-                                    {"lower_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"lower_contact_end", Crossing::falling, 1, event_fields},
-                                    {"upper_shoulder_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
-                                    {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
+constexpr Event end_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
+                                {"upper_contact_end", Crossing::falling, 1, event_fields},
+                                {"lower_contact_begin", Crossing::rising, 1, event_fields},
+                                {"lower_contact_end", Crossing::falling, 1, event_fields},
+                                {"upper_shoulder_contact_begin", Crossing::rising, 1, event_fields},
+                                {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
+                                {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
+                                {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
 constexpr EventRole contact_roles[] = {EventRole::contact_begin, EventRole::contact_end,   EventRole::contact_begin,
                                        EventRole::contact_end,   EventRole::contact_begin, EventRole::contact_end,
                                        EventRole::contact_begin, EventRole::contact_end};
@@ -58,7 +58,7 @@ class RevoluteClearanceInSpace final : public Joint {
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
-    layout.events = contact_events;
+    layout.events = end_events;
     layout.event_roles = contact_roles;
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
