@@ -149,7 +149,7 @@ void for_each_line(const std::string& report, Use&& use) {
   }
 }
 
-[[noreturn]] void refuse(const fs::path& library, const std::string& failure) {
+[[noreturn]] void refuse_library(const fs::path& library, const std::string& failure) {
   throw Error(Error::Category::plugin, "plugin-failed", fmt::format("plugin '{}' {}", library.string(), failure));
 }
 
@@ -170,8 +170,8 @@ Examination read_header(const ChildProcess& child, const fs::path& library, doub
     }
   });
   const std::string failure = failure_of(child, "", time_limit);
-  if (!failure.empty()) refuse(library, failure.substr(1));
-  if (found.types.empty()) refuse(library, "ended the program before it gave its types");
+  if (!failure.empty()) refuse_library(library, failure.substr(1));
+  if (found.types.empty()) refuse_library(library, "ended the program before it gave its types");
   return found;
 }
 
