@@ -386,16 +386,16 @@ class RevoluteClearanceInSpace final : public Joint {
     if (!is_end(place)) {
       const ShoulderGap<Dual> gap = bearing_.shoulder(motion, place);
       const double second = rate_of(gap.rate);
-      return foreseen_speed({gap.penetration.value, gap.rate.value}, second, {gap.rate.value, 0.0, 0.0},
-                            {second, 0.0, 0.0}, dt);
+      return predicted_speed({gap.penetration.value, gap.rate.value}, second, {gap.rate.value, 0.0, 0.0},
+                             {second, 0.0, 0.0}, dt);
     }
     const Vec<double> e = bearing_.end(pair.numbers(), place, play_).e;
     if (std::sqrt(dot(e, e)) < 1e-12 * play_.radii.clearance) return 0.0;
     const EndGap<Dual> gap = bearing_.end(motion, place, play_);
     const auto vector = [](const Vec<Dual>& v) { return Eigen::Vector3d(v.x.value, v.y.value, v.z.value); };
     const Eigen::Vector3d h = vector(gap.h), second(rate_of(gap.h.x), rate_of(gap.h.y), rate_of(gap.h.z));
-    return foreseen_speed({gap.penetration.value, gap.rate.value}, rate_of(gap.rate), h,
-                          second + vector(motion.w_a).cross(h), dt);
+    return predicted_speed({gap.penetration.value, gap.rate.value}, rate_of(gap.rate), h,
+                           second + vector(motion.w_a).cross(h), dt);
   }
 
   /// 1/m = n^T W n with the mobility W of the origins; that a free journal also turns is left out.

@@ -73,7 +73,7 @@ class SphericalClearance final : public Joint {
     if (distance < 1e-12 * play_.radii.clearance) return;
     // delta'' = n.e'' + (e'.e' - delta'^2)/|e|
     const double bent = e.dot(second) / distance + (rate.squaredNorm() - gap.rate * gap.rate) / distance;
-    history[predicted] = foreseen_speed(gap, bent, rate, second, dt);
+    history[predicted] = predicted_speed(gap, bent, rate, second, dt);
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     write_events(in, approach(in), g, rate);

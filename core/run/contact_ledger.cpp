@@ -17,8 +17,8 @@ constexpr double least_weight = 1e-300;  // of a stretch whose ends dissipate no
 double field(std::span<const double> fields, int index) { return index < 0 ? not_seen : fields[at(index)]; }
 
 // By what the joint says or, where it does not, by the penetration that was reached.
-double is_impact(double told, double approach_speed, double depth, double duration) {
-  if (!std::isnan(told)) return told;
+double is_impact(double given, double approach_speed, double depth, double duration) {
+  if (!std::isnan(given)) return given;
   if (!(approach_speed > 0.0) || std::isnan(depth)) return 0.0;
   return duration <= longest_impact * impact_by_depth * depth / approach_speed ? 1.0 : 0.0;
 }
@@ -134,7 +134,7 @@ void ContactLedger::pass(OfJoint& joint, const StepEvents& events, std::size_t h
     stretch.ended = static_cast<int>(ended_.size());
     stretch.lost_before = contact.lost;
   }
-  const double told = field(fields, kind.duration), duration = std::isnan(told) ? event.time - contact.begin : told;
+  const double given = field(fields, kind.duration), duration = std::isnan(given) ? event.time - contact.begin : given;
   ended_.push_back(
       {happening,
        {.approach_speed = contact.approach_speed,
