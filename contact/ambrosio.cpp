@@ -28,7 +28,7 @@ class Ambrosio final : public FrictionLaw {
   double mu_, v0_, v1_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter ambrosio_parameters[] = {
     {.name = "mu", .minimum = 0.0, .summary = "Coefficient of friction."},
     {.name = "v0",
      .unit = "m/s",
@@ -52,7 +52,7 @@ Component ambrosio() {
        .formula = "F_T = -mu c_d sign(v) F_N; c_d = 0 for |v| <= v0, (|v| - v0)/(v1 - v0) between, 1 for |v| >= v1.",
        .validity = "Sliding; below v0 there is no force, so that nothing sticks.",
        .references = "Ambrosio 2003, in: Virtual Nonlinear Multibody Systems, Kluwer",
-       .parameters = parameters});
+       .parameters = ambrosio_parameters});
 }
 
 }  // namespace freeplay

@@ -33,7 +33,7 @@ class BengisuAkay final : public FrictionLaw {
   double mu_s_, mu_k_, v0_, xi_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter bengisu_akay_parameters[] = {
     static_parameter,
     kinetic_parameter,
     {.name = "v0",
@@ -55,7 +55,7 @@ Component bengisu_akay() {
                   "(|v| - v0))] F_N above.",
        .validity = "Sliding; under load the surfaces creep, as the force of rest takes a slip speed below v0.",
        .references = "Bengisu and Akay 1994, J Sound Vib 171, 557-570",
-       .parameters = parameters});
+       .parameters = bengisu_akay_parameters});
 }
 
 }  // namespace freeplay

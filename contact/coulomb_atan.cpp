@@ -23,7 +23,7 @@ class CoulombAtan final : public FrictionLaw {
   double mu_, vs_;
 };
 
-constexpr Parameter parameters[] = {coefficient_parameter, smoothing_parameter};
+constexpr Parameter coulomb_atan_parameters[] = {coefficient_parameter, smoothing_parameter};
 
 }  // namespace
 
@@ -35,7 +35,7 @@ Component coulomb_atan() {
        .validity = "Sliding at many times vs; under load the surfaces creep, as the force of rest takes a slip speed.",
        .references = "Mostaghel and Davis 1997, Earthquake Eng Struct Dyn 26, 541-548; Marques, Flores, Claro and "
                      "Lankarani 2016, Nonlinear Dyn 86, 1407-1443 (survey)",
-       .parameters = parameters});
+       .parameters = coulomb_atan_parameters});
 }
 
 }  // namespace freeplay

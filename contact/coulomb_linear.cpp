@@ -23,7 +23,7 @@ class CoulombLinear final : public FrictionLaw {
   double mu_, vs_;
 };
 
-constexpr Parameter parameters[] = {coefficient_parameter, smoothing_parameter};
+constexpr Parameter coulomb_linear_parameters[] = {coefficient_parameter, smoothing_parameter};
 
 }  // namespace
 
@@ -35,7 +35,7 @@ Component coulomb_linear() {
        .validity = "Sliding; under load the surfaces creep, as the force of rest takes a slip speed.",
        .references = "Rooney and Deravi 1982, Mech Mach Theory 17, 207-211; Marques, Flores, Claro and Lankarani 2016, "
                      "Nonlinear Dyn 86, 1407-1443 (survey)",
-       .parameters = parameters});
+       .parameters = coulomb_linear_parameters});
 }
 
 }  // namespace freeplay

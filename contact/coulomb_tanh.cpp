@@ -22,7 +22,7 @@ class CoulombTanh final : public FrictionLaw {
   double mu_, vs_;
 };
 
-constexpr Parameter parameters[] = {coefficient_parameter, smoothing_parameter};
+constexpr Parameter coulomb_tanh_parameters[] = {coefficient_parameter, smoothing_parameter};
 
 }  // namespace
 
@@ -34,7 +34,7 @@ Component coulomb_tanh() {
        .validity = "Sliding; under load the surfaces creep, as the force of rest takes a slip speed.",
        .references = "Andersson, Soderberg and Bjorklund 2007, Tribol Int 40, 580-587; Mostaghel and Davis 1997, "
                      "Earthquake Eng Struct Dyn 26, 541-548",
-       .parameters = parameters});
+       .parameters = coulomb_tanh_parameters});
 }
 
 }  // namespace freeplay

@@ -17,7 +17,7 @@ class Hertz final : public ContactLaw {
   HertzSpring spring_;
 };
 
-constexpr Parameter parameters[] = {stiffness_parameter, exponent_parameter};
+constexpr Parameter hertz_parameters[] = {stiffness_parameter, exponent_parameter};
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Component hertz() {
                              .validity = "Contact patch much smaller than the radii: penetration below a tenth of the "
                                          "radial clearance.",
                              .references = "Hertz 1881; Johnson 1985, Contact Mechanics",
-                             .parameters = parameters});
+                             .parameters = hertz_parameters});
 }
 
 }  // namespace freeplay

@@ -26,7 +26,7 @@ class KelvinVoigt final : public ContactLaw {
   double stiffness_, damping_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kelvin_voigt_parameters[] = {
     {.name = "K", .unit = "N/m", .minimum = 0.0, .open = Open::minimum, .summary = "Contact stiffness."},
     {.name = "D", .unit = "N*s/m", .minimum = 0.0, .summary = "Damping; the force jumps to it times the speed."},
 };
@@ -42,7 +42,7 @@ Component kelvin_voigt() {
        .validity = "The force jumps by D times the approach speed where a contact begins: fixed steps are of first "
                    "order, adaptive ones, which locate contacts, are not harmed.",
        .references = "Schwager and Poschel 2007, Granular Matter 9, 465-469",
-       .parameters = parameters});
+       .parameters = kelvin_voigt_parameters});
 }
 
 }  // namespace freeplay

@@ -42,7 +42,7 @@ class Lugre final : public FrictionLaw {
   double mu_s_, mu_k_, v_stribeck_, sigma0_, sigma1_, sigma2_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter lugre_parameters[] = {
     static_parameter,
     {.name = "mu_k", .minimum = 0.0, .open = Open::minimum, .summary = "Kinetic coefficient of friction."},
     stribeck_speed_parameter,
@@ -74,7 +74,7 @@ Component lugre() {
        .validity = "Implicit integrators or small steps: z decays with the rate sigma0 |v|/g. With a large sigma1 the "
                    "force may drive the slip for a short time.",
        .references = "Canudas de Wit, Olsson, Astrom and Lischinsky 1995, IEEE Trans Autom Control 40, 419-425",
-       .parameters = parameters});
+       .parameters = lugre_parameters});
 }
 
 }  // namespace freeplay

@@ -37,7 +37,7 @@ class Stribeck final : public FrictionLaw {
   double mu_s_, mu_k_, v_stribeck_, exponent_, vs_, viscous_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter stribeck_parameters[] = {
     static_parameter,
     kinetic_parameter,
     stribeck_speed_parameter,
@@ -65,7 +65,7 @@ Component stribeck() {
        .validity = "Sliding, with vs well below v_stribeck; under load the surfaces creep, as the force of rest takes "
                    "a slip speed.",
        .references = "Pennestri et al. 2016, Nonlinear Dyn 83, 1785-1801",
-       .parameters = parameters});
+       .parameters = stribeck_parameters});
 }
 
 }  // namespace freeplay

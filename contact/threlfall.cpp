@@ -26,7 +26,7 @@ class Threlfall final : public FrictionLaw {
   double mu_, v_r_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter threlfall_parameters[] = {
     coefficient_parameter,
     {.name = "v_r",
      .unit = "m/s",
@@ -45,7 +45,7 @@ Component threlfall() {
        .formula = "F_T = -mu sign(v) (1 - exp(-3|v|/v_r))/(1 - exp(-3)) F_N for |v| <= v_r, -mu sign(v) F_N above.",
        .validity = "Sliding; under load the surfaces creep, as the force of rest takes a slip speed.",
        .references = "Threlfall 1978, Mech Mach Theory 13, 475-483",
-       .parameters = parameters});
+       .parameters = threlfall_parameters});
 }
 
 }  // namespace freeplay

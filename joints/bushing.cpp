@@ -76,18 +76,18 @@ class Bushing final : public Joint {
 constexpr Parameter row(const char* name, const char* unit, const char* summary) {
   return {.name = name, .unit = unit, .default_value = 0.0, .minimum = 0.0, .summary = summary};
 }
-constexpr Parameter parameters[] = {row("stiffness.x", "N/m", "Stiffness along the x axis of the first frame."),
-                                    row("stiffness.y", "N/m", "Stiffness along its y axis."),
-                                    row("stiffness.z", "N/m", "Stiffness along its z axis."),
-                                    row("stiffness.turn_x", "N*m/rad", "Stiffness of a turn about its x axis."),
-                                    row("stiffness.turn_y", "N*m/rad", "Stiffness of a turn about its y axis."),
-                                    row("stiffness.turn_z", "N*m/rad", "Stiffness of a turn about its z axis."),
-                                    row("damping.x", "N*s/m", "Damping along the x axis of the first frame."),
-                                    row("damping.y", "N*s/m", "Damping along its y axis."),
-                                    row("damping.z", "N*s/m", "Damping along its z axis."),
-                                    row("damping.turn_x", "N*m*s/rad", "Damping of a turn about its x axis."),
-                                    row("damping.turn_y", "N*m*s/rad", "Damping of a turn about its y axis."),
-                                    row("damping.turn_z", "N*m*s/rad", "Damping of a turn about its z axis.")};
+constexpr Parameter bushing_parameters[] = {row("stiffness.x", "N/m", "Stiffness along the x axis of the first frame."),
+                                            row("stiffness.y", "N/m", "Stiffness along its y axis."),
+                                            row("stiffness.z", "N/m", "Stiffness along its z axis."),
+                                            row("stiffness.turn_x", "N*m/rad", "Stiffness of a turn about its x axis."),
+                                            row("stiffness.turn_y", "N*m/rad", "Stiffness of a turn about its y axis."),
+                                            row("stiffness.turn_z", "N*m/rad", "Stiffness of a turn about its z axis."),
+                                            row("damping.x", "N*s/m", "Damping along the x axis of the first frame."),
+                                            row("damping.y", "N*s/m", "Damping along its y axis."),
+                                            row("damping.z", "N*s/m", "Damping along its z axis."),
+                                            row("damping.turn_x", "N*m*s/rad", "Damping of a turn about its x axis."),
+                                            row("damping.turn_y", "N*m*s/rad", "Damping of a turn about its y axis."),
+                                            row("damping.turn_z", "N*m*s/rad", "Damping of a turn about its z axis.")};
 
 }  // namespace
 
@@ -100,7 +100,7 @@ Component bushing() {
                   "-L^T (K_r rho + C_r rho') with rho the rotation vector of the second frame in the first, rho' = L "
                   "(w_b - w_a); work and stored energy agree exactly.",
        .validity = "Turns below half a revolution.",
-       .parameters = parameters});
+       .parameters = bushing_parameters});
 }
 
 }  // namespace freeplay

@@ -64,7 +64,7 @@ class SpatialDistance final : public Joint {
   double length_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter distance_parameters[] = {
     {.name = "length", .unit = "m", .minimum = 0.0, .open = Open::minimum, .summary = "Distance of the origins."}};
 
 }  // namespace
@@ -76,7 +76,7 @@ Component distance() {
                           .formula = "|P_b - P_a| = length.",
                           .references = "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, "
                                         "Computer Aided Kinematics and Dynamics of Mechanical Systems",
-                          .parameters = parameters,
+                          .parameters = distance_parameters,
                           .in_space = joint_face<SpatialDistance>()});
 }
 

@@ -23,7 +23,7 @@ class DryFriction {
   double size_, vs_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter joint_friction_parameters[] = {
     space::axis_kind_parameter,
     {.name = "friction", .unit = "kind: N | N*m", .minimum = 0.0, .summary = "Force or torque of sliding friction."},
     {.name = "vs",
@@ -43,7 +43,7 @@ Component joint_friction() {
        .formula = "effort on the second body -friction tanh(speed/vs), along x of the first frame or about its z.",
        .validity = "Sliding; under load the joint creeps, as the force of rest takes a speed.",
        .references = "Andersson, Soderberg and Bjorklund 2007, Tribol Int 40, 580-587 (coulomb-tanh)",
-       .parameters = parameters});
+       .parameters = joint_friction_parameters});
 }
 
 }  // namespace freeplay

@@ -47,7 +47,7 @@ class Stops {
   double lower_, upper_, stiffness_, damping_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter joint_stop_parameters[] = {
     space::axis_kind_parameter,
     {.name = "lower", .unit = "kind: m | rad", .summary = "Lower end of the way."},
     {.name = "upper", .unit = "kind: m | rad", .summary = "Upper end of the way; not below the lower."},
@@ -73,7 +73,7 @@ Component joint_stop() {
            "beyond an end by d: effort back stiffness d (1 + damping d'), not below 0; along x of the first frame "
            "or about its z.",
        .references = "Hunt and Crossley 1975, J Appl Mech 42, 440-445",
-       .parameters = parameters});
+       .parameters = joint_stop_parameters});
 }
 
 }  // namespace freeplay

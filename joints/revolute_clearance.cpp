@@ -40,11 +40,11 @@ constexpr std::size_t most_internal_variables = 8;
 
 constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
                                     {"contact_end", Crossing::falling, 1, event_fields}};
-constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},   {"fn", "N"},
-                                    {"ft", "N"}, {"power", "W"}, {"contact", "1"}, {"vt", "m/s"}};
-constexpr ChannelRole gap_roles[] = {ChannelRole::eccentricity_x, ChannelRole::eccentricity_y, ChannelRole::penetration,
-                                     ChannelRole::normal_force,   ChannelRole::friction_force, ChannelRole::none,
-                                     ChannelRole::in_contact,     ChannelRole::slip_speed};
+constexpr Channel plane_gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},   {"fn", "N"},
+                                          {"ft", "N"}, {"power", "W"}, {"contact", "1"}, {"vt", "m/s"}};
+constexpr ChannelRole plane_gap_roles[] = {
+    ChannelRole::eccentricity_x, ChannelRole::eccentricity_y, ChannelRole::penetration, ChannelRole::normal_force,
+    ChannelRole::friction_force, ChannelRole::none,           ChannelRole::in_contact,  ChannelRole::slip_speed};
 
 /// Pin with play, in the plane: the journal (radius R_J, marker b) floats in the bearing (radius R_B, marker a) and
 /// touches it by a contact law and a friction law. No constraint rows. With origins P [m], angular velocities w
@@ -92,8 +92,8 @@ class RevoluteClearance final : public Joint {
     surfaces_.declare(layout);
     layout.events = contact_events;
     layout.event_roles = begin_and_end;
-    layout.channels = gap_channels;
-    layout.channel_roles = gap_roles;
+    layout.channels = plane_gap_channels;
+    layout.channel_roles = plane_gap_roles;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override {
     row.value = relative_angle(*in.a, *in.b);
@@ -339,7 +339,7 @@ class RevoluteClearance final : public Joint {
   Start start_;
 };
 
-constexpr auto parameters = table_with<2>(
+constexpr auto revolute_clearance_parameters = table_with<2>(
     {length("clearance.length", "Axial length of the contact, for laws that need it; in space that of the bearing."),
      Parameter{.name = "clearance.axial_clearance",
                .unit = "m",
@@ -366,7 +366,7 @@ Component revolute_clearance() {
        .references =
            "Flores and Ambrosio 2004, Comput Struct 82, 1359-1369; Lankarani and Nikravesh 1990, J Mech Des 112, "
            "369-376",
-       .parameters = {parameters.data(), parameters.size()},
+       .parameters = {revolute_clearance_parameters.data(), revolute_clearance_parameters.size()},
        .ideal = "revolute",
        .block = "clearance",
        .first_end = "bearing",

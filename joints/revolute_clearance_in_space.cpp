@@ -13,14 +13,14 @@ namespace {
 using namespace play;
 using space::PairInFirstAxes;
 
-constexpr Event contact_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"upper_contact_end", Crossing::falling, 1, event_fields},
-                                    {"lower_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"lower_contact_end", Crossing::falling, 1, event_fields},
-                                    {"upper_shoulder_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
-                                    {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
-                                    {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
+constexpr Event end_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
+                                {"upper_contact_end", Crossing::falling, 1, event_fields},
+                                {"lower_contact_begin", Crossing::rising, 1, event_fields},
+                                {"lower_contact_end", Crossing::falling, 1, event_fields},
+                                {"upper_shoulder_contact_begin", Crossing::rising, 1, event_fields},
+                                {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
+                                {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
+                                {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
 constexpr EventRole contact_roles[] = {EventRole::contact_begin, EventRole::contact_end,   EventRole::contact_begin,
                                        EventRole::contact_end,   EventRole::contact_begin, EventRole::contact_end,
                                        EventRole::contact_begin, EventRole::contact_end};
@@ -58,7 +58,7 @@ class RevoluteClearanceInSpace final : public Joint {
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
-    layout.events = contact_events;
+    layout.events = end_events;
     layout.event_roles = contact_roles;
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
@@ -386,16 +386,16 @@ class RevoluteClearanceInSpace final : public Joint {
     if (!is_end(place)) {
       const ShoulderGap<Dual> gap = bearing_.shoulder(motion, place);
       const double second = rate_of(gap.rate);
-      return foreseen_speed({gap.penetration.value, gap.rate.value}, second, {gap.rate.value, 0.0, 0.0},
-                            {second, 0.0, 0.0}, dt);
+      return predicted_speed({gap.penetration.value, gap.rate.value}, second, {gap.rate.value, 0.0, 0.0},
+                             {second, 0.0, 0.0}, dt);
     }
     const Vec<double> e = bearing_.end(pair.numbers(), place, play_).e;
     if (std::sqrt(dot(e, e)) < 1e-12 * play_.radii.clearance) return 0.0;
     const EndGap<Dual> gap = bearing_.end(motion, place, play_);
     const auto vector = [](const Vec<Dual>& v) { return Eigen::Vector3d(v.x.value, v.y.value, v.z.value); };
     const Eigen::Vector3d h = vector(gap.h), second(rate_of(gap.h.x), rate_of(gap.h.y), rate_of(gap.h.z));
-    return foreseen_speed({gap.penetration.value, gap.rate.value}, rate_of(gap.rate), h,
-                          second + vector(motion.w_a).cross(h), dt);
+    return predicted_speed({gap.penetration.value, gap.rate.value}, rate_of(gap.rate), h,
+                           second + vector(motion.w_a).cross(h), dt);
   }
 
   /// 1/m = n^T W n with the mobility W of the origins; that a free journal also turns is left out.

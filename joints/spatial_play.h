@@ -165,8 +165,8 @@ Vec<T> SpatialPlay::friction_force(const T& normal, const Vec<T>& slip, const Ve
 
 /// v_0 of a contact that begins within dt, from delta'' and the vectors of which delta is made: x' and x''. 0: none
 /// does.
-inline double foreseen_speed(const Approach& gap, double second, const Eigen::Vector3d& rate,
-                             const Eigen::Vector3d& rate_of_rate, double dt) {
+inline double predicted_speed(const Approach& gap, double second, const Eigen::Vector3d& rate,
+                              const Eigen::Vector3d& rate_of_rate, double dt) {
   if (gap.penetration >= 0.0) return gap.rate > 0.0 ? std::max(gap.rate, smallest_approach_speed) : 0.0;
   const double s = time_to_contact(gap, second);
   if (!(s <= dt)) return 0.0;

@@ -13,8 +13,8 @@ using space::PairInFirstAxes;
 using space::RelativeForce;
 using space::RelativeMotion;
 
-constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
-                                    {"contact_end", Crossing::falling, 1, event_fields}};
+constexpr Event ball_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
+                                 {"contact_end", Crossing::falling, 1, event_fields}};
 
 /// Ball (radius R_J, marker b) in a socket (radius R_B, marker a) with play c = R_B - R_J. No constraint rows. With
 /// e = P_b - P_a [m] and angular velocities w [rad/s]:
@@ -39,7 +39,7 @@ class SphericalClearance final : public Joint {
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
-    layout.events = contact_events;
+    layout.events = ball_events;
     layout.event_roles = begin_and_end;
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
@@ -73,7 +73,7 @@ class SphericalClearance final : public Joint {
     if (distance < 1e-12 * play_.radii.clearance) return;
     // delta'' = n.e'' + (e'.e' - delta'^2)/|e|
     const double bent = e.dot(second) / distance + (rate.squaredNorm() - gap.rate * gap.rate) / distance;
-    history[predicted] = foreseen_speed(gap, bent, rate, second, dt);
+    history[predicted] = predicted_speed(gap, bent, rate, second, dt);
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     write_events(in, approach(in), g, rate);
@@ -238,7 +238,7 @@ class SphericalClearance final : public Joint {
   SpatialPlay play_;
 };
 
-constexpr auto parameters = table_with<0>({});
+constexpr auto spherical_clearance_parameters = table_with<0>({});
 
 }  // namespace
 
@@ -256,7 +256,7 @@ Component spherical_clearance() {
            "odd in slip and memory.",
        .references = "Flores, Ambrosio, Claro and Lankarani 2008, Kinematics and Dynamics of Multibody Systems with "
                      "Imperfect Joints",
-       .parameters = {parameters.data(), parameters.size()},
+       .parameters = {spherical_clearance_parameters.data(), spherical_clearance_parameters.size()},
        .ideal = "spherical",
        .block = "clearance",
        .first_end = "socket",

@@ -191,7 +191,7 @@ class SpatialSpringDamper final : public Joint {
   Spring spring_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter spring_damper_parameters[] = {
     {.name = "kind",
      .kind = ParameterKind::choice,
      .default_value = linear,
@@ -234,7 +234,7 @@ Component spring_damper() {
            "damping dangle/dt + preload), in space about z of the first frame, angle counted over turns; at the start "
            "as by a joint "
            "between the same bodies, else from (-pi, pi].",
-       .parameters = parameters,
+       .parameters = spring_damper_parameters,
        .in_space = joint_face<SpatialSpringDamper>()});
 }
 

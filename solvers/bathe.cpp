@@ -190,7 +190,7 @@ class Bathe final : public Integrator {
   double split_, q0_, q1_, q2_;
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter bathe_parameters[] = {
     {.name = "split",
      .default_value = 0.5,
      .minimum = 0.0,
@@ -229,7 +229,7 @@ Component bathe() {
            "for motions to follow, take steps below a twentieth of their period.",
        .references = "Bathe and Baig 2005, Comput Struct 83; Bathe 2007, Comput Struct 85; Noh and Bathe 2018, Comput "
                      "Struct 202",
-       .parameters = parameters,
+       .parameters = bathe_parameters,
        .preferred = 1});
 }
 

@@ -21,7 +21,7 @@ class GeneralizedAlpha final : public NewmarkStep {
   }
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter generalized_alpha_parameters[] = {
     {.name = "rho_inf",
      .default_value = 0.8,
      .minimum = 0.0,
@@ -45,7 +45,7 @@ Component generalized_alpha() {
            "nothing is damped, and they alternate.",
        .references = "Chung and Hulbert 1993, J Appl Mech 60, 371-375; Arnold and Bruls 2007, Multibody Syst Dyn 18, "
                      "185-202",
-       .parameters = parameters});
+       .parameters = generalized_alpha_parameters});
 }
 
 }  // namespace freeplay

@@ -19,7 +19,7 @@ class Hht final : public NewmarkStep {
   }
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter hht_parameters[] = {
     {.name = "alpha",
      .default_value = -0.05,
      .minimum = -1.0 / 3.0,
@@ -43,7 +43,7 @@ Component hht() {
        .references =
            "Hilber, Hughes and Taylor 1977, Earthq Eng Struct Dyn 5, 283-292; Arnold and Bruls 2007, Multibody "
            "Syst Dyn 18, 185-202",
-       .parameters = parameters});
+       .parameters = hht_parameters});
 }
 
 }  // namespace freeplay

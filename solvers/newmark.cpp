@@ -14,7 +14,7 @@ class Newmark final : public NewmarkStep {
       : NewmarkStep(p, {.alpha_m = 0.0, .alpha_f = 0.0, .beta = p.number("beta"), .gamma = p.number("gamma")}) {}
 };
 
-constexpr Parameter parameters[] = {
+constexpr Parameter newmark_parameters[] = {
     {.name = "beta",
      .default_value = 0.25,
      .minimum = 0.0,
@@ -40,7 +40,7 @@ Component newmark() {
        .validity = "Stable for every step where 2 beta >= gamma; order 1 for gamma above 1/2. Without damping, stiff "
                    "modes that are excited ring on.",
        .references = "Newmark 1959, J Eng Mech Div 85, 67-94",
-       .parameters = parameters});
+       .parameters = newmark_parameters});
 }
 
 }  // namespace freeplay

@@ -4,7 +4,7 @@ namespace freeplay {
 namespace {
 
 /// Verner 1978, table 5 (the pair of DVERK): eight stages, the fourth of order 5 and its companion of order 6.
-struct Verner {
+struct Verner6 {
   static constexpr int stages = 8, order = 6, error_order = 6;
   static constexpr double caution = 32.0;  // measured: both results err alike where motion bends much
   static constexpr double node[] = {0.0, 1.0 / 6.0, 4.0 / 15.0, 2.0 / 3.0, 5.0 / 6.0, 1.0, 1.0 / 15.0, 1.0};
@@ -32,7 +32,7 @@ struct Verner {
 }  // namespace
 
 Component verner6() {
-  return integrator<ExplicitRungeKutta<Verner>>(
+  return integrator<ExplicitRungeKutta<Verner6>>(
       {.name = "verner6",
        .summary = "Explicit Runge-Kutta pair of orders 6 and 5 with projection, always adaptive.",
        .formula =

@@ -5,7 +5,7 @@ namespace {
 
 /// Verner 2010, the pair IIa of orders 7 and 6 with the least error for its work: ten stages, of which the last serves
 /// the error alone. His table of 40 digits (RKV76.IIa.Efficient, www.sfu.ca/~jverner), here as far as doubles go.
-struct Verner {
+struct Verner7 {
   static constexpr int stages = 10, order = 7, error_order = 7;
   static constexpr double node[] = {0.0,   0.005, 0.98 / 9.0, 0.49 / 3.0, 0.4555, 0.60950944899783813171,
                                     0.884, 0.925, 1.0,        1.0};
@@ -42,7 +42,7 @@ struct Verner {
 }  // namespace
 
 Component verner7() {
-  return integrator<ExplicitRungeKutta<Verner>>(
+  return integrator<ExplicitRungeKutta<Verner7>>(
       {.name = "verner7",
        .summary = "Explicit Runge-Kutta pair of orders 7 and 6 with projection, always adaptive.",
        .formula =

@@ -94,9 +94,12 @@ class ArchiveWriter {
   void put_doubles(const std::vector<T>& values) {
     static_assert(sizeof(T) % sizeof(double) == 0 && alignof(T) == alignof(double));
     put(values.size());
-    const std::size_t count = values.size() * (sizeof(T) / sizeof(double)), first = archive_.reals.size();
+    const std::size_t count = values.size() * sizeof(T) / sizeof(double), first = archive_.reals.size();
     archive_.reals.resize(first + count);
-    if (count > 0) std::memcpy(archive_.reals.data() + first, values.data(), count * sizeof(double));
+    if (count > 0) {
+      const void* const from = values.data();  // structs of doubles, Eigen's among them, which are copied bit for bit
+      std::memcpy(archive_.reals.data() + first, from, count * sizeof(double));
+    }
   }
 
   Archive& archive_;
@@ -184,7 +187,7 @@ class ArchiveReader {
   template <class T>
   void get_doubles(std::vector<T>& values) {
     expect(static_cast<std::int64_t>(values.size()));
-    const std::size_t count = values.size() * (sizeof(T) / sizeof(double));
+    const std::size_t count = values.size() * sizeof(T) / sizeof(double);
     require(count <= archive_.reals.size() - real_);
     if (count > 0)
       std::memcpy(static_cast<void*>(values.data()), archive_.reals.data() + real_, count * sizeof(double));

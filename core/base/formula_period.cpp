@@ -23,7 +23,7 @@ class FormulaCourse::PeriodFinder {
   struct Course {
     bool known = true;
     double slope = 0.0, period = 0.0;
-    IntervalJet range = IntervalJet::unknown();
+    IntervalJet range = unknown_jet();
 
     bool recurs() const { return known && slope == 0.0; }
     bool constant() const { return recurs() && period == 0.0; }
@@ -94,7 +94,7 @@ IntervalJet FormulaCourse::PeriodFinder::range_of(const Expression::Instruction&
     case Operation::smooth:
       return smooth(x[0].range, x[1].range, x[2].range);
     default:
-      return IntervalJet::unknown();
+      return unknown_jet();
   }
 }
 

@@ -123,7 +123,7 @@ void FormulaSides::bound(const Side& side, const Span& span, int depth) {
     expression_.apply(instruction, &middle_[first], ignored);
     ranges_.resize(first + 1), middle_.resize(first + 1), hangs_.resize(first + 1);
     ranges_[first] = out;
-    ranges_[first].tighten(middle_[first], half);
+    tighten(ranges_[first], middle_[first], half);
     bool open = hangs;
     const std::size_t more = static_cast<std::size_t>(first_side_of_[static_cast<std::size_t>(i)]);
     for (std::size_t s = more; s < sides_.size() && sides_[s].instruction == i; ++s) {
@@ -191,7 +191,7 @@ IntervalJet FormulaSides::bound_angle(int i, const IntervalJet* x, const Jet* mi
       decisions_[s] = {Where::above, depth};
     }
     if (!matters) continue;
-    const bool passing = by_x && !y.value.is(0.0);
+    const bool passing = by_x && !(y.value == 0.0);
     const Where where = decide(s, x[by_x ? 1 : 0], middle[by_x ? 1 : 0], hangs || passing, span, depth);
     open = open || where == Where::open;
     Interval& decided = by_x ? along.value : y.value;
@@ -235,7 +235,7 @@ IntervalJet FormulaSides::range_of(const Expression::Instruction& instruction, c
     case Operation::logarithm:
       return log(x[0]);
     default:
-      return IntervalJet::unknown();
+      return unknown_jet();
   }
 }
 
@@ -245,7 +245,7 @@ FormulaSides::Where FormulaSides::decide(std::size_t side, IntervalJet value, co
                                          const Span& span, int depth) {
   Decision& decision = decisions_[side];
   if (decision.where != Where::open && decision.depth < depth) return decision.where;
-  value.tighten(middle, span.half());
+  tighten(value, middle, span.half());
   decision = {Where::open, depth};
   // What is so near to zero that rounding of the time decides the side is left to the values at the ends.
   const double near = value.rate.is_finite() ? rounding_ * largest(value.rate) : 0.0;
@@ -290,7 +290,7 @@ FormulaSides::Where FormulaSides::sought(std::size_t side, const IntervalJet& va
 FormulaSides::Where FormulaSides::sought_touch(std::size_t side, const IntervalJet& value, const Span& span) {
   const double turn = short_turn * (to_ - from_), small = 0.5 * turn * turn * value.acceleration.high;
   const bool down = value.acceleration.high <= 0.0;
-  if (value.rate.is(0.0) || value.rate.high <= 0.0 || down) return Where::above;
+  if (value.rate == 0.0 || value.rate.high <= 0.0 || down) return Where::above;
   const bool monotone = value.rate.low >= 0.0;
   if (!monotone && !(value.acceleration.low >= 0.0)) return Where::open;
   Jet low, high, here;

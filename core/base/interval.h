@@ -17,7 +17,7 @@ struct Interval {
     return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
   bool contains(double x) const { return low <= x && x <= high; }
-  bool is(double x) const { return low == x && high == x; }
+  bool operator==(double x) const { return low == x && high == x; }
   bool is_finite() const { return std::isfinite(low) && std::isfinite(high); }
 };
 
@@ -55,6 +55,7 @@ inline Interval square(const Interval& a) {
   const double low = a.low * a.low, high = a.high * a.high;
   return {a.contains(0.0) ? 0.0 : std::min(low, high), std::max(low, high)};
 }
+inline Interval times_square(const Interval& a, const Interval& x) { return a * square(x); }
 
 inline Interval sin(const Interval& x) {
   constexpr double pi = 3.14159265358979323846;

@@ -8,57 +8,24 @@ namespace freeplay {
 
 /// What a Jet is at an instant, over a span. Where the rate may jump inside, `acceleration` is unbounded and `rate` has
 /// those of both sides, so that the value goes no farther than the rate says; where the value may jump, both are.
-struct IntervalJet {
-  Interval value, rate, acceleration;
+using IntervalJet = JetOf<Interval>;
 
-  static IntervalJet constant(const Interval& value) { return {value, {}, {}}; }
-  static IntervalJet unknown() { return {Interval::whole(), Interval::whole(), Interval::whole()}; }
-  bool is_constant() const { return rate.is(0.0) && acceleration.is(0.0); }
+inline IntervalJet unknown_jet() { return {Interval::whole(), Interval::whole(), Interval::whole()}; }
 
-  /// Narrower by Taylor's formula about the middle of the span, where it is `m`.
-  void tighten(const Jet& m, double half) {
-    if (!m.is_finite()) return;
-    const Interval by{-half, half};
-    value = both(value, Interval::at(m.value) + rate * by);
-    if (!acceleration.is_finite()) return;
-    rate = both(rate, Interval::at(m.rate) + acceleration * by);
-    value = both(value, Interval::at(m.value) + m.rate * by + acceleration * Interval{0.0, 0.5 * half * half});
-  }
-};
-
-/// g(x(t)) from the ranges of g, g', g''.
-inline IntervalJet chain(const Interval& g, const Interval& g1, const Interval& g2, const IntervalJet& x) {
-  if (x.is_constant()) return IntervalJet::constant(g);
-  return {g, g1 * x.rate, g2 * square(x.rate) + g1 * x.acceleration};
+/// Narrower by Taylor's formula about the middle of the span, where it is `m`.
+inline void tighten(IntervalJet& range, const Jet& m, double half) {
+  if (!m.is_finite()) return;
+  const Interval by{-half, half};
+  range.value = both(range.value, Interval::at(m.value) + range.rate * by);
+  if (!range.acceleration.is_finite()) return;
+  range.rate = both(range.rate, Interval::at(m.rate) + range.acceleration * by);
+  range.value =
+      both(range.value, Interval::at(m.value) + m.rate * by + range.acceleration * Interval{0.0, 0.5 * half * half});
 }
 
-inline IntervalJet operator-(const IntervalJet& a) { return {-a.value, -a.rate, -a.acceleration}; }
-inline IntervalJet operator+(const IntervalJet& a, const IntervalJet& b) {
-  return {a.value + b.value, a.rate + b.rate, a.acceleration + b.acceleration};
-}
-inline IntervalJet operator-(const IntervalJet& a, const IntervalJet& b) {
-  return {a.value - b.value, a.rate - b.rate, a.acceleration - b.acceleration};
-}
-inline IntervalJet operator*(const IntervalJet& a, const IntervalJet& b) {
-  return {a.value * b.value, a.rate * b.value + a.value * b.rate,
-          a.acceleration * b.value + 2.0 * (a.rate * b.rate) + a.value * b.acceleration};
-}
-inline IntervalJet operator/(const IntervalJet& a, const IntervalJet& b) {
-  const Interval by = inverse(b.value), q = a.value * by, rate = (a.rate - q * b.rate) * by;
-  return {q, rate, (a.acceleration - 2.0 * (rate * b.rate) - q * b.acceleration) * by};
-}
-
-inline IntervalJet sin(const IntervalJet& x) {
-  const Interval s = sin(x.value);
-  return chain(s, cos(x.value), -s, x);
-}
-inline IntervalJet cos(const IntervalJet& x) {
-  const Interval c = cos(x.value);
-  return chain(c, -sin(x.value), -c, x);
-}
 inline IntervalJet tan(const IntervalJet& x) {
   const Interval c = cos(x.value);
-  if (c.contains(0.0) || !(x.value.high - x.value.low < 3.0)) return IntervalJet::unknown();
+  if (c.contains(0.0) || !(x.value.high - x.value.low < 3.0)) return unknown_jet();
   const Interval g{std::tan(x.value.low), std::tan(x.value.high)}, g1 = Interval::at(1.0) + square(g);
   return chain(g, g1, 2.0 * (g * g1), x);
 }
@@ -79,16 +46,7 @@ inline IntervalJet acos(const IntervalJet& x) {
   return asin_like({std::acos(std::clamp(x.value.high, -1.0, 1.0)), std::acos(std::clamp(x.value.low, -1.0, 1.0))},
                    -1.0, x);
 }
-inline IntervalJet pow(const IntervalJet& x, double n) {
-  const Interval g1 = n == 0.0 ? Interval{} : n * pow(x.value, n - 1.0);
-  const Interval g2 = n == 0.0 || n == 1.0 ? Interval{} : n * (n - 1.0) * pow(x.value, n - 2.0);
-  return chain(pow(x.value, n), g1, g2, x);
-}
 inline IntervalJet sqrt(const IntervalJet& x) { return pow(x, 0.5); }
-inline IntervalJet exp(const IntervalJet& x) {
-  const Interval g = exp(x.value);
-  return chain(g, g, g, x);
-}
 inline IntervalJet log(const IntervalJet& x) {
   const Interval inside{std::max(x.value.low, 0.0), std::max(x.value.high, 0.0)};
   const Interval g1{1.0 / inside.high, 1.0 / inside.low};
@@ -98,16 +56,11 @@ inline IntervalJet pow(const IntervalJet& x, const IntervalJet& n) { return exp(
 
 /// Of the point (x, y) where it does not pass the half line to the left, on which the angle jumps.
 inline IntervalJet atan2(const IntervalJet& y, const IntervalJet& x) {
-  const Interval r2 = square(x.value) + square(y.value);
-  if (r2.low <= 0.0) return IntervalJet::unknown();
+  if ((square(x.value) + square(y.value)).low <= 0.0) return unknown_jet();
   const double angles[] = {std::atan2(y.value.low, x.value.low), std::atan2(y.value.low, x.value.high),
                            std::atan2(y.value.high, x.value.low), std::atan2(y.value.high, x.value.high)};
   const auto [low, high] = std::minmax_element(std::begin(angles), std::end(angles));
-  if (y.is_constant() && x.is_constant()) return IntervalJet::constant({*low, *high});
-  const Interval w = x.value * y.rate - y.value * x.rate;
-  const Interval w1 = x.value * y.acceleration - y.value * x.acceleration;
-  const Interval r2_rate = 2.0 * (x.value * x.rate + y.value * y.rate), rate = w / r2;
-  return {{*low, *high}, rate, (w1 - r2_rate * rate) / r2};
+  return of_angle(Interval{*low, *high}, y, x);
 }
 
 /// Its second derivative is continuous, so that its ends are like any other place.
@@ -125,7 +78,7 @@ inline IntervalJet smooth(const IntervalJet& x, const IntervalJet& a, const Inte
   for (const double extreme : {lower, upper}) {
     if (v.contains(extreme)) bend = hull(bend, Interval::at(g2(extreme)));
   }
-  if (v.is(0.0) || v.is(1.0)) return IntervalJet::constant(v);
+  if (v == 0.0 || v == 1.0) return IntervalJet::constant(v);
   return chain({g(v.low), g(v.high)}, slope, bend, s);
 }
 

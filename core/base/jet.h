@@ -2,59 +2,106 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 
 namespace freeplay {
 
-/// f(t), f'(t), f''(t). The operators below apply the sum, product and chain rules exactly:
-/// (g o f)' = g'(f) f',  (g o f)'' = g''(f) f'^2 + g'(f) f''. At a kink of abs, min and max the derivatives are those
-/// from the right in t. Outside of a domain the result is not finite; nothing is checked here.
-struct Jet {
-  double value = 0.0, rate = 0.0, acceleration = 0.0;
+/// f(t), f'(t), f''(t), at an instant as numbers (Jet) or over a span as their ranges (IntervalJet). The operators
+/// below apply the sum, product and chain rules exactly: (g o f)' = g'(f) f',  (g o f)'' = g''(f) f'^2 + g'(f) f''. At
+/// a kink of abs, min and max the derivatives are those from the right in t. Outside of a domain the result is not
+/// finite; nothing is checked here.
+template <typename Number>
+struct JetOf {
+  Number value{}, rate{}, acceleration{};
 
-  static Jet constant(double value) { return {value, 0.0, 0.0}; }
-  static Jet time(double t) { return {t, 1.0, 0.0}; }
+  static JetOf constant(const Number& value) { return {value, {}, {}}; }
+  static JetOf time(double t) requires std::same_as<Number, double> { return {t, 1.0, 0.0}; }
 
   bool is_constant() const { return rate == 0.0 && acceleration == 0.0; }
   /// The value and the first `order` derivatives.
-  bool is_finite(int order = 2) const {
+  bool is_finite(int order = 2) const requires std::same_as<Number, double> {
     // A difference of a number from itself is zero unless it is not finite.
     if (order >= 2) return (value - value) + (rate - rate) + (acceleration - acceleration) == 0.0;
     return std::isfinite(value) && (order < 1 || std::isfinite(rate));
   }
 };
+using Jet = JetOf<double>;
+
+inline double square(double x) { return x * x; }
+/// a x^2; an interval has one of its own, as a square is not negative.
+inline double times_square(double a, double x) { return a * x * x; }
 
 /// g(x(t)) from g, g', g'' at x. A constant x stays constant, even where a derivative of g is infinite (sqrt at 0).
-inline Jet chain(double g, double g1, double g2, const Jet& x) {
-  if (x.is_constant()) return Jet::constant(g);
-  return {g, g1 * x.rate, g2 * x.rate * x.rate + g1 * x.acceleration};
+template <typename Number>
+JetOf<Number> chain(const Number& g, const Number& g1, const Number& g2, const JetOf<Number>& x) {
+  if (x.is_constant()) return JetOf<Number>::constant(g);
+  return {g, g1 * x.rate, times_square(g2, x.rate) + g1 * x.acceleration};
 }
 
-inline Jet operator-(const Jet& a) { return {-a.value, -a.rate, -a.acceleration}; }
-inline Jet operator+(const Jet& a, const Jet& b) {
+template <typename Number>
+JetOf<Number> operator-(const JetOf<Number>& a) {
+  return {-a.value, -a.rate, -a.acceleration};
+}
+template <typename Number>
+JetOf<Number> operator+(const JetOf<Number>& a, const JetOf<Number>& b) {
   return {a.value + b.value, a.rate + b.rate, a.acceleration + b.acceleration};
 }
-inline Jet operator-(const Jet& a, const Jet& b) {
+template <typename Number>
+JetOf<Number> operator-(const JetOf<Number>& a, const JetOf<Number>& b) {
   return {a.value - b.value, a.rate - b.rate, a.acceleration - b.acceleration};
 }
-inline Jet operator*(const Jet& a, const Jet& b) {
+template <typename Number>
+JetOf<Number> operator*(const JetOf<Number>& a, const JetOf<Number>& b) {
   return {a.value * b.value, a.rate * b.value + a.value * b.rate,
-          a.acceleration * b.value + 2.0 * a.rate * b.rate + a.value * b.acceleration};
+          a.acceleration * b.value + 2.0 * (a.rate * b.rate) + a.value * b.acceleration};
 }
-inline Jet operator/(const Jet& a, const Jet& b) {
+template <typename Number>
+JetOf<Number> operator/(const JetOf<Number>& a, const JetOf<Number>& b) {
   // From a = q b: a' = q' b + q b', a'' = q'' b + 2 q' b' + q b''.
-  const double q = a.value / b.value;
-  const double rate = (a.rate - q * b.rate) / b.value;
-  return {q, rate, (a.acceleration - 2.0 * rate * b.rate - q * b.acceleration) / b.value};
+  const Number q = a.value / b.value;
+  const Number rate = (a.rate - q * b.rate) / b.value;
+  return {q, rate, (a.acceleration - 2.0 * (rate * b.rate) - q * b.acceleration) / b.value};
 }
 
-inline Jet sin(const Jet& x) {
-  const double s = std::sin(x.value), c = std::cos(x.value);
+template <typename Number>
+JetOf<Number> sin(const JetOf<Number>& x) {
+  using std::cos, std::sin;
+  const Number s = sin(x.value), c = cos(x.value);
   return chain(s, c, -s, x);
 }
-inline Jet cos(const Jet& x) {
-  const double s = std::sin(x.value), c = std::cos(x.value);
+template <typename Number>
+JetOf<Number> cos(const JetOf<Number>& x) {
+  using std::cos, std::sin;
+  const Number s = sin(x.value), c = cos(x.value);
   return chain(c, -s, -c, x);
 }
+template <typename Number>
+JetOf<Number> exp(const JetOf<Number>& x) {
+  using std::exp;
+  const Number g = exp(x.value);
+  return chain(g, g, g, x);
+}
+/// x^n for a constant exponent; x may be negative when n is an integer.
+template <typename Number>
+JetOf<Number> pow(const JetOf<Number>& x, double n) {
+  using std::pow;
+  // A factor n or n - 1 of zero ends the series; 0 * infinity would spoil it at x = 0.
+  const Number g1 = n == 0.0 ? Number{} : n * pow(x.value, n - 1.0);
+  const Number g2 = n == 0.0 || n == 1.0 ? Number{} : n * (n - 1.0) * pow(x.value, n - 2.0);
+  return chain<Number>(pow(x.value, n), g1, g2, x);
+}
+/// With the derivatives of the angle of the point (x, y), whose value is `angle`.
+template <typename Number>
+JetOf<Number> of_angle(const Number& angle, const JetOf<Number>& y, const JetOf<Number>& x) {
+  if (y.is_constant() && x.is_constant()) return JetOf<Number>::constant(angle);
+  // r2 a' = x y' - y x' =: w, and by differentiating once more, r2 a'' = w' - (r2)' a'.
+  const Number r2 = square(x.value) + square(y.value);
+  const Number w = x.value * y.rate - y.value * x.rate;
+  const Number w1 = x.value * y.acceleration - y.value * x.acceleration;
+  const Number r2_rate = 2.0 * (x.value * x.rate + y.value * y.rate), rate = w / r2;
+  return {angle, rate, (w1 - r2_rate * rate) / r2};
+}
+
 inline Jet tan(const Jet& x) {
   const double g = std::tan(x.value), g1 = 1.0 + g * g;
   return chain(g, g1, 2.0 * g * g1, x);
@@ -70,10 +117,6 @@ inline Jet acos(const Jet& x) {
 inline Jet sqrt(const Jet& x) {
   const double g = std::sqrt(x.value), g1 = 0.5 / g;
   return chain(g, g1, -0.5 * g1 / x.value, x);
-}
-inline Jet exp(const Jet& x) {
-  const double g = std::exp(x.value);
-  return chain(g, g, g, x);
 }
 inline Jet log(const Jet& x) {
   const double g1 = 1.0 / x.value;
@@ -91,24 +134,8 @@ inline Jet max(const Jet& a, const Jet& b) { return less_from_right(a, b) ? b : 
 inline Jet abs(const Jet& x) { return less_from_right(x, Jet{}) ? -x : x; }
 
 /// Angle of the point (x, y), continuous through its derivatives; the value is in [-pi, pi].
-inline Jet atan2(const Jet& y, const Jet& x) {
-  const double value = std::atan2(y.value, x.value);
-  if (y.is_constant() && x.is_constant()) return Jet::constant(value);
-  // r2 a' = x y' - y x' =: w, and by differentiating once more, r2 a'' = w' - (r2)' a'.
-  const double r2 = x.value * x.value + y.value * y.value;
-  const double w = x.value * y.rate - y.value * x.rate;
-  const double w1 = x.value * y.acceleration - y.value * x.acceleration;
-  const double r2_rate = 2.0 * (x.value * x.rate + y.value * y.rate);
-  return {value, w / r2, (w1 - r2_rate * (w / r2)) / r2};
-}
+inline Jet atan2(const Jet& y, const Jet& x) { return of_angle(std::atan2(y.value, x.value), y, x); }
 
-/// x^n for a constant exponent; x may be negative when n is an integer.
-inline Jet pow(const Jet& x, double n) {
-  // A factor n or n - 1 of zero ends the series; 0 * infinity would spoil it at x = 0.
-  const double g1 = n == 0.0 ? 0.0 : n * std::pow(x.value, n - 1.0);
-  const double g2 = n == 0.0 || n == 1.0 ? 0.0 : n * (n - 1.0) * std::pow(x.value, n - 2.0);
-  return chain(std::pow(x.value, n), g1, g2, x);
-}
 /// x^n = exp(n log x) for an exponent that depends on time; x must be positive.
 inline Jet pow(const Jet& x, const Jet& n) {
   Jet result = exp(n * log(x));

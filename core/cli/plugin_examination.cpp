@@ -149,7 +149,7 @@ void for_each_line(const std::string& report, Use&& use) {
   }
 }
 
-[[noreturn]] void refuse(const fs::path& library, const std::string& failure) {
+[[noreturn]] void refuse_library(const fs::path& library, const std::string& failure) {
   throw Error(Error::Category::plugin, "plugin-failed", fmt::format("plugin '{}' {}", library.string(), failure));
 }
 
@@ -170,8 +170,8 @@ Examination read_header(const ChildProcess& child, const fs::path& library, doub
     }
   });
   const std::string failure = failure_of(child, "", time_limit);
-  if (!failure.empty()) refuse(library, failure.substr(1));
-  if (found.types.empty()) refuse(library, "ended the program before it gave its types");
+  if (!failure.empty()) refuse_library(library, failure.substr(1));
+  if (found.types.empty()) refuse_library(library, "ended the program before it gave its types");
   return found;
 }
 
@@ -208,18 +208,18 @@ bool Examination::held() const {
   return std::ranges::all_of(types, [](const ExaminedType& type) { return type.held(); });
 }
 
-Examination examine_plugin(const fs::path& given, const ExaminationOptions& options) {
+Examination examine_plugin(const fs::path& library, const ExaminationOptions& options) {
   std::error_code unreadable;
-  const fs::path canonical = fs::canonical(given, unreadable), library = unreadable ? given : canonical;
+  const fs::path canonical = fs::canonical(library, unreadable), path = unreadable ? library : canonical;
   const Clock::time_point started = Clock::now();
-  const auto lister = one(list_types(library, options));
+  const auto lister = one(list_types(path, options));
   ChildProcess::wait(lister, options.time_limit);
-  Examination found = read_header(*lister.front(), library, options.time_limit);
+  Examination found = read_header(*lister.front(), path, options.time_limit);
 
   // All at once: a type that hangs takes no time from the others.
   std::vector<std::unique_ptr<ChildProcess>> children;
   for (std::size_t i = 0; i < found.types.size(); ++i) {
-    children.push_back(std::make_unique<ChildProcess>(check_type(library, options, i)));
+    children.push_back(std::make_unique<ChildProcess>(check_type(path, options, i)));
   }
   const double spent = std::chrono::duration<double>(Clock::now() - started).count();
   ChildProcess::wait(children, options.time_limit - spent);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -307,8 +306,8 @@ std::string run_table(const RunRecord& record) {
   TextTable joints({Align::left, Align::left, Align::right, Align::right, Align::left}), drivers, paths, gears, forces;
   TextTable play({Align::left, Align::right, Align::right, Align::right, Align::right});
   if (std::ranges::any_of(record.model.joints, is_listed)) add_joints(record, joints);
-  const auto loose = [&](int joint) { return record.clearances.has(joint); };
-  const bool plays = std::ranges::any_of(std::views::iota(0, static_cast<int>(record.model.joints.size())), loose);
+  bool plays = false;
+  for (int j = 0; j < static_cast<int>(record.model.joints.size()); ++j) plays = plays || record.clearances.has(j);
   if (plays && record.repeat.is_null() && record.statistics.any()) add_play(record, play);
   if (!record.model.drivers.empty()) add_drivers(record, drivers);
   if (!record.model.kinematics.empty()) add_paths(record, paths);

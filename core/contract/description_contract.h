@@ -21,6 +21,6 @@ Findings check_description(const Component& component);
 
 /// Names of events and channels are words, units are units, no two of one joint are alike, and no channel has the name
 /// of a column that joints of this layout have anyway, such as fx.
-Findings check_joint_names(const JointLayout& layout);
+Findings check_joint_names(const JointLayout& joint);
 
 }  // namespace freeplay

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "base/same_bits.h"
@@ -30,10 +29,11 @@ class GuardedNumbers {
   Span<double> span() { return {numbers_.data() + margin, count_}; }
   std::vector<double> values() const { return {numbers_.data() + margin, numbers_.data() + margin + count_}; }
   bool intact() const {
-    const double mark = guard();
+    const auto is_mark = [](double number) {
+      return std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(guard());
+    };
     for (std::size_t i = 0; i < margin; ++i) {
-      if (std::memcmp(&numbers_[i], &mark, sizeof mark) != 0) return false;
-      if (std::memcmp(&numbers_[margin + count_ + i], &mark, sizeof mark) != 0) return false;
+      if (!is_mark(numbers_[i]) || !is_mark(numbers_[margin + count_ + i])) return false;
     }
     return true;
   }

@@ -26,7 +26,7 @@ struct Fenced {
   }
 };
 
-constexpr std::size_t at(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
+constexpr std::size_t how_many(int count) { return static_cast<std::size_t>(std::max(count, 0)); }
 
 }  // namespace
 
@@ -50,6 +50,7 @@ struct JointProbe::Fed {
   }
   bool untouched() const {
     return z.intact() && h.intact() && same_bits(z.values(), moment.z) && same_bits(h.values(), moment.h) &&
+           // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): made of numbers alone, which are compared by bits
            std::memcmp(&markers, &moment.markers, sizeof markers) == 0;
   }
   JointMoment moment;
@@ -112,7 +113,7 @@ void JointProbe::expect_fence(const char* function, bool intact, const JointMome
 }
 
 ProbedRows JointProbe::rows(const JointMoment& moment) const {
-  const std::size_t n = at(layout_.constraint_rows);
+  const std::size_t n = how_many(layout_.constraint_rows);
   Fed fed(*this, moment);
   GuardedNumbers phi(n), jacobian(12 * n), nu(n), gamma(n);
   ConstraintRows out{phi.span(), jacobian.span(), nu.span(), gamma.span()};
@@ -138,7 +139,7 @@ ProbedCoordinate JointProbe::coordinate(const JointMoment& moment) const {
 }
 
 ProbedForces JointProbe::forces(const JointMoment& moment, bool derivatives) const {
-  const std::size_t nz = at(layout_.internal_variables);
+  const std::size_t nz = how_many(layout_.internal_variables);
   Fed fed(*this, moment);
   GuardedNumbers rate(nz), table(derivatives ? (12 + nz) * (24 + nz) : 0);
   Fenced<JointForces> fenced;
@@ -166,7 +167,7 @@ ProbedEvents JointProbe::events(const JointMoment& moment) const {
 std::vector<double> JointProbe::observe(const JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers channels(layout_.channels.size);
-  GuardedNumbers lambda(at(layout_.constraint_rows), 1.0);
+  GuardedNumbers lambda(how_many(layout_.constraint_rows), 1.0);
   if (!run("observe", &moment, [&](Message& m) { return joint_.observe(fed.in, lambda.span(), channels.span(), m); }))
     return {};
   watch("observe", fed, {&channels});
@@ -247,7 +248,7 @@ void JointProbe::begin_step(const JointMoment& accepted, const Twelve& accelerat
 std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers z(moment.z), h(moment.h);
-  GuardedNumbers fields(layout_.events[at(index)].fields.size, std::numeric_limits<double>::quiet_NaN());
+  GuardedNumbers fields(layout_.events[how_many(index)].fields.size, std::numeric_limits<double>::quiet_NaN());
   if (!run("on_event", &moment,
            [&](Message& m) { return joint_.on_event(index, fed.in, z.span(), h.span(), fields.span(), m); })) {
     return {};
@@ -261,7 +262,7 @@ std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
 
 void JointProbe::commit(JointMoment& moment) const {
   Fed fed(*this, moment);
-  GuardedNumbers h(moment.h), lambda(at(layout_.constraint_rows), 1.0);
+  GuardedNumbers h(moment.h), lambda(how_many(layout_.constraint_rows), 1.0);
   if (!run("commit", &moment, [&](Message& m) { return joint_.commit(fed.in, lambda.span(), h.span(), m); })) return;
   watch("commit", fed, {&h, &lambda});
   moment.h = h.values();
@@ -293,8 +294,8 @@ std::vector<double> JointProbe::all(const JointMoment& moment) const {
 }
 
 JointMoment JointProbe::start(const MarkerPair& markers, double t) const {
-  JointMoment moment{t, markers, 0.0, std::vector<double>(at(layout_.internal_variables)),
-                     std::vector<double>(at(layout_.history))};
+  JointMoment moment{t, markers, 0.0, std::vector<double>(how_many(layout_.internal_variables)),
+                     std::vector<double>(how_many(layout_.history))};
   initialize(moment);
   return moment;
 }

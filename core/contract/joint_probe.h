@@ -49,28 +49,28 @@ class JointProbe {
   Space space() const { return space_; }
   const JointRef& joint() const { return joint_; }
 
-  ProbedRows rows(const JointMoment& at) const;
-  ProbedCoordinate coordinate(const JointMoment& at) const;
-  ProbedForces forces(const JointMoment& at, bool derivatives = false) const;
-  ProbedEvents events(const JointMoment& at) const;
-  std::vector<double> observe(const JointMoment& at) const;
-  double step_limit(const JointMoment& at) const;
-  double free_distance(const JointMoment& at) const;
+  ProbedRows rows(const JointMoment& moment) const;
+  ProbedCoordinate coordinate(const JointMoment& moment) const;
+  ProbedForces forces(const JointMoment& moment, bool derivatives = false) const;
+  ProbedEvents events(const JointMoment& moment) const;
+  std::vector<double> observe(const JointMoment& moment) const;
+  double step_limit(const JointMoment& moment) const;
+  double free_distance(const JointMoment& moment) const;
   double next_corner(double t) const;
   /// False when there is nothing to warn of.
-  bool warns(const JointMoment& at) const;
+  bool warns(const JointMoment& moment) const;
   /// False when the type cannot place a body.
   bool place(double coordinate, Pose& b_in_a) const;
   InitialOffset initial_offset(Span<const double> reaction) const;
 
   // These change z and h of the moment.
-  void initialize(JointMoment& at) const;
+  void initialize(JointMoment& moment) const;
   void begin_step(const JointMoment& accepted, const Twelve& acceleration, double dt, JointMoment& trial) const;
-  std::vector<double> on_event(int index, JointMoment& at) const;
-  void commit(JointMoment& at) const;
+  std::vector<double> on_event(int index, JointMoment& moment) const;
+  void commit(JointMoment& moment) const;
 
   /// Every number that the joint gives at a moment, in one list.
-  std::vector<double> all(const JointMoment& at) const;
+  std::vector<double> all(const JointMoment& moment) const;
   /// A moment with z and h as initialize() leaves them.
   JointMoment start(const MarkerPair& markers, double t) const;
 

@@ -132,7 +132,7 @@ class Sampler {
       int same_unit = 0;
       for (const Parameter& p : table()) {
         const std::optional<Unit> unit = unit_of(p, *block);
-        if (unit && std::string_view(p.unit).find_first_of("^") == std::string_view::npos) ++same_unit;
+        if (unit && std::string_view(p.unit).find('^') == std::string_view::npos) ++same_unit;
         if (!unit && !last) continue;
         fill(p, unit.value_or(Unit{}), plan, same_unit, block->values[p.name]);
       }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "drawing/joint_freedom.h"
+#include "system/joint_freedom.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -22,10 +22,10 @@ class SpatialScene {
   /// A frame that every body has.
   static bool is_own(const Marker& frame) { return is_origin(frame) || frame.name.ends_with("/com"); }
 
-  Vector world(const Marker& marker) const;
-  Eigen::Matrix3d axes_of(const Marker& marker) const;
+  Vector world(const Marker& one) const;
+  Eigen::Matrix3d axes_of(const Marker& one) const;
   /// Where a joint moves its second body; of a gear, where its second joint does.
-  Vector place(int joint) const;
+  Vector place(int index) const;
   /// Points of a body, its centre of mass first. One that has no other is a block of its mass and moments, if need be
   /// smaller, so that it does not outgrow the mechanism.
   std::vector<Vector> points_of(BodyId body) const;
@@ -38,7 +38,7 @@ class SpatialScene {
   static bool is_origin(const Marker& frame) { return frame.name.ends_with("/origin"); }
   Eigen::Matrix3d turn_of(BodyId body) const;
   Vector centre_of(BodyId body) const;
-  MarkerKinematics kinematics(int marker) const;
+  MarkerKinematics kinematics(int index) const;
   std::vector<Vector> frames() const;
 
   const System& system_;

@@ -35,8 +35,8 @@ constexpr UsualRange usual_ranges[] = {
 
 constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are simulated
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
-bool is_word_part(char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)); }
+bool begins_word(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+bool is_word_part(char c) { return begins_word(c) || std::isdigit(static_cast<unsigned char>(c)); }
 
 /// Functions whose result is a plain number, whatever stands in their brackets.
 constexpr std::string_view plain_functions[] = {"sin", "cos", "tan", "exp", "log", "smooth"};
@@ -58,7 +58,7 @@ bool any_word(std::string_view text, Use&& use) {
   for (std::size_t i = 0; i < text.size();) {
     const unsigned char c = static_cast<unsigned char>(text[i]);
     const bool micro = c >= 0x80;  // of µm
-    if (!is_letter(text[i]) && !micro) {
+    if (!begins_word(text[i]) && !micro) {
       // 1e5: digits, then the letter of the exponent
       const bool number = std::isdigit(c) || c == '.';
       ++i;

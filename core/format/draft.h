@@ -79,7 +79,7 @@ struct Draft {
   std::optional<BodyId> find_body(const std::string& name, const Part& part) const;
   std::optional<int> find_joint(const std::string& name, const Part& part) const;
 
-  const std::string& body_name(BodyId body) const;
+  const std::string& body_name(BodyId id) const;
   int marker(const std::string& full_name);
   /// A marker that stands where another does, its axes turned by `turn` in that one's axes. Always a new one.
   int turned_marker(int marker, const Rotation& turn);
@@ -100,9 +100,9 @@ inline Marker marker_of(const Draft::Frame& frame, const std::string& name) {
   return {frame.body, name, frame.position, frame.angle, frame.rotation};
 }
 
-/// Numbers of the `names` that match the pattern at `value`, looked up among the part's own first. Throws Error{input}
-/// `too-large` there when all patterns of the file together have been compared with too many names.
-std::vector<int> matching(const Draft& draft, const NameTable& names, const CheckedValue& value,
+/// Numbers of the names in `table` that match the pattern at `value`, looked up among the part's own first. Throws
+/// Error{input} `too-large` there when all patterns of the file together have been compared with too many names.
+std::vector<int> matching(const Draft& draft, const NameTable& table, const CheckedValue& value,
                           const std::string& pattern, const Part& part);
 
 }  // namespace freeplay

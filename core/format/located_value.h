@@ -42,9 +42,9 @@ class LocatedValue {
   void note_key(std::string name) const;
 
   /// Reports at the value, at the key.
-  void fail(const std::string& id, const std::string& message, const std::string& suggestion = {},
+  void fail(const std::string& id, const std::string& message, const std::string& suggested = {},
             const std::string& hint = {}) const;
-  void fail_at_key(const std::string& id, const std::string& message, const std::string& suggestion = {},
+  void fail_at_key(const std::string& id, const std::string& message, const std::string& suggested = {},
                    const std::string& hint = {}) const;
   /// At the first character of the file.
   void fail_at_start(const std::string& id, const std::string& message) const;
@@ -57,7 +57,7 @@ class LocatedValue {
   void fail_inside(const Node& text_node, const ExpressionError& error, int offset) const;
   const Node* blamed_override(const Node& at, const std::string& id) const;
   void report(const Node& at, Location location, int length, Severity severity, const std::string& id,
-              const std::string& message, const std::string& suggestion, const std::string& hint) const;
+              const std::string& message, const std::string& suggested, const std::string& hint) const;
 
   const Reading* reading_;
   const Node* node_;

@@ -58,9 +58,9 @@ class ParameterScope : public Scope {
 
   Entry& append(const std::string& name);
   const Entry* entry(std::string_view name) const;
-  std::vector<std::size_t> needs(const Entry& entry) const;
+  std::vector<std::size_t> needs(const Entry& needing) const;
   void evaluate_from(std::size_t first);
-  void compute(Entry& entry);
+  void compute(Entry& computed);
   static bool is_overridden(const Entry& entry) { return entry.override == entry.value; }
   void report_cycle(const std::vector<std::size_t>& path, std::size_t closing);
 

@@ -42,7 +42,9 @@ bool PathOverrides::is_path(std::string_view name) {
 }
 
 PathOverrides::PathOverrides(const BuildOptions& options, Diagnostics& diagnostics) {
-  for (const auto& [name, text] : options.set) {
+  for (const auto& set : options.set) {
+    const auto& name = set.first;
+    const auto& text = set.second;
     // An integrator with its parameters is a map in the place of a word.
     const bool is_map = text.starts_with('{');
     if (!is_path(name) || (is_run_override(name) && !is_map)) continue;

@@ -6,7 +6,7 @@
 
 namespace freeplay {
 
-bool ListedCholesky::set_pattern(int size, std::vector<std::pair<int, int>> entries, std::size_t most) {
+bool ListedCholesky::set_pattern(int size, const std::vector<std::pair<int, int>>& entries, std::size_t most) {
   std::vector<std::vector<int>> below(at(size));  // rows of each column of L
   for (const auto& [row, column] : entries) {
     if (row != column) below[at(column)].push_back(row);

@@ -14,7 +14,7 @@ class ListedCholesky {
  public:
   /// `entries`: (row, column) of the lower part; the diagonal is always there. False where the factors would take more
   /// than `most` operations, and nothing is set. Allocates.
-  bool set_pattern(int size, std::vector<std::pair<int, int>> entries, std::size_t most);
+  bool set_pattern(int size, const std::vector<std::pair<int, int>>& entries, std::size_t most);
   /// Index into values() of an entry of the pattern.
   int place(int row, int column) const;
   /// The lower part, to be filled in before each factor(), also where zeros fill in. The diagonal has the places

@@ -25,8 +25,8 @@ class DotScreen {
     const int down = height() - 1 - y;
     // Unicode numbers the dots of a cell by columns, the lowest ones last.
     constexpr unsigned char bits[dots_down][dots_across] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
-    cells_[static_cast<std::size_t>(down / dots_down * columns_ + x / dots_across)] |=
-        bits[down % dots_down][x % dots_across];
+    cells_[static_cast<std::size_t>(down / dots_down) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(x / dots_across)] |= bits[down % dots_down][x % dots_across];
   }
 
   void line(int x0, int y0, int x1, int y1) {

@@ -57,8 +57,8 @@ class Animation {
   std::string name_of(BodyId body) const;
   Json point(BodyId body, const Vector3& position) const;
   Json points_of(int body) const;
-  Json body_json(const DrawnBody& body) const;
-  Json joint_json(const DrawnJoint& joint) const;
+  Json body_json(const DrawnBody& drawn) const;
+  Json joint_json(const DrawnJoint& drawn) const;
   Json marks() const;
 
   const Model& model_;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t piece = 1 << 20;          // bytes read at a time
+constexpr std::size_t read_size = 1 << 20;      // bytes read at a time
 constexpr std::size_t block_numbers = 1 << 16;  // given at a time
 
 template <class Take>
@@ -43,8 +43,8 @@ class Lines {
     while (end == std::string::npos) {
       text_.erase(0, std::exchange(at_, 0));
       const std::size_t had = text_.size();
-      text_.resize(had + piece);
-      stream_.read(text_.data() + had, static_cast<std::streamsize>(piece));
+      text_.resize(had + read_size);
+      stream_.read(text_.data() + had, static_cast<std::streamsize>(read_size));
       text_.resize(had + static_cast<std::size_t>(stream_.gcount()));
       if (stream_.bad()) unreadable_result(file_, std::strerror(errno));
       if (text_.size() == had) return false;

@@ -120,8 +120,9 @@ DerivedTable bearing_table(ResultReader& reader) {
                       "results.h5 of a run that came to its end has them, where a joint has play");
   }
   for (std::size_t i = 0; i < joints * bearing_sectors; ++i) {
+    const std::size_t joint = i / bearing_sectors;
     const double sector = static_cast<double>(i % bearing_sectors) + 0.5;
-    out.rows.push_back(static_cast<double>(i / bearing_sectors));
+    out.rows.push_back(static_cast<double>(joint));
     out.rows.push_back(sector * (2.0 * std::numbers::pi / static_cast<double>(bearing_sectors)));
     for (const std::vector<double>& table : tables) out.rows.push_back(table[i]);
   }

@@ -26,11 +26,11 @@ constexpr struct {
     {"impact", "1", "1 for an impact, 0 for a lasting contact"},
 };
 
-std::size_t place_of(const std::vector<RecordColumn>& columns, std::string_view name) {
+std::size_t place_among(const std::vector<RecordColumn>& columns, std::string_view name) {
   return static_cast<std::size_t>(std::ranges::find(columns, name, &RecordColumn::name) - columns.begin());
 }
 
-std::size_t place_of(const std::vector<std::string>& words, std::string_view word) {
+std::size_t place_among(const std::vector<std::string>& words, std::string_view word) {
   return static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
 }
 
@@ -47,9 +47,9 @@ void add_event_columns(const Model& model, RecordLayout& layout) {
   for (const JointElement& joint : model.joints) {
     layout.joints.push_back(joint.name);
     for (const Event& event : joint.layout.events) {
-      if (place_of(layout.kinds, event.name) == layout.kinds.size()) layout.kinds.emplace_back(event.name);
+      if (place_among(layout.kinds, event.name) == layout.kinds.size()) layout.kinds.emplace_back(event.name);
       for (const Channel& field : event.fields) {
-        if (place_of(layout.events, field.name) < layout.events.size()) continue;
+        if (place_among(layout.events, field.name) < layout.events.size()) continue;
         const std::string type = joint.component != nullptr ? joint.component->description.name : "a joint";
         layout.events.push_back(
             {field.name, field.unit, std::string(field.name) + " of the event", "events of " + type});
@@ -64,8 +64,8 @@ EventSink::EventSink(const Model& model, const RecordLayout& layout, Take take)
     auto& events = events_.emplace_back();
     for (const Event& event : joint.layout.events) {
       OfEvent& of = events.emplace_back();
-      of.kind = place_of(layout.kinds, event.name);
-      for (const Channel& field : event.fields) of.place.push_back(place_of(layout.events, field.name));
+      of.kind = place_among(layout.kinds, event.name);
+      for (const Channel& field : event.fields) of.place.push_back(place_among(layout.events, field.name));
     }
   }
 }

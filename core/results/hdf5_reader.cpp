@@ -173,7 +173,7 @@ class Hdf5File : public OpenHdf5 {
   void open_file() {
     const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
-    checked(H5Pset_file_locking(access, 0, 1));
+    checked(H5Pset_file_locking(access, false, true));
     const hid_t plain = H5Fopen(file_.c_str(), H5F_ACC_RDONLY, access);
     sealed_ = plain >= 0;
     checked(H5Pset_metadata_read_attempts(access, most_attempts));

@@ -103,7 +103,7 @@ Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& 
   checked(grows ? H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110)
                 : H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
-  checked(H5Pset_file_locking(access, 0, 1));
+  checked(H5Pset_file_locking(access, false, true));
   file = checked(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, creation, access));
   make();
   if (grows) checked(H5Fstart_swmr_write(file));
@@ -132,7 +132,7 @@ Hdf5Id Hdf5Writer::File::make_dataset(hid_t group, const std::string& name, hid_
   checked(H5Pset_chunk(creation, rank, chunks.data()));
   if (fill != nullptr) checked(H5Pset_fill_value(creation, type, fill));
   checked(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_INCR));
-  checked(H5Pset_obj_track_times(creation, 0));
+  checked(H5Pset_obj_track_times(creation, false));
   checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   if (!grows) {
     checked(H5Pset_shuffle(creation));
@@ -210,7 +210,7 @@ void Hdf5Writer::File::make_bearing(hid_t group) {
   const hsize_t sectors = bearing_sectors;
   const Hdf5Id space(H5Screate_simple(1, &sectors, nullptr), H5Sclose);
   const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  checked(H5Pset_obj_track_times(creation, 0));
+  checked(H5Pset_obj_track_times(creation, false));
   checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   Hdf5Id angle(H5Dcreate2(group, "angle", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
   std::vector<double> centres(bearing_sectors);

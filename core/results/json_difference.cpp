@@ -28,9 +28,9 @@ std::string differ(const std::string& place, const Json& then, const Json& now) 
   return fmt::format("{}: {} recorded, {} now", place, words_for(then), words_for(now));
 }
 
-class Difference {
+class JsonDifference {
  public:
-  explicit Difference(const std::vector<std::string>& left_out) : left_out_(left_out) {}
+  explicit JsonDifference(const std::vector<std::string>& left_out) : left_out_(left_out) {}
 
   std::string first(const Json& then, const Json& now, const std::string& place) const {
     if (is_left_out(place, left_out_)) return {};
@@ -79,7 +79,7 @@ std::size_t numbers_in(const Json& json, const std::string& place, const std::ve
 }  // namespace
 
 std::string first_difference(const Json& then, const Json& now, const std::vector<std::string>& left_out) {
-  return Difference(left_out).first(then, now, "");
+  return JsonDifference(left_out).first(then, now, "");
 }
 
 std::size_t count_numbers(const Json& json, const std::vector<std::string>& left_out) {

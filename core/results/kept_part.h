@@ -31,7 +31,7 @@ struct KeptFiles {
 
 /// Reads the kept part of the files in `directory` and copies that of results.h5 into a new file. Changes none of those
 /// that are there. Throws Error{file} "bad-checkpoint" where one holds less, other columns, or other numbers.
-KeptFiles read_kept(const std::filesystem::path& directory, const KeptPart& kept, ResultFormat format,
+KeptFiles read_kept(const std::filesystem::path& directory, const KeptPart& part, ResultFormat format,
                     const RecordLayout& layout, const Hdf5Writer::Options& options);
 
 /// Cuts the text files to what was kept and puts the new results.h5 in its place. Throws Error{file} "cannot-write".

@@ -28,7 +28,7 @@ std::vector<std::string> words_in(const matvar_t& variable) {
   std::vector<std::string> words;
   if (variable.class_type != MAT_C_CELL || variable.data == nullptr) return words;
   const auto* cells = static_cast<matvar_t* const*>(variable.data);
-  for (std::size_t i = 0; i < variable.nbytes / sizeof *cells; ++i) words.push_back(text_in(cells[i]));
+  for (std::size_t i = 0; i < variable.nbytes / sizeof(void*); ++i) words.push_back(text_in(cells[i]));
   return words;
 }
 

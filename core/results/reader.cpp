@@ -40,7 +40,7 @@ std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
     try {
       auto reader = open_hdf5(path / "results.h5");
       // Of a run that was killed early the text may hold rows when the other file has none yet.
-      if (!text || reader->sealed() || reader->open_rows(first_column)->next().size() > 0) return reader;
+      if (!text || reader->sealed() || !reader->open_rows(first_column)->next().empty()) return reader;
     } catch (const Error&) {
       if (!text) throw;
     }

@@ -100,7 +100,7 @@ class Recording {
   Recording(ResultDirectory directory, const Model& model, const Channels& channels, const Making& making,
             const KeptPart* kept);
   RecordThread::Writers start_writers(const Model& model);
-  RecordThread::Writers continued_writers(const Model& model, const KeptPart& kept);
+  RecordThread::Writers continued_writers(const Model& model, const KeptPart& part);
 
   ResultDirectory directory_;
   RunLog log_;

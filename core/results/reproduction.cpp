@@ -82,7 +82,9 @@ std::string different_words(const RecordLayout& then, const RecordLayout& now) {
   };
   std::string found = compare(then.columns, now.columns);
   if (found.empty()) found = compare(then.events, now.events);
-  for (const auto& [name, text] : then.attributes) {
+  for (const auto& attribute : then.attributes) {
+    const auto& name = attribute.first;
+    const auto& text = attribute.second;
     if (!found.empty() || name == "provenance" || name == "freeplay_version" || name == "inputs") continue;
     const auto same_name = [&](const auto& other) { return other.first == name; };
     const auto other = std::ranges::find_if(now.attributes, same_name);

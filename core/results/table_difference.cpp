@@ -1,7 +1,9 @@
 #include "results/table_difference.h"
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -75,7 +77,7 @@ struct Mismatch {
   double time = 0.0, then = 0.0, now = 0.0;
 };
 
-bool same_number(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_number(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 using Give = std::function<void(const ResultReader::Take&)>;
 using Same = std::function<bool(std::size_t column, double then, double now)>;

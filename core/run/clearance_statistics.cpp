@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
 namespace {
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr double whole_turn = 2.0 * M_PI;
 }  // namespace
 
 double BearingTable::angle(std::size_t sector) {

@@ -9,16 +9,16 @@
 
 namespace freeplay {
 namespace {
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_seen = std::numeric_limits<double>::quiet_NaN();
 constexpr double longest_impact = 4.0;   // of the duration of one by the law alone
 constexpr double impact_by_depth = 2.9;  // that duration, in greatest penetrations by approach speed
 constexpr double least_weight = 1e-300;  // of a stretch whose ends dissipate nothing
 
-double field(std::span<const double> fields, int index) { return index < 0 ? unknown : fields[at(index)]; }
+double field(std::span<const double> fields, int index) { return index < 0 ? not_seen : fields[at(index)]; }
 
 // By what the joint says or, where it does not, by the penetration that was reached.
-double is_impact(double told, double approach_speed, double depth, double duration) {
-  if (!std::isnan(told)) return told;
+double is_impact(double given, double approach_speed, double depth, double duration) {
+  if (!std::isnan(given)) return given;
   if (!(approach_speed > 0.0) || std::isnan(depth)) return 0.0;
   return duration <= longest_impact * impact_by_depth * depth / approach_speed ? 1.0 : 0.0;
 }
@@ -83,7 +83,7 @@ bool ContactLedger::look(OfJoint& joint, std::span<const double> row, const Poin
     return true;
   }
   const std::span numbers = std::span(numbers_).first(3 * joint.contacts.size());
-  std::ranges::fill(numbers, unknown);
+  std::ranges::fill(numbers, not_seen);
   if (!all_.handle(joint.joint)
            .contacts(all_.input(joint.joint, point, e), {numbers.data(), numbers.size()}, fault.message)) {
     fault.kind = Fault::Kind::plugin;
@@ -118,7 +118,7 @@ void ContactLedger::pass(OfJoint& joint, const StepEvents& events, std::size_t h
   const std::span<const double> fields = events.fields(event);
   if (kind.role == EventRole::contact_begin) {
     // What is on at the start of the run has been approached at a speed that is not known.
-    contact.approach_speed = started_ ? field(fields, kind.speed) : unknown;
+    contact.approach_speed = started_ ? field(fields, kind.speed) : not_seen;
     contact.begin = event.time;
     if (contact.on) return;  // its end had no event
     contact.on = true;
@@ -134,7 +134,7 @@ void ContactLedger::pass(OfJoint& joint, const StepEvents& events, std::size_t h
     stretch.ended = static_cast<int>(ended_.size());
     stretch.lost_before = contact.lost;
   }
-  const double told = field(fields, kind.duration), duration = std::isnan(told) ? event.time - contact.begin : told;
+  const double given = field(fields, kind.duration), duration = std::isnan(given) ? event.time - contact.begin : given;
   ended_.push_back(
       {happening,
        {.approach_speed = contact.approach_speed,
@@ -144,7 +144,7 @@ void ContactLedger::pass(OfJoint& joint, const StepEvents& events, std::size_t h
         .impact = is_impact(field(fields, kind.impact), contact.approach_speed, field(fields, kind.depth), duration),
         .begin = event.time - duration}});
   contact.on = false;
-  contact.approach_speed = unknown;
+  contact.approach_speed = not_seen;
   contact.begin = event.time;
   contact.lost = 0.0;
   contact.normal = contact.tangential = {};

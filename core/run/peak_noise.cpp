@@ -40,7 +40,7 @@ PeakNoise::PeakNoise(const Model& model, std::size_t values)
 void PeakNoise::event(int joint, int event, std::span<const double> fields) {
   const EventKind& kind = kinds_[at(joint)][at(event)];
   if (!kind.begins && !kind.ends) return;
-  const double told = kind.speed >= 0 ? fields[at(kind.speed)] : 0.0, speed = std::isnan(told) ? 0.0 : told;
+  const double given = kind.speed >= 0 ? fields[at(kind.speed)] : 0.0, speed = std::isnan(given) ? 0.0 : given;
   Contact& contact = contacts_[at(joint)];
   if (kind.ends) {
     contact.separation = speed;

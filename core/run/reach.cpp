@@ -5,10 +5,8 @@
 #include <deque>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "base/index.h"
-#include "system/joint_jacobian.h"
+#include "system/joint_freedom.h"
 
 namespace freeplay {
 namespace {
@@ -16,20 +14,17 @@ namespace {
 double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// How far the origins of a joint with play can stand apart while one surface is still within the other [m].
-double room(const JointLayout& layout) {
+double allowance(const JointLayout& layout) {
   constexpr double without_radius = 10.0;  // of the clearance
   return layout.smaller_radius > 0.0 ? layout.clearance + layout.smaller_radius : without_radius * layout.clearance;
 }
 
-/// Whether the rows of the ideal joint leave its second origin no way to move against the first.
+/// Whether the ideal joint leaves its second origin no way to move against the first.
 bool holds_origins(const JointElement& element, Space space) {
-  const int count = element.ideal_layout.constraint_rows, needed = space == Space::planar ? 2 : 3;
-  if (element.gear >= 0 || element.is_force || count < needed) return false;
+  if (element.gear >= 0 || element.is_force) return false;
   MarkerKinematics marker{};
   std::ranges::copy(no_rotation, marker.rotation);
-  const auto jacobian = joint_jacobian(element.ideal, count, marker, marker);
-  if (!jacobian) return false;
-  return Eigen::FullPivLU<Eigen::MatrixXd>(jacobian->middleCols(6, needed)).setThreshold(1e-9).rank() == needed;
+  return free_slides(element.ideal, element.ideal_layout, marker, marker) == (space == Space::planar ? 1 : 0);
 }
 
 }  // namespace
@@ -54,7 +49,7 @@ std::vector<double> reach(const Model& model) {
     for (const JointElement* joint : holding[index(due.front())]) {
       for (const auto& [from, to] :
            {std::pair(at(joint->marker_a), at(joint->marker_b)), std::pair(at(joint->marker_b), at(joint->marker_a))}) {
-        const double farthest = bound[from] + room(joint->layout);
+        const double farthest = bound[from] + allowance(joint->layout);
         const BodyId body = model.markers[to].body;
         if (body == ground || !(farthest < bound[to])) continue;
         for (const std::size_t other : on_body[index(body)]) {

@@ -18,7 +18,7 @@ class AppliedForces {
 
  private:
   void add_effort(int driver, Evaluation& e) const;
-  bool add_force(std::size_t force, double t, Evaluation& e) const;
+  bool add_force(std::size_t index, double t, Evaluation& e) const;
 
   const Model& model_;
   const Markers& markers_;

@@ -4,13 +4,13 @@
 
 namespace freeplay::force_map {
 
-void to_bodies(const planar::Arm* const (&pair)[2], const double* wrench, const double* derivatives, std::size_t width,
+void to_bodies(const planar::Arm* const (&arms)[2], const double* wrench, const double* derivatives, std::size_t width,
                double* by_q, double* by_v) {
-  const planar::Arm arms[2] = {*pair[0], *pair[1]};
+  const planar::Arm ends[2] = {*arms[0], *arms[1]};
   for (std::size_t i = 0; i < 2; ++i) {    // wrench on body i
     for (std::size_t k = 0; k < 2; ++k) {  // moved by body k
       double q[3][3], v[3][3];             // rows Fx Fy Mz at the marker, columns x y theta of body k
-      const planar::Arm& arm = arms[k];
+      const planar::Arm& arm = ends[k];
       for (std::size_t r = 0; r < 3; ++r) {
         const double* row = derivatives + (6 * i + at(planar::components[r])) * width;
         const double* pose = row + 6 * k;
@@ -23,10 +23,10 @@ void to_bodies(const planar::Arm* const (&pair)[2], const double* wrench, const 
         v[r][2] = twist[5] - arm.y * twist[0] + arm.x * twist[1];
       }
       for (std::size_t c = 0; c < 3; ++c) {
-        q[2][c] += arms[i].x * q[1][c] - arms[i].y * q[0][c];
-        v[2][c] += arms[i].x * v[1][c] - arms[i].y * v[0][c];
+        q[2][c] += ends[i].x * q[1][c] - ends[i].y * q[0][c];
+        v[2][c] += ends[i].x * v[1][c] - ends[i].y * v[0][c];
       }
-      if (i == k) q[2][2] -= arms[i].x * wrench[6 * i] + arms[i].y * wrench[6 * i + 1];
+      if (i == k) q[2][2] -= ends[i].x * wrench[6 * i] + ends[i].y * wrench[6 * i + 1];
       for (std::size_t r = 0; r < 3; ++r) {
         for (std::size_t c = 0; c < 3; ++c) {
           by_q[(3 * i + r) * 6 + 3 * k + c] = q[r][c];

@@ -143,7 +143,7 @@ bool Forces::evaluate_in(const Point& point, bool derivatives, Evaluation& e) co
   return true;
 }
 
-// What a joint returned, besides `out` in the work space.
+// Besides `out` it is in the work space.
 template <class Bodies>
 bool Forces::take(std::size_t f, const JointForces& out, bool derivatives, Evaluation& e) const {
   const int j = blocks_[f].joint;

@@ -66,8 +66,9 @@ class Forces {
   /// A joint's answer to a request that is zero, besides `out` in the work space.
   [[gnu::always_inline]] bool ask(const JointRecord& joint, const Point& point, bool derivatives, JointForces& out,
                                   Evaluation& e) const;
+  /// What the joint of force block f returned.
   template <class Bodies>
-  [[gnu::noinline]] bool take(std::size_t block, const JointForces& out, bool derivatives, Evaluation& e) const;
+  [[gnu::noinline]] bool take(std::size_t f, const JointForces& out, bool derivatives, Evaluation& e) const;
 
   const Model& model_;
   const Layout& layout_;

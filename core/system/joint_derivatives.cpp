@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "base/index.h"
 #include "system/planar_kinematics.h"
 #include "system/spatial_kinematics.h"
 
@@ -110,7 +111,7 @@ class Differences {
             (second ? in.b : in.a) = &k;
             return follow(in);
           };
-          const std::size_t column = static_cast<std::size_t>(component + 2 * twist + (second ? 6 : 0));
+          const std::size_t column = at(component + 2 * twist + (second ? 6 : 0));
           if (!difference(steps.of(component + twist), column, move_marker)) return false;
         }
       }

@@ -21,8 +21,8 @@ class PathFollower final : public FollowedMotion {
   PathFollower(const System& closed, std::span<const double> q, std::span<const double> h);
 
   std::unique_ptr<FollowedMotion::Work> make_work() const override;
-  bool evaluate(double t, Span<TimeValue> out, FollowedMotion::Work& work, MotionFault& fault) const noexcept override;
-  bool frame(int kinematics, double t, PathPose& pose, FollowedMotion::Work& work,
+  bool evaluate(double t, Span<TimeValue> out, FollowedMotion::Work& own, MotionFault& fault) const noexcept override;
+  bool frame(int kinematics, double t, PathPose& pose, FollowedMotion::Work& own,
              MotionFault& fault) const noexcept override;
 
  private:

@@ -63,7 +63,7 @@ class System {
   void set_offset(int joint, const InitialOffset& offset) { joints_.set_offset(joint, offset); }
 
   /// Fills the wanted terms; false with `Evaluation::fault` when an element fails. Does not allocate.
-  bool evaluate(const Point& point, unsigned terms, Evaluation& out) const;
+  bool evaluate(const Point& point, unsigned terms, Evaluation& e) const;
   /// The same where `known` may hold the terms at this very point already, but for coordinates of joints: the two
   /// then change places.
   bool evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const;

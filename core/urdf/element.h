@@ -15,6 +15,8 @@
 
 namespace freeplay::urdf {
 
+/// Whether the tag has this name.
+inline bool is(const XmlElement& element, std::string_view name) { return element.Name() == name; }
 Spot spot_of(const XmlElement& element, const XmlAttribute& attribute);
 /// Of the attribute of that name, or of the element's name where there is none.
 Spot spot_of(const XmlElement& element, const char* attribute);

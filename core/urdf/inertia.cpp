@@ -52,7 +52,7 @@ Eigen::Matrix3d repaired(const Eigen::Matrix3d& inertia) {
   Eigen::Vector3d p = solver.eigenvalues().cwiseMax(0.0);
   const double missing = p[2] - p[1] - p[0];
   if (missing > 0.0) p.head<2>().array() += 0.5 * missing;
-  const Eigen::Matrix3d axes = solver.eigenvectors();
+  const Eigen::Matrix3d& axes = solver.eigenvectors();
   return axes * p.asDiagonal() * axes.transpose();
 }
 

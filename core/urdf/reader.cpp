@@ -25,8 +25,6 @@ std::string label(const XmlElement& xml) {
   return name == nullptr ? fmt::format("a {}", xml.Name()) : fmt::format("{} '{}'", xml.Name(), name->Value());
 }
 
-bool is(const XmlElement& element, std::string_view name) { return element.Name() == name; }
-
 Eigen::Vector3d vector_of(const ::urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
 JointType type_of(const ::urdf::Joint& joint) {

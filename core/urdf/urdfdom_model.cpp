@@ -31,8 +31,6 @@ class Listener : public console_bridge::OutputHandler {
   std::string first_;
 };
 
-bool is(const XmlElement& element, std::string_view name) { return element.Name() == name; }
-
 bool is_name(std::string_view attribute) {
   return attribute == "name" || attribute == "link" || attribute == "joint" || attribute == "filename";
 }

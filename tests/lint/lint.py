@@ -19,6 +19,7 @@ import spelling
 from sources import ROOT, Finding, changed, git, sources
 
 FOLDERS = ("core", "joints", "contact", "solvers", "plugins")  # that clang-tidy judges
+BROKEN = os.path.join("plugins", "probes")  # on purpose
 SUPPRESSION = re.compile(r"NOLINT(?:NEXTLINE|BEGIN|END)?(?P<checks>\([\w.,* -]+\))?(?P<reason>: \S)?")
 PRAGMA = re.compile(r"#\s*pragma\s+(?:GCC|clang)\s+diagnostic\s+ignored")
 # Options of GCC that clang refuses.
@@ -63,36 +64,49 @@ def layering_findings(_):
 def tidy_findings(options):
     units = Units(options.build)
     chosen = units.all() if options.all else units.of(changed(options.since))
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         texts = pool.map(lambda unit: run("clang-tidy", "-p", units.folder, "--quiet", unit), chosen)
     found = {}
     for path, line, words in re.findall(r"^(\S+?):(\d+):\d+: (?:warning|error): (.*)$", "".join(texts), re.M):
         words = words.replace(",-warnings-as-errors", "")
-        found[os.path.relpath(path, ROOT), int(line), words] = None
+        path = os.path.relpath(path, ROOT)
+        if not path.startswith(os.pardir):  # else in a library
+            found[path, int(line), words] = None
     return "%d of %d units" % (len(chosen), len(units.all())), [Finding(*where) for where in found]
 
 
 class Units:
-    """What is compiled, and the sources in each: those of a room are compiled several at a time."""
+    """What clang-tidy reads at once, and the sources in each: most of its time goes into headers, so that all sources of
+    a room that are compiled together, several at a time, make one unit."""
 
     INCLUDE = re.compile(r'^#include "(.*)"$', re.M)
+    TOGETHER = re.compile(r"/(?P<room>\w+)\.dir/Unity/unity_\d+_cxx\.cxx$")
 
     def __init__(self, build):
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             commands = json.load(file)
         self.folder = os.path.join(build, "lint")
         os.makedirs(self.folder, exist_ok=True)
-        self.sources = {}
+        self.sources, chosen = {}, {}
         for command in commands:
-            command["command"] = UNKNOWN_TO_CLANG.sub("", command["command"])
             parts = self.sources_of(command["file"])
-            if parts and all(part.split(os.sep)[0] in FOLDERS for part in parts):
-                self.sources[command["file"]] = parts
-        with open(os.path.join(self.folder, "compile_commands.json"), "w", encoding="utf-8") as file:
-            json.dump(commands, file)
+            if any(part.split(os.sep)[0] not in FOLDERS or part.startswith(BROKEN) for part in parts):
+                continue
+            unit = self.unit_of(command["file"])
+            self.sources.setdefault(unit, []).extend(parts)
+            text = UNKNOWN_TO_CLANG.sub("", command["command"]).replace(command["file"], unit)
+            chosen[unit] = {**command, "file": unit, "command": text}
+        for unit, parts in self.sources.items():
+            if unit.startswith(self.folder):
+                write(unit, "".join('#include "%s"\n' % os.path.join(ROOT, part) for part in parts))
+        write(os.path.join(self.folder, "compile_commands.json"), json.dumps(list(chosen.values())))
 
-    def sources_of(self, unit):
-        paths = self.INCLUDE.findall(read(unit)) if unit.endswith("_cxx.cxx") else [unit]
+    def unit_of(self, path):
+        together = self.TOGETHER.search(path)
+        return os.path.join(self.folder, together["room"] + ".cpp") if together else path
+
+    def sources_of(self, path):
+        paths = self.INCLUDE.findall(read(path)) if self.TOGETHER.search(path) else [path]
         return [os.path.relpath(path, ROOT) for path in paths]
 
     def all(self):
@@ -121,6 +135,11 @@ def run(*words):
 def read(path):
     with open(os.path.join(ROOT, path), encoding="utf-8") as file:
         return file.read()
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
 
 
 CHECKS = {

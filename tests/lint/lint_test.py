@@ -1,6 +1,7 @@
 """The checks of ./dev lint find what they are for, and let pass what is right."""
 import contextlib
 import io
+import json
 import os
 import shutil
 import subprocess
@@ -70,6 +71,7 @@ class Lint(unittest.TestCase):
         face = "struct A {\n" + "".join("int f%d();\nint f%d(int x);\n" % (i, i) for i in range(26)) + "};\n"
         self.assertEqual("a.cpp:1: A has 26 public functions, at most 25", str(sizes.too_large("a.cpp", face)[0]))
         self.assertEqual("a.cpp: 451 lines, at most 450", str(sizes.too_large("a.cpp", "\n" * 451)[0]))
+        self.assertEqual("a.py: 451 lines, at most 450", str(sizes.too_large("a.py", "\n" * 451)[0]))
 
     def test_every_exception_of_size_is_still_needed(self):
         for key in list(sizes.EXCEPTIONS):
@@ -101,23 +103,28 @@ class Lint(unittest.TestCase):
             words = file.read().split()
         self.assertEqual(sorted(set(words), key=lambda word: (word.lower(), word)), words)
 
-    def test_units_are_those_of_changed_sources_and_of_users_of_changed_headers(self):
+    def test_units_are_rooms_and_single_sources_that_changed_or_use_a_changed_header(self):
         with tempfile.TemporaryDirectory() as folder:
-            unity = os.path.join(folder, "unity_0_cxx.cxx")
-            with open(unity, "w", encoding="utf-8") as file:
-                file.write('#include "%s/core/base/unit.cpp"\n#include "%s/core/base/expression.cpp"\n' % (lint.ROOT, lint.ROOT))
+            batches = os.path.join(folder, "base.dir", "Unity")
+            os.makedirs(batches)
+            parts = [os.path.join(batches, "unity_%d_cxx.cxx" % i) for i in range(2)]
+            for part, source in zip(parts, ("unit", "expression")):
+                lint.write(part, '#include "%s/core/base/%s.cpp"\n' % (lint.ROOT, source))
             single = os.path.join(lint.ROOT, "joints", "revolute.cpp")
             of_tests = os.path.join(lint.ROOT, "tests", "bench", "step_bench.cpp")
-            with open(os.path.join(folder, "compile_commands.json"), "w", encoding="utf-8") as file:
-                file.write("[%s]" % ", ".join('{"file": "%s", "command": "c++ -fvect-cost-model=very-cheap -c"}' % path
-                                              for path in (unity, single, of_tests)))
+            lint.write(os.path.join(folder, "compile_commands.json"), json.dumps(
+                [{"file": path, "command": "c++ -fvect-cost-model=very-cheap -c " + path}
+                 for path in (*parts, single, of_tests)]))
             units = lint.Units(folder)
-            self.assertEqual(sorted([unity, single]), units.all())
-            self.assertEqual([unity], units.of(["core/base/unit.cpp", "README.md"]))
-            self.assertEqual([unity], units.of(["core/base/expression.h"]))
+            room = os.path.join(units.folder, "base.cpp")
+            self.assertEqual(sorted([room, single]), units.all())
+            self.assertEqual([room], units.of(["core/base/unit.cpp", "README.md"]))
+            self.assertEqual([room], units.of(["core/base/expression.h"]))
             self.assertEqual([single], units.of(["joints/revolute.cpp", "tests/bench/step_bench.cpp"]))
+            with open(room, encoding="utf-8") as file:
+                self.assertEqual(2, file.read().count("#include"))
             with open(os.path.join(units.folder, "compile_commands.json"), encoding="utf-8") as file:
-                self.assertNotIn("vect-cost-model", file.read())
+                self.assertEqual(["c++ -c " + room, "c++ -c " + single], [command["command"] for command in json.load(file)])
 
     def test_words_that_are_no_checks_or_revisions_are_refused(self):
         for words, answer in ((["spell"], "there is no check 'spell'"), (["--since", "no-such"], "no revision 'no-such'")):

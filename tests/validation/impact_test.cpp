@@ -163,17 +163,17 @@ TEST(ImpactUnderLoad, ReboundIsOfSecondOrderWithOneStage) {
   }
 }
 
-struct Flight {
+struct Thrown {
   const char* name;
   double r0[2], v0[2];
   const char* gravity;
   double time, normal, tangential;
 };
-class FreeFlight : public ::testing::TestWithParam<Flight> {};
+class FreeFlight : public ::testing::TestWithParam<Thrown> {};
 
 // Roots of the quartic |e(t)| = c in 34 digits.
 TEST_P(FreeFlight, FirstContactIsTheRootOfTheParabola) {
-  const Flight& want = GetParam();
+  const Thrown& want = GetParam();
   Puck puck;
   puck.x = want.r0[0];
   puck.y = want.r0[1];
@@ -195,26 +195,26 @@ TEST_P(FreeFlight, FirstContactIsTheRootOfTheParabola) {
   EXPECT_NEAR(begin.fields[tangential_speed], want.tangential, 1e-8 * want.normal);
   EXPECT_NEAR(begin.fields[speed], want.normal, 1e-7 * want.normal);
 }
-void PrintTo(const Flight& flight, std::ostream* out) { *out << flight.name; }
+void PrintTo(const Thrown& flight, std::ostream* out) { *out << flight.name; }
 
 INSTANTIATE_TEST_SUITE_P(
     Flights, FreeFlight,
     ::testing::Values(
-        Flight{"thrown",
+        Thrown{"thrown",
                {0.0, 0.0},
                {0.05, 0.0},
                "[0, -9.81]",
                0.00196388550299565,
                0.0527417933072436,
                -0.00945891547441952},
-        Flight{"blown",
+        Thrown{"blown",
                {3e-05, -4e-05},
                {-0.02, 0.01},
                "[12, -9.81]",
                0.00421981293940259,
                0.042800093435473,
                0.00962059152226299},
-        Flight{"straight", {0.0, 9e-05}, {0.1, 0.3}, "[0, 0]", 3.31501278244824e-05, 0.303150127824482, -0.09}),
+        Thrown{"straight", {0.0, 9e-05}, {0.1, 0.3}, "[0, 0]", 3.31501278244824e-05, 0.303150127824482, -0.09}),
     [](const auto& made) { return std::string(made.param.name); });
 
 struct Journal {

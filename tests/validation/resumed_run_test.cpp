@@ -11,14 +11,14 @@ namespace freeplay::test {
 namespace {
 
 /// One kind of run of one model.
-struct Case {
+struct Resumption {
   std::string model;       ///< below mechanisms/, without its ending
   std::string integrator;  ///< empty: that of the model
   enum Steps { own, fixed, adaptive } steps = own;
   long most_steps = 1500;
   int rows_in_contact = 0;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const Resumption& c, std::ostream* out) {
   constexpr const char* kinds[] = {"", " fixed", " adaptive"};
   *out << c.model << ' ' << c.integrator << kinds[c.steps];
   if (c.rows_in_contact > 0) *out << ' ' << c.rows_in_contact << " rows in contact";
@@ -30,21 +30,21 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
 
 /// A model that is assembled, each time from its text.
 struct Prepared {
-  explicit Prepared(const Case& what) : model(model_of(what)), system(*model) { start = assemble(system); }
-  static std::unique_ptr<Model> model_of(const Case& what) {
+  explicit Prepared(const Resumption& what) : model(model_of(what)), system(*model) { start = assemble(system); }
+  static std::unique_ptr<Model> model_of(const Resumption& what) {
     std::unique_ptr<Model> model = load(mechanism(what.model), options(what));
     model->settings.rows_in_contact = what.rows_in_contact;
     return model;
   }
-  static BuildOptions options(const Case& what) {
+  static BuildOptions options(const Resumption& what) {
     BuildOptions out;
     if (!what.integrator.empty()) out.integrator = what.integrator;
-    if (what.steps == Case::own) return out;
+    if (what.steps == Resumption::own) return out;
     const std::unique_ptr<Model> model = load(mechanism(what.model), out);
     const Settings& own = model->settings;
     const bool is_adaptive = own.adaptive || own.accuracy > 0.0;
-    if (what.steps == Case::fixed && is_adaptive) out.step = 2.5e-4 * (own.end - own.start);
-    if (what.steps == Case::adaptive && !is_adaptive) out.accuracy = 1e-6;
+    if (what.steps == Resumption::fixed && is_adaptive) out.step = 2.5e-4 * (own.end - own.start);
+    if (what.steps == Resumption::adaptive && !is_adaptive) out.accuracy = 1e-6;
     return out;
   }
 
@@ -99,7 +99,7 @@ Result run_on(Prepared& prepared, long most_steps, const RunState* from,
 }
 
 /// States at seeded random steps, early and late ones, and two where a contact acts or is just over.
-std::vector<Saved> save_on_the_way(Prepared& prepared, const Case& what, Result& whole) {
+std::vector<Saved> save_on_the_way(Prepared& prepared, const Resumption& what, Result& whole) {
   std::seed_seq seed(what.model.begin(), what.model.end());
   std::mt19937 random(seed);
   const auto between = [&](long low, long high) { return std::uniform_int_distribution<long>(low, high)(random); };
@@ -143,7 +143,7 @@ void expect_same_end(const Result& whole, const Saved& from, const Result& rest,
   EXPECT_TRUE(whole.end == rest.end) << "state at the end";
 }
 
-void resume_everywhere(const Case& what) {
+void resume_everywhere(const Resumption& what) {
   Prepared prepared(what), fresh(what);
   Result whole;
   const std::vector<Saved> saved = save_on_the_way(prepared, what, whole);
@@ -155,16 +155,20 @@ void resume_everywhere(const Case& what) {
   EXPECT_TRUE(!saved.empty() || whole.outcome.status == RunStatus::failed);
 }
 
-class ResumedRun : public ::testing::TestWithParam<Case> {};
+class ResumedRun : public ::testing::TestWithParam<Resumption> {};
 TEST_P(ResumedRun, EndsBitForBitWhereTheWholeRunEnds) { resume_everywhere(GetParam()); }
-INSTANTIATE_TEST_SUITE_P(
-    Models, ResumedRun,
-    ::testing::Values(Case{"3-rrr", "", Case::own, 4000}, Case{"slider-crank", "bathe", Case::adaptive},
-                      Case{"slider-crank", "dopri5", Case::adaptive}, Case{"3-rpr", "generalized-alpha", Case::fixed},
-                      Case{"spatial/bricard", "", Case::own}, Case{"spatial/stewart", "", Case::own},
-                      Case{"spatial/slider-crank", "bathe", Case::fixed}, Case{"validation/cradle-5", "", Case::own},
-                      Case{"3-rrr", "", Case::own, 4000, 3}, Case{"slider-crank", "dopri5", Case::adaptive, 1500, 10},
-                      Case{"spatial/slider-crank", "", Case::adaptive, 1500, 5}));
+INSTANTIATE_TEST_SUITE_P(Models, ResumedRun,
+                         ::testing::Values(Resumption{"3-rrr", "", Resumption::own, 4000},
+                                           Resumption{"slider-crank", "bathe", Resumption::adaptive},
+                                           Resumption{"slider-crank", "dopri5", Resumption::adaptive},
+                                           Resumption{"3-rpr", "generalized-alpha", Resumption::fixed},
+                                           Resumption{"spatial/bricard", "", Resumption::own},
+                                           Resumption{"spatial/stewart", "", Resumption::own},
+                                           Resumption{"spatial/slider-crank", "bathe", Resumption::fixed},
+                                           Resumption{"validation/cradle-5", "", Resumption::own},
+                                           Resumption{"3-rrr", "", Resumption::own, 4000, 3},
+                                           Resumption{"slider-crank", "dopri5", Resumption::adaptive, 1500, 10},
+                                           Resumption{"spatial/slider-crank", "", Resumption::adaptive, 1500, 5}));
 
 std::vector<std::string> shipped_models() {
   const std::filesystem::path folder = std::string(source_folder()) + "/mechanisms";
@@ -186,9 +190,9 @@ TEST_P(ResumedModel, EndsBitForBitWithEveryIntegratorLong) {
   }
   ASSERT_GT(integrators.size(), 7u);
   for (const std::string& integrator : integrators) {
-    for (const Case::Steps steps : {Case::own, Case::fixed, Case::adaptive}) {
-      if (integrator.empty() != (steps == Case::own)) continue;
-      const Case what{GetParam(), integrator, steps};
+    for (const Resumption::Steps steps : {Resumption::own, Resumption::fixed, Resumption::adaptive}) {
+      if (integrator.empty() != (steps == Resumption::own)) continue;
+      const Resumption what{GetParam(), integrator, steps};
       SCOPED_TRACE(::testing::PrintToString(what));
       try {
         resume_everywhere(what);
@@ -201,7 +205,7 @@ TEST_P(ResumedModel, EndsBitForBitWithEveryIntegratorLong) {
 INSTANTIATE_TEST_SUITE_P(Shipped, ResumedModel, ::testing::ValuesIn(shipped_models()));
 
 TEST(SavedState, IsRefusedByAnotherModel) {
-  const Case one{"pendulum", "", Case::own, 5}, other{"four-bar", "", Case::own, 5};
+  const Resumption one{"pendulum", "", Resumption::own, 5}, other{"four-bar", "", Resumption::own, 5};
   Prepared pendulum(one), four_bar(other);
   const RunState state = run_on(pendulum, 5, nullptr, {}).end;
   const Channels channels(*four_bar.model);
@@ -214,7 +218,7 @@ TEST(SavedState, IsRefusedByAnotherModel) {
 }
 
 TEST(SavedState, IsRefusedWhereNumbersAreMissing) {
-  const Case what{"slider-crank", "", Case::own, 50};
+  const Resumption what{"slider-crank", "", Resumption::own, 50};
   Prepared prepared(what);
   const RunState state = run_on(prepared, 50, nullptr, {}).end;
   const Channels channels(*prepared.model);

@@ -222,7 +222,7 @@ class Joint {
   /// of a TimeFunction among the parameters are known to the host.
   virtual double next_corner(double /*t*/) const { return unbounded; }
   /// Joints with several contacts (events of the role contact_begin): three numbers for each, in the order of these
-  /// events: F_N [N], F_T [N] and the power that it dissipates [W]. By them impulses and losses are told apart; a joint
+  /// events: F_N [N], F_T [N] and the power that it dissipates [W]. By them impulses and losses are kept apart; a joint
   /// that leaves them as they are shares them among the contacts that are on.
   virtual void contacts(const JointInput&, Span<double> /*numbers*/) const {}
 };

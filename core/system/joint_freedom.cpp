@@ -1,4 +1,4 @@
-#include "drawing/joint_freedom.h"
+#include "system/joint_freedom.h"
 
 #include <Eigen/LU>
 
@@ -21,7 +21,18 @@ int free_directions(const Rows& rows, Eigen::Vector3d& direction) {
   return free;
 }
 
+Rows slide_rows(const JointJacobian& jacobian) { return jacobian.middleCols<3>(6); }
+
 }  // namespace
+
+std::optional<int> free_slides(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
+                               const MarkerKinematics& b) {
+  if (layout.constraint_rows == 0) return 3;
+  const auto jacobian = joint_jacobian(joint, layout.constraint_rows, a, b);
+  if (!jacobian) return std::nullopt;
+  Eigen::Vector3d direction;
+  return free_directions(slide_rows(*jacobian), direction);
+}
 
 JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                            const MarkerKinematics& b) {
@@ -30,7 +41,7 @@ JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, con
   if (count == 0) return freedom;
   const auto jacobian = joint_jacobian(joint, count, a, b);
   if (!jacobian) return {0, 0, freedom.slide, freedom.turn};
-  const Rows along = jacobian->middleCols<3>(6), about = jacobian->rightCols<3>();
+  const Rows along = slide_rows(*jacobian), about = jacobian->rightCols<3>();
   freedom.slides = free_directions(along, freedom.slide);
   // Turns are free where the second origin can follow: sums of rows that do not see it must not see them.
   Eigen::MatrixXd blind = Eigen::MatrixXd::Identity(count, count);

@@ -1,6 +1,8 @@
 // What a joint leaves free where it stands, from its constraint rows alone.
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -19,5 +21,9 @@ struct JointFreedom {
 /// A joint that fails there counts as one that leaves nothing free.
 JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                            const MarkerKinematics& b);
+
+/// Its `slides` alone; of a planar joint with the one across the plane. Nothing where the joint fails.
+std::optional<int> free_slides(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
+                               const MarkerKinematics& b);
 
 }  // namespace freeplay

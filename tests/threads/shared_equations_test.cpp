@@ -1,5 +1,4 @@
-// Simulations that share their equations of motion, each in a thread of its own: what one thread alone computes. The
-// preset tsan runs these tests with the thread sanitizer.
+// Simulations that share their equations of motion, each in a thread of its own, compute what one thread alone does.
 #include <cstring>
 #include <thread>
 
