@@ -402,7 +402,8 @@ bool PostureSolver::rates(const Demand& demand, const Posture& posture, std::vec
     assemble(task, demand);
     if (speeds) {
       solver_.compute(matrix_);
-      solver_.setThreshold(1e-10);
+      // On a fold of its branch a posture is known to the root of the rounding only.
+      solver_.setThreshold(1e-7 * std::min(1.0, system_.size()));
       if (solver_.rank() < matrix_.cols()) return false;
     }
     for (int r = 0; r < system_.layout().nc(); ++r) right_[r] = speeds ? e_.nu[at(r)] : e_.gamma[at(r)];
