@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -109,7 +110,7 @@ class Servant {
       Message message(question);
       answer(message.number(), message, send);
     } catch (const Error& error) {
-      send(failed, error.message());
+      send(failed, error.message() + "\n" + error.hint());
     } catch (const std::bad_alloc&) {
       send(no_more_memory, {});
     } catch (const std::exception& error) {
@@ -217,11 +218,14 @@ class Hdf5OfProcess : public ResultReader {
       const ServantProcess::Answer answer = process_->ask(bytes + more);
       if (answer.kind == no_more_memory) throw std::bad_alloc();
       if (answer.kind == failed) {
-        throw Error(Error::Category::file, "unreadable-result", std::string(answer.text()), {file_, 0, 0});
+        const std::string_view text = answer.text(), message = text.substr(0, text.find('\n'));
+        const std::string_view hint = text.substr(std::min(message.size() + 1, text.size()));
+        throw Error(Error::Category::file, "unreadable-result", std::string(message), {file_, 0, 0}, std::string(hint));
       }
       return answer;
     } catch (const ServantGone& gone) {
-      unreadable_result(file_, fmt::format("it is damaged: the HDF5 library {} while it reads it", gone.what()));
+      unreadable_result(file_, fmt::format("it is damaged: the HDF5 library {} while it reads it", gone.what()), 0,
+                        what_to_do_with_a_damaged_file);
     }
   }
 

@@ -60,7 +60,7 @@ auto guarded(const std::string& file, Act&& act) {
   try {
     return act();
   } catch (const Hdf5Failure& failure) {
-    unreadable_result(file, failure.what());
+    unreadable_result(file, failure.what(), 0, what_to_do_with_a_damaged_file);
   }
 }
 

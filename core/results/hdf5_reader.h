@@ -10,6 +10,8 @@
 
 namespace freeplay {
 
+inline constexpr const char* what_to_do_with_a_damaged_file = "take a whole copy of it, or run the model again";
+
 class OpenHdf5 : public ResultReader {
  public:
   virtual std::unique_ptr<RowSource> open_events() = 0;
