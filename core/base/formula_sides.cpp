@@ -89,6 +89,15 @@ void FormulaSides::bound(const std::size_t* first, const std::size_t* last, cons
   }
 }
 
+IntervalJet FormulaSides::range(const Span& span) {
+  reopen();
+  roots_.clear();
+  touched_at_begin_.clear();
+  bound({static_cast<int>(expression_.program_.size()) - 1, 0, 0, false}, span, 0);
+  reopen();
+  return ranges_.front();
+}
+
 void FormulaSides::locate_between(std::size_t side, const Span& span) {
   Jet low, high;
   if (!value_of(side, span.low, low) || !value_of(side, span.high, high)) return;

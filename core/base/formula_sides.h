@@ -47,6 +47,9 @@ class FormulaSides {
   /// Adds a root of a side that is above at one end of a span and below at the other.
   void locate_between(std::size_t side, const Span& span);
 
+  /// What the whole formula can come to over a span. Nothing is decided before nor after.
+  IntervalJet range(const Span& span);
+
   /// Instructions that were executed so far, here and by others who say so.
   long work() const { return work_; }
   void count_work(long instructions) { work_ += instructions; }

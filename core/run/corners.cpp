@@ -228,19 +228,29 @@ void Corners::format_unresolved() {
   if (run_.adaptive) return;
   const double step = std::min(run_.settings.step, run_.settings.interval);
   for (const InputActivity::Unresolved& input :
-       InputActivity(run_.system, run_.settings.interval, 0.0).closer_than(step)) {
-    run_.warnings.push_back(fmt::format(
-        "{} '{}': it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over what it "
-        "does between them; ask for an accuracy instead, or for steps of {:.2g} s",
-        input.section, *input.name, input.from, input.to, step, 0.1 * (input.to - input.from)));
+       InputActivity(run_.system, run_.settings.interval, 0.0).unresolved_by(step)) {
     const std::string element = fmt::format("{} '{}'", input.section, *input.name);
+    const double apart = input.to - input.from, wanted = (input.corners ? 0.1 : 0.25) * apart;
+    const std::string what =
+        input.corners
+            ? fmt::format(
+                  "it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over "
+                  "what it does between them",
+                  input.from, input.to, step)
+            : fmt::format("it changes at t = {:.9g} s for some {:.2g} s, which the step of {:.3g} s goes over",
+                          input.from + 0.5 * apart, apart, step);
+    run_.warnings.push_back(
+        fmt::format("{}: {}; ask for an accuracy instead, or for steps of {:.2g} s", element, what, wanted));
     run_.outcome.doubts.push_back(
         {.id = "unresolved-input",
          .level = Trust::doubtful,
-         .message = fmt::format("{} has corners {:.3g} s apart, closer than the step of {:.3g} s", element,
-                                input.to - input.from, step),
+         .message =
+             input.corners
+                 ? fmt::format("{} has corners {:.3g} s apart, closer than the step of {:.3g} s", element, apart, step)
+                 : fmt::format("{} changes at t = {:.9g} s in a way that steps of {:.3g} s do not show", element,
+                               input.from + 0.5 * apart, step),
          .element = element,
-         .value = input.to - input.from,
+         .value = apart,
          .limit = step});
   }
 }

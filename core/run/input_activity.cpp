@@ -21,7 +21,6 @@ constexpr double slow_load = 0.5;           // of a short load
 constexpr double slow_bend = 0.4;           // of a motion whose powers are integrated and whose forces have their peaks
 constexpr double coarsest = 0.5;            // of the shortest change: no step up to there goes over one
 constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
-constexpr long enough_work = 20'000'000;    // instructions, to see whether steps of one size go over a change
 constexpr double hidden_after = 64.0, hidden_before = 8.0;
 constexpr int seen_degree = 4;                           // of polynomials that integrators take as they are
 constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
@@ -397,32 +396,6 @@ bool InputActivity::signals_of(const TimedJoint& timed, JointInput in, double t,
   fault.kind = Fault::Kind::plugin;
   fault.joint = timed.joint;
   return false;
-}
-
-std::vector<InputActivity::Unresolved> InputActivity::closer_than(double step) {
-  std::vector<Unresolved> found;
-  const auto add_closest = [&](const char* section, const std::string* name, std::span<const double> times) {
-    Unresolved closest{section, name, 0.0, unbounded};
-    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-      const bool rounded = times[i + 1] - times[i] <= 1e-12 * std::max(std::abs(times[i]), std::abs(times[i + 1]));
-      if (!rounded && times[i + 1] - times[i] < closest.to - closest.from) {
-        closest.from = times[i], closest.to = times[i + 1];
-      }
-    }
-    const bool known = std::ranges::any_of(found, [&](const Unresolved& u) { return u.name == name; });
-    if (!known && closest.to - closest.from < step * (1.0 - 1e-9)) found.push_back(closest);
-  };
-  for (Formula& formula : formulas_) {
-    std::vector<double> times;
-    double corner = formula.course.next_corner(start_, end_);
-    while (corner < end_ && formula.course.work() < enough_work) {
-      times.push_back(corner);
-      corner = formula.course.next_corner(corner, end_);
-    }
-    add_closest(formula.section, formula.name, times);
-  }
-  for (const Table& table : tables_) add_closest("driver", table.name, table.table->times());
-  return found;
 }
 
 }  // namespace freeplay

@@ -48,14 +48,16 @@ class InputActivity {
   /// Whether there is such a corner before or after t.
   bool hides_errors(double t) const { return hidden_error(t, std::numeric_limits<double>::infinity()) > 1.0; }
 
-  /// An input whose corners follow each other within `step`, by the name of what has it; formulas and tables.
+  /// An input that steps of one size go over, by the name of what has it.
   struct Unresolved {
     const char* section;  ///< "driver", "force" or "joint"
     const std::string* name;
-    double from, to;  ///< the closest two [s]
+    double from, to;  ///< its closest two corners, or where it changes in between [s]
+    bool corners;
   };
-  /// To be asked of a run that has not begun.
-  std::vector<Unresolved> closer_than(double step);
+  /// To be asked of a run that has not begun: those with corners closer than `step`, and those that do something
+  /// between the ends of steps that these do not show.
+  std::vector<Unresolved> unresolved_by(double step);
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

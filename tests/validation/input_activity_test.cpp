@@ -375,5 +375,39 @@ TEST(InputActivity, FixedStepsThatGoOverAPulseAreDoubted) {
   EXPECT_EQ(doubts("0.09 ms"), 0);
 }
 
+// Pulses without corners between the ends of steps, ripples, and slow loads that steps of this size show.
+TEST(InputActivity, FixedStepsThatGoOverASmoothPulseAreDoubted) {
+  const auto doubted = [](const char* value, const char* step) {
+    const ModelRun run(replaced(mass(force(value), 1e-6), "accuracy: 9.9999999999999995e-07",
+                                fmt::format("step: {0}, output: {{interval: {0}}}", step)));
+    const auto doubt = std::ranges::find(run.outcome().doubts, "unresolved-input", &TrustReason::id);
+    return doubt == run.outcome().doubts.end() ? std::string() : doubt->message;
+  };
+  EXPECT_EQ(doubted("1000*exp(-((t - 0.70031)/2e-4)^2)", "10 ms"),
+            "force 'hit' changes at t = 0.70031 s in a way that steps of 0.01 s do not show");
+  EXPECT_NE(doubted("50*sin(3*t) + 1000*exp(-((t - 0.70031)/1e-6)^2)*smooth(t, 0.2, 0.4)", "1 ms"), "");
+  EXPECT_NE(doubted("1/(1 + ((t - 0.70031)/2e-4)^2)", "1 ms"), "");
+  EXPECT_NE(doubted("5*sin(3000*t)", "1 ms"), "");
+  EXPECT_EQ(doubted("1000*exp(-((t - 0.70031)/2e-4)^2)", "0.08 ms"), "");
+  EXPECT_EQ(doubted("10/(1 + sin(50*t)^2)", "2 ms"), "");
+  EXPECT_EQ(doubted("20*sin(7*t) + 0.01*t^2", "10 ms"), "");
+  EXPECT_EQ(doubted("20*max(0, sin(7*t))", "10 ms"), "");
+}
+
+// Points closer than the steps are no doubt as long as the steps show what they make.
+TEST(InputActivity, TablesAreDoubtedByWhatStepsHideOfThem) {
+  const auto doubts = [](const char* points) {
+    const ModelRun run(replaced(
+        mass(fmt::format(
+                 "drivers: {{push: {{joint: guide, kind: force, table: {{points: [{}], interpolation: linear}}}}}}",
+                 points),
+             1e-6),
+        "accuracy: 9.9999999999999995e-07", "step: 10 ms, output: {interval: 10 ms}"));
+    return std::ranges::count(run.outcome().doubts, "unresolved-input", &TrustReason::id);
+  };
+  EXPECT_EQ(doubts("[0, 0], [0.999, 0.999], [1.001, 1.001], [2, 2]"), 0);
+  EXPECT_EQ(doubts("[0, 0], [0.993, 0], [0.996, 10], [0.999, 0], [2, 0]"), 1);
+}
+
 }  // namespace
 }  // namespace freeplay::test

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "run/input_activity.h"
+#include "run/unseen_change.h"
+
+namespace freeplay {
+namespace {
+constexpr long enough_corners = 20'000'000;  // instructions to find them
+constexpr std::size_t most_corners = 100'000;
+constexpr double one_time = 1e-12;  // of a time: corners that are closer are one
+constexpr double nearly = 1e-9;     // of a step
+
+/// The closest two of some times; infinitely far apart where there is one or none.
+std::pair<double, double> closest_of(const std::vector<double>& times) {
+  std::pair<double, double> closest{0.0, unbounded};
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const double apart = times[i + 1] - times[i];
+    const bool rounded = apart <= one_time * std::max(std::abs(times[i]), std::abs(times[i + 1]));
+    if (!rounded && apart < closest.second - closest.first) closest = {times[i], times[i + 1]};
+  }
+  return closest;
+}
+}  // namespace
+
+std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step) {
+  std::vector<Unresolved> found;
+  const auto known = [&](const std::string* name) {
+    return std::ranges::any_of(found, [&](const Unresolved& u) { return u.name == name; });
+  };
+  const auto add_corners = [&](const char* section, const std::string* name, const std::vector<double>& times) {
+    const auto [from, to] = closest_of(times);
+    if (!known(name) && to - from < step * (1.0 - nearly)) found.push_back({section, name, from, to, true});
+  };
+  const auto add_change = [&](const char* section, const std::string* name, const auto& function, int derivative) {
+    if (known(name)) return;
+    const auto change = UnseenChange::of(function, start_, end_, step, derivative);
+    if (!change) return;
+    found.push_back({section, name, change->time - change->length, change->time + change->length, false});
+  };
+  const auto derivative = [](CornerKind sharp, Unit unit) {
+    if (sharp == CornerKind::load) return 0;
+    return unit == Unit::other ? 1 : 2;
+  };
+  for (Formula& formula : formulas_) {
+    std::vector<double> times;
+    double corner = formula.course.next_corner(start_, end_);
+    while (corner < end_ && formula.course.work() < enough_corners) {
+      times.push_back(corner);
+      corner = formula.course.next_corner(corner, end_);
+    }
+    add_corners(formula.section, formula.name, times);
+    add_change(formula.section, formula.name, *formula.expression, derivative(formula.sharp, formula.unit));
+  }
+  for (const Table& table : tables_)
+    add_change("driver", table.name, *table.table, derivative(table.sharp, table.unit));
+  for (const TellingJoint& telling : telling_) {
+    std::vector<double> times;
+    Fault fault;
+    double corner = start_;
+    while (corner < end_ && times.size() < most_corners && ask(telling.joint, corner, corner, fault)) {
+      if (corner < end_) times.push_back(corner);
+    }
+    add_corners("joint", &system_.model().joints[static_cast<std::size_t>(telling.joint)].name, times);
+  }
+  return found;
+}
+
+}  // namespace freeplay
