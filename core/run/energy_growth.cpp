@@ -21,9 +21,10 @@ double EnergyGrowth::energy_of(const Evaluation& e) const {
 
 // Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step, and what
 // potential energies of weights and work of loads are rounded to: of a short step from rest, or from links in line with
-// what pushes them, nothing else is left.
+// what pushes them, nothing else is left. An accuracy leaves open speeds of as much a second.
 double EnergyGrowth::energy_of_drives() const {
-  double squared = 0.0, mass = 0.0, lifted = std::abs(run_.system.inertia().gravity_potential(run_.e_accepted->q));
+  double squared = run_.settings.accuracy * run_.settings.accuracy, mass = 0.0,
+         lifted = std::abs(run_.system.inertia().gravity_potential(run_.e_accepted->q));
   for (std::size_t d = 0; d < run_.model.drivers.size(); ++d) {
     const bool rotates = run_.system.joints().layout(run_.model.drivers[d].joint).coordinate == Coordinate::angle;
     if (!prescribes(run_.model.drivers[d].kind)) {

@@ -52,6 +52,16 @@ drivers: {d: {joint: g, kind: %s}}
 simulation: {end: %s, %s}
 """
 
+# A mass on a spring, shaken by next to nothing.
+OSCILLATION = """freeplay: 1
+bodies: {m: {mass: 1 kg, inertia: 0.01}, ground: {frames: {w: [0.3, 0]}}}
+joints: {rail: {type: prismatic, between: [ground, m]}}
+forces:
+  s: {type: spring-damper, between: [m, ground/w], stiffness: 1e4, free_length: 0.3}
+  h: {type: force, at: m, value: ["%g*1e4*sin(60*t)", 0]}
+simulation: {end: 2 s, accuracy: 1 um}
+"""
+
 
 def slider_crank(*changes):
     text = SLIDER_CRANK
@@ -77,6 +87,12 @@ class Trust(ProgramTest):
                              "outside: repeat}", "10 s")):
             self.run_model(DRIVEN % (driver, end, "accuracy: 1 um"))
             self.assertNotIn("energy-residual", self.ids(), (driver, self.trust))
+
+    def test_oscillations_far_below_the_accuracy_are_no_growth_of_energy(self):
+        for amplitude in (1e-7, 1e-8, 1e-9):
+            for integrator in ("dopri5", "verner7", "bathe"):
+                self.run_model(OSCILLATION % amplitude, "--integrator", integrator)
+                self.assertEqual("good", self.trust["verdict"], (amplitude, integrator, self.trust))
 
     def test_jumps_of_forces_are_no_residual_in_fixed_steps(self):
         self.run_model(DRIVEN % ("velocity, table: {points: [[0,0],[1,0],[1.01,1],[2,1],[2.01,0],[3,0]], "
