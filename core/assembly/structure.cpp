@@ -241,13 +241,20 @@ class Examination {
     if (held || model_.drivers.empty()) return;
     const MatrixXd free = kernel(open);
     const int width = released_.layout().body_velocities();
-    const auto moves = [&](int marker) {
-      const BodyId b = body_of(marker);
+    const auto moves = [&](BodyId b) {
       return b != ground && free.cols() > 0 && free.middleRows(width * b, width).norm() > counts_as_motion;
     };
     for (const Driver& driver : model_.drivers) {
       const JointElement& joint = model_.joints[at(driver.joint)];
-      if (moves(joint.marker_a) || moves(joint.marker_b)) continue;
+      if (moves(body_of(joint.marker_a)) || moves(body_of(joint.marker_b))) continue;
+      if (std::ranges::any_of(joined_to(joint), moves)) {
+        doubt("dead-point",
+              fmt::format("driver '{}' starts joint '{}' at a dead point: it moves nothing until something else moves "
+                          "the mechanism; start beside it",
+                          driver.name, joint.name),
+              driver.name, driver.location);
+        continue;
+      }
       doubt(
           "locked",
           fmt::format("driver '{}' moves nothing: the joints let neither body of '{}' move; leave out what holds them "
@@ -255,6 +262,25 @@ class Examination {
                       driver.name, joint.name),
           driver.name, driver.location);
     }
+  }
+
+  /// Bodies that hang on those of a joint without ground between them.
+  std::vector<BodyId> joined_to(const JointElement& joint) const {
+    std::vector<BodyId> found;
+    const auto reach = [&](BodyId body) {
+      if (body == ground || std::ranges::count(found, body) > 0) return;
+      found.push_back(body);
+    };
+    reach(body_of(joint.marker_a));
+    reach(body_of(joint.marker_b));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (const JointElement& other : model_.joints) {
+        const BodyId a = body_of(other.marker_a), b = body_of(other.marker_b);
+        if (a == found[i]) reach(b);
+        if (b == found[i]) reach(a);
+      }
+    }
+    return found;
   }
 
   void find_left_free() {

@@ -323,6 +323,27 @@ simulation: {end: 1 s, accuracy: 1 um}
         _, messages = self.start("".join(line for line in braced.splitlines(True) if "brace" not in line))
         self.assertNotIn("locked", [m["id"] for m in messages])
 
+    def test_a_force_on_a_slider_in_dead_centre_is_said_to_move_nothing(self):
+        model = """freeplay: 1
+bodies:
+  crank: {mass: 0.3 kg, inertia: 1e-4, frames: {tip: [50 mm, 0]}}
+  coupler: {mass: 0.2 kg, inertia: 2.5e-4, frames: {tip: [120 mm, 0]}}
+  slider: {mass: 0.1 kg, inertia: 1e-4}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  guide: {type: prismatic, between: [ground, slider]}
+  wrist: {type: revolute, between: [coupler/tip, slider]}
+drivers: {m: {joint: guide, kind: force, value: -100}}
+initial: {joints: {main: 0}}
+simulation: {end: 0.05 s, step: 10 us}
+"""
+        _, messages = self.start(model)
+        self.assertEqual(["dead-point"], [m["id"] for m in messages])
+        self.assertIn("driver 'm' starts joint 'guide' at a dead point: it moves nothing", messages[0]["message"])
+        _, messages = self.start(model.replace("main: 0}", "main: 1 deg}"))
+        self.assertEqual([], messages)
+
     def test_a_train_finds_the_turn_in_which_given_poses_fit(self):
         # The poses hold up to whole turns: the large wheel turns by 144 deg less each turn of the small one.
         for turned in (9, 14, 40, -14):
