@@ -13,7 +13,7 @@ constexpr double little = 1e-3;           // of that of the whole run
 constexpr double slow = 0.5;              // rate times the length of four steps
 constexpr long enough_work = 20'000'000;  // instructions of bounds
 constexpr double shortest = 1e-12;        // of a step: spans that are not halved any more
-constexpr double rounding = 1e-15;        // of times: those closer are one
+constexpr double same_time = 1e-15;       // of times: those closer are one
 constexpr int parts = 64;                 // of a step, to see how far a change goes
 
 const Interval& signal(const IntervalJet& range, int derivative) {
@@ -118,7 +118,7 @@ std::optional<UnseenChange::Found> UnseenChange::of(const Expression& formula, d
   if (!formula.depends_on_time()) return {};
   UnseenChange change(from, to, step, derivative);
   FormulaCourse course(formula, from, to);
-  FormulaSides sides(formula, from, to, rounding * std::max(std::abs(from), std::abs(to)));
+  FormulaSides sides(formula, from, to, same_time * std::max(std::abs(from), std::abs(to)));
   change.note_range(formula);
   const double length = 4.0 * step;
   const auto quiet = [&](double t, double span) {
