@@ -90,6 +90,7 @@ class Results(ProgramTest):
             file.write(b"damaged")
         _, stderr = self.freeplay("seal", "damaged", code=6)
         self.assertIn("damaged/results.h5' cannot be read", stderr)
+        _, stderr = self.freeplay("export", "damaged/results.h5", "--to", "csv", "--out", "copy.csv", code=6)
         self.assertIn("take a whole copy of it, or run the model again", stderr)
         self.assertNotIn("summary.json", os.listdir(self.path("damaged")))
         os.remove(self.path("damaged", "results.h5"))
