@@ -51,7 +51,7 @@ class Message {
   ByteNumbers<void (*)()> numbers_;
 };
 
-void append(std::string& out, const std::vector<RecordColumn>& columns) {
+void append_list(std::string& out, const std::vector<RecordColumn>& columns) {
   append_bytes(out, static_cast<std::uint64_t>(columns.size()));
   for (const RecordColumn& column : columns) {
     for (const std::string* text : {&column.name, &column.unit, &column.long_name, &column.source}) {
@@ -60,16 +60,16 @@ void append(std::string& out, const std::vector<RecordColumn>& columns) {
   }
 }
 
-void append(std::string& out, const std::vector<std::string>& words) {
+void append_list(std::string& out, const std::vector<std::string>& words) {
   append_bytes(out, static_cast<std::uint64_t>(words.size()));
   for (const std::string& word : words) append_bytes(out, std::string_view(word));
 }
 
 std::string bytes_of_layout(const RecordLayout& layout) {
   std::string out;
-  append(out, layout.columns);
-  append(out, layout.events);
-  for (const auto* words : {&layout.joints, &layout.kinds, &layout.bearings}) append(out, *words);
+  append_list(out, layout.columns);
+  append_list(out, layout.events);
+  for (const auto* words : {&layout.joints, &layout.kinds, &layout.bearings}) append_list(out, *words);
   append_bytes(out, static_cast<std::uint64_t>(layout.attributes.size()));
   for (const auto& [name, text] : layout.attributes) {
     append_bytes(out, std::string_view(name));

@@ -9,8 +9,8 @@ namespace freeplay {
 namespace {
 
 constexpr double noticed = 0.1;           // of the range that four steps show
-constexpr double little = 1e-3;           // of that of the whole run
-constexpr double slow = 0.5;              // rate times the length of four steps
+constexpr double little_of_run = 1e-3;    // of that of the whole run
+constexpr double slow_enough = 0.5;       // rate times the length of four steps
 constexpr long enough_work = 20'000'000;  // instructions of bounds
 constexpr double shortest = 1e-12;        // of a step: spans that are not halved any more
 constexpr double same_time = 1e-15;       // of times: those closer are one
@@ -48,7 +48,7 @@ bool UnseenChange::look(const Function& function, double begin, Window& window) 
   }
   const auto [low, high] = std::ranges::minmax(window.shown);
   window.low = low, window.high = high;
-  window.allowed = std::max(noticed * (high - low), little * (high_ - low_));
+  window.allowed = std::max(noticed * (high - low), little_of_run * (high_ - low_));
   return true;
 }
 
@@ -99,7 +99,7 @@ UnseenChange::Found UnseenChange::measured(const Function& function, const Windo
 // Whether a signal that bends by no more than `second` is as four steps show it.
 bool UnseenChange::is_slow(const Interval& second, double length) const {
   const double bend = std::max(std::abs(second.low), std::abs(second.high));
-  return bend * length * length <= 8.0 * little * (high_ - low_);
+  return bend * length * length <= 8.0 * little_of_run * (high_ - low_);
 }
 
 std::optional<double> UnseenChange::hidden(const Expression& formula, FormulaSides& sides, const Window& window,
@@ -123,7 +123,7 @@ std::optional<UnseenChange::Found> UnseenChange::of(const Expression& formula, d
   const double length = 4.0 * step;
   const auto quiet = [&](double t, double span) {
     course.next_corner(t, t + span);
-    return course.rate_within(t, t + span) * length <= slow ||
+    return course.rate_within(t, t + span) * length <= slow_enough ||
            (derivative == 0 && change.is_slow(sides.range({t, t + span}).acceleration, length));
   };
   Window window;
