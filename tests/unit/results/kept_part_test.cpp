@@ -84,6 +84,18 @@ std::vector<double> numbers(ResultReader& reader, bool of_events) {
   return all;
 }
 
+/// What read_kept() says of files that do not fit their checkpoint.
+std::string refusal_of_kept(const std::filesystem::path& folder, const KeptPart& part, ResultFormat format,
+                            const RecordLayout& layout) {
+  try {
+    read_kept(folder, part, format, layout, {});
+  } catch (const Error& error) {
+    EXPECT_EQ("bad-checkpoint", error.id());
+    return error.message();
+  }
+  return "not refused";
+}
+
 TEST(KeptPart, OfARunThatGoesOnGivesTheFilesOfOneThatNeverStopped) {
   const ScratchFolder folder, whole_folder;
   const RecordLayout layout = two_columns();
@@ -138,13 +150,7 @@ TEST(KeptPart, RefusesFilesThatHoldLessAndLeavesThemAsTheyAre) {
   std::filesystem::resize_file(folder.file("events.csv"), std::filesystem::file_size(folder.file("events.csv")) - 3);
   const auto before = folder.read("results.csv") + folder.read("events.csv") + folder.read("results.h5");
   const auto refused = [&](const KeptPart& part, ResultFormat format) {
-    try {
-      read_kept(folder.path(), part, format, layout, {});
-    } catch (const Error& error) {
-      EXPECT_EQ("bad-checkpoint", error.id());
-      return error.message();
-    }
-    return std::string("not refused");
+    return refusal_of_kept(folder.path(), part, format, layout);
   };
   EXPECT_THAT(refused(counted(60, 12, layout), ResultFormat::both),
               HasSubstr("events.csv' does not fit its checkpoint: it holds 11 events, the checkpoint counts 12"));
@@ -159,13 +165,7 @@ TEST(KeptPart, RefusesRowsAndEventsThatAreNotThoseOfTheCheckpoint) {
   const RecordLayout layout = two_columns();
   const KeptPart part = counted(60, 12, layout);
   const auto refused = [&](const ScratchFolder& folder, ResultFormat format) {
-    try {
-      read_kept(folder.path(), part, format, layout, {});
-    } catch (const Error& error) {
-      EXPECT_EQ("bad-checkpoint", error.id());
-      return error.message();
-    }
-    return std::string("not refused");
+    return refusal_of_kept(folder.path(), part, format, layout);
   };
   const auto edited = [&](const char* name, const std::string& from, const std::string& to, ResultFormat format) {
     const ScratchFolder folder;
