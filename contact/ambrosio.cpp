@@ -11,21 +11,23 @@ namespace {
 /// Ambrosio 2003, Impact of rigid and flexible multibody systems.
 class Ambrosio final : public FrictionLaw {
  public:
-  explicit Ambrosio(const Parameters& p) : mu_(p.number("mu")), v0_(p.number("v0")), v1_(p.number("v1")) {
-    if (!(v0_ < v1_)) throw BadParameter("v1", "out-of-range", "'v1' must be above 'v0'");
+  explicit Ambrosio(const Parameters& p) : mu_(p.number("mu")), kinks_{p.number("v0"), p.number("v1")} {
+    if (!(kinks_[0] < kinks_[1])) throw BadParameter("v1", "out-of-range", "'v1' must be above 'v0'");
   }
 
   FrictionForce evaluate(const FrictionState& state, Span<double>) const override {
+    const auto [v0, v1] = kinks_;
     const double speed = std::abs(state.slip_speed);
-    if (speed <= v0_) return {};
-    const bool ramp = speed < v1_;
-    const double share = ramp ? (speed - v0_) / (v1_ - v0_) : 1.0;
+    if (speed <= v0) return {};
+    const bool ramp = speed < v1;
+    const double share = ramp ? (speed - v0) / (v1 - v0) : 1.0;
     const double coefficient = -std::copysign(mu_ * share, state.slip_speed);
-    return {coefficient * state.normal_force, coefficient, ramp ? -mu_ * state.normal_force / (v1_ - v0_) : 0.0};
+    return {coefficient * state.normal_force, coefficient, ramp ? -mu_ * state.normal_force / (v1 - v0) : 0.0};
   }
+  Span<const double> kinks() const override { return kinks_; }
 
  private:
-  double mu_, v0_, v1_;
+  double mu_, kinks_[2];
 };
 
 constexpr Parameter ambrosio_parameters[] = {

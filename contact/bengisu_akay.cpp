@@ -28,6 +28,7 @@ class BengisuAkay final : public FrictionLaw {
     const double fall = (mu_s_ - mu_k_) * std::exp(-xi_ * (speed - v0_));
     return friction_force({std::copysign(mu_k_ + fall, state.slip_speed), -xi_ * fall}, state);
   }
+  Span<const double> kinks() const override { return {&v0_, 1}; }
 
  private:
   double mu_s_, mu_k_, v0_, xi_;

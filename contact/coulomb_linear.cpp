@@ -18,6 +18,7 @@ class CoulombLinear final : public FrictionLaw {
     if (std::abs(share) >= 1.0) return friction_force({std::copysign(mu_, share), 0.0}, state);
     return friction_force({mu_ * share, mu_ / vs_}, state);
   }
+  Span<const double> kinks() const override { return {&vs_, 1}; }
 
  private:
   double mu_, vs_;

@@ -37,8 +37,11 @@ class Lugre final : public FrictionLaw {
     internal_rate[0] = rate;
     return friction_force({sigma0_ * z + sigma1_ * rate + sigma2_ * v, sigma1_ * rate_slope + sigma2_}, state);
   }
+  /// The decay of the bristles has one where slip changes its direction.
+  Span<const double> kinks() const override { return at_rest; }
 
  private:
+  static constexpr double at_rest[] = {0.0};
   double mu_s_, mu_k_, v_stribeck_, sigma0_, sigma1_, sigma2_;
 };
 

@@ -21,6 +21,7 @@ class Threlfall final : public FrictionLaw {
     return friction_force(
         {std::copysign(top * std::expm1(decay), state.slip_speed), 3.0 * top / v_r_ * std::exp(decay)}, state);
   }
+  Span<const double> kinks() const override { return {&v_r_, 1}; }
 
  private:
   double mu_, v_r_;

@@ -117,6 +117,16 @@ inline void write_events(const JointInput& in, const Approach& gap, Span<double>
   g[1] = in.history[phase] != flight ? gap.penetration : not_a_number;
   rate[0] = rate[1] = gap.rate;
 }
+/// Functions that are zero where the law of friction has a kink, two for each of its speeds: one for each direction.
+inline void write_kinks(const FrictionLawRef& law, double slip, Span<double> g) {
+  const Span<const double> speeds = law.kinks();
+  for (std::size_t i = 0; i < speeds.size; ++i) {
+    g[2 * i] = slip - speeds[i];
+    g[2 * i + 1] = slip + speeds[i];
+  }
+}
+inline std::int32_t count_kinks(const FrictionLawRef& law) { return static_cast<std::int32_t>(2 * law.kinks().size); }
+
 /// A contact is an impact as long as it lasts no more than so many times as long as one of the law alone.
 inline constexpr double longest_impact = 4.0;
 

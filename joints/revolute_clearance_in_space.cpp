@@ -60,6 +60,7 @@ class RevoluteClearanceInSpace final : public Joint {
     play_.surfaces.declare(layout);
     layout.events = end_events;
     layout.event_roles = contact_roles;
+    layout.kinks = play_.slides ? ends * count_kinks(play_.friction) : 0;
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
   }
@@ -186,6 +187,19 @@ class RevoluteClearanceInSpace final : public Joint {
       numbers[3 * i] = share(i) * f.normal;
       numbers[3 * i + 1] = share(i) * tangential;
       numbers[3 * i + 2] = share(i) * lost;
+    }
+  }
+  void kinks(const JointInput& in, Span<double> g) const override {
+    const RelativeMotion<double> motion = motion_of(in);
+    const std::size_t each = g.size / ends;
+    for (std::size_t i = 0, end = 0; i < places; ++i) {
+      if (!is_end(i)) continue;
+      const Span<double> own = g.part(each * end++, each);
+      const JointInput one = contact_input(in, i);
+      if (one.history[phase] == flight || !touches(one, gap(motion, i))) continue;
+      const EndGap<double> there = bearing_.end(motion, i, play_);
+      const double speed = std::sqrt(dot(there.slip, there.slip));
+      write_kinks(play_.friction, std::copysign(speed, along_turn(there, there.slip)), own);
     }
   }
   /// In flight no part of the journal moves by more than the clearance; beside a contact, not towards the bearing.

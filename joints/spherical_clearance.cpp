@@ -41,6 +41,7 @@ class SphericalClearance final : public Joint {
     play_.surfaces.declare(layout);
     layout.events = ball_events;
     layout.event_roles = begin_and_end;
+    layout.kinks = play_.slides ? count_kinks(play_.friction) : 0;
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
   }
@@ -120,6 +121,12 @@ class SphericalClearance final : public Joint {
     channels[6] = pair.power(f.total);
     channels[7] = in.history[phase] == flight ? 0.0 : 1.0;
     channels[8] = std::sqrt(dot(gap.slip, gap.slip));
+  }
+  void kinks(const JointInput& in, Span<double> g) const override {
+    if (in.history[phase] == flight) return;
+    const PairInFirstAxes pair = seen_from_a(in);
+    const Gap<double> gap(pair.numbers(), play_);
+    if (touches(in, gap.approach())) write_kinks(play_.friction, std::sqrt(dot(gap.slip, gap.slip)), g);
   }
   /// In flight the ball moves by no more than the clearance.
   double step_limit(const JointInput& in) const override {

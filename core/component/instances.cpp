@@ -73,6 +73,9 @@ constexpr abi::FrictionLawTable named_friction_law{
         *out = law.evaluate(*in, rate);
         require_finite(std::isfinite(out->tangential) || !std::isfinite(in->normal_force + in->slip_speed));
       });
+    },
+    [](const void* self, Span<const double>* speeds, Message* m) noexcept {
+      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { *speeds = law.kinks(); });
     }};
 
 CreationFault fault_of(const Component& component, Status status, const Message& message) {

@@ -66,6 +66,7 @@ class JointRef {
   bool contacts(const JointInput& in, Span<double> numbers, Message& m) const {
     return ok(table_->contacts(self_, &in, numbers, &m));
   }
+  bool kinks(const JointInput& in, Span<double> g, Message& m) const { return ok(table_->kinks(self_, &in, g, &m)); }
 
  private:
   static bool ok(Status status) { return status == Status::ok; }

@@ -48,6 +48,17 @@ abi::JointTable defaults<abi::JointTable>() {
     return Status::ok;
   };
   table.contacts = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
+  table.kinks = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
+  return table;
+}
+template <>
+abi::FrictionLawTable defaults<abi::FrictionLawTable>() {
+  abi::FrictionLawTable table{};
+  table.size = sizeof table;
+  table.kinks = [](const void*, Span<const double>* speeds, Message*) noexcept {
+    *speeds = {};
+    return Status::ok;
+  };
   return table;
 }
 

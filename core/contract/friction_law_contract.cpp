@@ -24,9 +24,13 @@ class FrictionLawCheck {
       const int count = subject.law.internal_variables();
       findings_.expect("answers", count >= 0, [&] { return fmt::format("{} internal variables", count); });
       count_ = static_cast<std::size_t>(std::max(count, 0));
+      for (const double speed : subject.law.kinks()) {
+        findings_.expect("answers", speed >= 0.0 && std::isfinite(speed),
+                         [&] { return fmt::format("kinks() has a slip speed of {} m/s", speed); });
+      }
     } catch (const std::exception& e) {
       const std::string text = e.what();
-      findings_.expect("answers", false, [&] { return "internal_variables() fails: " + text; });
+      findings_.expect("answers", false, [&] { return "internal_variables() or kinks() fails: " + text; });
     }
     watched.end();
   }

@@ -39,6 +39,7 @@ AdaptiveRun::AdaptiveRun(const RunParts& parts, EventPursuit& pursuit)
     : parts_(parts),
       run_(parts.run),
       pursuit_(pursuit),
+      force_kinks_(parts.run),
       control_(step_limits(parts.run.settings), error_power(parts.run.integrator_layout)),
       budget_(load_errors(error_power(parts.run.integrator_layout)) / accuracy_per_step,
               error_power(parts.run.integrator_layout)),
@@ -129,6 +130,7 @@ AdaptiveRun::Found AdaptiveRun::attempt(Search& search) {
 AdaptiveRun::Found AdaptiveRun::shorten(Search& search, bool converged) {
   ++run_.outcome.rejected;
   search.hunted = {};
+  search.at_force_kink = false;
   double& dt = search.dt;
   if (converged) {
     control_.reject(dt, run_.error, search.hidden > 1.0 ? beside_a_root : unbounded);
@@ -164,10 +166,28 @@ AdaptiveRun::Found AdaptiveRun::judge(Search& search) {
   const double whole = run_.trial.t() - run_.accepted.t();
   double resolved = whole;
   if (!parts_.corners.resolves_joints(resolved)) return Found::failed;
-  if (!(resolved < barely * whole)) return end_at_event(search);
+  if (!(resolved < barely * whole)) return end_at_force_kink(search);
   ++run_.outcome.rejected;
   search.hunted = {};
   search.dt = resolved;
+  return Found::no;
+}
+
+AdaptiveRun::Found AdaptiveRun::end_at_force_kink(Search& search) {
+  const bool matters = force_kinks_.any() && ForceKinks::hidden * run_.error > 1.0;
+  if (!matters || search.at_force_kink) return end_at_event(search);
+  double part = 1.0;
+  Fault fault;
+  if (!force_kinks_.first_inside(part, fault)) {
+    parts_.failure.fail_with(fault, run_.trial.t());
+    return Found::failed;
+  }
+  const double shorter = part * (run_.trial.t() - run_.accepted.t());
+  if (!(part < 1.0) || shorter < control_.limits().smallest) return end_at_event(search);
+  ++run_.outcome.rejected;
+  search.at_force_kink = true;
+  search.hunted = {};
+  search.dt = shorter;
   return Found::no;
 }
 
@@ -194,7 +214,7 @@ bool AdaptiveRun::accept(const Search& search) {
   const CornerKind corner = parts_.corners.end_step(at_kink ? std::optional(search.kink) : std::nullopt);
   if (at_kink && corner == CornerKind::motion) {
     control_.restart();
-  } else if (search.hunted.joint < 0) {
+  } else if (search.hunted.joint < 0 && !search.at_force_kink) {
     control_.accept(run_.trial.t() - run_.accepted.t(), run_.error);
   }
   if (!parts_.acceptance.accept(

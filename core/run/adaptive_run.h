@@ -6,6 +6,7 @@
 #include "run/error_budget.h"
 #include "run/event_bracket.h"
 #include "run/event_pursuit.h"
+#include "run/force_kinks.h"
 #include "run/parts.h"
 #include "run/step_control.h"
 
@@ -37,6 +38,7 @@ class AdaptiveRun {
     double asked = 0.0;            ///< length before detours [s]
     bool quick = false;            ///< an input acts for a short time
     bool unbounded_slope = false;  ///< of it, at a corner beside the step
+    bool at_force_kink = false;    ///< the attempt is to end there
     double hidden = 1.0;           ///< errors of the last attempt are so many times what it shows
   };
   enum class Found { no, yes, failed };  ///< a step that may stand; failed: the run is over
@@ -46,6 +48,7 @@ class AdaptiveRun {
   Found attempt(Search& search);
   Found shorten(Search& search, bool converged);
   Found judge(Search& search);
+  Found end_at_force_kink(Search& search);
   Found end_at_event(Search& search);
   void allow_error(Search& search);
   bool in_contact(const Evaluation& e) const;
@@ -56,6 +59,7 @@ class AdaptiveRun {
   const RunParts parts_;
   RunContext& run_;
   EventPursuit& pursuit_;
+  ForceKinks force_kinks_;
   StepControl control_;
   ErrorBudget budget_;       // of steps over short loads
   double velocity_allowed_;  // by which velocities may err in the step to come [m/s]

@@ -27,6 +27,9 @@ class FrictionLaw {
   virtual int internal_variables() const { return 0; }
   /// `internal_rate` has internal_variables() entries [unit of z per second].
   virtual FrictionForce evaluate(const FrictionState& state, Span<double> internal_rate) const = 0;
+  /// Slip speeds >= 0 [m/s] at which the force or a rate has a kink, in both directions of slip. Runs with error
+  /// control end a step there: beside a kink a step errs by more than its estimate shows.
+  virtual Span<const double> kinks() const { return {}; }
 };
 
 namespace abi {
@@ -35,6 +38,7 @@ struct FrictionLawTable {
   void (*destroy)(void* self) noexcept;
   Status (*internal_variables)(const void* self, std::int32_t* count, Message*) noexcept;
   Status (*evaluate)(const void* self, const FrictionState*, Span<double>, FrictionForce*, Message*) noexcept;
+  Status (*kinks)(const void* self, Span<const double>* speeds, Message*) noexcept;
 };
 
 template <class Law>
@@ -45,6 +49,9 @@ inline constexpr FrictionLawTable friction_law_table{
     },
     [](const void* self, const FrictionState* in, Span<double> rate, FrictionForce* out, Message* m) noexcept {
       return guarded(m, [&] { *out = static_cast<const Law*>(self)->evaluate(*in, rate); });
+    },
+    [](const void* self, Span<const double>* speeds, Message* m) noexcept {
+      return guarded(m, [&] { *speeds = static_cast<const Law*>(self)->kinks(); });
     }};
 
 template <class Law>
@@ -70,6 +77,13 @@ class FrictionLawRef {
     Message message;
     abi::require(table_->evaluate(self_, &state, internal_rate, &force, &message), message);
     return force;
+  }
+  /// Valid as long as the law lives.
+  Span<const double> kinks() const {
+    Span<const double> speeds;
+    Message message;
+    abi::require(table_->kinks(self_, &speeds, &message), message);
+    return speeds;
   }
 
  private:

@@ -111,6 +111,7 @@ struct JointLayout {
   Span<const ChannelRole> channel_roles;
   /// One for each of `events`. Empty: from names that end in contact_begin and contact_end.
   Span<const EventRole> event_roles;
+  std::int32_t kinks = 0;  ///< numbers that kinks() fills
 };
 
 /// Everything a joint may read. All views are valid during the call only.
@@ -225,6 +226,9 @@ class Joint {
   /// events: F_N [N], F_T [N] and the power that it dissipates [W]. By them impulses and losses are kept apart; a joint
   /// that leaves them as they are shares them among the contacts that are on.
   virtual void contacts(const JointInput&, Span<double> /*numbers*/) const {}
+  /// Functions of which each is zero where a force has a kink, as at a speed at which a law changes its formula; NaN:
+  /// not now. A step with error control ends there if its error could matter. Where forces begin or end is an event.
+  virtual void kinks(const JointInput&, Span<double> /*g*/) const {}
 };
 
 namespace abi {
@@ -250,6 +254,7 @@ struct JointTable {
   Status (*free_distance)(const void*, const JointInput*, double*, Message*) noexcept;
   Status (*next_corner)(const void*, double t, double* corner, Message*) noexcept;
   Status (*contacts)(const void*, const JointInput*, Span<double> numbers, Message*) noexcept;
+  Status (*kinks)(const void*, const JointInput*, Span<double> g, Message*) noexcept;
 };
 
 /// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
@@ -307,6 +312,9 @@ inline constexpr JointTable joint_table{
     },
     [](const void* s, const JointInput* in, Span<double> numbers, Message* m) noexcept {
       return guarded(m, [&] { static_cast<const J*>(s)->contacts(*in, numbers); });
+    },
+    [](const void* s, const JointInput* in, Span<double> g, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->kinks(*in, g); });
     }};
 
 template <class J>

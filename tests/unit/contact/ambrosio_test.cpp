@@ -1,4 +1,4 @@
-#include "law_probe.h"
+#include "friction_coefficient_law.h"
 
 namespace freeplay::test {
 namespace {
@@ -28,6 +28,8 @@ TEST(Ambrosio, SlopeAgreesWithDifferences) {
     EXPECT_NEAR(under_test.law.evaluate({200.0, slip, {}}, {}).d_slip, slope, 1e-6);
   }
 }
+
+TEST(Ambrosio, DeclaresItsKinks) { expect_kinks("ambrosio", {{"mu", 0.1}, {"v0", 2e-4}}, {2e-4, 1e-3}); }
 
 TEST(Ambrosio, RefusesARampThatDoesNotRise) {
   const auto make = [](double v0, double v1) {

@@ -34,5 +34,9 @@ TEST(BengisuAkay, RefusesStaticBelowKineticFriction) {
   EXPECT_EQ(id(0.1, 0.1), "");
 }
 
+TEST(BengisuAkay, DeclaresItsKink) {
+  expect_kinks("bengisu-akay", {{"mu_s", 0.15}, {"mu_k", 0.1}, {"v0", 2e-3}, {"xi", 100.0}}, {2e-3});
+}
+
 }  // namespace
 }  // namespace freeplay::test

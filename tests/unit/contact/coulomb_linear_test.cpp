@@ -18,5 +18,7 @@ TEST(CoulombLinear, TableBoundsItsParameters) {
   EXPECT_EQ(parameter_of("coulomb-linear", "vs").open, Open::minimum);
 }
 
+TEST(CoulombLinear, DeclaresItsKink) { expect_kinks("coulomb-linear", {{"mu", 0.1}, {"vs", 2e-3}}, {2e-3}); }
+
 }  // namespace
 }  // namespace freeplay::test

@@ -1,6 +1,7 @@
 // What every friction law without memory is asked: coefficient, slope, direction.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -39,6 +40,18 @@ inline void expect_slopes(const std::string& name, const Numbers& numbers, std::
     EXPECT_EQ(at(slip).d_slip, at(-slip).d_slip);
   }
   EXPECT_NEAR(at(0.0).d_slip, at(1e-18).tangential / 1e-18, 1e-6 * std::abs(at(0.0).d_slip));
+}
+
+/// The law declares these slip speeds [m/s], and its slope jumps at each.
+inline void expect_kinks(const std::string& name, const Numbers& numbers, std::initializer_list<double> speeds) {
+  const FrictionUnderTest friction(name, numbers);
+  EXPECT_TRUE(std::ranges::equal(friction.law.kinks(), speeds));
+  for (const double speed : speeds) {
+    const auto slope = [&](double part) { return friction.law.evaluate({200.0, part * speed, {}}, {}).d_slip; };
+    const double jump = std::abs(slope(1.0 + 1e-9) - slope(1.0 - 1e-9));
+    EXPECT_GT(jump, 0.01 * std::abs(slope(1.0 - 1e-9) + slope(1.0 + 1e-9))) << speed;
+    EXPECT_EQ(jump, std::abs(slope(-1.0 - 1e-9) - slope(-1.0 + 1e-9)));
+  }
 }
 
 }  // namespace freeplay::test

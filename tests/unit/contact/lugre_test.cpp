@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "law_probe.h"
@@ -97,6 +98,16 @@ TEST(Lugre, TableBoundsItsParameters) {
   EXPECT_EQ(parameter_of("lugre", "sigma0").open, Open::minimum);
   EXPECT_EQ(parameter_of("lugre", "sigma1").default_value, 0.0);
   EXPECT_EQ(parameter_of("lugre", "sigma2").default_value, 0.0);
+}
+
+TEST(Lugre, DeclaresTheKinkOfItsRateAtRest) {
+  const FrictionUnderTest friction("lugre", numbers);
+  EXPECT_TRUE(std::ranges::equal(friction.law.kinks(), std::initializer_list<double>{0.0}));
+  const auto slope = [&](double slip) {
+    const double h = 0.1 * slip;
+    return (evaluate(friction, 1.0, slip + h, 1e-6).rate - evaluate(friction, 1.0, slip - h, 1e-6).rate) / (2.0 * h);
+  };
+  EXPECT_GT(std::abs(slope(1e-9) - slope(-1e-9)), 0.1 * std::abs(slope(1e-9)));
 }
 
 }  // namespace

@@ -23,5 +23,7 @@ TEST(Threlfall, IsContinuousAtItsLimit) {
   EXPECT_NEAR(friction.law.evaluate({1.0, 1.0000001e-3, {}}, {}).tangential, -0.1, 1e-15);
 }
 
+TEST(Threlfall, DeclaresItsKink) { expect_kinks("threlfall", {{"mu", 0.1}, {"v_r", 2e-3}}, {2e-3}); }
+
 }  // namespace
 }  // namespace freeplay::test
