@@ -14,11 +14,6 @@
 namespace freeplay {
 namespace {
 
-// One a line, so that the release that brings one takes its line away.
-const std::vector<std::string> later_commands{
-    "sweep",  //
-};
-
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,
                          const std::vector<std::string>& known, const std::string& prefix = "") {
   const auto nearest = suggestion(word, known);
@@ -51,7 +46,9 @@ void refuse_word(const CLI::App& program, const CLI::App& app, const std::string
   if (&app != &program) {
     throw Error(Error::Category::usage, "unexpected-argument", fmt::format("unexpected argument '{}'", word));
   }
-  if (std::ranges::find(later_commands, word) != later_commands.end()) not_in_this_release(word);
+  if (word == "sweep") {
+    throw Error(Error::Category::usage, "unknown-command", "unknown command 'sweep'", {}, "it is called study");
+  }
   refuse("unknown-command", fmt::format("unknown command '{}'", word), word, command_names(program));
 }
 

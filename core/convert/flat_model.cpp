@@ -193,7 +193,7 @@ class Flattening {
     put(made, rename(key), copy(*entry.value, instance));
   }
 
-  /// `ideal` of a sweep: names and patterns of joints, or `all`.
+  /// `ideal` of a study: names and patterns of joints, or `all`.
   const Node& joint_list(const Node& written) {
     Node& list = target_.add(Node::Kind::list, 1, 1);
     for (const Node* item : written.is_list() ? written.items : std::vector<const Node*>{&written}) {

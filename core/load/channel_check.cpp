@@ -38,10 +38,10 @@ Location pattern_location(const Document& document, std::size_t index) {
   return node->location();
 }
 
-/// The columns that a sweep keeps something of. Their section has been checked.
+/// The columns that a study keeps something of. Their section has been checked.
 std::vector<const Node*> reduced_channels(const Document& document) {
   const Node* node = &document.root();
-  for (const char* key : {"sweep", "reducers"}) {
+  for (const char* key : {"study", "reducers"}) {
     node = node->is_map() ? node->find(key) : nullptr;
     if (node == nullptr) return {};
   }

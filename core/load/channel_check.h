@@ -10,7 +10,7 @@
 
 namespace freeplay {
 
-/// Reports patterns and names of columns in `simulation` and `sweep` that fit none, and limits of another dimension
+/// Reports patterns and names of columns in `simulation` and `study` that fit none, and limits of another dimension
 /// than their column. Columns are known only when the whole mechanism is, so this comes last; names that begin with one
 /// of `unsure` (of elements that could not be read) are not judged. `by_option`: the patterns of the model are those of
 /// --channels, and the first that fits none is thrown as Error{usage} "unknown-channel".

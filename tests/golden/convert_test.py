@@ -100,7 +100,7 @@ simulation:
   step: 1 ms
   output: {frames: [u1.wheel/probe], channels: ["body.u*.x", "joint.*", time, "energy.*", "frame.*"]}
   stop: [{channel: joint.u1.axle.angle, above: 100}]
-sweep: {parameters: {k: [1, 2]}, reducers: {a: {channel: joint.u2.axle.angle, reduce: max}}}
+study: {axes: {k: [1, 2]}, reducers: {a: {channel: joint.u2.axle.angle, reduce: max}}}
 """)
         self.freeplay("convert", "m.yaml", os.path.join("to", "m.urdf"))
         side = os.path.join("to", "m.urdf.sidecar.yaml")
