@@ -31,8 +31,9 @@ STANDS_ON = {
     "analysis": ["assembly"],
     "load": ["yaml", "urdf", "run"],
     "report": ["results", "load"],
+    "study": ["results", "load", "convert", "analysis"],
     "contract": ["format", "stage"],
-    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report"],
+    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "study"],
 }
 WITHOUT_SDK = {"base", "linear", "svg"}
 
@@ -63,6 +64,7 @@ LIBRARIES = {
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"base"},
+    "boost": {"study"},
     "CLI": {"cli"},
     "fmt": EVERY_ROOM,
     "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "cli"},

@@ -1,0 +1,323 @@
+#include "study/file.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/input_text.h"
+#include "base/json_text.h"
+#include "base/kept_input.h"
+#include "base/name_pattern.h"
+#include "base/sha256.h"
+#include "format/map_reader.h"
+#include "format/name_rule.h"
+#include "load/model_file.h"
+#include "study/document_json.h"
+#include "yaml/document.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* record_file = "inputs/study.json";  // beside the copies: what they do not say
+constexpr std::array reserved_columns = {"index", "model", "direction", "sample", "start", "exit_code", "error"};
+
+std::string model_copy(std::size_t number, const std::string& file) {
+  return fmt::format("inputs/{}/model{}", number, is_urdf(file) ? ".urdf" : ".yaml");
+}
+
+std::string table_copy(std::size_t axis) { return fmt::format("inputs/table{}.csv", axis); }
+
+Json record_beside(const std::string& file) {
+  std::ifstream stream(fs::path(file).parent_path() / record_file);
+  const Json record = stream ? Json::parse(stream, nullptr, false) : Json();
+  if (record.is_object() && record.contains("models")) return record;
+  throw Error(Error::Category::input, "file-not-found",
+              fmt::format("'{}' stands in no folder of a study: there is no {}", file, record_file));
+}
+
+}  // namespace
+
+bool has_study_alone(const Node& root) {
+  return root.find("study") != nullptr && std::ranges::all_of(root.entries, [](const Node::Entry& entry) {
+           const std::string& key = entry.key->text;
+           return key == "freeplay" || key == "study" || is_note(key);
+         });
+}
+
+StudyFile::StudyFile(Document document, Diagnostics& diagnostics)
+    : document_(std::move(document)), no_parameters_(none_used_), reading_{&diagnostics, &no_parameters_} {}
+
+std::unique_ptr<StudyFile> StudyFile::read(const std::string& file, bool kept, const TargetTexts& set,
+                                           const LoadOptions& options, Diagnostics& diagnostics) {
+  std::string text;
+  if (const std::string why = read_input(file, text); !why.empty()) {
+    diagnostics.error({file, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file, why));
+    return nullptr;
+  }
+  std::optional<Document> document = parse_yaml(std::move(text), file, diagnostics);
+  if (!document || diagnostics.has_errors()) return nullptr;
+  std::unique_ptr<StudyFile> study(new StudyFile(std::move(*document), diagnostics));
+  study->kept_ = kept;
+  if (!study->read_section(diagnostics)) return nullptr;
+  study->combine_set(set);
+  if (!study->read_models(options, diagnostics)) return nullptr;
+  study->plan_axes();
+  if (!diagnostics.has_errors()) study->check_targets(options);
+  if (!diagnostics.has_errors()) study->check_columns();
+  if (diagnostics.has_errors()) return nullptr;
+  return study;
+}
+
+bool StudyFile::read_section(Diagnostics& diagnostics) {
+  const CheckedValue root(reading_, document_.root(), nullptr, "");
+  if (!root.node().is_map()) {
+    root.fail("wrong-type", fmt::format("a study must be a map, not {}", root.node().kind_name()));
+    return false;
+  }
+  in_model_ = !has_study_alone(root.node());
+  MapReader map(root, "model");
+  const auto version = map.require("freeplay");
+  const auto study = map.require("study");
+  if (version && version->quantity(dimension::none).value_or(1.0) != 1.0) {
+    version->fail("bad-version", fmt::format("schema version {} is not known", version->node().text));
+  }
+  if (study) section_ = read_study(*study, in_model_);
+  if (!section_ || diagnostics.has_errors()) return false;
+  const std::string stem = fs::path(document_.file_name()).stem().string();
+  name_ = section_->name.empty() ? stem : section_->name;
+  if (kept_) name_ = record_beside(document_.file_name()).value("name", name_);
+  return true;
+}
+
+// The last one of a target counts; those of the command line come after the file's.
+void StudyFile::combine_set(const TargetTexts& set) {
+  command_set_ = set;
+  if (kept_) {
+    const Json record = record_beside(document_.file_name());
+    TargetTexts recorded;
+    for (const Json& one : record.value("set", Json::array())) {
+      recorded.emplace_back(one.at(0).get<std::string>(), one.at(1).get<std::string>());
+    }
+    command_set_.insert(command_set_.begin(), recorded.begin(), recorded.end());
+  }
+  for (const TargetValue& value : section_->set) {
+    const Node& node = value.value.node();
+    set_.push_back({value.target, AxisValue::of(node)});
+    if (node.is_scalar()) set_.back().value.text = node.text;
+  }
+  for (const auto& [target, text] : command_set_) {
+    const std::string& name = target;
+    std::erase_if(set_, [&](const PlannedSetting& other) { return other.target == name; });
+    set_.push_back({target, AxisValue::of(text)});
+    set_.back().value.text = text;
+  }
+}
+
+TargetTexts StudyFile::set_texts() const {
+  TargetTexts texts;
+  for (const PlannedSetting& setting : set_) texts.emplace_back(setting.target, setting.value.text);
+  return texts;
+}
+
+bool StudyFile::read_models(const LoadOptions& options, Diagnostics& diagnostics) {
+  const fs::path folder = fs::path(document_.file_name()).parent_path();
+  const TargetTexts set = set_texts();
+  const Json record = kept_ ? record_beside(document_.file_name()) : Json();
+  std::vector<Diagnostic> about_set;
+  const std::size_t count = in_model_ ? 1 : section_->models.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string written = in_model_ ? document_.file_name() : section_->models[i].path.node().text;
+    std::string place = in_model_ ? written : (folder / written).lexically_normal().string();
+    if (kept_) place = (folder / model_copy(i, record["models"].at(i).value("file", written))).string();
+    std::error_code ignored;
+    if (!in_model_ && !fs::exists(place, ignored)) {
+      section_->models[i].path.fail("file-not-found", fmt::format("there is no file '{}'", place));
+      continue;
+    }
+    auto model = read_study_model(place, written, set, options, diagnostics, about_set);
+    if (!model) continue;
+    if (kept_) {
+      model->file = record["models"].at(i).value("file", written);
+      model->name = record["models"].at(i).value("name", model->name);
+    } else if (!in_model_ && !section_->models[i].name.empty()) {
+      model->name = section_->models[i].name;
+    }
+    models_.push_back(std::move(*model));
+  }
+  report_about_set(std::move(about_set), diagnostics);
+  if (models_.size() == count && !diagnostics.has_errors()) name_models();
+  return !diagnostics.has_errors();
+}
+
+void StudyFile::report_about_set(std::vector<Diagnostic> errors, Diagnostics& diagnostics) const {
+  for (Diagnostic& error : errors) {
+    const std::string target = error.location.file.substr(std::string("--set ").size());
+    const bool commanded = std::ranges::any_of(command_set_, [&](const auto& one) { return one.first == target; });
+    if (commanded) {
+      throw Error(Error::Category::usage, "usage", fmt::format("--set {}: {}", target, error.message), {},
+                  error.suggestion.empty() ? error.hint : fmt::format("did you mean '{}'?", error.suggestion));
+    }
+    const auto written = std::ranges::find(section_->set, target, &TargetValue::target);
+    if (written == section_->set.end()) {
+      diagnostics.add(std::move(error));
+    } else if (error.id == "unknown-name") {
+      written->value.fail_at_key(error.id, error.message, error.suggestion, error.hint);
+    } else {
+      written->value.fail(error.id, error.message, error.suggestion, error.hint);
+    }
+  }
+}
+
+// Names stand in a table without quotes.
+void StudyFile::name_models() {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    for (char& c : models_[i].name) {
+      if (c == ',' || c == '"' || c == '\n') c = '_';
+    }
+    if (seen.insert(models_[i].name).second) continue;
+    section_->models[i].path.fail("duplicate-name", fmt::format("two models are called '{}'", models_[i].name), {},
+                                  "name them: models: {one: " + section_->models[i].path.node().text + ", ...}");
+  }
+}
+
+// --- axes
+// -------------------------------------------------------------------------------------------------------------
+
+void StudyFile::plan_axes() {
+  for (const StudyAxis& axis : section_->axes) plan_axis(axis);
+}
+
+void StudyFile::plan_axis(const StudyAxis& axis) {
+  std::vector<std::string> targets = {axis.target};
+  if (axis.each) {
+    targets.clear();
+    for (const StudyModel& model : models_) {
+      std::vector<std::string> names = model.addresses;
+      names.insert(names.end(), model.parameters.begin(), model.parameters.end());
+      std::sort(names.begin() + static_cast<std::ptrdiff_t>(model.addresses.size()), names.end());
+      for (const std::string& name : names) {
+        const bool known = std::ranges::find(targets, name) != targets.end();
+        if (!known && matches(axis.target, name)) targets.push_back(name);
+      }
+    }
+    if (targets.empty()) {
+      axis.entry.fail_at_key("unknown-name", fmt::format("nothing in the models fits '{}'", axis.target));
+    }
+  }
+  std::optional<DesignTable> table;
+  if (axis.table) {
+    const fs::path folder = fs::path(document_.file_name()).parent_path();
+    const auto number = static_cast<std::size_t>(&axis - section_->axes.data());
+    const fs::path place = kept_ ? folder / table_copy(number) : folder / axis.table->node().text;
+    table = DesignTable::read(place.string(), *axis.table);
+    if (!table) return;
+  }
+  for (const std::string& target : targets) {
+    axes_.emplace_back(axis, axis.each ? target : axis.name, target, table, draws_);
+    draws_ += axis.draws();
+  }
+}
+
+/// Fills `present`, and reports targets that are nowhere or not everywhere.
+void StudyFile::find_targets(PlannedAxis& axis, const LoadOptions& options) const {
+  const StudyAxis& source = axis.source();
+  axis.present.assign(models_.size(), true);
+  for (const std::string& target : axis.targets()) {
+    std::size_t models = 0;
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      const bool has = models_[i].has(target);
+      models += has ? 1 : 0;
+      if (!has) axis.present[i] = false;
+    }
+    if (models == models_.size() || (models > 0 && source.where_present)) continue;
+    const auto lacking = static_cast<std::size_t>(
+        std::ranges::find_if(models_, [&](const StudyModel& one) { return !one.has(target); }) - models_.begin());
+    const ModelProbe probe(*models_[lacking].document, options);
+    const ModelProbe::Result tried = probe.build({{target, "1"}}, nullptr);
+    std::string message = fmt::format("there is no '{}'", target), hint;
+    if (tried.refused) {
+      message = tried.errors.front().message;
+      hint = tried.errors.front().hint;
+    }
+    if (models_.size() > 1) message = fmt::format("model '{}': {}", models_[lacking].name, message);
+    if (models > 0) hint = "`where_present: true` leaves it out where it is not";
+    source.entry.fail_at_key("unknown-name", message, {}, hint);
+  }
+}
+
+void StudyFile::check_targets(const LoadOptions& options) {
+  for (PlannedAxis& axis : axes_) find_targets(axis, options);
+  std::vector<std::pair<std::string, std::string>> seen;  // and where they are set
+  for (const PlannedSetting& setting : set_) seen.emplace_back(setting.target, "`set`");
+  for (const PlannedAxis& axis : axes_) {
+    for (const std::string& target : axis.targets()) {
+      const auto other = std::ranges::find(seen, target, &std::pair<std::string, std::string>::first);
+      if (other != seen.end()) {
+        axis.source().entry.fail_at_key(
+            "duplicate-name", fmt::format("'{}' is set by {} and by '{}'", target, other->second, axis.name()));
+      } else {
+        const Location place = axis.source().entry.key_location();
+        seen.emplace_back(target, fmt::format("'{}' (line {})", axis.name(), place.line));
+      }
+    }
+  }
+}
+
+void StudyFile::check_columns() const {
+  std::set<std::string> seen;
+  for (const PlannedAxis& axis : axes_) {
+    for (const AxisColumn& column : axis.columns()) {
+      const CheckedValue& entry = axis.source().entry;
+      if (std::ranges::find(reserved_columns, column.name) != reserved_columns.end()) {
+        entry.fail_at_key("reserved-name", fmt::format("the table has a column '{}' of its own", column.name), {},
+                          "give the axis another name, and `target: " + column.name + "`");
+      } else if (!seen.insert(column.name).second) {
+        entry.fail_at_key("duplicate-name", fmt::format("two axes are called '{}'", column.name));
+      }
+    }
+  }
+}
+
+// --- what is kept
+// -----------------------------------------------------------------------------------------------------
+
+std::vector<KeptFile> StudyFile::kept_files() const {
+  std::vector<KeptFile> files = {{"study.yaml", document_.text()}};
+  Json record = {{"name", name_}, {"set", Json::array()}, {"models", Json::array()}};
+  for (const auto& [target, text] : command_set_) record["set"].push_back({target, text});
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const StudyModel& model = models_[i];
+    record["models"].push_back({{"name", model.name}, {"file", model.file}});
+    const std::string copy = model_copy(i, model.file), folder = copy.substr(0, copy.rfind('/') + 1);
+    files.push_back({copy, model.document->text()});
+    if (!model.inputs.empty()) files.push_back({folder + only_copies, ""});
+    for (const InputFile& input : model.inputs) files.push_back({folder + "inputs/" + input.name, input.text});
+  }
+  for (const PlannedAxis& axis : axes_) {
+    const auto number = static_cast<std::size_t>(&axis.source() - section_->axes.data());
+    if (axis.table()) files.push_back({table_copy(number), axis.table()->bytes()});
+  }
+  files.push_back({record_file, json_text(record)});
+  return files;
+}
+
+std::string StudyFile::identity() const {
+  constexpr std::array<std::string_view, 3> without = {"name", "description", "plots"};
+  std::string text = "freeplay-study 1\n" + document_json(section_->section.node(), without) + "\n";
+  for (const auto& [target, value] : command_set_) text += "set " + target + "=" + AxisValue::of(value).shown + "\n";
+  for (const StudyModel& model : models_) text += "model " + model.name + " " + model.sha256 + "\n";
+  for (const PlannedAxis& axis : axes_) {
+    if (axis.table()) text += "table " + sha256(axis.table()->bytes()) + "\n";
+  }
+  return sha256(text);
+}
+
+}  // namespace freeplay
