@@ -255,7 +255,10 @@ class StudyReader {
                width = map.find("half_width"), relative = map.find("relative"), least = map.find("min_points"),
                block = map.find("block");
     StudyStop stop;
-    if (reducer) stop.reducer = check_reducer(*reducer);
+    if (reducer) {
+      check_column(*reducer, "reducer", reducer_names());
+      stop.reducer = reducer->node().text;
+    }
     if (of) stop.percentile = read_estimate(*of);
     const Range open{.minimum = 0.0, .maximum = 1.0, .open = Open::both};
     if (confidence) stop.confidence = confidence->quantity(dimension::none, open).value_or(0.95);
@@ -277,19 +280,24 @@ class StudyReader {
     study_.stop = stop;
   }
 
-  std::string check_reducer(const CheckedValue& value) const {
-    const auto name = value.string();
-    if (!name) return {};
+  std::vector<std::string> reducer_names() const {
     std::vector<std::string> names;
-    for (const Node::Entry& entry :
-         study_.reducers == nullptr ? std::vector<Node::Entry>{} : study_.reducers->entries) {
-      names.push_back(entry.key->text);
-    }
-    // Columns of a set are known with the models.
+    if (study_.reducers == nullptr) return names;
+    for (const Node::Entry& entry : study_.reducers->entries) names.push_back(entry.key->text);
+    return names;
+  }
+
+  /// Columns of sets, tables and axes for each of several paths are known with the models.
+  static void check_column(const CheckedValue& value, const char* kind, const std::vector<std::string>& names) {
+    const auto name = value.string();
+    if (!name) return;
     const bool known = std::ranges::any_of(
         names, [&](const std::string& one) { return *name == one || name->starts_with(one + "."); });
-    if (!known) value.fail("unknown-name", "unknown reducer '" + *name + "'", nearest(*name, names));
-    return *name;
+    if (!known) value.fail("unknown-name", fmt::format("unknown {} '{}'", kind, *name), nearest(*name, names));
+  }
+
+  bool knows_axes() const {
+    return whole_ && std::ranges::none_of(study_.axes, [](const StudyAxis& axis) { return axis.each || axis.table; });
   }
 
   static std::optional<double> read_estimate(const CheckedValue& value) {
@@ -310,9 +318,7 @@ class StudyReader {
       MapReader map(entry, "study plot");
       const auto kind = map.require("kind");
       if (kind) kind->word({"line", "heat", "bifurcation", "histogram", "tornado"});
-      for (const char* key : {"x", "y", "value", "by"}) {
-        if (const auto value = map.find(key)) value->string();
-      }
+      check_plot_columns(map);
       if (const auto percentiles = map.find("percentiles")) {
         for (const CheckedValue& item : percentiles->list().value_or(std::vector<CheckedValue>{})) {
           item.quantity(dimension::none, Range{.minimum = 0.0, .maximum = 100.0});
@@ -321,6 +327,19 @@ class StudyReader {
       map.finish();
     }
     study_.plots = &section.node();
+  }
+
+  void check_plot_columns(MapReader& map) const {
+    std::vector<std::string> axes, families = {"model", "direction"}, reducers = reducer_names(), any;
+    for (const StudyAxis& axis : study_.axes) axes.push_back(axis.name);
+    families.insert(families.end(), axes.begin(), axes.end());
+    any = families;
+    any.insert(any.end(), reducers.begin(), reducers.end());
+    const auto x = map.find("x"), y = map.find("y"), value = map.find("value"), by = map.find("by");
+    if (x && knows_axes()) check_column(*x, "axis", any);
+    if (y && knows_axes()) check_column(*y, "axis or reducer", any);
+    if (value) check_column(*value, "reducer", reducers);
+    if (by && knows_axes()) check_column(*by, "axis", families);
   }
 
   StudySection study_;

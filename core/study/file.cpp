@@ -34,12 +34,27 @@ std::string model_copy(std::size_t number, const std::string& file) {
 
 std::string table_copy(std::size_t axis) { return fmt::format("inputs/table{}.csv", axis); }
 
-Json record_beside(const std::string& file) {
+bool is_text(const Json& object, const char* key) {
+  return object.is_object() && object.value(key, Json()).is_string();
+}
+
+/// Is it what kept_files() writes?
+bool is_record(const Json& record, std::size_t models) {
+  if (!is_text(record, "name") || !record.contains("set") || !record.contains("models")) return false;
+  const auto pair = [](const Json& one) {
+    return one.is_array() && one.size() == 2 && one[0].is_string() && one[1].is_string();
+  };
+  const auto model = [](const Json& one) { return is_text(one, "name") && is_text(one, "file"); };
+  return std::ranges::all_of(record["set"], pair) && std::ranges::all_of(record["models"], model) &&
+         record["models"].size() == models;
+}
+
+Json record_beside(const std::string& file, std::size_t models) {
   std::ifstream stream(fs::path(file).parent_path() / record_file);
   const Json record = stream ? Json::parse(stream, nullptr, false) : Json();
-  if (record.is_object() && record.contains("models")) return record;
+  if (is_record(record, models)) return record;
   throw Error(Error::Category::input, "file-not-found",
-              fmt::format("'{}' stands in no folder of a study: there is no {}", file, record_file));
+              fmt::format("'{}' stands in no folder of a study: there is no {} that fits it", file, record_file));
 }
 
 }  // namespace
@@ -92,21 +107,21 @@ bool StudyFile::read_section(Diagnostics& diagnostics) {
   if (!section_ || diagnostics.has_errors()) return false;
   const std::string stem = fs::path(document_.file_name()).stem().string();
   name_ = section_->name.empty() ? stem : section_->name;
-  if (kept_) name_ = record_beside(document_.file_name()).value("name", name_);
+  if (kept_) {
+    record_ = record_beside(document_.file_name(), in_model_ ? 1 : section_->models.size());
+    name_ = record_["name"].get<std::string>();
+  }
   return true;
 }
 
 // The last one of a target counts; those of the command line come after the file's.
 void StudyFile::combine_set(const TargetTexts& set) {
-  command_set_ = set;
   if (kept_) {
-    const Json record = record_beside(document_.file_name());
-    TargetTexts recorded;
-    for (const Json& one : record.value("set", Json::array())) {
-      recorded.emplace_back(one.at(0).get<std::string>(), one.at(1).get<std::string>());
+    for (const Json& one : record_["set"]) {
+      command_set_.emplace_back(one[0].get<std::string>(), one[1].get<std::string>());
     }
-    command_set_.insert(command_set_.begin(), recorded.begin(), recorded.end());
   }
+  command_set_.insert(command_set_.end(), set.begin(), set.end());
   for (const TargetValue& value : section_->set) {
     const Node& node = value.value.node();
     set_.push_back({value.target, AxisValue::of(node)});
@@ -129,13 +144,12 @@ TargetTexts StudyFile::set_texts() const {
 bool StudyFile::read_models(const LoadOptions& options, Diagnostics& diagnostics) {
   const fs::path folder = fs::path(document_.file_name()).parent_path();
   const TargetTexts set = set_texts();
-  const Json record = kept_ ? record_beside(document_.file_name()) : Json();
   std::vector<Diagnostic> about_set;
   const std::size_t count = in_model_ ? 1 : section_->models.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::string written = in_model_ ? document_.file_name() : section_->models[i].path.node().text;
     std::string place = in_model_ ? written : (folder / written).lexically_normal().string();
-    if (kept_) place = (folder / model_copy(i, record["models"].at(i).value("file", written))).string();
+    if (kept_) place = (folder / model_copy(i, record_["models"][i]["file"].get<std::string>())).string();
     std::error_code ignored;
     if (!in_model_ && !fs::exists(place, ignored)) {
       section_->models[i].path.fail("file-not-found", fmt::format("there is no file '{}'", place));
@@ -144,8 +158,8 @@ bool StudyFile::read_models(const LoadOptions& options, Diagnostics& diagnostics
     auto model = read_study_model(place, written, set, options, diagnostics, about_set);
     if (!model) continue;
     if (kept_) {
-      model->file = record["models"].at(i).value("file", written);
-      model->name = record["models"].at(i).value("name", model->name);
+      model->file = record_["models"][i]["file"].get<std::string>();
+      model->name = record_["models"][i]["name"].get<std::string>();
     } else if (!in_model_ && !section_->models[i].name.empty()) {
       model->name = section_->models[i].name;
     }
@@ -188,8 +202,7 @@ void StudyFile::name_models() {
   }
 }
 
-// --- axes
-// -------------------------------------------------------------------------------------------------------------
+// --- axes ----------------------------------------------------------------------------------------------------------
 
 void StudyFile::plan_axes() {
   for (const StudyAxis& axis : section_->axes) plan_axis(axis);
@@ -286,8 +299,7 @@ void StudyFile::check_columns() const {
   }
 }
 
-// --- what is kept
-// -----------------------------------------------------------------------------------------------------
+// --- what is kept --------------------------------------------------------------------------------------------------
 
 std::vector<KeptFile> StudyFile::kept_files() const {
   std::vector<KeptFile> files = {{"study.yaml", document_.text()}};

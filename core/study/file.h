@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/json_text.h"
 #include "format/document.h"
 #include "format/parameter_scope.h"
 #include "format/study_section.h"
@@ -62,6 +63,7 @@ class StudyFile {
 
   Document document_;
   bool kept_ = false, in_model_ = false;
+  Json record_ = nullptr;  ///< of a kept study: what its files do not say
   UsedKeys none_used_;
   ParameterScope no_parameters_;
   Reading reading_;

@@ -129,8 +129,7 @@ bool StudyLayout::too_many(bool many) const {
   return true;
 }
 
-// --- points
-// -----------------------------------------------------------------------------------------------------------
+// --- points --------------------------------------------------------------------------------------------------------
 
 const StudyLayout::Part& StudyLayout::part_of_point(std::uint64_t point) const {
   return *std::prev(std::ranges::upper_bound(parts_, point, {}, &Part::first_point));
@@ -171,8 +170,7 @@ std::uint64_t StudyLayout::point_of(const Part& part, std::uint64_t direction, s
   return part.first_point + (direction * part.combinations + combination) * samples_ + sample;
 }
 
-// --- units
-// ------------------------------------------------------------------------------------------------------------
+// --- units ---------------------------------------------------------------------------------------------------------
 
 std::uint64_t StudyLayout::pieces(const Part& part) const {
   return std::min(section_.warm_start->pieces, part.digits[*chain_digit_].size);

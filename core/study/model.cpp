@@ -105,7 +105,7 @@ std::optional<StudyModel> read_study_model(const std::string& place, const std::
   }
   if (!built.model) return std::nullopt;
   std::ranges::sort(made.addresses);
-  made.addresses.erase(std::ranges::unique(made.addresses).begin(), made.addresses.end());
+  made.addresses.erase(std::unique(made.addresses.begin(), made.addresses.end()), made.addresses.end());
   if (const Node* parameters = made.document->root().find("parameters"); parameters != nullptr) {
     for (const Node::Entry& entry : parameters->entries) made.parameters.insert(entry.key->text);
   }

@@ -193,8 +193,7 @@ TEST_F(StudyPlanning, MoreSamplesContainTheFewerOnes) {
   }
 }
 
-// --- hashes
-// -----------------------------------------------------------------------------------------------------------
+// --- hashes --------------------------------------------------------------------------------------------------------
 
 TEST_F(StudyPlanning, AHashIsThatOfModelAndSettings) {
   const auto plan =
@@ -252,8 +251,22 @@ TEST_F(StudyPlanning, ACopyIsTheSameStudy) {
   EXPECT_EQ(copy->point(0).settings[0].target, "v");
 }
 
-// --- units
-// ------------------------------------------------------------------------------------------------------------
+TEST_F(StudyPlanning, ACopyThatIsDamagedIsNone) {
+  const auto plan = of_ball("  axes: {g: [1]}\n");
+  for (const KeptFile& file : plan->kept_files()) write(file.path, file.bytes);
+  StudyPlanOptions options;
+  options.kept = true;
+  EXPECT_TRUE(read("study.yaml", options));
+  for (const char* record :
+       {"", "{}", "[]", R"({"name": 1, "set": [], "models": []})", R"({"name": "a", "set": [], "models": []})",
+        R"({"name": "a", "set": [["g"]], "models": [{"name": "b", "file": "c"}]})",
+        R"({"name": "a", "set": [], "models": [{"name": "b"}]})"}) {
+    write("inputs/study.json", record);
+    EXPECT_THROW(read("study.yaml", options), Error) << record;
+  }
+}
+
+// --- units ---------------------------------------------------------------------------------------------------------
 
 void expect_units_are_all_points(const StudyPlan& plan) {
   std::set<std::uint64_t> seen;
@@ -332,8 +345,7 @@ TEST_F(StudyPlanning, HugeStudiesTakeNoMemory) {
   EXPECT_EQ(of_ball("  axes: {g: {linspace: [1, 2, 10000000]}, v: {linspace: [0, 1, 1000000]}}\n", options), nullptr);
 }
 
-// --- mistakes
-// ---------------------------------------------------------------------------------------------------------
+// --- mistakes ------------------------------------------------------------------------------------------------------
 
 TEST_F(StudyPlanning, TargetsExist) {
   EXPECT_THAT(refused("  axes: {gg: [1]}\n"), HasSubstr("8:10 unknown-name"));
@@ -364,6 +376,10 @@ TEST_F(StudyPlanning, PlacesOfMistakesAreThoseOfTheStudy) {
   EXPECT_THAT(refused("  axes: {d: {table: none.csv}}\n"), HasSubstr("8:21 file-not-found"));
   EXPECT_THAT(refused("  models: [ball.yaml]\n"), HasSubstr("8:3 conflicting-keys"));
   EXPECT_THAT(refused("  axes: {sample: {target: g, list: [1]}}\n"), HasSubstr("reserved-name"));
+  const std::string reducer = "  axes: {g: [1]}\n  reducers: {force: {channel: body.ball.y, reduce: max}}\n  plots: ";
+  EXPECT_THAT(refused(reducer + "{p: {kind: line, x: h, y: force}}\n"), HasSubstr("10:30 unknown-name"));
+  EXPECT_THAT(refused(reducer + "{p: {kind: line, x: g, value: forse}}\n"), HasSubstr("'forse' force"));
+  EXPECT_TRUE(of_ball(reducer + "{p: {kind: line, x: g, y: force.a, by: model}}\n"));
   EXPECT_THAT(refused("  axes: {g: {linspace: [1, 2, 100000]}, v: {linspace: [1, 2, 1001]}}\n"),
               HasSubstr("7:1 too-large"));
   EXPECT_THAT(messages_, HasSubstr("100100000 points: 100000 (g) x 1001 (v)"));
