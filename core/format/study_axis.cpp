@@ -19,10 +19,12 @@ class NoScope : public Scope {
   std::vector<std::string> names() const override { return {}; }
 };
 
-/// Such as a law or an integrator: what is no expression, but could not be meant as one either.
+/// Such as a law or an integrator: what is no quantity and could not be meant as one either. Texts in quotes are meant
+/// as they are.
 bool is_word(const Node& node) {
   if (!node.is_scalar()) return true;
   if (constant_quantity(node.text)) return false;
+  if (node.quoted && node.text.find('$') == std::string::npos) return true;
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto inside = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '*'; };
   return !node.text.empty() && letter(node.text.front()) && std::ranges::all_of(node.text, inside);
