@@ -319,6 +319,10 @@ TEST_F(StudyPlanning, AHashInAChainFollowsFromThoseBefore) {
   EXPECT_EQ(plan->hash(2), sha256(head + "after " + second + "\n").substr(0, 24));
   EXPECT_EQ(plan->hash(0), first);
   EXPECT_EQ(plan->hash(1), second);
+  const auto chains = of_ball("  axes: {v: [3, 4], g: [1, 2]}\n  warm_start: {along: g}\n");
+  const std::string one = chains->hash(1), other = chains->hash(3);
+  EXPECT_NE(one, other);
+  EXPECT_EQ(chains->hash(1), one);
 }
 
 TEST_F(StudyPlanning, WithARuleForTheEndSamplesComeInOrder) {
