@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,7 @@
 #include "base/sha256.h"
 #include "format/map_reader.h"
 #include "format/name_rule.h"
+#include "format/path_override.h"
 #include "load/model_file.h"
 #include "study/document_json.h"
 #include "yaml/document.h"
@@ -27,6 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* record_file = "inputs/study.json";  // beside the copies: what they do not say
 constexpr std::array reserved_columns = {"index", "model", "direction", "sample", "start", "exit_code", "error"};
+
+constexpr std::size_t most_fitting = 10'000;  // axes of one pattern
 
 std::string model_copy(std::size_t number, const std::string& file) {
   return fmt::format("inputs/{}/model{}", number, is_urdf(file) ? ".urdf" : ".yaml");
@@ -208,23 +213,31 @@ void StudyFile::plan_axes() {
   for (const StudyAxis& axis : section_->axes) plan_axis(axis);
 }
 
-void StudyFile::plan_axis(const StudyAxis& axis) {
-  std::vector<std::string> targets = {axis.target};
-  if (axis.each) {
-    targets.clear();
-    for (const StudyModel& model : models_) {
-      std::vector<std::string> names = model.addresses;
-      names.insert(names.end(), model.parameters.begin(), model.parameters.end());
-      std::sort(names.begin() + static_cast<std::ptrdiff_t>(model.addresses.size()), names.end());
-      for (const std::string& name : names) {
-        const bool known = std::ranges::find(targets, name) != targets.end();
-        if (!known && matches(axis.target, name)) targets.push_back(name);
-      }
+/// What the pattern of an axis fits: in the first model, then what the others add.
+std::vector<std::string> StudyFile::fitting(const StudyAxis& axis) const {
+  std::vector<std::string> targets;
+  std::unordered_set<std::string> known;
+  const auto take = [&](const std::string& name) {
+    if (matches(axis.target, name) && known.insert(name).second) targets.push_back(name);
+  };
+  for (const StudyModel& model : models_) {
+    for (const std::string& address : model.addresses) {
+      if (PathOverrides::is_path(address)) take(address);  // a whole section is no target
     }
-    if (targets.empty()) {
-      axis.entry.fail_at_key("unknown-name", fmt::format("nothing in the models fits '{}'", axis.target));
-    }
+    std::ranges::for_each(model.parameters, take);
   }
+  if (targets.empty()) {
+    axis.entry.fail_at_key("unknown-name", fmt::format("nothing in the models fits '{}'", axis.target));
+  } else if (targets.size() > most_fitting) {
+    axis.entry.fail_at_key("too-large", fmt::format("'{}' fits {} targets; at most {} become axes", axis.target,
+                                                    targets.size(), most_fitting));
+    targets.clear();
+  }
+  return targets;
+}
+
+void StudyFile::plan_axis(const StudyAxis& axis) {
+  const std::vector<std::string> targets = axis.each ? fitting(axis) : std::vector{axis.target};
   std::optional<DesignTable> table;
   if (axis.table) {
     const fs::path folder = fs::path(document_.file_name()).parent_path();
@@ -268,17 +281,17 @@ void StudyFile::find_targets(PlannedAxis& axis, const LoadOptions& options) cons
 
 void StudyFile::check_targets(const LoadOptions& options) {
   for (PlannedAxis& axis : axes_) find_targets(axis, options);
-  std::vector<std::pair<std::string, std::string>> seen;  // and where they are set
-  for (const PlannedSetting& setting : set_) seen.emplace_back(setting.target, "`set`");
+  std::unordered_map<std::string, std::string> seen;  // and where they are set
+  for (const PlannedSetting& setting : set_) seen.emplace(setting.target, "`set`");
   for (const PlannedAxis& axis : axes_) {
     for (const std::string& target : axis.targets()) {
-      const auto other = std::ranges::find(seen, target, &std::pair<std::string, std::string>::first);
+      const auto other = seen.find(target);
       if (other != seen.end()) {
         axis.source().entry.fail_at_key(
             "duplicate-name", fmt::format("'{}' is set by {} and by '{}'", target, other->second, axis.name()));
       } else {
         const Location place = axis.source().entry.key_location();
-        seen.emplace_back(target, fmt::format("'{}' (line {})", axis.name(), place.line));
+        seen.emplace(target, fmt::format("'{}' (line {})", axis.name(), place.line));
       }
     }
   }

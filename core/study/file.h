@@ -56,6 +56,7 @@ class StudyFile {
   void report_about_set(std::vector<Diagnostic> errors, Diagnostics& diagnostics) const;
   void name_models();
   void plan_axes();
+  std::vector<std::string> fitting(const StudyAxis& axis) const;
   void plan_axis(const StudyAxis& axis);
   void find_targets(PlannedAxis& axis, const LoadOptions& options) const;
   void check_targets(const LoadOptions& options);

@@ -56,9 +56,8 @@ std::string fingerprint(const Document& document, std::vector<InputFile> inputs)
 bool StudyModel::has(const std::string& target) const {
   if (is_run_override(target) || parameters.contains(target)) return true;
   if (!PathOverrides::is_path(target)) return false;
-  return std::ranges::any_of(addresses, [&](const std::string& address) {
-    return is_pattern(target) ? matches(target, address) : target == address;
-  });
+  if (!is_pattern(target)) return std::ranges::binary_search(addresses, target);
+  return std::ranges::any_of(addresses, [&](const std::string& address) { return matches(target, address); });
 }
 
 ModelProbe::ModelProbe(const Document& document, const LoadOptions& options)

@@ -3,8 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -24,8 +24,8 @@ struct StudyModel {
   std::string sha256;  ///< of what it says, apart from a study, and of the files that it reads
   std::unique_ptr<const Document> document;
   std::vector<InputFile> inputs;  ///< files that it reads
-  std::unordered_set<std::string> parameters;
-  std::vector<std::string> addresses;  ///< paths of the expanded model, in order, each once
+  std::set<std::string> parameters;
+  std::vector<std::string> addresses;  ///< paths of the expanded model, sorted, each once
 
   /// Is there something that a value of this target takes the place of?
   bool has(const std::string& target) const;

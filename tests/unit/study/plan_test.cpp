@@ -358,6 +358,7 @@ TEST_F(StudyPlanning, TargetsExist) {
   EXPECT_THAT(refused("  axes: {bodies.ball.mas: [1]}\n"), HasSubstr("unknown-name"));
   EXPECT_THAT(refused("  axes: {study.name: [1]}\n"), HasSubstr("unknown-name"));
   EXPECT_THAT(refused("  axes: {x: {each: 'joints.*.mass', list: [1]}}\n"), HasSubstr("unknown-name"));
+  EXPECT_THAT(refused("  axes: {x: {each: '*odies', list: [1]}}\n"), HasSubstr("unknown-name"));  // a whole section
   EXPECT_THAT(refused("  set: {gg: 1}\n"), HasSubstr("8:9 unknown-name"));
   EXPECT_THAT(refused("  axes: {x: {cases: {a: {gg: 1}}}}\n"), HasSubstr("unknown-name"));
 }
