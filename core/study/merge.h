@@ -1,9 +1,11 @@
 // Merge: the rows of all segments as one table.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,8 @@ struct MergePlan {
   std::uint64_t points = 0;
   RowLayout layout;
   std::vector<KeyColumn> keys;  ///< after `index`
+  /// Of the key columns: the one that says how a point of a chain began.
+  std::optional<std::size_t> start_cell{};
   /// Cells of the key columns of a point.
   std::function<void(std::uint64_t point, std::vector<std::string>& cells)> cells;
   /// Whether a point belongs to the table; all where empty.

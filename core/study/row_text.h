@@ -13,9 +13,9 @@ namespace freeplay {
 
 /// What the rows of a study hold.
 struct RowLayout {
-  std::vector<StudyColumn> columns;   ///< of reducers
-  std::vector<std::string> samples;   ///< reducers with many values
-  bool chained = false;               ///< rows have the state that the next point begins with
+  std::vector<StudyColumn> columns;  ///< of reducers
+  std::vector<std::string> samples;  ///< reducers with many values
+  bool chained = false;              ///< rows have the state that the next point begins with
 };
 
 /// The checksum at the end of a line: CRC-32 of zlib over the line up to and including the last tab.

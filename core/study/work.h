@@ -13,8 +13,8 @@ struct UnitPlace {
   std::uint64_t unit = 0, place = 0;
 };
 
-/// Points count from 0, units too, in the order in which they are to be done. What is computed from a number is computed
-/// anew at each call: nothing grows with the points.
+/// Points count from 0, units too, in the order in which they are to be done. What is computed from a number is
+/// computed anew at each call: nothing grows with the points.
 class StudyWork {
  public:
   virtual ~StudyWork() = default;

@@ -61,6 +61,7 @@ LIBRARIES = {
     "sha2.h": {"base"},
     "hdf5.h": {"results"},
     "matio.h": {"results"},
+    "zlib.h": {"study"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"base"},
