@@ -160,6 +160,7 @@ class ModelBuilder {
     }
     overrides_.require_declared(parameters_);
     parameters_.evaluate();
+    draft_.model.parameters = parameters_.values();
     apply_run_overrides(options_, parameters_);
     draft_.ideal_matched.assign(options_.ideal.size(), false);
   }

@@ -89,6 +89,11 @@ std::string nearest_channel(const std::string& name, const std::vector<std::stri
 
 }  // namespace
 
+std::string nearest_channel(const std::string& name, const Channels& channels) {
+  const std::vector<std::string> names = channel_names(channels);
+  return nearest_channel(name, names, kinds_of(names));
+}
+
 void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
                     bool by_option, Diagnostics& diagnostics) {
   const Channels channels(model);

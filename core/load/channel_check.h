@@ -6,9 +6,13 @@
 
 #include "base/diagnostics.h"
 #include "format/document.h"
+#include "model/channel.h"
 #include "model/model.h"
 
 namespace freeplay {
+
+/// The channel that was probably meant, of another kind of column where the first word is none; empty without.
+std::string nearest_channel(const std::string& name, const Channels& channels);
 
 /// Reports patterns and names of columns in `simulation` and `study` that fit none, and limits of another dimension
 /// than their column. Columns are known only when the whole mechanism is, so this comes last; names that begin with one

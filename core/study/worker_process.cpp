@@ -17,6 +17,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -104,7 +105,8 @@ void WorkerProcess::close_pipes() {
 
 void WorkerProcess::start(StudyWork& work, bool one_point, const std::vector<WorkerProcess*>& others) {
   int tasks[2], results[2];
-  if (::pipe2(tasks, O_CLOEXEC) != 0) fail_to_start("cannot make a pipe");
+  // A socket, because what is sent to a worker that has just died must not raise SIGPIPE here.
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, tasks) != 0) fail_to_start("cannot make a socket");
   if (::pipe2(results, O_CLOEXEC) != 0) {
     ::close(tasks[0]);
     ::close(tasks[1]);
@@ -178,7 +180,7 @@ void WorkerProcess::give(StudyTask task) {
 
 void WorkerProcess::send() {
   while (!sending_.empty()) {
-    const ssize_t written = ::write(to_, sending_.data(), sending_.size());
+    const ssize_t written = ::send(to_, sending_.data(), sending_.size(), MSG_NOSIGNAL);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
       if (errno != EAGAIN) sending_.clear();  // it has ended, which receive() finds

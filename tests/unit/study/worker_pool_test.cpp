@@ -111,6 +111,15 @@ TEST(WorkerPool, KilledWorkerIsTriedOnceMore) {
   EXPECT_EQ(3u, found.lost);
 }
 
+TEST(WorkerPool, WorkersThatDieAtOnceDoNotEndTheProgram) {
+  std::signal(SIGPIPE, SIG_DFL);
+  FakeWork work(400);
+  work.before([](std::uint64_t) { std::raise(SIGABRT); });
+  const Found found = run_all(work, {.jobs = 2});
+  for (const auto& [point, outcome] : found.outcomes) EXPECT_EQ("crash-SIGABRT", outcome.error) << point;
+  EXPECT_EQ(400u, found.lost);
+}
+
 TEST(WorkerPool, PointThatTakesTooLongIsGivenUp) {
   FakeWork work(20);
   work.before([](std::uint64_t point) {
