@@ -314,6 +314,8 @@ void StudyFile::check_columns() const {
 
 // --- what is kept --------------------------------------------------------------------------------------------------
 
+std::string StudyFile::copy_of(std::size_t model) const { return model_copy(model, models_[model].file); }
+
 std::vector<KeptFile> StudyFile::kept_files() const {
   std::vector<KeptFile> files = {{"study.yaml", document_.text()}};
   Json record = {{"name", name_}, {"set", Json::array()}, {"models", Json::array()}};

@@ -45,6 +45,8 @@ class StudyFile {
   TargetTexts set_texts() const;
   /// Everything that was read, byte for byte, and what else the copies need.
   std::vector<KeptFile> kept_files() const;
+  /// Where the copy of a model is among them.
+  std::string copy_of(std::size_t model) const;
   /// SHA-256 of all that the points follow from.
   std::string identity() const;
 

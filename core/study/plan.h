@@ -40,6 +40,8 @@ class StudyPlan {
   std::string identity() const { return file_->identity(); }
   /// Byte copies of all that was read, by their path in the folder of the study; `kept` reads them.
   std::vector<KeptFile> kept_files() const { return file_->kept_files(); }
+  /// Where the copy of a model is among them.
+  std::string model_copy(std::size_t model) const { return file_->copy_of(model); }
 
   const std::vector<AxisColumn>& axis_columns() const { return columns_; }
   bool has_model_column() const { return models().size() > 1; }
