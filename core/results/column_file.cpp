@@ -76,6 +76,7 @@ ColumnFile::File::File(const std::filesystem::path& path,
   const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   checked(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  checked(H5Pset_obj_track_times(creation, 0));
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
   file = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access));

@@ -123,8 +123,8 @@ void Recorder::look_back() {
   const Ends step{run_.trial, run_.e_trial, run_.accepted, run_.e_accepted};
   if (contact_rows_.active()) see_contact_end(row_);
   seek_peaks(step);
-  if (!contact_rows_.active()) return;
-  seek_contact_peaks(step);
+  if (contact_rows_.active()) seek_contact_peaks(step);
+  if (!contact_rows_.active() && !feed_.active()) return;
   run_.energy.fill(run_.e_accepted, run_.channels, row_);  // the account was asked about the inside
 }
 
@@ -275,9 +275,10 @@ void Recorder::see_contact_end(std::span<const double> row) {
 bool Recorder::look_for_peak(double s, const Ends& step, bool wanted_row) {
   if (!observe_inside(step.start.t() + s * (step.end.t() - step.start.t()), step, row_between_)) return false;
   statistics_.note(row_between_);
-  if (!contact_rows_.active()) return true;
+  if (!contact_rows_.active() && !feed_.active()) return true;
   run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
-  contact_rows_.see_inside(row_between_, wanted_row);
+  feed_.see_inside(row_between_);
+  if (contact_rows_.active()) contact_rows_.see_inside(row_between_, wanted_row);
   return true;
 }
 
@@ -314,10 +315,9 @@ bool Recorder::note_abrupt_end() {
     return failure_.fail_with(fault, run_.trial.t());
   if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial);
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
-  if (contact_rows_.active()) {
-    run_.energy.fill(run_.e_trial, run_.channels, row_between_);
-    see_contact_end(row_between_);
-  }
+  if (contact_rows_.active() || feed_.active()) run_.energy.fill(run_.e_trial, run_.channels, row_between_);
+  feed_.see_inside(row_between_);
+  if (contact_rows_.active()) see_contact_end(row_between_);
   seek_peaks(step);
   if (contact_rows_.active()) seek_contact_peaks(step);
   return true;

@@ -19,6 +19,9 @@ class StepFeed {
 
   void feed(StepSink* sink) { sink_ = sink; }
   bool active() const { return sink_ != nullptr; }
+  void see_inside(std::span<const double> row) {
+    if (sink_ != nullptr) sink_->inside(row);
+  }
   /// Room for a row inside of a step.
   std::span<double> inside() { return inside_; }
 

@@ -15,6 +15,9 @@ class StepSink {
   /// The start of the run, and the end of each accepted step after its events.
   virtual void step(std::span<const double> row) = 0;
 
+  /// A row inside of a step that was looked at because values may be the largest there, as in the statistics.
+  virtual void inside(std::span<const double>) {}
+
   /// The earliest instant of which a row is wanted [s]; infinite: none. It rises with each call of instant().
   virtual double next_instant() const { return std::numeric_limits<double>::infinity(); }
   virtual void instant(std::span<const double>) {}

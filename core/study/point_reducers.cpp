@@ -28,6 +28,12 @@ void PointReducers::step(std::span<const double> row) {
   }
 }
 
+void PointReducers::inside(std::span<const double> row) {
+  for (Timed& timed : timed_) {
+    if (timed.window.holds(row[0])) timed.reduced.add_inside(timed.course.at(row));
+  }
+}
+
 void PointReducers::instant(std::span<const double> row) {
   const double due = next_;
   for (Section& section : sections_) {

@@ -67,6 +67,7 @@ class PointReducers final : public StepSink {
   bool needs_steps() const { return !timed_.empty() || !sections_.empty(); }
 
   void step(std::span<const double> row) override;
+  void inside(std::span<const double> row) override;
   double next_instant() const override { return next_; }
   void instant(std::span<const double> row) override;
   std::span<const Passage> passages() const override { return passages_; }

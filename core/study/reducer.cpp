@@ -21,7 +21,7 @@ bool Reduced::see(double value) {
     failed_ = true;
     return false;
   }
-  if (!any_) first_ = low_ = high_ = value;
+  if (!any_) first_ = value;
   low_ = std::min(low_, value);
   high_ = std::max(high_, value);
   return true;
@@ -41,6 +41,12 @@ void Reduced::add_at(double time, double value) {
   last_ = value;
   last_time_ = time;
   any_ = true;
+}
+
+void Reduced::add_inside(double value) {
+  if (!std::isfinite(value)) return;
+  low_ = std::min(low_, value);
+  high_ = std::max(high_, value);
 }
 
 void Reduced::add(double value) {

@@ -46,6 +46,8 @@ class Reduced {
 
   /// A value at an instant, weighed by the trapezoidal rule: half of the time to each neighbour.
   void add_at(double time, double value);
+  /// A value inside of a step, which may be an extreme and counts for nothing else.
+  void add_inside(double value);
   /// A value that weighs as much as each other; a count is then the number of them.
   void add(double value);
   /// NaN where there is none, as where a value was none. Nothing may be added any more.
@@ -59,7 +61,7 @@ class Reduced {
   ReductionRule rule_;
   bool any_ = false, failed_ = false;
   double first_ = 0.0, last_ = 0.0, last_time_ = 0.0;
-  double low_ = 0.0, high_ = 0.0;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
   double half_before_ = -1.0;  // of the last value, whose time to the next is not known yet; -1: there is none
   ExactSum weight_, sum_, squares_, beyond_;
   double weight_so_far_ = 0.0, mean_ = 0.0, spread_ = 0.0;  // West's recurrence for the deviation
