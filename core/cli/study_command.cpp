@@ -75,6 +75,15 @@ void add_point(CLI::App& app, StudyOptions& options) {
   add_file_option(app, "--out", options.out, "With --run: the result directory", "DIR");
 }
 
+void add_plot(CLI::App& app, StudyOptions& options) {
+  add_file_option(app, "--out", options.out, "File of the picture (DIR/plots/NAME.svg)", "FILE");
+  add_option(app, "--kind", options.kind, "One picture: line, heat, bifurcation, histogram or tornado", "KIND");
+  add_option(app, "--x", options.x, "With --kind: the axis", "AXIS");
+  add_option(app, "--y", options.y, "With --kind: the reducer; of heat the second axis", "NAME");
+  add_option(app, "--value", options.value, "With --kind: the reducer", "NAME");
+  add_option(app, "--by", options.by, "With --kind: a family for each model, value or direction", "NAME");
+}
+
 void add_verify(CLI::App& app, StudyOptions& options) {
   add_option(app, "--points", options.points, "How many points run again (20)", "N");
   add_option(app, "--seed", options.seed, "Of the choice (1)", "S");
@@ -96,6 +105,7 @@ constexpr StudyWord study_words[] = {
     {"merge", "Make the table of the rows of one or more directories", "DIR", add_merge, study_merge},
     {"script", "Write scripts that run a study on Slurm, GNU parallel or Snakemake", "FILE|DIR", add_script, study_script},
     {"point", "The command that repeats a point: DIR INDEX", "DIR", add_point, study_point},
+    {"plot", "Draw the pictures of `plots`, or one: DIR [PLOT...]", "DIR", add_plot, study_plot},
     {"verify", "Run some points again and compare every bit", "DIR", add_verify, study_verify},
     // clang-format on
 };

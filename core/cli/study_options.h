@@ -17,12 +17,12 @@ struct StudyOptions {
   std::string out, index;
   ModelOptions model;
   std::string end, step, accuracy, integrator;
-  std::string jobs, shard, only, keep = "none", point_timeout, sync;
+  std::string jobs, shard, only, keep, point_timeout, sync;
   bool retry_failed = false, allow_failed = false, isolate = false, extend = false, restart = false, yes = false;
   bool partial = false, list_points = false, watch = false, run_point = false;
   std::string probe, points, seed;
   std::string engine, minutes, tasks, cores, time, hosts, max_array;
-  std::vector<std::string> plots;
+  std::string kind, x, y, value, by;
 };
 
 /// A study with its directory, which may not be there yet.

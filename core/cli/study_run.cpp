@@ -34,6 +34,14 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t most_kept = 10'000;  // result directories without --yes
 constexpr std::size_t most_listed_failures = 10;
 
+enum class Keep { nothing, failed, all };
+
+Keep keep_of(const std::string& text) {
+  if (text.empty() || text == "none") return Keep::nothing;
+  require_word("--keep", text, {"failed", "all"});
+  return text == "all" ? Keep::all : Keep::failed;
+}
+
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -78,7 +86,7 @@ class StudyRun {
   }
 
   int run() {
-    if (options_.keep != "none") keep_results();
+    if (keep_ != Keep::nothing) keep_results();
     compute();
     const bool interrupted = interrupts_ != 0;
     const bool whole = options_.shard.empty() && !interrupted && table_->done() >= table_->wanted();
@@ -113,6 +121,7 @@ class StudyRun {
   std::chrono::steady_clock::time_point began_;
   StudyMark mark_;
   PoolOptions pool_;
+  Keep keep_ = Keep::nothing;
   ScheduleOptions schedule_;
   double sync_ = 1.0, running_ = 0.0;
   std::optional<StudyTable> table_;
@@ -132,7 +141,7 @@ void StudyRun::read_options() {
   } else if (options_.sync == "0") {
     sync_ = 0.0;
   }
-  require_word("--keep", options_.keep, {"none", "failed", "all"});
+  keep_ = keep_of(options_.keep);
   if (!options_.shard.empty()) schedule_.shard = shard_of(options_.shard);
   if (!options_.only.empty()) schedule_.only = point_ranges("--only", options_.only, plan_.points());
   schedule_.retry_failed = options_.retry_failed;
@@ -191,12 +200,12 @@ void StudyRun::keep_results() {
     throw Error(Error::Category::usage, "bad-value",
                 "--keep is for points that are runs of their own, not for chains or analyses");
   }
-  if (options_.keep == "all" && plan_.points() > most_kept && !options_.yes) {
+  if (keep_ == Keep::all && plan_.points() > most_kept && !options_.yes) {
     throw Error(Error::Category::usage, "too-large",
                 fmt::format("--keep all would make {} result directories", plan_.points()), {}, "--yes makes them");
   }
   study_.work().after_each([this](const StudyPoint& point, const StudyOutcome& outcome) {
-    if (options_.keep == "failed" && outcome.exit_code == 0) return;
+    if (keep_ == Keep::failed && outcome.exit_code == 0) return;
     std::vector<std::string> words = point_words(plan_, fs::absolute(folder_.path()), point);
     const fs::path place =
         folder_.path() / "kept" / fmt::format("{:04}", point.index / 1000) / fmt::format("{}", point.index);

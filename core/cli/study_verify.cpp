@@ -44,7 +44,8 @@ bool same(double a, double b) {
 /// The first thing in which two outcomes of a point differ, with both values; empty where there is none.
 std::string difference(const StudyOutcome& row, const StudyOutcome& now, const RowLayout& layout) {
   if (row.exit_code != now.exit_code || row.error != now.error) {
-    return fmt::format("error {} {}", row.error.empty() ? "none" : row.error, now.error.empty() ? "none" : now.error);
+    const auto words = [](const StudyOutcome& of) { return of.error.empty() ? std::string("ok") : of.error; };
+    return fmt::format("error {} {}", words(row), words(now));
   }
   if (row.exit_code != 0) return {};
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {

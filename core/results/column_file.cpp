@@ -49,7 +49,7 @@ hid_t memory_type(ColumnFile::Kind kind) {
 /// The words of a netCDF attribute are apart by blanks.
 std::string flag_word(std::string word) {
   std::ranges::replace(word, ' ', '_');
-  return word.empty() ? "none" : word;
+  return word.empty() ? "empty" : word;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ STANDS_ON = {
     "analysis": ["assembly"],
     "load": ["yaml", "urdf", "run"],
     "report": ["results", "load"],
-    "study": ["results", "load", "convert", "analysis"],
+    "study": ["results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
     "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "study"],
 }
