@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -36,6 +37,7 @@ int Expression::operand_count(Operation operation) noexcept {
   switch (operation) {
     case Operation::push_constant:
     case Operation::push_time:
+    case Operation::push_variable:
       return 0;
     case Operation::add:
     case Operation::subtract:
@@ -120,6 +122,7 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
       a = Jet::constant(instruction.constant);
       break;
     case Operation::push_time:
+    case Operation::push_variable:
       break;
     case Operation::negate:
       a = -a;
@@ -161,7 +164,7 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
 }
 
 template <int depth>
-bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexcept {
+bool Expression::run(double t, std::span<const double> variables, Jet& out, EvaluationFailure& failure) const noexcept {
   Jet stack[depth];
   Jet* top = stack;  // one past the last operand
   for (const Instruction& instruction : program_) {
@@ -170,6 +173,9 @@ bool Expression::run(double t, Jet& out, EvaluationFailure& failure) const noexc
     switch (instruction.operation) {
       case Operation::push_time:
         *top++ = Jet::time(t);
+        continue;
+      case Operation::push_variable:
+        *top++ = Jet::constant(variables[static_cast<std::size_t>(instruction.constant)]);
         continue;
       case Operation::push_constant:
         if (!std::isfinite(instruction.constant)) break;
@@ -211,8 +217,16 @@ bool Expression::evaluate(double t, Jet& out, EvaluationFailure& failure) const 
     out = Jet::constant(program_[0].constant);
     return true;
   }
-  if (stack_depth_ <= shallow_stack) return run<shallow_stack>(t, out, failure);
-  return stack_depth_ <= usual_stack ? run<usual_stack>(t, out, failure) : run<deepest_stack>(t, out, failure);
+  if (stack_depth_ <= shallow_stack) return run<shallow_stack>(t, {}, out, failure);
+  return stack_depth_ <= usual_stack ? run<usual_stack>(t, {}, out, failure) : run<deepest_stack>(t, {}, out, failure);
+}
+
+double Expression::value(double t, std::span<const double> variables) const noexcept {
+  Jet out;
+  EvaluationFailure failure;
+  const bool good = stack_depth_ <= usual_stack ? run<usual_stack>(t, variables, out, failure)
+                                                : run<deepest_stack>(t, variables, out, failure);
+  return good ? out.value : std::numeric_limits<double>::quiet_NaN();
 }
 
 Quantity Expression::constant() const { return {program_.front().constant, kind_, dimension_}; }

@@ -1,6 +1,8 @@
 // Expression: a formula of the model file, with units, parameters and exact time derivatives.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +42,24 @@ class Scope {
   virtual std::vector<std::string> names() const = 0;
 };
 
+/// What `[name]` stands for in formulas that have such values: a number that is given with each evaluation.
+struct FormulaVariable {
+  int index = 0;  ///< into the numbers that are given
+  DimensionKind kind = DimensionKind::free;
+  Dimension dimension{};
+};
+
+/// The values that `[name]` can refer to.
+class FormulaVariables {
+ public:
+  virtual ~FormulaVariables() = default;
+  virtual std::optional<FormulaVariable> find(std::string_view name) const = 0;
+  /// What one of them is called in messages, such as "channel".
+  virtual std::string word() const = 0;
+  /// The name that was probably meant, or empty.
+  virtual std::string nearest(std::string_view name) const = 0;
+};
+
 /// Why and where a formula has no value at some time. The texts are literals; the place counts characters.
 struct EvaluationFailure {
   const char* id = "";      ///< "bad-expression" outside of a domain, "bad-number" for a value that is not finite
@@ -74,11 +94,17 @@ class Expression {
   /// `t` is `time-not-allowed` unless `time_allowed`. Parameters that are themselves in error are the caller's matter:
   /// do not compile a text whose referenced_parameters() contain one.
   static Expression compile(std::string_view text, const Scope& scope, bool time_allowed);
+  /// The same where `[name]` is one of `variables`, with constants only besides. What it gives is for value() alone.
+  static Expression compile(std::string_view text, const Scope& scope, bool time_allowed,
+                            const FormulaVariables& variables);
 
   /// Value and exact first and second time derivative at time `t` [s], in SI units per s and s^2. At a kink of abs, min
   /// and max the derivatives from the right. Returns false, and says why, outside of a domain; `out` is then unchanged.
   /// Derivatives beyond what `need` asks for may be infinite or NaN. Does not allocate.
   bool evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+
+  /// Value at time `t` [s] with these variables; NaN where there is none. Does not allocate.
+  double value(double t, std::span<const double> variables) const noexcept;
 
   /// How many derivatives are used: 0, 1 or, from the start, 2. The others may not exist.
   void need(int derivatives) { derivatives_ = derivatives; }
@@ -106,6 +132,7 @@ class Expression {
   enum class Operation {
     push_constant,
     push_time,
+    push_variable,
     negate,
     add,
     subtract,
@@ -129,12 +156,12 @@ class Expression {
   };
   struct Instruction {
     Operation operation;
-    double constant;     // of push_constant; the exponent of power_constant
+    double constant;     // of push_constant; the exponent of power_constant; the index of push_variable
     int offset, length;  // of the operator or function in the text [characters]
   };
 
   template <int depth>
-  bool run(double t, Jet& out, EvaluationFailure& failure) const noexcept;
+  bool run(double t, std::span<const double> variables, Jet& out, EvaluationFailure& failure) const noexcept;
   static const char* apply_function(const Instruction& instruction, Jet* operands) noexcept;
   bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   static int operand_count(Operation operation) noexcept;

@@ -22,8 +22,8 @@ namespace freeplay {
 
 class ExpressionCompiler : ExpressionText {
  public:
-  ExpressionCompiler(std::string_view text, const Scope& scope, bool time_allowed)
-      : ExpressionText(text), scope_(scope), time_allowed_(time_allowed) {}
+  ExpressionCompiler(std::string_view text, const Scope& scope, bool time_allowed, const FormulaVariables* variables)
+      : ExpressionText(text), scope_(scope), time_allowed_(time_allowed), variables_(variables) {}
 
   Expression compile() {
     expression_.characters_ = character_count(text_);
@@ -148,6 +148,7 @@ class ExpressionCompiler : ExpressionText {
     const char c = peek();
     if (c == '(') return group();
     if (c == '$') return without_unit(parameter());
+    if (c == '[' && variables_ != nullptr) return without_unit(variable());
     if (word_end(text_, begin) > begin) return without_unit(word());
     if (c == '.') fail_if_not_finite_word(begin + 1, begin);
     fail_at_rest();
@@ -202,6 +203,20 @@ class ExpressionCompiler : ExpressionText {
     operand.end = position_;
     push(found->value, begin, position_);
     return operand;
+  }
+
+  Operand variable() {
+    const std::size_t begin = position_, close = text_.find(']', begin);
+    if (close == std::string_view::npos) fail("bad-expression", begin, begin + 1, "this '[' has no ']'");
+    const std::string_view name = text_.substr(begin + 1, close - begin - 1);
+    position_ = close + 1;
+    const std::optional<FormulaVariable> found = variables_->find(name);
+    if (!found) {
+      fail("unknown-name", begin + 1, close, fmt::format("unknown {} '{}'", variables_->word(), name),
+           variables_->nearest(name));
+    }
+    const Operand operand{found->kind, found->dimension, true, begin, position_};
+    return emit(Operation::push_variable, operand, begin, position_, found->index);
   }
 
   Operand word() {
@@ -412,12 +427,20 @@ class ExpressionCompiler : ExpressionText {
 
   const Scope& scope_;
   bool time_allowed_;
+  const FormulaVariables* variables_;  // null: there are none
   int depth_ = 0;
   Expression expression_;
 };
 
 Expression Expression::compile(std::string_view text, const Scope& scope, bool time_allowed) {
-  return ExpressionCompiler(text, scope, time_allowed).compile();
+  return ExpressionCompiler(text, scope, time_allowed, nullptr).compile();
+}
+
+Expression Expression::compile(std::string_view text, const Scope& scope, bool time_allowed,
+                               const FormulaVariables& variables) {
+  Expression expression = ExpressionCompiler(text, scope, time_allowed, &variables).compile();
+  expression.need(0);
+  return expression;
 }
 
 }  // namespace freeplay

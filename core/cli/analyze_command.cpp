@@ -28,70 +28,6 @@
 namespace freeplay {
 namespace {
 
-AnalysisKind analysis_kind(const std::string& word) {
-  return word == "ik"            ? AnalysisKind::inverse_kinematics
-         : word == "workspace"   ? AnalysisKind::workspace
-         : word == "singularity" ? AnalysisKind::singularity
-         : word == "error"       ? AnalysisKind::error
-                                 : AnalysisKind::inverse_dynamics;
-}
-
-PlatformOverrides overrides_of(Model& model, const AnalyzeOptions& options) {
-  PlatformOverrides overrides;
-  if (!options.frame.empty()) overrides.marker = frame_marker(model, options.frame);
-  if (!options.elbow.empty()) overrides.elbow = elbow_of(options.elbow);
-  return overrides;
-}
-
-/// A torque where all inputs turn, a force where all slide; either where they differ.
-double preload_of(const IdealMechanism& mechanism, const std::string& text) {
-  int turning = 0;
-  const int inputs = static_cast<int>(mechanism.platform().inputs.size());
-  for (int i = 0; i < inputs; ++i) turning += mechanism.is_angle(i) ? 1 : 0;
-  if (turning == 0) return signed_quantity("--preload", text, dimension::force);
-  if (turning == inputs) return signed_quantity("--preload", text, dimension::torque);
-  try {
-    return signed_quantity("--preload", text, dimension::torque);
-  } catch (const Error&) {
-    return signed_quantity("--preload", text, dimension::force);
-  }
-}
-
-AnalysisRequest request_of(const IdealMechanism& mechanism, const AnalyzeOptions& options) {
-  const int ways = (options.pose.empty() ? 0 : 1) + (options.grid.empty() ? 0 : 1) + (options.time.empty() ? 0 : 1) +
-                   (options.input.empty() ? 0 : 1);
-  if (ways > 1) {
-    throw Error(Error::Category::usage, "bad-value", "--pose, --grid, --time and --input exclude each other");
-  }
-  AnalysisRequest request;
-  request.kind = analysis_kind(options.kind);
-  for (const std::string& text : options.pose) {
-    request.poses.push_back({pose_of(mechanism.form(), text), fmt::format("--pose {}", text)});
-  }
-  for (const std::string& text : options.input) {
-    request.inputs.push_back({inputs_of(text, mechanism.model(), mechanism.platform().inputs), text});
-  }
-  if (!options.time.empty()) request.times = times_of(options.time);
-  for (const std::string& text : options.grid) {
-    const auto [axis, values] = grid_axis_of(mechanism.form(), text);
-    if (request.grid[axis]) {
-      throw Error(Error::Category::usage, "bad-value", fmt::format("--grid {}: this axis is given twice", text));
-    }
-    request.grid[axis] = values;
-  }
-  request.branches = options.branches;
-  request.chooses_elbow = !options.elbow.empty();
-  request.error.sensitivity = options.sensitivity;
-  if (!options.samples.empty()) request.error.samples = whole_number("--samples", options.samples, 1);
-  if (!options.seed.empty()) {
-    request.error.seed = static_cast<std::uint64_t>(whole_number("--seed", options.seed, 0));
-  }
-  if (!options.distribution.empty()) request.error.law = play_law_of(options.distribution);
-  if (!options.preload.empty()) request.preload = preload_of(mechanism, options.preload);
-  request.threads = processor_count();
-  return request;
-}
-
 /// The map of a table over a grid of x and y.
 std::string drawing(const IdealMechanism& mechanism, const AnalysisRequest& request, const RequestedStations& stations,
                     const AnalysisTable& table, bool coloured, const TickOf& tick_of) {
@@ -141,36 +77,13 @@ std::string drawing(const IdealMechanism& mechanism, const AnalysisRequest& requ
   return map_svg(map);
 }
 
-/// Options that the kind has no use for.
-void refuse_idle_options(const AnalyzeOptions& options) {
-  const auto only = [&](bool given, const char* option, const char* kind) {
-    if (!given || options.kind == kind) return;
-    throw Error(Error::Category::usage, "bad-value",
-                fmt::format("{} is for {}, not for {}", option, kind, options.kind));
-  };
-  only(options.sensitivity, "--sensitivity", "error");
-  only(!options.samples.empty(), "--samples", "error");
-  only(!options.seed.empty(), "--seed", "error");
-  only(!options.distribution.empty(), "--distribution", "error");
-  only(!options.preload.empty(), "--preload", "inverse-dynamics");
-  only(options.branches, "--branches", "ik");
-  if (options.coloured && options.svg.empty()) {
-    throw Error(Error::Category::usage, "bad-value", "--colours is given without --svg", {}, "--svg FILE draws a map");
-  }
-  for (const auto& [text, option] : {std::pair{&options.seed, "--seed"}, {&options.distribution, "--distribution"}}) {
-    if (text->empty() || !options.samples.empty()) continue;
-    throw Error(Error::Category::usage, "bad-value", fmt::format("{} is given without --samples", option), {},
-                "--samples N draws random play");
-  }
-}
-
 /// What makes the same table or map again.
 Json record_of(const Model& model, const AnalyzeOptions& options, const CommonOptions& common) {
   Making making{.made = "analyze",
                 .command = common.command,
                 .arguments = analyze_arguments(options, common),
                 .build = FREEPLAY_BUILD};
-  if (!options.samples.empty()) making.seed = options.seed.empty() ? 0 : whole_number("--seed", options.seed, 0);
+  if (!options.samples.empty()) making.seed = seed_of(options);
   return provenance_with_texts(model, making);
 }
 
@@ -196,10 +109,12 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
     throw Error(Error::Category::usage, "missing-argument", "analyze needs a kind and a model file", {},
                 "freeplay analyze ik|workspace|singularity|error|inverse-dynamics MODEL");
   }
-  require_word("kind of analysis", options.kind, {"ik", "workspace", "singularity", "error", "inverse-dynamics"});
+  require_sense(options);
+  if (options.coloured && options.svg.empty()) {
+    throw Error(Error::Category::usage, "bad-value", "--colours is given without --svg", {}, "--svg FILE draws a map");
+  }
   LoadedModel loaded = load_model(options.model, build_options(options.build), loading(common));
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
-  refuse_idle_options(options);
   if (options.kind == "workspace") require_planar(loaded, "analyze workspace");
   if (options.branches) require_planar(loaded, "--branches");
   if (!options.elbow.empty()) require_planar(loaded, "--elbow");
@@ -208,8 +123,8 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   try {
     AnalysisWatch watch(stderr_is_terminal() && !common.quiet);
     const TickOf tick_of = [&](const char* what, std::size_t total) { return watch.begin(what, total); };
-    IdealMechanism mechanism(*loaded.model, platform_of(*loaded.model, overrides_of(*loaded.model, options)));
-    const AnalysisRequest request = request_of(mechanism, options);
+    IdealMechanism mechanism(*loaded.model, platform_of(*loaded.model, platform_overrides(*loaded.model, options)));
+    const AnalysisRequest request = request_of(mechanism, options, processor_count());
     const RequestedStations stations(mechanism, request, tick_of);
     result = analyse(mechanism, request, stations, tick_of);
     if (!options.svg.empty()) map = drawing(mechanism, request, stations, result.table, options.coloured, tick_of);

@@ -16,6 +16,7 @@
 #include "cli/schema_command.h"
 #include "cli/seal_command.h"
 #include "cli/show_command.h"
+#include "cli/study_command.h"
 #include "cli/validate_command.h"
 
 namespace freeplay {
@@ -25,6 +26,7 @@ std::span<const CommandEntry> all_commands() {
       // clang-format off
       {"run", add_run_command},
       {"validate", add_validate_command},
+      {"study", add_study_command},
       {"analyze", add_analyze_command},
       {"compare", add_compare_command},
       {"export", add_export_command},

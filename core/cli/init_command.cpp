@@ -1,7 +1,6 @@
 #include "cli/init_command.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/shell_word.h"
 #include "cli/component_entry.h"
 #include "cli/loading.h"
 #include "cli/starter_files.h"
@@ -64,18 +64,6 @@ std::string program_word() {
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return program.string();
-}
-
-/// A word as the shell needs it.
-std::string shell_word(const std::string& word) {
-  constexpr std::string_view plain = "_./+:,@%=-";
-  const auto is_plain = [&](unsigned char c) {
-    return std::isalnum(c) || plain.find(static_cast<char>(c)) != plain.npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 Written init_model(const InitOptions& options) {

@@ -17,13 +17,6 @@ constexpr const char* common_group = "Options of every command";
 constexpr const char* hidden_group = "";
 constexpr const char* model_group = "Options of every command that reads a model";
 
-/// Options are read before any model, so they know no parameters.
-class NoParameters : public Scope {
- public:
-  const Quantity* find(std::string_view) const override { return nullptr; }
-  std::vector<std::string> names() const override { return {}; }
-};
-
 // One value for each mention; by default the parser would also take the words that follow.
 CLI::Option* repeatable(CLI::App& app, const std::string& name, std::vector<std::string>& values,
                         const std::string& help) {
@@ -32,14 +25,15 @@ CLI::Option* repeatable(CLI::App& app, const std::string& name, std::vector<std:
 
 }  // namespace
 
-void bad_value(const std::string& option, const std::string& text, const std::string& why, const std::string& hint) {
-  throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
-              hint);
-}
-
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help) {
   return program.add_subcommand(name, help);
 }
+
+CLI::App* add_nested_command(CLI::App& command, const std::string& name, const std::string& help) {
+  return command.add_subcommand(name, help)->allow_extras();
+}
+
+bool is_chosen(const CLI::App& command) { return command.parsed(); }
 
 void add_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
                 const std::string& value_name) {
@@ -123,40 +117,8 @@ BuildOptions build_options(const ModelOptions& options) {
   return build;
 }
 
-double signed_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
-  try {
-    const Expression expression = Expression::compile(text, NoParameters{}, false);
-    expression.require(dimension);
-    return expression.constant().value;
-  } catch (const ExpressionError& e) {
-    bad_value(option, text, e.message, e.suggestion.empty() ? e.hint : fmt::format("did you mean '{}'?", e.suggestion));
-  }
-}
-
-double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
-  const double value = signed_quantity(option, text, dimension);
-  if (!(value > 0.0)) bad_value(option, text, "it must be greater than 0");
-  return value;
-}
-
-void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed) {
-  if (std::ranges::find(allowed, word) != allowed.end()) return;
-  const auto nearest = suggestion(word, allowed);
-  throw Error(
-      Error::Category::usage, "unknown-name", fmt::format("there is no {} '{}'", what, word), {},
-      nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(allowed, ", ")));
-}
-
 void not_in_this_release(const std::string& what) {
   throw Error(Error::Category::usage, "not-in-this-release", fmt::format("{}: not in this release", what));
-}
-
-long whole_number(const std::string& option, const std::string& text, long least) {
-  const double value = signed_quantity(option, text, dimension::none);
-  if (value != std::floor(value) || value < static_cast<double>(least) || value > 1e9) {
-    bad_value(option, text, fmt::format("a whole number from {} to 10^9 is needed", least));
-  }
-  return static_cast<long>(value);
 }
 
 }  // namespace freeplay

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/option_value.h"
 #include "base/unit.h"
 #include "format/build_options.h"
 
@@ -38,6 +39,10 @@ struct Command {
 };
 
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& help);
+/// A command of a command, whose unknown words are left as well.
+CLI::App* add_nested_command(CLI::App& command, const std::string& name, const std::string& help);
+/// Whether it stands on the command line.
+bool is_chosen(const CLI::App& command);
 void add_common_options(CLI::App& app, CommonOptions& options);
 void add_model_options(CLI::App& app, ModelOptions& options);
 /// The same for a command that refuses --ideal.
@@ -62,19 +67,6 @@ void add_flag(CLI::App& app, const std::string& name, bool& value, const std::st
 
 /// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
 BuildOptions build_options(const ModelOptions& options);
-
-/// Throws Error{usage} "bad-value": "bad value 'TEXT' of OPTION: WHY".
-[[noreturn]] void bad_value(const std::string& option, const std::string& text, const std::string& why,
-                            const std::string& hint = {});
-/// A whole number from `least` to 10^9. Throws Error{usage} "bad-value".
-long whole_number(const std::string& option, const std::string& text, long least);
-/// A positive quantity such as "0.5 s". Throws Error{usage} "bad-value".
-double positive_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
-/// A quantity of either sign. Throws Error{usage} "bad-value".
-double signed_quantity(const std::string& option, const std::string& text, const Dimension& dimension);
-
-/// Throws Error{usage} "unknown-name" with a suggestion unless `word` is one of `allowed`; `what` is what it names.
-void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed);
 
 [[noreturn]] void not_in_this_release(const std::string& what);
 

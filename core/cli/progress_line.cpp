@@ -7,6 +7,13 @@
 #include <fmt/format.h>
 
 namespace freeplay {
+
+std::string clock_text(double seconds) {
+  const long s = std::lround(seconds);
+  if (s >= 3600) return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return fmt::format("{:02}:{:02}", s / 60, s % 60);
+}
+
 namespace {
 
 /// Digits in groups of three.
@@ -14,13 +21,6 @@ std::string grouped(long number) {
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ' ');
   return text;
-}
-
-/// Hours only where there are any.
-std::string clock_text(double seconds) {
-  const long s = std::lround(seconds);
-  if (s >= 3600) return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
-  return fmt::format("{:02}:{:02}", s / 60, s % 60);
 }
 
 /// For a share that is done after `elapsed` seconds.

@@ -21,11 +21,12 @@ class ProgressLine {
   void update(double t, long steps);
   /// Shows how many of `total` are done, and what they are.
   void update(const char* what, long done, long total);
+  /// Another line, where it is `due()`.
+  void show(const std::string& line);
+  bool due();
 
  private:
-  bool due();
   double elapsed() const;
-  void show(const std::string& line);
 
   double start_, end_;
   bool shown_;
@@ -33,6 +34,8 @@ class ProgressLine {
   std::chrono::steady_clock::time_point began_, last_{};
 };
 
+/// 00:12, with hours only where there are any.
+std::string clock_text(double seconds);
 /// `  42 %  t = 0.252 / 0.6 s  126 000 steps  eta 00:12`, after `elapsed` seconds of work.
 std::string progress_text(double start, double end, double t, long steps, double elapsed);
 /// `  42 %  16 800 / 40 000 poses found  eta 00:12`.

@@ -6,9 +6,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "cli/loading.h"
+#include "cli/study_options.h"
 #include "cli/terminal.h"
 #include "report/report.h"
+#include "study/study_page.h"
 
 namespace freeplay {
 namespace {
@@ -32,7 +35,25 @@ std::vector<std::string> arguments_of(const ReportOptions& options) {
   return arguments;
 }
 
+/// Of a study's directory: its pictures and its table.
+int report_study(const std::string& folder, const ReportOptions& options, const CommonOptions& common) {
+  const StudyInFolder opened = open_kept(folder, common);
+  if (!opened.study) return opened.exit_code;
+  const std::string page = study_page(*opened.study, folder);
+  const std::string file = options.out.empty() ? (opened.folder.path() / "report.html").string() : options.out;
+  write_whole_file(file, page);
+  if (common.json) {
+    print_json(Json{{"file", file}, {"bytes", page.size()}});
+  } else if (!common.quiet) {
+    print(fmt::format("report in {} ({} bytes)\n", printable(file), page.size()));
+  }
+  return 0;
+}
+
 int report(const ReportOptions& options, const CommonOptions& common) {
+  if (options.results.size() == 1 && StudyFolder(options.results.front()).holds_study()) {
+    return report_study(options.results.front(), options, common);
+  }
   ReportRequest request;
   request.results = options.results;
   request.out = options.out;

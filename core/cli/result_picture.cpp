@@ -86,9 +86,9 @@ MagnifiedJoint magnified(const std::string& text, const Model& model) {
   return {joint, positive_quantity("--magnify", text.substr(sign + 1), dimension::none), {}};
 }
 
-class Reading {
+class PictureReading {
  public:
-  Reading(const std::string& result, const System& system, const ResultPictureOptions& options)
+  PictureReading(const std::string& result, const System& system, const ResultPictureOptions& options)
       : system_(system),
         options_(options),
         reader_(ResultReader::open(result)),
@@ -170,7 +170,7 @@ class Reading {
 }  // namespace
 
 ResultPicture result_picture(const std::string& result, const System& system, const ResultPictureOptions& options) {
-  return Reading(result, system, options).read();
+  return PictureReading(result, system, options).read();
 }
 
 }  // namespace freeplay

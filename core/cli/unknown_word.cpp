@@ -14,11 +14,6 @@
 namespace freeplay {
 namespace {
 
-// One a line, so that the release that brings one takes its line away.
-const std::vector<std::string> later_commands{
-    "sweep",  //
-};
-
 [[noreturn]] void refuse(const std::string& id, const std::string& message, const std::string& word,
                          const std::vector<std::string>& known, const std::string& prefix = "") {
   const auto nearest = suggestion(word, known);
@@ -42,17 +37,19 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-void refuse_word(const CLI::App& program, const CLI::App& app, const std::string& word) {
+void refuse_word(const CLI::App& app, bool has_commands, const std::string& word) {
   if (word.starts_with('-') && word.size() > 1) {
     const std::string option = word.substr(0, word.find('='));
     const std::string letters = option.substr(std::min(option.find_first_not_of('-'), option.size()));
     refuse("unknown-option", fmt::format("unknown option '{}'", option), letters, option_names(app), "--");
   }
-  if (&app != &program) {
+  if (!has_commands) {
     throw Error(Error::Category::usage, "unexpected-argument", fmt::format("unexpected argument '{}'", word));
   }
-  if (std::ranges::find(later_commands, word) != later_commands.end()) not_in_this_release(word);
-  refuse("unknown-command", fmt::format("unknown command '{}'", word), word, command_names(program));
+  if (word == "sweep") {
+    throw Error(Error::Category::usage, "unknown-command", "unknown command 'sweep'", {}, "it is called study");
+  }
+  refuse("unknown-command", fmt::format("unknown command '{}'", word), word, command_names(app));
 }
 
 /// An unknown option explains the stray words after it better than the other way round.
@@ -65,11 +62,9 @@ std::string telling(const std::vector<std::string>& words) {
 
 void refuse_unknown_words(const CLI::App& program) {
   const std::vector<std::string> words = program.remaining();
-  if (!words.empty()) refuse_word(program, program, program.get_subcommands().empty() ? words.front() : telling(words));
-  for (const CLI::App* command : program.get_subcommands()) {
-    const std::vector<std::string> rest = command->remaining();
-    if (!rest.empty()) refuse_word(program, *command, telling(rest));
-  }
+  const bool has_commands = !program.get_subcommands(nullptr).empty(), chosen = !program.get_subcommands().empty();
+  if (!words.empty()) refuse_word(program, has_commands, has_commands && !chosen ? words.front() : telling(words));
+  for (const CLI::App* command : program.get_subcommands()) refuse_unknown_words(*command);
 }
 
 }  // namespace freeplay

@@ -11,6 +11,7 @@
 #include "cli/loading.h"
 #include "cli/terminal.h"
 #include "load/load.h"
+#include "study/plan.h"
 
 namespace freeplay {
 namespace {
@@ -30,12 +31,31 @@ struct Validation {
   Json start = nullptr;
   Json start_changes = nullptr;
   std::string moved{};
+  std::optional<std::uint64_t> points{};  ///< of a study
 
   bool ok() const { return loaded.exit_code == 0; }
 };
 
+/// The study of a model, or of a file that has one alone and is no model.
+void judge_study(Validation& verdict, const ValidateOptions& options, const CommonOptions& common) {
+  StudyPlanOptions plan;
+  plan.load = loading(common);
+  plan.set = build_options(options.model).set;
+  plan.many_points = true;
+  const auto study = StudyPlan::read(verdict.file, plan, verdict.loaded.diagnostics);
+  if (study) verdict.points = study->points();
+  verdict.loaded.exit_code = study && !verdict.loaded.diagnostics.has_errors() ? 0 : 3;
+}
+
 Validation judge(const std::string& file, const ValidateOptions& options, const CommonOptions& common) {
   Validation verdict{file, load_model(file, build_options(options.model), loading(common)), {}, {}, {}, {}, {}};
+  const Node* root = verdict.loaded.document ? &verdict.loaded.document->root() : nullptr;
+  if (root != nullptr && root->is_map() && has_study_alone(*root)) {
+    verdict.loaded.diagnostics = Diagnostics(common.strict);
+    judge_study(verdict, options, common);
+    return verdict;
+  }
+  if (verdict.ok() && root->find("study") != nullptr) judge_study(verdict, options, common);
   if (!verdict.ok()) return verdict;
   if (options.no_assemble) {
     verdict.facts = count_facts(*verdict.loaded.model);
@@ -50,19 +70,23 @@ Validation judge(const std::string& file, const ValidateOptions& options, const 
 }
 
 Json verdict_json(const Validation& verdict, int max_errors) {
-  return {
+  Json json = {
       {"file", verdict.file},
       {"ok", verdict.ok()},
-      {"facts", verdict.ok() ? facts_json(*verdict.loaded.model, *verdict.facts, verdict.structure) : Json(nullptr)},
+      {"facts", verdict.ok() && verdict.facts ? facts_json(*verdict.loaded.model, *verdict.facts, verdict.structure)
+                                              : Json(nullptr)},
       {"start", verdict.start},
       {"start_changes", verdict.start_changes},
       {"messages", messages_json(verdict.loaded.diagnostics, max_errors)}};
+  if (verdict.points) json["study"] = {{"points", *verdict.points}};
+  return json;
 }
 
 void print_verdict(const Validation& verdict, const CommonOptions& common) {
   if (!common.quiet && !common.json) {
     print(printable(verdict.file) + (verdict.ok() ? ": ok\n" : ": not ok\n"));
-    if (verdict.ok()) {
+    if (verdict.ok() && verdict.points) print(fmt::format("  study of {} points\n", *verdict.points));
+    if (verdict.ok() && verdict.facts) {
       print(facts_text(*verdict.loaded.model, *verdict.facts) + structure_text(verdict.structure) + verdict.moved);
     }
   }

@@ -143,6 +143,17 @@ class Flattening {
     return found == renamed_.end() ? text : found->second;
   }
 
+  /// SECTION.NAME.KEY as targets of a study have it; what instances declare has the longest name.
+  std::string rename_path(const std::string& path) const {
+    const std::size_t first = path.find('.');
+    if (first == std::string::npos || !is_part(path.substr(0, first))) return rename(path);
+    for (std::size_t end = path.rfind('.'); end > first; end = path.rfind('.', end - 1)) {
+      const std::string name = path.substr(first + 1, end - first - 1);
+      if (renamed_.contains(name)) return path.substr(0, first + 1) + rename(name) + path.substr(end);
+    }
+    return path;
+  }
+
   std::string rename_channel(const std::string& channel) const {
     const std::size_t first = channel.find('.'), last = channel.rfind('.');
     if (first == std::string::npos || last <= first) return channel;
@@ -190,10 +201,12 @@ class Flattening {
     if (key == "channel" && entry.value->is_scalar()) return put(made, key, scalar(rename_channel(entry.value->text)));
     if (key == "channels" && instance.empty()) return put(made, key, channel_list(*entry.value));
     if (key == "ideal" && instance.empty()) return put(made, key, joint_list(*entry.value));
-    put(made, rename(key), copy(*entry.value, instance));
+    const bool path = (key == "target" || key == "summary") && instance.empty() && entry.value->is_scalar();
+    if (path) return put(made, key, scalar(rename_path(entry.value->text)));
+    put(made, instance.empty() ? rename_path(key) : rename(key), copy(*entry.value, instance));
   }
 
-  /// `ideal` of a sweep: names and patterns of joints, or `all`.
+  /// `ideal` of a study: names and patterns of joints, or `all`.
   const Node& joint_list(const Node& written) {
     Node& list = target_.add(Node::Kind::list, 1, 1);
     for (const Node* item : written.is_list() ? written.items : std::vector<const Node*>{&written}) {

@@ -44,6 +44,8 @@ Json alternative(std::string_view text) {
   if (text == "contents") return {{"type", "object"}};
   if (text == "frame value") return any_of({reference("vector"), reference("frame")});
   if (text == "grid") return any_of({reference("quantity"), array_of(reference("quantity")), reference("grid")});
+  if (text == "axis") return any_of({reference("text"), array_of(reference("value")), reference("study-axis")});
+  if (text == "value") return reference("value");
   if (text == "vector") return reference("vector");
   if (text == "text" || text == "name" || text == "frame") return reference("text");
   if (text == "boolean") return {{"type", "boolean"}};
@@ -196,6 +198,7 @@ class ModelSchema {
     definitions_["time-function"] = {{"type", {"number", "string"}}, {"description", "A quantity that may hold t."}};
     definitions_["integer"] = {{"type", {"number", "string"}}, {"description", "A quantity that is an integer."}};
     definitions_["text"] = {{"type", {"string", "number", "boolean"}}};
+    definitions_["value"] = {{"description", "A quantity, a word, a list or a map."}};
     definitions_["vector"] = {{"type", "array"}, {"items", reference("quantity")}, {"minItems", 2}, {"maxItems", 3}};
     for (const FormatMap& map : format_maps()) {
       Json& schema = definitions_[definition_name(map.name)] = object(properties_of(map), required_of(map));
@@ -321,6 +324,15 @@ class ModelSchema {
 
 Json model_schema(const Registry& registry, const std::vector<std::string>& force_types) {
   return ModelSchema(registry, force_types).make();
+}
+
+Json study_schema(const Json& model) {
+  Json schema = model;
+  schema["title"] = "Freeplay study file, version 1";
+  schema["description"] = format_map("study").meaning;
+  schema["properties"] = {{"freeplay", model["properties"]["freeplay"]}, {"study", model["properties"]["study"]}};
+  schema["required"] = {"freeplay", "study"};
+  return schema;
 }
 
 }  // namespace freeplay

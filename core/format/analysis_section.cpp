@@ -14,7 +14,8 @@ void read_pose_grid(AnalysisSection& analysis, const CheckedValue& value) {
   constexpr std::array<const char*, 3> keys{"x", "y", "angle"};
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const auto axis = map.find(keys[i]);
-    if (axis) analysis.grid[i] = read_grid(*axis, i < 2 ? dimension::length : dimension::angle);
+    std::optional<Dimension> dimension = i < 2 ? dimension::length : dimension::angle;
+    if (axis) analysis.grid[i] = read_grid(*axis, dimension);
   }
   map.finish();
 }
@@ -89,7 +90,8 @@ void read_analysis(Draft& draft, const CheckedValue& section) {
     analysis.path_location = path->location();
     if (components) analysis.path = *components;
   }
-  if (time) analysis.time = read_grid(*time, dimension::time);
+  std::optional<Dimension> seconds = dimension::time;
+  if (time) analysis.time = read_grid(*time, seconds);
   if (grid) read_pose_grid(analysis, *grid);
   if (error) read_error(draft, *error);
   map.finish();

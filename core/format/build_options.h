@@ -27,6 +27,8 @@ struct BuildOptions {
   std::optional<double> largest_step = std::nullopt;  ///< of runs with an accuracy [s]
   std::optional<double> interval = std::nullopt;      ///< of output rows [s]
   std::vector<std::string> channels{};                ///< patterns, in place of those of the file
+  bool without_study = false;                         ///< the section `study` is not read
+  std::vector<std::string>* addresses = nullptr;      ///< receives the paths of the expanded model
   /// Reads a list or map of `set`; a file name for messages comes second.
   std::function<std::optional<Document>(std::string, const std::string&, Diagnostics&)> parse_value{};
 };

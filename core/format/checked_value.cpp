@@ -43,7 +43,7 @@ std::string either(const std::vector<std::string>& words) {
 }
 
 std::optional<Expression> CheckedValue::compile(const Node& text_node, std::string_view text, int offset,
-                                                bool time_allowed) const {
+                                                bool time_allowed, const FormulaVariables* variables) const {
   bool broken = false;
   for (const std::string& name : referenced_parameters(text)) {
     if (!reading_->scope->broken(name)) continue;
@@ -53,11 +53,20 @@ std::optional<Expression> CheckedValue::compile(const Node& text_node, std::stri
   }
   if (broken) return std::nullopt;
   try {
-    return Expression::compile(text, *reading_->scope, time_allowed);
+    return variables == nullptr ? Expression::compile(text, *reading_->scope, time_allowed)
+                                : Expression::compile(text, *reading_->scope, time_allowed, *variables);
   } catch (const ExpressionError& error) {
     fail_inside(text_node, error, offset);
   }
   return std::nullopt;
+}
+
+std::optional<Expression> CheckedValue::formula(const FormulaVariables& variables) const {
+  if (!node_->is_scalar()) {
+    wrong_type("a formula");
+    return std::nullopt;
+  }
+  return compile(*node_, node_->text, 0, true, &variables);
 }
 
 std::optional<Quantity> CheckedValue::any_quantity() const {

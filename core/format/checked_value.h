@@ -24,6 +24,8 @@ class CheckedValue : public LocatedValue {
   std::optional<Quantity> any_quantity() const;
   /// A function of time, tried at the start time, of which the first `derivatives` are used.
   std::optional<Expression> time_function(const Dimension& dimension, int derivatives = 2) const;
+  /// A function of time and of `variables`, of whatever dimension.
+  std::optional<Expression> formula(const FormulaVariables& variables) const;
   std::optional<long> integer(long minimum, long maximum) const;
   std::optional<bool> boolean() const;
   /// Any scalar, as it is.
@@ -50,7 +52,8 @@ class CheckedValue : public LocatedValue {
   CheckedValue below(const Node& node, const Node* key, std::string path, const std::string& name) const;
 
  private:
-  std::optional<Expression> compile(const Node& text_node, std::string_view text, int offset, bool time_allowed) const;
+  std::optional<Expression> compile(const Node& text_node, std::string_view text, int offset, bool time_allowed,
+                                    const FormulaVariables* variables = nullptr) const;
   bool tried(const Expression& expression) const;
   std::optional<std::string> expand(const Node& text_node) const;
 };

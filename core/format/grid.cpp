@@ -17,9 +17,11 @@ std::optional<double> read_point(const CheckedValue& value, std::optional<Dimens
   return std::nullopt;
 }
 
-/// `[from, to, count]`; end points of a logarithmic grid are positive.
-std::optional<GridValues> read_space(const CheckedValue& value, std::optional<Dimension> dimension, const Range& range,
-                                     bool logarithmic) {
+}  // namespace
+
+// End points of a logarithmic grid are positive.
+std::optional<GridValues> read_space(const CheckedValue& value, bool logarithmic, std::optional<Dimension>& dimension) {
+  const Range range = logarithmic ? positive : Range{};
   const auto items = value.list(3);
   if (!items) return std::nullopt;
   const std::optional<double> from = read_point((*items)[0], dimension, range);
@@ -34,7 +36,9 @@ std::optional<GridValues> read_space(const CheckedValue& value, std::optional<Di
   return GridValues{{}, *from, *to, *points, logarithmic};
 }
 
-std::optional<GridValues> read_list(const CheckedValue& value, std::optional<Dimension> dimension) {
+namespace {
+
+std::optional<GridValues> read_list(const CheckedValue& value, std::optional<Dimension>& dimension) {
   const auto items = value.list();
   if (!items) return std::nullopt;
   if (items->empty()) {
@@ -52,7 +56,7 @@ std::optional<GridValues> read_list(const CheckedValue& value, std::optional<Dim
 
 }  // namespace
 
-std::optional<GridValues> read_grid(const CheckedValue& value, std::optional<Dimension> dimension) {
+std::optional<GridValues> read_grid(const CheckedValue& value, std::optional<Dimension>& dimension) {
   if (value.node().is_scalar()) {
     const std::optional<double> point = read_point(value, dimension);
     return point ? std::optional<GridValues>(GridValues::one(*point)) : std::nullopt;
@@ -70,8 +74,8 @@ std::optional<GridValues> read_grid(const CheckedValue& value, std::optional<Dim
   if (map.conflict("linspace", "logspace") || map.conflict("linspace", "list") || map.conflict("logspace", "list")) {
     return std::nullopt;
   }
-  if (linear) return read_space(*linear, dimension, {}, false);
-  if (logarithmic) return read_space(*logarithmic, dimension, positive, true);
+  if (linear) return read_space(*linear, false, dimension);
+  if (logarithmic) return read_space(*logarithmic, true, dimension);
   if (list) return read_list(*list, dimension);
   map.report_missing("linspace");
   return std::nullopt;

@@ -34,8 +34,7 @@ constexpr FormatKey model[] = {
     {"initial", "map initial", "", "", "Where and how fast the mechanism starts.", "{joints: {pin: 30 deg}}"},
     {"simulation", "map simulation", "", "", "Time span, steps, output.", "{end: 2 s, step: 1 ms}"},
     {"analysis", "map analysis", "", "", "Platform, inputs and grids of `freeplay analyze`.", "{frame: platform}"},
-    {"sweep", "map sweep", "", "", "Grids of parameters and what is kept of each run.",
-     "{parameters: {l: [0.1, 0.2]}}"}};
+    {"study", "map study", "", "", "Many runs, and what is kept of each.", "{axes: {l: [0.1, 0.2]}}"}};
 
 constexpr FormatKey urdf[] = {
     {"file", "text", "", "required", "Path from the model's folder.", "robot.urdf"},
@@ -233,17 +232,121 @@ constexpr FormatKey error[] = {
     {"clearance", "entries of quantity", "m", "that of each joint", "Radius of the play by joint.", "{leg1.B: 0.1 mm}"},
     {"input", "quantity", "rad", "0", "Error of each driven joint.", "0.1 deg"}};
 
-constexpr FormatKey sweep[] = {
-    {"parameters", "entries of grid", "", "required", "Grid of each parameter.", "{l: {linspace: [0.1, 0.2, 11]}}"},
-    {"combine", "'grid' | 'zip'", "", "grid", "All combinations, or side by side.", "zip"},
-    {"ideal", "name | list of name", "", "", "Joints whose clearance is closed, or all.", "all"},
-    {"reducers", "entries of map reducer", "", "", "What is kept of each run.",
-     "{force: {channel: joint.pin.fx, reduce: absmax}}"}};
+constexpr FormatKey study[] = {
+    {"name", "text", "", "the name of the file", "Of the study.", "clearances"},
+    {"description", "text", "", "", "For people.", "'Play against speed'"},
+    {"models", "list of text | entries of text", "", "this model", "Files of models, in a file that has a study alone.",
+     "{old: first.yaml, new: second.yaml}"},
+    {"set", "entries of value", "", "", "Targets and their values at every point.", "{simulation.accuracy: 1 um}"},
+    {"axes", "entries of axis", "", "one point for each model", "Targets and their values, point by point.",
+     "{l: {linspace: [0.1, 0.2, 11]}}"},
+    {"combine", "'grid' | 'zip' | 'star'", "", "grid",
+     "All combinations, all axes side by side, or one axis at a time.", "zip"},
+    {"zip", "list of list of text", "", "", "Lists of axes that go side by side in a grid.", "[[l, m]]"},
+    {"sample", "map study sample", "", "required with random axes", "How they are drawn.",
+     "{method: random, points: 1000, seed: 7}"},
+    {"do", "'run' | map study analysis", "", "run", "What a point is.", "{analyze: error}"},
+    {"warm_start", "map study warm start", "", "", "Points that begin where the one before has ended.",
+     "{along: speed}"},
+    {"reducers", "entries of map study reducer", "", "", "What is kept of each point.",
+     "{force: {channel: joint.pin.fx, reduce: absmax}}"},
+    {"stop", "map study stop", "", "", "When there are samples enough.", "{reducer: force, of: mean, relative: 0.01}"},
+    {"plots", "entries of map study plot", "", "", "Pictures of the table.",
+     "{spread: {kind: histogram, value: force}}"}};
 
-constexpr FormatKey reducer[] = {{"channel", "text", "", "required", "A column of the results.", "joint.pin.fx"},
-                                 {"reduce", "'max' | 'min' | 'absmax' | 'mean' | 'rms' | 'final' | 'peak-to-peak'", "",
-                                  "required", "What of the column.", "absmax"},
-                                 {"from", "quantity", "s", "output.discard", "Not before this time.", "5 ms"}};
+constexpr FormatKey study_axis[] = {
+    {"target", "text", "", "the name of the axis", "A parameter, a path in the model, or an option of a run.",
+     "joints.pin.clearance.radial_clearance"},
+    {"each", "text", "", "", "A pattern: an axis for every path that it fits.",
+     "'joints.*.clearance.radial_clearance'"},
+    {"where_present", "boolean", "", "false", "Models without the target leave it out.", "true"},
+    {"linspace", "list of quantity", "", "", "First, last and number of values.", "[0, 10, 11]"},
+    {"logspace", "list of quantity", "", "", "The same with equal ratios.", "[1, 100, 5]"},
+    {"list", "list of value", "", "", "Values: quantities, words, lists or maps.", "[1 mm, 2 mm, 5 mm]"},
+    {"cases", "entries of entries of value", "", "", "Named cases, each with values of several targets.",
+     "{slow: {speed: 1, load: 5 N}}"},
+    {"table", "text", "", "", "A file of text with commas: targets in its first line, then values.", "points.csv"},
+    {"normal", "list of quantity", "", "", "Mean and standard deviation.", "[10 mm, 0.1 mm]"},
+    {"uniform", "list of quantity", "", "", "Low and high end.", "[9 mm, 11 mm]"},
+    {"triangular", "list of quantity", "", "", "Low end, mode and high end.", "[9 mm, 10 mm, 12 mm]"},
+    {"fit", "text", "", "", "Radial clearance of an ISO 286 fit.", "H7/g6"},
+    {"diameter", "quantity", "m", "required with fit", "Nominal size, at most 500 mm.", "10 mm"},
+    {"law", "'normal' | 'uniform'", "", "normal", "Over the zones of hole and shaft.", "uniform"},
+    {"truncate", "list of quantity", "", "", "Ends of random values.", "[9.8 mm, 10.2 mm]"}};
+
+constexpr FormatKey study_sample[] = {
+    {"method", "'random' | 'latin-hypercube' | 'sobol'", "", "required", "How numbers are drawn.", "sobol"},
+    {"points", "integer", "", "required", "Samples, at least 1.", "1000"},
+    {"seed", "integer", "", "required", "The same seed gives the same numbers.", "7"}};
+
+constexpr FormatKey study_warm_start[] = {
+    {"along", "text", "", "required", "The axis.", "speed"},
+    {"direction", "'up' | 'down' | 'both'", "", "up", "In which order its values follow.", "both"},
+    {"pieces", "integer", "", "1", "Chains that the axis is cut into.", "8"}};
+
+constexpr FormatKey study_stop[] = {
+    {"reducer", "text", "", "required", "Whose column is estimated.", "force"},
+    {"of", "text", "", "required", "mean, or a percentile: p50 to p99.", "mean"},
+    {"confidence", "quantity", "1", "0.95", "Of the interval.", "0.99"},
+    {"half_width", "quantity", "by reducer", "", "The interval is to be so narrow.", "0.1 N"},
+    {"relative", "quantity", "1", "", "The same as a share of the estimate.", "0.01"},
+    {"min_points", "integer", "", "200", "Samples before the first look.", "500"},
+    {"block", "integer", "", "100", "Samples between looks.", "50"}};
+
+constexpr FormatKey study_plot[] = {
+    {"kind", "'line' | 'heat' | 'bifurcation' | 'histogram' | 'tornado'", "", "required", "What it shows.", "line"},
+    {"x", "text", "", "", "An axis.", "speed"},
+    {"y", "text", "", "", "A reducer; of heat the second axis.", "force"},
+    {"value", "text", "", "", "A reducer.", "force"},
+    {"by", "text", "", "", "A family: model, an axis or direction.", "model"},
+    {"percentiles", "list of quantity", "", "[5, 50, 95, 99]", "Marks of a histogram.", "[50, 99]"}};
+
+constexpr FormatKey study_reducer[] = {
+    {"channel", "text", "", "", "Of a column of results.csv, whether it is written or not.", "joint.pin.fx"},
+    {"value", "text", "", "", "Of a formula, in which [NAME] is a channel.", "'[joint.pin.fx]/$F'"},
+    {"summary", "text", "", "", "A number of summary.json.", "joints.pin.max_force"},
+    {"over", "'max' | 'min' | 'sum' | 'mean'", "", "", "Of all numbers that the path with `*` fits.", "max"},
+    {"events", "text", "", "", "Of the events of joints: a name or a pattern.", "pin"},
+    {"field", "text", "", "required unless count", "A column of events.csv.", "speed"},
+    {"kind", "text", "", "contact_begin", "The kind of event.", "contact_end"},
+    {"joint", "text", "", "", "Joints with play, a name or a pattern, of which `set` gives columns.", "'*'"},
+    {"set", "'clearance'", "", "required with joint", "The numbers of joints with play in summary.json.", "clearance"},
+    {"column", "text", "", "", "Of a column of the analysis that `do` names.", "position"},
+    {"of", "text", "", "", "A formula, in which [NAME] is a reducer above.", "'[force]/$F'"},
+    {"reduce",
+     "'min' | 'max' | 'absmax' | 'first' | 'final' | 'peak-to-peak' | 'mean' | 'rms' | 'std' | 'percentile' | 'median' "
+     "| 'time-fraction' | 'count' | 'poincare'",
+     "", "required but for summary, set and of", "What of the values.", "absmax"},
+    {"p", "quantity", "1", "required for percentile", "From 0 to 100.", "99"},
+    {"above", "quantity", "by value", "", "For time-fraction and count; of events those above it.", "0"},
+    {"below", "quantity", "by value", "", "The same below.", "0"},
+    {"from", "quantity", "s", "output.discard", "Not before this time.", "5 ms"},
+    {"until", "quantity", "s", "the end", "Not after this time.", "10 ms"},
+    {"every", "quantity", "s", "", "For poincare: the period.", "20 ms"},
+    {"phase", "quantity", "s", "0", "For poincare: the first instant after the start of the run.", "5 ms"},
+    {"when", "map study passage", "", "", "For poincare: when a channel passes a value.",
+     "{channel: joint.pin.angle, crosses: 0}"}};
+
+constexpr FormatKey study_analysis[] = {
+    {"analyze", "'ik' | 'workspace' | 'singularity' | 'error' | 'inverse-dynamics'", "", "required",
+     "The kind; the other keys are options of `freeplay analyze`.", "error"},
+    {"frame", "frame", "", "that of `analysis`", "The platform.", "platform"},
+    {"pose", "text | list of text", "", "", "Values of one pose, or several poses.", "[0.05, 0, 0]"},
+    {"grid", "entries of text | list of text", "", "", "Poses on a grid, FROM:TO:COUNT by axis.", "{x: '0:0.1:11'}"},
+    {"time", "text", "", "", "Instants on the path, FROM:TO:COUNT.", "0:1:121"},
+    {"input", "entries of text | list of text", "", "", "Coordinates of driven joints.", "{pin: 30 deg}"},
+    {"elbow", "text", "", "that of `analysis`", "Working modes of the legs.", "'1,-1,1'"},
+    {"sensitivity", "boolean", "", "false", "For error: sensitivity to the play of each joint.", "true"},
+    {"samples", "integer", "", "", "For error: samples of random play.", "1000"},
+    {"seed", "integer", "", "0", "Of the samples.", "7"},
+    {"distribution", "text", "", "uniform", "Of the samples.", "normal"},
+    {"branches", "boolean", "", "false", "For ik: all working modes.", "true"},
+    {"preload", "text", "", "0", "For inverse-dynamics: inner tension of redundant drivers.", "5 N"}};
+
+constexpr FormatKey study_passage[] = {
+    {"channel", "text", "", "required", "A column of the results.", "joint.pin.angle"},
+    {"crosses", "quantity", "by channel", "required", "The value that it passes.", "0"},
+    {"direction", "'up' | 'down' | 'both'", "", "up", "In which direction.", "down"}};
 
 constexpr FormatMap maps[] = {
     {"model", "", "The whole file.", model},
@@ -276,8 +379,15 @@ constexpr FormatMap maps[] = {
     {"pose_grid", "analysis.grid", "Poses of the platform.", pose_grid},
     {"error", "analysis.error", "Play and input errors.", error},
     {"grid", "where a grid may stand", "Values of one quantity. A list or a single value will do as well.", grid},
-    {"sweep", "sweep", "Many runs.", sweep},
-    {"reducer", "sweep.reducers.NAME", "A number that is kept of each run.", reducer}};
+    {"study", "study", "Many runs of one model or several, see docs/studies.md.", study},
+    {"study axis", "study.axes.NAME", "What changes from point to point. Values alone will do as well.", study_axis},
+    {"study sample", "study.sample", "How random axes are drawn.", study_sample},
+    {"study warm start", "study.warm_start", "Chains of points.", study_warm_start},
+    {"study stop", "study.stop", "Sampling until an interval is narrow enough.", study_stop},
+    {"study plot", "study.plots.NAME", "A picture.", study_plot},
+    {"study reducer", "study.reducers.NAME", "What is kept of each point.", study_reducer},
+    {"study analysis", "study.do", "Points that are analyses.", study_analysis},
+    {"study passage", "study.reducers.NAME.when", "An instant of a Poincare section.", study_passage}};
 
 }  // namespace
 

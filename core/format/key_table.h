@@ -12,8 +12,9 @@ struct FormatKey {
   std::string_view name;
   /// Alternatives joined by " | ": a sort of scalar (quantity, time function, integer, boolean, text, name, frame),
   /// a literal word in quotes, vector, frame value (a vector or "map frame"), grid (a quantity, a list of
-  /// them or "map grid"), "list of X", "entries of X" (a map from names to X), "map NAME" (a map of this table),
-  /// "contents" (a map that is checked where it is used).
+  /// them or "map grid"), value (a quantity, a word, a list or a map), axis (a value, a list of them or "map study
+  /// axis"), "list of X", "entries of X" (a map from names to X), "map NAME" (a map of this table), "contents" (a map
+  /// that is checked where it is used).
   std::string_view value;
   std::string_view unit;      ///< SI unit of quantities and vectors; "" for others, and where it follows from elsewhere
   std::string_view fallback;  ///< what holds without the key; "required", or "" where nothing does

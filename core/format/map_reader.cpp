@@ -109,6 +109,13 @@ std::string MapReader::hint_for(const std::string& key) const {
   return "";
 }
 
+std::string MapReader::suggestion_for(const std::string& key) const {
+  for (const auto& [old, name] : renamed_) {
+    if (old == key) return name;
+  }
+  return nearest(key, known_);
+}
+
 void MapReader::finish() {
   for (const MapLayer& layer : layers_) {
     for (std::size_t i = 0; i < layer.map->entries.size(); ++i) {
@@ -120,7 +127,7 @@ void MapReader::finish() {
           cut.empty() ? hint_for(key) : "an expression with a comma must be quoted here: \"" + cut + "\"";
       const std::string where = layer.path.empty() ? "" : " in '" + layer.path + "'";
       value_of({&layer, &entry})
-          .fail_at_key("unknown-key", "unknown key '" + key + "'" + where, hint.empty() ? nearest(key, known_) : "",
+          .fail_at_key("unknown-key", "unknown key '" + key + "'" + where, hint.empty() ? suggestion_for(key) : "",
                        hint);
     }
   }

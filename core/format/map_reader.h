@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "format/checked_value.h"
@@ -41,6 +42,8 @@ class MapReader {
   void report_missing(const std::string& key) const;
   /// A key of the format that this release does not read: unknown, with `hint`.
   void refuse(const std::string& key, const std::string& hint = "not in this release");
+  /// A key that has another name now: unknown, with that as the suggestion.
+  void refuse_old(const std::string& key, const std::string& name) { renamed_.emplace_back(key, name); }
   /// `conflicting-keys` at the second key, if both are written.
   bool conflict(const std::string& first, const std::string& second) const;
 
@@ -59,6 +62,7 @@ class MapReader {
   CheckedValue value_of(const Hit& hit) const;
   bool knows(std::string_view key) const;
   std::string hint_for(const std::string& key) const;
+  std::string suggestion_for(const std::string& key) const;
 
   struct Refused {
     std::string key, hint;
@@ -70,6 +74,7 @@ class MapReader {
   std::vector<MapLayer> layers_;
   std::vector<std::string> known_;
   std::vector<Refused> refused_;
+  std::vector<std::pair<std::string, std::string>> renamed_;
 };
 
 /// The entries of a map from names to something, notes left out; reports `wrong-type` when it is no map.

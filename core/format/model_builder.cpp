@@ -25,7 +25,7 @@
 #include "format/path_override.h"
 #include "format/run_override.h"
 #include "format/simulation_section.h"
-#include "format/sweep_section.h"
+#include "format/study_section.h"
 #include "format/template.h"
 #include "format/unused_frame.h"
 
@@ -49,7 +49,7 @@ class ModelBuilder {
         presets_(used_),
         reading_{&diagnostics, &parameters_, &presets_, options.readout} {
     draft_.top = &reading_;
-    if (!paths_.empty()) reading_.paths = &paths_;
+    if (!paths_.empty() || options.addresses != nullptr) reading_.paths = &paths_;
     for (const RegisteredLibrary& library : registry.libraries()) draft_.model.instances.keep(library);
   }
 
@@ -119,6 +119,7 @@ class ModelBuilder {
     if (const auto plugins = top.find("plugins")) check_plugins(*plugins);
     // Its reader has replaced the key by what the file says; a document that comes otherwise cannot have it.
     top.refuse("urdf");
+    top.refuse_old("sweep", "study");
     for (const Document::Attachment& file : document_.attachments()) {
       model.inputs.push_back({std::filesystem::path(*file.name).filename().string(), file.text});
     }
@@ -159,6 +160,7 @@ class ModelBuilder {
     }
     overrides_.require_declared(parameters_);
     parameters_.evaluate();
+    draft_.model.parameters = parameters_.values();
     apply_run_overrides(options_, parameters_);
     draft_.ideal_matched.assign(options_.ideal.size(), false);
   }
@@ -182,7 +184,7 @@ class ModelBuilder {
     templates_ = present(top.find("templates"));
     initial_ = present(top.find("initial"));
     analysis_ = present(top.find("analysis"));
-    sweep_ = present(top.find("sweep"));
+    study_ = present(top.find("study"));
     if (templates_) check_templates(*templates_);
     const auto instances = present(top.find("instances"));
     if (instances) expand_instances(draft_, templates_, *instances, used_, storage_);
@@ -195,9 +197,36 @@ class ModelBuilder {
     if (!read_simulation(draft_, simulation_)) draft_.unsure_columns.emplace_back("frame.");
     sections_read_ = true;
     if (analysis_) read_analysis(draft_, *analysis_);
-    if (sweep_) check_sweep(draft_, *sweep_, parameters_);
+    if (study_ && !options_.without_study) check_study();
     if (!draft_.model.bodies.empty() || diagnostics_.has_errors()) return;
     CheckedValue(reading_, document_.root(), nullptr, "").fail("empty-model", "the model has no body that moves");
+  }
+
+  // Its values are constants, and no values of the command line take their places.
+  void check_study() {
+    UsedKeys none;
+    const ParameterScope constants(none);
+    const Reading reading{&diagnostics_, &constants};
+    const auto dimension_of = [&](const std::string& target) -> std::optional<Dimension> {
+      const Quantity* declared = parameters_.declares(target) ? parameters_.find(target) : nullptr;
+      if (declared == nullptr || declared->kind != DimensionKind::dimensioned) return std::nullopt;
+      return declared->dimension;
+    };
+    const StudySection study =
+        read_study(CheckedValue(reading, study_->node(), study_->key_node(), study_->path()), true, dimension_of);
+    for (const TargetValue& one : study.set) require_target(one.target, one.value);
+    for (const StudyAxis& axis : study.axes) {
+      if (!axis.each && !axis.target.empty()) require_target(axis.target, axis.entry);
+      for (const StudyCase& one : axis.cases) {
+        for (const TargetValue& value : one.values) require_target(value.target, value.value);
+      }
+    }
+  }
+
+  // Paths are known to those who try values at them.
+  void require_target(const std::string& target, const CheckedValue& written) const {
+    if (PathOverrides::is_path(target) || parameters_.declares(target)) return;
+    written.fail_at_key("unknown-name", "unknown parameter '" + target + "'", nearest(target, parameters_.names()));
   }
 
   // Names of columns do not depend on values: what other mistakes leave in doubt alone is not judged.
@@ -302,7 +331,7 @@ class ModelBuilder {
   PresetTable presets_;
   Reading reading_;
   InstanceStorage storage_;
-  std::optional<CheckedValue> simulation_, templates_, initial_, analysis_, sweep_;
+  std::optional<CheckedValue> simulation_, templates_, initial_, analysis_, study_;
 };
 
 }  // namespace

@@ -25,9 +25,9 @@ void ParameterScope::add(const std::string& name, const Node& key, const Node& v
   if (overridden) entry.override = &value;
 }
 
-void ParameterScope::add_constant(const std::string& name, double value) {
+void ParameterScope::add_constant(const std::string& name, const Quantity& value) {
   Entry& entry = append(name);
-  entry.quantity.value = value;
+  entry.quantity = value;
   entry.state = State::done;
 }
 
@@ -43,6 +43,14 @@ const Quantity* ParameterScope::find(std::string_view name) const {
   if (own == nullptr) return outer_ == nullptr ? nullptr : outer_->find(name);
   if (own->key != nullptr) used_->insert(own->key);
   return &own->quantity;
+}
+
+std::vector<std::pair<std::string, Quantity>> ParameterScope::values() const {
+  std::vector<std::pair<std::string, Quantity>> values;
+  for (const Entry& own : entries_) {
+    if (own.state == State::done) values.emplace_back(own.name, own.quantity);
+  }
+  return values;
 }
 
 bool ParameterScope::broken(std::string_view name) const {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "base/expression.h"
@@ -29,7 +30,9 @@ class ParameterScope : public Scope {
   void add(const std::string& name, const Node& key, const Node& value, std::string path, const Reading& reading,
            bool overridden = false);
   /// A number that is given, such as the number of an instance.
-  void add_constant(const std::string& name, double value);
+  void add_constant(const std::string& name, double value) { add_constant(name, Quantity{.value = value}); }
+  /// One that is known, as of another scope.
+  void add_constant(const std::string& name, const Quantity& value);
   /// A parameter whose declaration is in error.
   void add_broken(const std::string& name);
 
@@ -38,6 +41,8 @@ class ParameterScope : public Scope {
 
   const Quantity* find(std::string_view name) const override;
   std::vector<std::string> names() const override;
+  /// All values of its own; none of them counts as used by that.
+  std::vector<std::pair<std::string, Quantity>> values() const;
   bool broken(std::string_view name) const;
   /// The text of `--set` on which the parameter depends, or null.
   const Node* override_of(std::string_view name) const;

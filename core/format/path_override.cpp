@@ -13,7 +13,7 @@
 namespace freeplay {
 namespace {
 
-constexpr std::array unexpanded = {"templates", "presets", "instances", "plugins", "urdf", "sweep"};
+constexpr std::array unexpanded = {"templates", "presets", "instances", "plugins", "urdf", "study"};
 
 std::string_view first_word(std::string_view path) { return path.substr(0, path.find('.')); }
 
@@ -41,7 +41,7 @@ bool PathOverrides::is_path(std::string_view name) {
   return name.find('.') != std::string_view::npos || name == "gravity" || is_run_override(name);
 }
 
-PathOverrides::PathOverrides(const BuildOptions& options, Diagnostics& diagnostics) {
+PathOverrides::PathOverrides(const BuildOptions& options, Diagnostics& diagnostics) : addresses_(options.addresses) {
   for (const auto& set : options.set) {
     const auto& name = set.first;
     const auto& text = set.second;
@@ -84,6 +84,7 @@ void PathOverrides::note(Entry& entry, const std::string& address) const {
 
 const Node& PathOverrides::replace(const std::string& address, const Node& written) {
   const Node* value = &written;
+  if (addresses_ != nullptr && first_word(address) != "templates") addresses_->push_back(address);
   for (Entry& entry : entries_) {
     const bool fits = is_pattern(entry.path) ? matches(entry.path, address) : entry.path == address;
     if (fits) {

@@ -18,7 +18,7 @@ class PathOverrides {
  public:
   /// The entries of `options.set` whose name has a dot, or is a section of the model; the last one of a name wins.
   /// Throws Error{usage} for paths that stand before the expansion (`templates`, `presets`, `instances`, `plugins`,
-  /// `urdf`, `sweep`). Texts that begin with `{` or `[` are read by `options.parse_value`. Makes the texts known to
+  /// `urdf`, `study`). Texts that begin with `{` or `[` are read by `options.parse_value`. Makes the texts known to
   /// `diagnostics`.
   PathOverrides(const BuildOptions& options, Diagnostics& diagnostics);
 
@@ -46,6 +46,7 @@ class PathOverrides {
 
   std::deque<Document> documents_;
   std::vector<Entry> entries_;
+  std::vector<std::string>* addresses_;
 };
 
 }  // namespace freeplay

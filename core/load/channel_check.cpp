@@ -38,10 +38,10 @@ Location pattern_location(const Document& document, std::size_t index) {
   return node->location();
 }
 
-/// The columns that a sweep keeps something of. Their section has been checked.
+/// The columns that a study keeps something of. Their section has been checked.
 std::vector<const Node*> reduced_channels(const Document& document) {
   const Node* node = &document.root();
-  for (const char* key : {"sweep", "reducers"}) {
+  for (const char* key : {"study", "reducers"}) {
     node = node->is_map() ? node->find(key) : nullptr;
     if (node == nullptr) return {};
   }
@@ -88,6 +88,11 @@ std::string nearest_channel(const std::string& name, const std::vector<std::stri
 }
 
 }  // namespace
+
+std::string nearest_channel(const std::string& name, const Channels& channels) {
+  const std::vector<std::string> names = channel_names(channels);
+  return nearest_channel(name, names, kinds_of(names));
+}
 
 void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
                     bool by_option, Diagnostics& diagnostics) {

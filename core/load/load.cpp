@@ -25,7 +25,7 @@ void keep(const Error& error, LoadedModel& loaded, bool strict) {
   if (error.category() == Error::Category::plugin) {
     // Reported alone: without the plugin the rest of the file cannot be judged.
     loaded.diagnostics = Diagnostics(strict);
-    loaded.diagnostics.add_source(loaded.document->file_name(), loaded.document->text());
+    if (loaded.document) loaded.diagnostics.add_source(loaded.document->file_name(), loaded.document->text());
   }
   loaded.diagnostics.add(std::move(diagnostic));
 }
@@ -33,28 +33,36 @@ void keep(const Error& error, LoadedModel& loaded, bool strict) {
 using Types = std::function<Registry(const Document&)>;
 using Read = std::function<std::optional<Document>(Diagnostics&)>;
 
+std::unique_ptr<Model> build_checked(const Document& document, const Registry& registry, BuildOptions build,
+                                     Diagnostics& diagnostics) {
+  build.parse_value = parse_yaml;
+  return build_model(document, registry, build, diagnostics,
+                     [&](const Model& model, const std::vector<std::string>& unsure) {
+                       check_channels(model, document, unsure, !build.channels.empty(), diagnostics);
+                     });
+}
+
+/// Without a model there is an exit code.
+void settle(LoadedModel& loaded) {
+  if (!loaded.diagnostics.has_errors() && loaded.model) return;
+  loaded.model.reset();
+  if (loaded.exit_code == 0) loaded.exit_code = 3;
+}
+
 LoadedModel load(const Read& read, const BuildOptions& build, const LoadOptions& options, const Types& types) {
   LoadedModel loaded{Diagnostics(options.strict), {}, {}, 0};
   try {
     loaded.document = read(loaded.diagnostics);
     if (loaded.document) {
       const Registry registry = types(*loaded.document);
-      BuildOptions with_parser = build;
-      with_parser.parse_value = parse_yaml;
-      loaded.model =
-          build_model(*loaded.document, registry, with_parser, loaded.diagnostics,
-                      [&](const Model& model, const std::vector<std::string>& unsure) {
-                        check_channels(model, *loaded.document, unsure, !build.channels.empty(), loaded.diagnostics);
-                      });
+      loaded.model = build_checked(*loaded.document, registry, build, loaded.diagnostics);
     }
   } catch (const Error& error) {
     keep(error, loaded, options.strict);
   }
-  if (loaded.diagnostics.has_errors() || !loaded.model) {
-    loaded.model.reset();
-    if (loaded.exit_code == 0) loaded.exit_code = 3;
-  } else if (options.note && loaded.model->ideal.empty() && !build.largest_step &&
-             std::ranges::find(build.ideal, "all") != build.ideal.end()) {
+  settle(loaded);
+  if (options.note && loaded.model && loaded.model->ideal.empty() && !build.largest_step &&
+      std::ranges::find(build.ideal, "all") != build.ideal.end()) {
     options.note(
         fmt::format("--ideal all: no joint of '{}' has clearance, nothing was made ideal", loaded.model->file));
   }
@@ -77,6 +85,17 @@ LoadedModel load_text(std::string text, const std::string& file, const BuildOpti
 LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build, const Registry& registry) {
   return load([&](Diagnostics& diagnostics) { return parse_yaml(std::move(text), file, diagnostics); }, build, {},
               [&](const Document&) { return registry; });
+}
+
+LoadedModel load_document(const Document& document, const BuildOptions& build, const Registry& registry) {
+  LoadedModel loaded{Diagnostics(), {}, {}, 0};
+  try {
+    loaded.model = build_checked(document, registry, build, loaded.diagnostics);
+  } catch (const Error& error) {
+    keep(error, loaded, false);
+  }
+  settle(loaded);
+  return loaded;
 }
 
 void require_planar(const LoadedModel& loaded, const std::string& what) {

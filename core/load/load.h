@@ -34,6 +34,10 @@ LoadedModel load_text(std::string text, const std::string& file, const BuildOpti
 /// The same with the types of `registry` alone, whatever plugins the text names.
 LoadedModel load_text(std::string text, const std::string& file, const BuildOptions& build, const Registry& registry);
 
+/// The same for a document that has been read, with the types of `registry` alone; it stays where it is, and places of
+/// messages have no text.
+LoadedModel load_document(const Document& document, const BuildOptions& build, const Registry& registry);
+
 /// Refuses a spatial model. Throws Error{input} "type-space" with what only works in the plane.
 void require_planar(const LoadedModel& loaded, const std::string& what);
 

@@ -224,6 +224,7 @@ struct Model {
   Settings settings;
   AnalysisSection analysis;
   std::vector<std::pair<std::string, std::string>> overrides;  ///< --set, name and text
+  std::vector<std::pair<std::string, Quantity>> parameters{};  ///< of the top level, with the values that they have
   std::vector<std::string> ideal;                              ///< joints whose clearance --ideal closes, full names
   Instances instances;                                         ///< keeps joints and laws alive
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/input_text.h"
 #include "base/sha256.h"
+#include "base/shell_word.h"
 #include "load/result_model.h"
 #include "model/channel.h"
 #include "results/directory.h"
@@ -126,16 +127,6 @@ void know_units(ReportedRun& run) {
   }
 }
 
-std::string quoted(const std::string& word) {
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=*,:+";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos && word.find('*') == std::string::npos) {
-    return word;
-  }
-  std::string text = "'";
-  for (const char c : word) c == '\'' ? text += "'\\''" : text += c;
-  return text + "'";
-}
-
 }  // namespace
 
 ReportedRun open_reported(const fs::path& path, const LoadOptions& options) {
@@ -162,9 +153,9 @@ std::string rerun_command(const ReportedRun& run) {
   const Json provenance = field(run.summary, "provenance");
   std::string model = text_in(field(provenance, "model"), "name");
   if (model.empty()) model = run.name;
-  std::string command = "freeplay run " + quoted(model + ".yaml");
+  std::string command = "freeplay run " + shell_word(model + ".yaml");
   for (const Json& word : provenance.value("arguments", Json::array())) {
-    if (word.is_string()) command += " " + quoted(word.get<std::string>());
+    if (word.is_string()) command += " " + shell_word(word.get<std::string>());
   }
   return command;
 }

@@ -31,9 +31,9 @@ enum Question : std::uint64_t {
 enum AnswerKind : std::uint64_t { done, failed, no_more_memory };
 
 /// Bytes that come from a process of this program.
-class Message {
+class ServantMessage {
  public:
-  explicit Message(std::string_view bytes) : numbers_(bytes, refuse) {}
+  explicit ServantMessage(std::string_view bytes) : numbers_(bytes, refuse) {}
   std::uint64_t number() { return numbers_.next(); }
   std::string text() { return std::string(numbers_.text(numbers_.next())); }
   std::vector<std::int64_t> list() {
@@ -78,7 +78,7 @@ std::string bytes_of_layout(const RecordLayout& layout) {
   return out;
 }
 
-RecordLayout layout_of_bytes(Message& message) {
+RecordLayout layout_of_bytes(ServantMessage& message) {
   RecordLayout layout;
   for (auto* columns : {&layout.columns, &layout.events}) {
     message.each([&] {
@@ -107,7 +107,7 @@ class Servant {
 
   void serve(std::string_view question, const ServantProcess::Send& send) {
     try {
-      Message message(question);
+      ServantMessage message(question);
       answer(message.number(), message, send);
     } catch (const Error& error) {
       send(failed, error.message() + "\n" + error.hint());
@@ -119,7 +119,7 @@ class Servant {
   }
 
  private:
-  void answer(std::uint64_t question, Message& message, const ServantProcess::Send& send) {
+  void answer(std::uint64_t question, ServantMessage& message, const ServantProcess::Send& send) {
     if (question == layout_of_file) {
       reader_ = open_hdf5_here(path_);
       std::string bytes;
@@ -159,7 +159,7 @@ class Hdf5OfProcess : public ResultReader {
   explicit Hdf5OfProcess(const fs::path& path) : ResultReader(path.string()) {
     const Hdf5Lock lock;
     process_.emplace([&] { return servant(path); });
-    Message message(ask(layout_of_file, {}).text());
+    ServantMessage message(ask(layout_of_file, {}).text());
     sealed_ = message.number() != 0;
     layout_ = layout_of_bytes(message);
   }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 
+#include "run/step_sink.h"
 #include "system/profile.h"
 
 namespace freeplay {
@@ -14,6 +15,7 @@ struct RunHooks {
   std::function<void(double, long)> progress;
   /// Called after every accepted step, when its rows and events are written: the instants at which to save().
   std::function<void()> stepped;
+  StepSink* steps = nullptr;   ///< looks at all of them
   Profile* profile = nullptr;  ///< counts where the time goes
   /// For tests of what finds wrong runs: steps go over what forces and other inputs do inside them.
   bool blind_to_inputs = false;

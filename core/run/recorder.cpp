@@ -35,6 +35,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       contact_rows_(run.system, run.channels, statistics_, run.adaptive),
       contact_peaks_(contact_rows_.largest().size()),
       storm_(run.model.joints.size(), storm_limits(run.settings, run.adaptive)),
+      feed_(run.channels.time, run.channels.all().size()),
       row_(run.channels.all().size(), 0.0),
       row_between_(row_.size(), 0.0),
       residual_(at(run.system.layout().nc())) {}
@@ -70,11 +71,15 @@ bool Recorder::record_step() {
   run_.watch.add_open(position);
   if (!(position <= open_rows * run_.system.size())) return failure_.fail(4, failure_.why_open(position));
   const bool counts = statistics_.counts(run_.accepted.t());
-  if (!counts && !statistics_.largest().noise().active()) return true;
+  const bool noise = statistics_.largest().noise().active();
+  if (!counts && !noise && !feed_.active()) return true;
   if (!know_row()) return false;
   if (!counts) {
-    statistics_.note(row_);
-    if (run_.adaptive) look_back();
+    if (noise) {
+      statistics_.note(row_);
+      if (run_.adaptive) look_back();
+    }
+    give_step();
     return true;
   }
   run_.system.jacobian().multiply(run_.e_accepted->jacobian, run_.accepted.v(), residual_);
@@ -86,7 +91,30 @@ bool Recorder::record_step() {
   clearances_.add(row_, run_.e_accepted);
   if (run_.adaptive && run_.ended_abruptly) statistics_.begin_stretch();
   if (run_.adaptive) look_back();
+  give_step();
   return true;
+}
+
+// After the swap the step begins at the trial state. In fixed steps rows inside come from here, too.
+void Recorder::give_step() {
+  if (!feed_.active()) return;
+  bool looked = false;
+  const Ends step{run_.trial, run_.e_trial, run_.accepted, run_.e_accepted};
+  const auto look = [&](double t) {
+    looked = true;
+    if (!observe_inside(t, step, feed_.inside())) return false;
+    run_.energy.fill_inside((t - step.start.t()) / (step.end.t() - step.start.t()), run_.e_between,
+                            run_.between.lambda(), run_.channels, feed_.inside());
+    return true;
+  };
+  if (!run_.adaptive && run_.outcome.time > run_.settings.start) {
+    feed_.give_instants(step.start.t(), step.end.t(), [&](double t) {
+      if (!look(t)) feed_.look_straight(t, row_);
+      return true;
+    });
+  }
+  feed_.give_step(row_, look);
+  if (looked) run_.energy.fill(run_.e_accepted, run_.channels, row_);  // the account was asked about the inside
 }
 
 // Into the step that was just accepted.
@@ -95,8 +123,8 @@ void Recorder::look_back() {
   const Ends step{run_.trial, run_.e_trial, run_.accepted, run_.e_accepted};
   if (contact_rows_.active()) see_contact_end(row_);
   seek_peaks(step);
-  if (!contact_rows_.active()) return;
-  seek_contact_peaks(step);
+  if (contact_rows_.active()) seek_contact_peaks(step);
+  if (!contact_rows_.active() && !feed_.active()) return;
   run_.energy.fill(run_.e_accepted, run_.channels, row_);  // the account was asked about the inside
 }
 
@@ -182,6 +210,8 @@ void Recorder::pass_rows() {
 }
 
 bool Recorder::write_rows_inside() {
+  if (!feed_.give_instants(run_.accepted.t(), run_.trial.t(), [&](double t) { return see_at(t, feed_.inside()); }))
+    return false;
   while (row_time(next_row_) < run_.trial.t()) {
     if (!write_row_at(row_time(next_row_))) return false;
     ++next_row_;
@@ -189,19 +219,25 @@ bool Recorder::write_rows_inside() {
   return true;
 }
 
-bool Recorder::write_row_at(double t) {
-  const Profile::Timer timer(run_.evaluations.profile, Phase::output);
+// The row at t inside of the step that is being accepted. False when the run is over.
+bool Recorder::see_at(double t, std::span<double> row) {
   if (!inside_.look_inside(t)) return false;
   Fault fault;
-  if (!observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row_between_, fault))
+  if (!observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row, fault))
     return failure_.fail_with(fault, t);
   const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
   if (run_.flows > 0 && run_.inner.known()) {
     const std::span<const double> integrals = std::span<const double>(run_.between.z()).last(at(run_.flows));
-    run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), integrals, run_.channels, row_between_);
+    run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), integrals, run_.channels, row);
   } else {
-    run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
+    run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row);
   }
+  return true;
+}
+
+bool Recorder::write_row_at(double t) {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::output);
+  if (!see_at(t, row_between_)) return false;
   if (contact_rows_.active()) {
     if (!contact_rows_.idle()) {
       statistics_.note(row_between_);
@@ -216,9 +252,8 @@ bool Recorder::write_row_at(double t) {
   return sinks_are_well();
 }
 
-// The row at t of the interpolated motion, in `row_between`, but for its energies. What cannot be seen there is no
-// failure of the run.
-bool Recorder::observe_inside(double t, const Ends& step) {
+// The row at t of the interpolated motion, but for its energies. What cannot be seen there is no failure of the run.
+bool Recorder::observe_inside(double t, const Ends& step, std::span<double> row) {
   if (run_.solver.regularity() < near_singular) return false;
   const double s = (t - step.start.t()) / (step.end.t() - step.start.t());
   DenseStep(run_.model.space, step.start, step.e_start.internal_rate, step.end, step.e_end.internal_rate)
@@ -226,7 +261,9 @@ bool Recorder::observe_inside(double t, const Ends& step) {
   run_.between.t() = t;
   Fault ignored;
   return inside_.settle_between() && attempt_.evaluate_all(run_.between, run_.e_between) &&
-         observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row_between_, ignored);
+         (run_.adaptive ||
+          run_.system.joints().evaluate_coordinates(point(run_.between), term_coordinate, run_.e_between)) &&
+         observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row, ignored);
 }
 
 void Recorder::see_contact_end(std::span<const double> row) {
@@ -236,11 +273,12 @@ void Recorder::see_contact_end(std::span<const double> row) {
 
 // A look into a step for a largest value. False where nothing can be seen there.
 bool Recorder::look_for_peak(double s, const Ends& step, bool wanted_row) {
-  if (!observe_inside(step.start.t() + s * (step.end.t() - step.start.t()), step)) return false;
+  if (!observe_inside(step.start.t() + s * (step.end.t() - step.start.t()), step, row_between_)) return false;
   statistics_.note(row_between_);
-  if (!contact_rows_.active()) return true;
+  if (!contact_rows_.active() && !feed_.active()) return true;
   run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
-  contact_rows_.see_inside(row_between_, wanted_row);
+  feed_.see_inside(row_between_);
+  if (contact_rows_.active()) contact_rows_.see_inside(row_between_, wanted_row);
   return true;
 }
 
@@ -277,10 +315,9 @@ bool Recorder::note_abrupt_end() {
     return failure_.fail_with(fault, run_.trial.t());
   if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial);
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
-  if (contact_rows_.active()) {
-    run_.energy.fill(run_.e_trial, run_.channels, row_between_);
-    see_contact_end(row_between_);
-  }
+  if (contact_rows_.active() || feed_.active()) run_.energy.fill(run_.e_trial, run_.channels, row_between_);
+  feed_.see_inside(row_between_);
+  if (contact_rows_.active()) see_contact_end(row_between_);
   seek_peaks(step);
   if (contact_rows_.active()) seek_contact_peaks(step);
   return true;
@@ -291,7 +328,7 @@ bool Recorder::begin_statistics_inside() {
   const double t = statistics_.first_instant();
   if (!statistics_.begins_inside(run_.accepted.t(), run_.trial.t())) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
-  if (!observe_inside(t, {run_.accepted, run_.e_accepted, run_.trial, run_.e_trial})) return true;
+  if (!observe_inside(t, {run_.accepted, run_.e_accepted, run_.trial, run_.e_trial}, row_between_)) return true;
   run_.energy.fill_inside((t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t()), run_.e_between,
                           run_.between.lambda(), run_.channels, row_between_);
   statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,

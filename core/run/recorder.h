@@ -12,6 +12,7 @@
 #include "run/peak_search.h"
 #include "run/sink.h"
 #include "run/statistics.h"
+#include "run/step_feed.h"
 #include "run/step_inside.h"
 
 namespace freeplay {
@@ -36,6 +37,8 @@ class Recorder {
   bool record_step();
   bool note_abrupt_end();
   bool begin_statistics_inside();
+  /// All steps from now on.
+  void feed(StepSink* sink) { feed_.feed(sink); }
   /// Events of that step.
   bool write_events();
 
@@ -45,6 +48,7 @@ class Recorder {
   /// Rows up to the accepted state are written.
   void pass_rows();
   bool write_row();
+  /// Rows inside of the step that was made, for files and for what looks at all steps.
   bool write_rows_inside();
   /// Rows that are held back, of a run that ends where it has no row.
   void write_held_rows();
@@ -66,6 +70,8 @@ class Recorder {
     const Evaluation& e_end;
   };
   bool write_row_at(double t);
+  bool see_at(double t, std::span<double> row);
+  void give_step();
   bool write_contact_rows();
   ContactRows::Give giving();
   void look_back();
@@ -73,7 +79,7 @@ class Recorder {
   void see_contact_end(std::span<const double> row);
   void seek_contact_peaks(const Ends& step);
   bool sinks_are_well();
-  bool observe_inside(double t, const Ends& step);
+  bool observe_inside(double t, const Ends& step, std::span<double> row);
   void seek_peaks(const Ends& step);
   double row_time(long index) const;
 
@@ -90,6 +96,7 @@ class Recorder {
   ContactRows contact_rows_;
   PeakSearch contact_peaks_;  // the same of each contact
   EventStorm storm_;
+  StepFeed feed_;
   std::vector<double> row_, row_between_, residual_;
   bool row_is_known_ = false;  // row_ is that of the accepted state
   long next_row_ = 1;

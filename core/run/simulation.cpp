@@ -1,5 +1,8 @@
 #include "run/simulation.h"
 
+#include <algorithm>
+
+#include "base/index.h"
 #include "run/adaptive_run.h"
 #include "run/fixed_run.h"
 
@@ -12,6 +15,7 @@ struct Simulation::Impl {
 
   Outcome run(const RunHooks& hooks);
   RunState save() const;
+  EndedMotion motion() const;
   void restore(const RunState& state);
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -42,6 +46,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   context.evaluations.profile = hooks.profile;
   if (hooks.profile != nullptr) hooks.profile->start();
   if (hooks.blind_to_inputs) corners.go_blind();
+  recorder.feed(hooks.steps);
   Outcome& outcome = context.outcome;
   outcome.time = context.accepted.t();
   if (goes_on || (acceptance.begin() && recorder.write_row())) {
@@ -72,6 +77,24 @@ RunState Simulation::Impl::save() const {
   return out;
 }
 
+EndedMotion Simulation::Impl::motion() const {
+  const State& state = context.accepted;
+  const Layout &whole = context.equations->whole().layout(), &own = context.system.layout();
+  const Evaluation& e = context.e_accepted;  // which has driven bodies, too
+  const auto q = at(whole.body_coordinates()), v = at(whole.body_velocities());
+  EndedMotion out{.t = state.t(),
+                  .q = std::vector<double>(e.q.size()),
+                  .v = std::vector<double>(e.v.size()),
+                  .z = {state.z().begin(), state.z().begin() + whole.nz()},
+                  .h = {state.h().begin(), state.h().end()}};
+  for (int body = 0; body < static_cast<int>(context.model.bodies.size()); ++body) {
+    const std::size_t from = at(own.place(body)), to = at(whole.place(body));
+    std::copy_n(&e.q[q * from], q, &out.q[q * to]);
+    std::copy_n(&e.v[v * from], v, &out.v[v * to]);
+  }
+  return out;
+}
+
 void Simulation::Impl::restore(const RunState& state) {
   ArchiveReader::require(state.features == context.features());
   ArchiveReader read(state.numbers);
@@ -92,6 +115,7 @@ Simulation::Simulation(const System& whole, const Start& start, const Channels& 
 }
 Simulation::~Simulation() = default;
 RunState Simulation::save() const { return impl_->save(); }
+EndedMotion Simulation::motion() const { return impl_->motion(); }
 Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->recorder.statistics(); }
 const ClearanceStatistics& Simulation::clearances() const { return impl_->recorder.clearances(); }

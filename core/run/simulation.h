@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "assembly/assembly.h"
+#include "assembly/warm_start.h"
 #include "model/channel.h"
 #include "run/clearance_statistics.h"
 #include "run/equations.h"
@@ -35,6 +35,8 @@ class Simulation {
   Outcome run(const RunHooks& hooks);
   /// The run as it is while RunHooks::stepped is called.
   RunState save() const;
+  /// The last accepted state, of all bodies.
+  EndedMotion motion() const;
   const Statistics& statistics() const;
   const ClearanceStatistics& clearances() const;
   const RunExtremes& extremes() const;

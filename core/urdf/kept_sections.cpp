@@ -24,6 +24,17 @@ void collect_parameters(const Node& node, std::set<std::string>& names) {
   for (const Node::Entry& entry : node.entries) collect_parameters(*entry.value, names);
 }
 
+/// Words of a study that may be parameters: its targets, and those that values of `set` use.
+void collect_targets(const Node& node, std::set<std::string>& names) {
+  collect_parameters(node, names);
+  if (node.is_scalar()) names.insert(node.text);
+  for (const Node* item : node.items) collect_targets(*item, names);
+  for (const Node::Entry& entry : node.entries) {
+    names.insert(entry.key->text);
+    collect_targets(*entry.value, names);
+  }
+}
+
 }  // namespace
 
 void KeptSections::put(Node& owner, const char* key, const Node& value) {
@@ -62,12 +73,7 @@ bool KeptSections::add_parameters(Node& root, Node& content) {
   if (all == nullptr || !all->is_map() || all->entries.empty()) return false;
   Names wanted;
   collect_parameters(content, wanted);
-  if (const Node* sweep = source_.find("sweep"); sweep != nullptr && sweep->is_map()) {
-    const Node* swept = sweep->find("parameters");
-    for (const Node::Entry& entry : swept == nullptr ? std::vector<Node::Entry>{} : swept->entries) {
-      wanted.insert(entry.key->text);
-    }
-  }
+  if (const Node* study = source_.find("study"); study != nullptr && study->is_map()) collect_targets(*study, wanted);
   add(root, content, "parameters", wanted, collect_parameters);
   return true;
 }

@@ -27,32 +27,11 @@ bool is_plain(const std::string& text) {
   return (first == '$' || first == '-') && text.size() > 1 && text[1] != ' ' && !text.starts_with("---");
 }
 
-std::string flow(const Node& node) {
-  switch (node.kind) {
-    case Node::Kind::null:
-      return "";
-    case Node::Kind::scalar:
-      return yaml_scalar(node.text);
-    case Node::Kind::list: {
-      std::string out = "[";
-      for (const Node* item : node.items) out += (out.size() > 1 ? ", " : "") + flow(*item);
-      return out + "]";
-    }
-    case Node::Kind::map:
-      break;
-  }
-  std::string out = "{";
-  for (const Node::Entry& entry : node.entries) {
-    out += (out.size() > 1 ? ", " : "") + yaml_scalar(entry.key->text) + ": " + flow(*entry.value);
-  }
-  return out + "}";
-}
-
 void append_map(std::string& out, const Node& map, int indent, bool sections);
 
 void append_value(std::string& out, const Node& value, int indent, int used, bool open) {
   const bool collection = (value.is_map() && !value.entries.empty()) || (value.is_list() && !value.items.empty());
-  const std::string line = collection && open ? std::string() : flow(value);
+  const std::string line = collection && open ? std::string() : yaml_flow(value);
   const bool fits = !collection || (!open && used + 2 + character_count(line) <= line_width);
   if (fits) {
     out += (line.empty() ? "" : " ") + line + "\n";
@@ -61,7 +40,7 @@ void append_value(std::string& out, const Node& value, int indent, int used, boo
     append_map(out, value, indent + 2, false);
   } else {
     out += "\n";
-    for (const Node* item : value.items) out += fmt::format("{:{}}- {}\n", "", indent + 2, flow(*item));
+    for (const Node* item : value.items) out += fmt::format("{:{}}- {}\n", "", indent + 2, yaml_flow(*item));
   }
 }
 
@@ -76,6 +55,27 @@ void append_map(std::string& out, const Node& map, int indent, bool sections) {
 }
 
 }  // namespace
+
+std::string yaml_flow(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::null:
+      return "";
+    case Node::Kind::scalar:
+      return yaml_scalar(node.text);
+    case Node::Kind::list: {
+      std::string out = "[";
+      for (const Node* item : node.items) out += (out.size() > 1 ? ", " : "") + yaml_flow(*item);
+      return out + "]";
+    }
+    case Node::Kind::map:
+      break;
+  }
+  std::string out = "{";
+  for (const Node::Entry& entry : node.entries) {
+    out += (out.size() > 1 ? ", " : "") + yaml_scalar(entry.key->text) + ": " + yaml_flow(*entry.value);
+  }
+  return out + "}";
+}
 
 std::string yaml_scalar(const std::string& text) {
   if (is_plain(text)) return text;

@@ -14,4 +14,7 @@ std::string yaml_text(const Node& root);
 /// The text of a scalar, in quotes where YAML would read it differently.
 std::string yaml_scalar(const std::string& text);
 
+/// The tree on one line, in braces and brackets.
+std::string yaml_flow(const Node& node);
+
 }  // namespace freeplay

@@ -31,7 +31,7 @@ def sort_of(schema):
     """What may stand under a key, in words."""
     if "$ref" in schema:
         name = schema["$ref"].split("/")[-1]
-        if name in ("quantity", "integer", "time-function", "vector", "text"):
+        if name in ("quantity", "integer", "time-function", "vector", "text", "value"):
             return name.replace("-", " ")
         return "[%s](#%s)" % (name, name)
     if "anyOf" in schema:

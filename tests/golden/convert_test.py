@@ -100,13 +100,15 @@ simulation:
   step: 1 ms
   output: {frames: [u1.wheel/probe], channels: ["body.u*.x", "joint.*", time, "energy.*", "frame.*"]}
   stop: [{channel: joint.u1.axle.angle, above: 100}]
-sweep: {parameters: {k: [1, 2]}, reducers: {a: {channel: joint.u2.axle.angle, reduce: max}}}
+study: {axes: {k: [1, 2], bodies.u2.wheel.mass: [1 kg], w: {target: joints.u1.axle.type, list: [revolute]}}, reducers: {a: {channel: joint.u2.axle.angle, reduce: max}}}
 """)
         self.freeplay("convert", "m.yaml", os.path.join("to", "m.urdf"))
         side = os.path.join("to", "m.urdf.sidecar.yaml")
         self.assertIn("table: ../push.csv", self.read(side))
         self.assertRegex(self.read(side), r'channels: \["?body.u\*.x"?, "?joint.\*"?, "?time"?, "?energy.\*"?, "?frame.\*"?\]')
         self.assert_same("m.yaml", side, names=lambda name: name.replace(".", "_"))
+        for model in ("m.yaml", side):
+            self.assertIn("study of 2 points", self.freeplay("validate", model)[0])
         self.freeplay("convert", side, "back.yaml")
         self.assertIn("table: push.csv", self.read("back.yaml"))
         self.assert_same("m.yaml", "back.yaml", names=lambda name: name.replace(".", "_"))

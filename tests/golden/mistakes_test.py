@@ -26,7 +26,7 @@ MOTOR = "  m: {joint: A, kind: angle, value: 3*t}"
 
 # What is replaced (None: the whole file), by what; id, line, column and the suggestion, where there is one.
 MISTAKES = [
-    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, reducers: {r: {channel: joint.A.angel, reduce: max}}}', 'unknown-name', 2, 55, 'joint.A.angle'),
+    ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: [1]}, reducers: {r: {channel: joint.A.angel, reduce: max}}}', 'unknown-name', 2, 49, 'joint.A.angle'),
     ('mass: $a', 'mas: $a', 'unknown-key', 4, 9, 'mass'),
     ('bodies:\n', 'bodys:\n', 'unknown-key', 3, 1, 'bodies'),
     ('type: revolute, between: [ground', 'type: revolut, between: [ground', 'unknown-type', 7, 13, 'revolute'),
@@ -110,11 +110,11 @@ MISTAKES = [
     ('freeplay: 1', LEG + 'instances: {x: {template: leg, with: {l: 1}}}\nframes: {x.b/p: [0, 0], x.c/p: [0, 0]}', 'unknown-name', 4, 25),
     ('freeplay: 1', 'freeplay: 1\nframes: {rod/tip: [0, 0]}', 'duplicate-name', 2, 10),
     ('freeplay: 1', 'freeplay: 1\nframes: {rod: [0, 0]}', 'bad-name', 2, 10),
-    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {z: [1]}}', 'unknown-name', 2, 22),
-    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: {linspace: [0, 1]}}}', 'wrong-length', 2, 36),
-    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: {logspace: [0, 1, 3]}}}', 'out-of-range', 2, 37),
-    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, combine: mix}', 'wrong-type', 2, 40),
-    ('freeplay: 1', 'freeplay: 1\nsweep: {parameters: {a: [1]}, reducers: {r: {channel: joint.A.angle, reduce: mx}}}', 'wrong-type', 2, 78, 'max'),
+    ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {z: [1]}}', 'unknown-name', 2, 16),
+    ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: {linspace: [0, 1]}}}', 'wrong-length', 2, 30),
+    ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: {logspace: [0, 1, 3]}}}', 'out-of-range', 2, 31),
+    ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: [1]}, combine: mix}', 'wrong-type', 2, 34),
+    ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: [1]}, reducers: {r: {channel: joint.A.angle, reduce: mx}}}', 'wrong-type', 2, 72, 'max'),
     ('freeplay: 1', 'freeplay: 1\nanalysis: {frame: rod/tup}', 'unknown-name', 2, 19),
     ('  m: {joint', '  n: {joint: A, kind: velocity, value: 1}\n  m: {joint', 'duplicate-driver', 11, 3),
     ('  w: {type: force', '  w: {type: forse', 'unknown-type', 12, 13, 'force'),
@@ -157,8 +157,8 @@ MISTAKES = [
            '  B: {type: revolute, between: [ground, a]}\ninitial: {speeds: {A: 1, B: 3}}\nfreeplay: 1\n',
      'assembly-failed', 5, 20),
     ('step: 1 ms', 'accuracy: 1e-20 m', 'out-of-range', 14, 32),
-    ('simulation:', 'sweep: {parameters: {a: {linspace: [1 m, 2 kg, 3]}}}\nsimulation:', 'dimension-mismatch', 14, 42),
-    ('freeplay: 1\nparameters: {a: 1}', 'freeplay: 1\nsweep: {parameters: {a: [1 kg]}}\nparameters: {a: 1 m}', 'dimension-mismatch', 2, 26),
+    ('simulation:', 'study: {axes: {a: {linspace: [1 m, 2 kg, 3]}}}\nsimulation:', 'dimension-mismatch', 14, 36),
+    ('freeplay: 1\nparameters: {a: 1}', 'freeplay: 1\nstudy: {axes: {a: [1 kg]}}\nparameters: {a: 1 m}', 'dimension-mismatch', 2, 20),
     ('value: 3*t', 'value: sqrt(t)*1', 'bad-expression', 10, 37),
     (None, ' freeplay: 1\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-syntax', 2, 1),
     (None, 'freeplay: 1\n---\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 2, 1),
@@ -170,7 +170,7 @@ MISTAKES = [
 TOGETHER = SOUND.replace("initial: {", "gravty: [0, 1]\ninitial: {assembl: 1, ").replace("end: 2,", """end: 2, stpe: 1,
   stop: [{channel: joint.A.angel, above: 1}, {above: 1}, {channel: driver.m.value, below: 1 kg}],
   output: {channels: [body.rodd.x, 'bdy.*', drivr.m.value], intervall: 1},""") + """
-sweep: {parameter: {a: [1]}, reducers: {r: {channel: energy.kinetc, of: 1}}}
+study: {axs: {a: [1]}, reducers: {r: {channel: energy.kinetc, offf: 1}}}
 """
 # What one part of an entry has wrong does not hide the rest.
 BESIDE = [
@@ -185,8 +185,8 @@ BESIDE = [
 FOUND = [["unknown-key", 13, "gravity"], ["unknown-key", 14, "assembly"], ["unknown-key", 15, "step"],
          ["unknown-name", 16, "joint.A.angle"], ["missing-key", 16, None], ["dimension-mismatch", 16, None],
          ["unknown-name", 17, "body.rod.x"], ["unknown-name", 17, "body.*"], ["unknown-name", 17, "driver.m.value"],
-         ["unknown-key", 17, "interval"], ["missing-key", 19, None], ["unknown-key", 19, "parameters"],
-         ["missing-key", 19, None], ["unknown-name", 19, "energy.kinetic"], ["unknown-key", 19, None]]
+         ["unknown-key", 17, "interval"], ["unknown-key", 19, "axes"], ["unknown-name", 19, "energy.kinetic"],
+         ["unknown-key", 19, "of"]]
 
 
 class Mistakes(ProgramTest):

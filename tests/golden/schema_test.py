@@ -52,6 +52,34 @@ class SchemaTest(ProgramTest):
             pieces = re.findall(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)
         self.assertEqual([], self.faults(self.schema(), load("".join(pieces))))
 
+    def test_studies_fit(self):
+        schema = self.schema("study")
+        with open(os.path.join(ROOT, "docs", "studies.md"), encoding="utf-8") as file:
+            page = re.search(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)[1]
+        self.assertEqual([], self.faults(schema, load(page)))
+        study = load("""
+freeplay: 1
+study:
+  models: [a.yaml, b.yaml]
+  zip: [[a, b]]
+  axes:
+    a: [1, 2 mm]
+    b: {target: law, list: [flores, {law: hertz, K: 1}]}
+    c: {cases: {slow: {v: 1}, fast: {v: 2, w: [1, 2]}}}
+    d: 3 m
+  do: {analyze: error, pose: [0, 0, 0]}
+  warm_start: {along: a}
+  stop: {reducer: y, of: p95, relative: 0.01}
+  reducers: {y: {summary: joints.pin.max_force}, z: {of: "2*[y]"}}
+  plots: {p: {kind: line, x: a, y: y}}
+""")
+        self.assertEqual([], self.faults(schema, study))
+        for change in (lambda d: d.update(bodies={}), lambda d: d.pop("study"), lambda d: d["study"].update(axis={}),
+                       lambda d: d["study"].update(combine="mix"), lambda d: d["study"]["axes"]["b"].update(lst=1)):
+            document = copy.deepcopy(study)
+            change(document)
+            self.assertNotEqual([], self.faults(schema, document))
+
     def test_a_wrong_key_or_word_does_not_fit(self):
         schema = self.schema()
         good = self.mechanism("slider-crank")

@@ -1,8 +1,11 @@
 """freeplay validate: facts of the mechanisms, messages of broken files."""
 import json
+import os
+import re
+import shutil
 import unittest
 
-from program import ProgramTest, mechanism
+from program import ROOT, ProgramTest, mechanism
 
 NAMES = ["space", "bodies", "joints", "clearance_joints", "drivers", "coordinates", "velocities", "constraints",
          "driver_constraints", "rank", "redundant", "dof", "dof_driven", "driver_redundant"]
@@ -78,6 +81,30 @@ class Validate(ProgramTest):
     def test_set_replaces_a_parameter(self):
         out, _ = self.freeplay("validate", mechanism("pendulum"), "--set", "l=3 m", "--set", "l=200 cm", "--json")
         self.assertAlmostEqual(1.0, json.loads(out)["start"]["rod"]["x"], places=12)
+
+    def test_a_study_is_checked_with_its_models(self):
+        for name in ("3-rrr", "4-rrr"):
+            shutil.copy(mechanism(name), self.folder)
+        with open(os.path.join(ROOT, "docs", "studies.md"), encoding="utf-8") as file:
+            page = re.search(r"^```yaml\n(.*?)^```", file.read(), re.M | re.S)[1]
+        self.assertEqual("page.yaml: ok\n  study of 4000 points\n", self.freeplay("validate", self.write("page.yaml", page))[0])
+        verdict = json.loads(self.freeplay("validate", "page.yaml", "--json")[0])
+        self.assertEqual((True, None, {"points": 4000}), (verdict["ok"], verdict["facts"], verdict["study"]))
+        self.write("page.yaml", page.replace("radial_clearance", "radial_clearence"))
+        self.assertIn("page.yaml:7:5: error: nothing in the models fits 'joints.leg*.clearance.radial_clearence' [unknown-name]",
+                      self.freeplay("validate", "page.yaml", code=3)[1])
+        self.write("page.yaml", page.replace("T: [0.5 s, 1 s]", "T: [0.5 s, 1 kg]"))
+        self.assertIn("page.yaml:6:16: error: expected time, but this is mass [dimension-mismatch]",
+                      self.freeplay("validate", "page.yaml", code=3)[1])
+
+    def test_a_model_with_a_study_has_its_own_facts_too(self):
+        with open(mechanism("pendulum"), encoding="utf-8") as file:
+            text = file.read()
+        self.write("m.yaml", text + "study: {axes: {bodies.rod.mass: {linspace: [1 kg, 2 kg, 5]}}}\n")
+        out, _ = self.freeplay("validate", "m.yaml")
+        self.assertIn("  study of 5 points\n  space ", out)
+        self.write("m.yaml", text + "study: {axes: {bodies.rod.mas: [1 kg]}}\n")
+        self.assertIn("did you mean 'bodies.rod.mass'?", self.freeplay("validate", "m.yaml", code=3)[1])
 
     def test_messages_have_a_place_and_a_remedy(self):
         out, err = self.freeplay("validate", self.write("bad.yaml", BAD), code=3)

@@ -9,7 +9,6 @@ from program import PROGRAM, ROOT, ProgramTest, mechanism
 
 COMMANDS = ["run", "validate", "analyze", "compare", "show", "convert", "doctor", "list", "describe", "schema", "init", "export",
             "check-plugin"]
-LATER_COMMANDS = ["sweep"]
 COMMON = ["--quiet", "--verbose", "--json", "--no-color", "--plugin", "--max-errors", "--strict"]
 
 
@@ -59,11 +58,10 @@ class Words(ProgramTest):
                           ["list", "joints", "x"], ["list", "channels"], ["list", "joint"]):
             self.freeplay(*arguments, code=2)
 
-    def test_later_commands(self):
-        for command in LATER_COMMANDS:
-            _, err = self.freeplay(command, "x", "--out", "y", code=2)
-            self.assertEqual("freeplay: error: %s: not in this release [not-in-this-release]\n" % command, err)
-            self.assertEqual(("", err), self.freeplay(command, "--help", code=2))
+    def test_the_old_name_of_studies_tells_the_new_one(self):
+        _, err = self.freeplay("sweep", "run", "x", code=2)
+        self.assertEqual("freeplay: error: unknown command 'sweep' [unknown-command]\n      = it is called study\n", err)
+        self.assertEqual(("", err), self.freeplay("sweep", "--help", code=2))
 
     def test_help_of_an_unknown_command(self):
         out, err = self.freeplay("rnu", "--help", code=2)
@@ -77,7 +75,7 @@ class Words(ProgramTest):
                 self.assertNotIn(word, out, command)
         self.assertNotIn("--ideal", self.freeplay("convert", "--help")[0])
         self.assertIn("--resume", self.freeplay("run", "x.yaml", "--resum", code=2)[1])
-        self.assertIn("not in this release", self.freeplay("schema", "sweep", code=2)[1])
+        self.assertIn("one of model, summary, study", self.freeplay("schema", "sweep", code=2)[1])
 
     def test_options_without_effect_are_refused(self):
         for arguments in (["run", mechanism("pendulum"), "--dry-run", "--verify"],

@@ -31,8 +31,9 @@ STANDS_ON = {
     "analysis": ["assembly"],
     "load": ["yaml", "urdf", "run"],
     "report": ["results", "load"],
+    "study": ["results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
-    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report"],
+    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "study"],
 }
 WITHOUT_SDK = {"base", "linear", "svg"}
 
@@ -60,9 +61,11 @@ LIBRARIES = {
     "sha2.h": {"base"},
     "hdf5.h": {"results"},
     "matio.h": {"results"},
+    "zlib.h": {"study"},
     "dlfcn.h": {"component"},
     "elf.h": {"component"},
     "nlohmann": {"base"},
+    "boost": {"study"},
     "CLI": {"cli"},
     "fmt": EVERY_ROOM,
     "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "cli"},

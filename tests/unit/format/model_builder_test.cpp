@@ -250,11 +250,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"stop limits", "simulation: {stop: [{channel: a, above: 1, below: 1}]}\n", "5:44 conflicting-keys "},
         Mistake{"grid", "analysis: {grid: {x: {linspace: [0, 1, 0]}}}\n", "5:40 out-of-range "},
         Mistake{"analysis key", "analysis: {elbows: 1}\n", "5:12 unknown-key "},
-        Mistake{"sweep parameter", "sweep: {parameters: {q: [1, 2]}}\n", "5:22 unknown-name "},
-        Mistake{"sweep reducer",
-                "parameters: {q: 1}\nsweep: {parameters: {q: [$q]}, reducers: {r: {channel: a,\n"
-                "  reduce: maxx}}}\n",
-                "7:11 wrong-type "},
+        Mistake{"study parameter", "study: {axes: {q: [1, 2]}}\n", "5:16 unknown-name "},
+        Mistake{"study value", "parameters: {q: 1}\nstudy: {axes: {q: [$q]}}\n", "6:20 unknown-name "},
+        Mistake{"old name of a study", "sweep: {parameters: {q: [1, 2]}}\n", "5:1 unknown-key "},
         Mistake{"tolerance", "initial: {assembly: {tolerance: 1 kg}}\n", "5:33 dimension-mismatch "}));
 
 TEST(ModelBuilder, RefusesOtherVersionsAndEmptyModels) {

@@ -1,0 +1,49 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/shell_word.h"
+#include "cli/own_program.h"
+#include "cli/study_views.h"
+#include "cli/terminal.h"
+#include "study/point_words.h"
+
+namespace freeplay {
+
+int study_point(const StudyOptions& options, const CommonOptions& common) {
+  if (options.studies.size() != 2) {
+    throw Error(Error::Category::usage, options.studies.size() < 2 ? "missing-argument" : "unexpected-argument",
+                "study point needs a DIR and the number of a point");
+  }
+  const StudyInFolder opened = open_kept(options.studies[0], common);
+  if (!opened.study) return opened.exit_code;
+  const StudyPlan& plan = opened.study->plan();
+  const PointRanges ranges = point_ranges("INDEX", options.studies[1], plan.points());
+  if (ranges.size() != 1 || ranges[0].first != ranges[0].second)
+    bad_value("INDEX", options.studies[1], "it must be one point");
+  const StudyPoint point = plan.point(ranges[0].first);
+  std::vector<std::string> words =
+      point_words(plan, std::filesystem::absolute(opened.folder.path()).lexically_normal(), point);
+  for (const std::string& plugin : common.plugins) words.insert(words.end(), {"--plugin", plugin});
+  if (common.allow_plugins) words.emplace_back("--allow-plugins");
+  if (options.run_point) {
+    if (!options.out.empty()) words.insert(words.end(), {"--out", options.out});
+    if (common.quiet) words.emplace_back("--quiet");
+    if (common.json) words.emplace_back("--json");
+    const ProgramEnd end = run_own_program(words, true);
+    print_data(end.printed);
+    return end.exit_code;
+  }
+  std::string command = "freeplay";
+  for (const std::string& word : words) command += " " + shell_word(word);
+  if (common.json) {
+    Json set = Json::object();
+    for (const StudySetting& setting : point.settings) set[setting.target] = setting.text;
+    print_json({{"index", point.index}, {"hash", point.hash}, {"command", command}, {"set", set}});
+  } else {
+    print_data(command + "\n");
+  }
+  return 0;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,43 @@
+#include "cli/study_probe.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cli/interrupt.h"
+#include "study/worker_pool.h"
+
+namespace freeplay {
+
+std::optional<PointSeconds> probe_points(OpenStudy& study, std::uint64_t count, double longest) {
+  const std::uint64_t points = study.plan().points();
+  count = std::min(count, points);
+  std::uint64_t given = 0;
+  double sum = 0.0;
+  std::uint64_t seen = 0;
+  PointSeconds seconds{.mean = 0.0, .min = longest, .max = 0.0};
+  const auto& interrupts = watch_interrupts();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto over = [&] {
+    return interrupts != 0 || std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > longest;
+  };
+  WorkerPool pool(study.work(), {.jobs = 1, .isolate = false});
+  pool.run(
+      [&](StudyTask& task) {
+        if (given == count || over()) return false;
+        const UnitPlace at = study.plan().place_of(points / count * given++);
+        task = {at.unit, at.place, at.place + 1};
+        return true;
+      },
+      [&](std::uint64_t, const StudyOutcome& outcome) {
+        ++seen;
+        sum += outcome.wall;
+        seconds.min = std::min(seconds.min, outcome.wall);
+        seconds.max = std::max(seconds.max, outcome.wall);
+      },
+      [&] { return !over(); });
+  if (seen == 0) return std::nullopt;
+  seconds.mean = sum / static_cast<double>(seen);
+  return seconds;
+}
+
+}  // namespace freeplay

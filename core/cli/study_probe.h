@@ -1,0 +1,19 @@
+// StudyProbe: how long points of a study take.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "study/open_study.h"
+
+namespace freeplay {
+
+struct PointSeconds {
+  double mean = 0.0, min = 0.0, max = 0.0;
+};
+
+/// Runs up to `count` points, spread over the study, for at most `longest` seconds; nothing where none ended.
+std::optional<PointSeconds> probe_points(OpenStudy& study, std::uint64_t count, double longest);
+
+}  // namespace freeplay

@@ -1,0 +1,273 @@
+#include "cli/study_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "cli/failure.h"
+#include "cli/interrupt.h"
+#include "cli/own_program.h"
+#include "cli/processors.h"
+#include "cli/study_progress.h"
+#include "cli/study_table.h"
+#include "cli/terminal.h"
+#include "study/old_rows.h"
+#include "study/point_words.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t most_kept = 10'000;  // result directories without --yes
+constexpr std::size_t most_listed_failures = 10;
+
+enum class Keep { nothing, failed, all };
+
+Keep keep_of(const std::string& text) {
+  if (text.empty() || text == "none") return Keep::nothing;
+  require_word("--keep", text, {"failed", "all"});
+  return text == "all" ? Keep::all : Keep::failed;
+}
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Processor time of this program and of all workers that have ended [s].
+double tree_seconds() {
+  double sum = 0.0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    if (::getrusage(who, &usage) == 0) sum += seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+  }
+  return sum;
+}
+
+/// The first file that is not as it was, and the first line there.
+std::string difference(const StudyPlan& plan, const StudyFolder& folder) {
+  for (const KeptFile& file : plan.kept_files()) {
+    if (file.path == "inputs/study.json") continue;
+    std::ifstream stream(folder.path() / file.path, std::ios::binary);
+    const std::string old{std::istreambuf_iterator<char>(stream), {}};
+    if (old == file.bytes) continue;
+    const auto [ours, theirs] = std::mismatch(file.bytes.begin(), file.bytes.end(), old.begin(), old.end());
+    return fmt::format("{} differs from line {} on", file.path, 1 + std::count(file.bytes.begin(), ours, '\n'));
+  }
+  return "what the command line sets differs";
+}
+
+class StudyRun {
+ public:
+  StudyRun(StudyInFolder& opened, const StudyOptions& options, const CommonOptions& common)
+      : options_(options),
+        common_(common),
+        study_(*opened.study),
+        plan_(study_.plan()),
+        folder_(opened.folder),
+        began_(std::chrono::steady_clock::now()),
+        mark_(study_.mark()) {
+    read_options();
+    open_folder();
+    table_.emplace(study_, folder_);
+    table_->look(mark_, schedule_.only ? Shard{} : schedule_.shard, warn_of_damage(common));
+  }
+
+  int run() {
+    if (keep_ != Keep::nothing) keep_results();
+    compute();
+    const bool interrupted = interrupts_ != 0;
+    const bool whole = options_.shard.empty() && !interrupted && table_->done() >= table_->wanted();
+    if (whole && (report_.ran > 0 || !folder_.is_merged())) table_->merge();
+    tell(whole);
+    if (interrupted) return 130;
+    return failed() > 0 && !options_.allow_failed ? 4 : 0;
+  }
+
+ private:
+  void read_options();
+  void open_folder();
+  void refuse_changed();
+  void extend();
+  void keep_results();
+  void compute();
+  void tell(bool whole) const;
+  Json report_json(bool whole) const;
+
+  /// Of this shard.
+  std::uint64_t total() const { return options_.shard.empty() ? table_->wanted() : shard_points_; }
+  std::uint64_t done() const { return table_->done(); }
+  std::uint64_t failed() const { return table_->failed(); }
+  double wall() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  double busy() const { return running_ > 0.0 ? std::min(1.0, report_.busy_seconds / running_ / pool_.jobs) : 0.0; }
+
+  const StudyOptions& options_;
+  const CommonOptions& common_;
+  OpenStudy& study_;
+  const StudyPlan& plan_;
+  const StudyFolder& folder_;
+  std::chrono::steady_clock::time_point began_;
+  StudyMark mark_;
+  PoolOptions pool_;
+  Keep keep_ = Keep::nothing;
+  ScheduleOptions schedule_;
+  double sync_ = 1.0, running_ = 0.0;
+  std::optional<StudyTable> table_;
+  std::uint64_t shard_points_ = 0;
+  EngineReport report_;
+  const std::atomic<int>& interrupts_ = watch_interrupts();
+};
+
+void StudyRun::read_options() {
+  pool_.jobs = options_.jobs.empty() ? processor_count() : static_cast<int>(whole_number("--jobs", options_.jobs, 1));
+  pool_.isolate = options_.isolate;
+  if (!options_.point_timeout.empty()) {
+    pool_.point_timeout = positive_quantity("--point-timeout", options_.point_timeout, dimension::time);
+  }
+  if (!options_.sync.empty() && options_.sync != "0") {
+    sync_ = positive_quantity("--sync", options_.sync, dimension::time);
+  } else if (options_.sync == "0") {
+    sync_ = 0.0;
+  }
+  keep_ = keep_of(options_.keep);
+  if (!options_.shard.empty()) schedule_.shard = shard_of(options_.shard);
+  if (!options_.only.empty()) schedule_.only = point_ranges("--only", options_.only, plan_.points());
+  schedule_.retry_failed = options_.retry_failed;
+  if (options_.extend && options_.restart) {
+    throw Error(Error::Category::usage, "usage", "--extend and --restart exclude each other");
+  }
+}
+
+void StudyRun::open_folder() {
+  folder_.require_room();
+  if (folder_.holds_study()) {
+    if (options_.restart) {
+      folder_.set_aside();
+    } else if (folder_.record()["study"] != mark_.study || folder_.record()["rows"] != mark_.columns) {
+      options_.extend ? extend() : refuse_changed();
+    } else if (kept_mark(folder_).program() != mark_.program() && folder_.segments().empty()) {
+      folder_.set_aside();  // no rows of another program
+    }
+  }
+  folder_.begin(plan_, mark_, study_record(plan_, mark_, study_.column_names()));
+}
+
+// Rows of other columns say nothing of these.
+void StudyRun::refuse_changed() {
+  const std::vector<fs::path> segments = folder_.segments();
+  const bool same_columns = folder_.record()["rows"] == mark_.columns;
+  const OldRows rows(same_columns ? segments : std::vector<fs::path>{}, study_.layout(), warn_of_damage(common_));
+  throw Error(Error::Category::input, "study-changed",
+              fmt::format("the study is not the one of '{}': {}", folder_.path().string(), difference(plan_, folder_)),
+              {},
+              fmt::format("--extend keeps {} of {} points, --restart none, and another --out both", rows.kept(plan_),
+                          plan_.points()));
+}
+
+void StudyRun::extend() {
+  const bool same_columns = folder_.record()["rows"] == mark_.columns;
+  for (const fs::path& segment : folder_.segments()) {
+    SegmentReader reader(segment, warn_of_damage(common_));
+    if (!reader.header()) continue;
+    StudyMark old = mark_;
+    old.study = reader.header()->study;
+    require_same(*reader.header(), segment, old);
+  }
+  const OldRows rows(same_columns ? folder_.segments() : std::vector<fs::path>{}, study_.layout(),
+                     warn_of_damage(common_));
+  folder_.set_aside();
+  folder_.begin(plan_, mark_, study_record(plan_, mark_, study_.column_names()));
+  SegmentWriter segment(folder_.rows(),
+                        {mark_.study, mark_.program(), mark_.arithmetic, Shard{}, host_name(), utc_now()}, sync_);
+  rows.write(plan_, segment);
+}
+
+// Each is made by the command of its point, beside the run that the row is of.
+void StudyRun::keep_results() {
+  if (plan_.chained() || plan_.section().analysis != nullptr) {
+    throw Error(Error::Category::usage, "bad-value",
+                "--keep is for points that are runs of their own, not for chains or analyses");
+  }
+  if (keep_ == Keep::all && plan_.points() > most_kept && !options_.yes) {
+    throw Error(Error::Category::usage, "too-large",
+                fmt::format("--keep all would make {} result directories", plan_.points()), {}, "--yes makes them");
+  }
+  study_.work().after_each([this](const StudyPoint& point, const StudyOutcome& outcome) {
+    if (keep_ == Keep::failed && outcome.exit_code == 0) return;
+    std::vector<std::string> words = point_words(plan_, fs::absolute(folder_.path()), point);
+    const fs::path place =
+        folder_.path() / "kept" / fmt::format("{:04}", point.index / 1000) / fmt::format("{}", point.index);
+    for (const std::string& plugin : common_.plugins) words.insert(words.end(), {"--plugin", plugin});
+    words.insert(words.end(), {"--quiet", "--allow-plugins", "--force", "--out", place.string()});
+    run_own_program(words, false);
+  });
+}
+
+void StudyRun::compute() {
+  Schedule schedule(study_.work(), table_->scan(), schedule_);
+  shard_points_ = schedule.points();
+  SegmentWriter segment(
+      folder_.rows(), {mark_.study, mark_.program(), mark_.arithmetic, schedule_.shard, host_name(), utc_now()}, sync_);
+  StudyProgress progress(total(), stderr_is_terminal() && !common_.quiet);
+  const auto start = std::chrono::steady_clock::now();
+  report_ = run_points(study_.work(), study_.layout(), schedule, table_->scan(), segment, pool_, table_->watch(),
+                       [&](const EngineReport&) {
+                         progress.update(table_->scan().done().count(), table_->scan().failed().count());
+                         return interrupts_ == 0;
+                       });
+  running_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Json StudyRun::report_json(bool whole) const {
+  return {{"name", plan_.name()},
+          {"dir", folder_.path().string()},
+          {"points", total()},
+          {"done", done()},
+          {"failed", failed()},
+          {"ran", report_.ran},
+          {"left", total() - std::min(total(), done())},
+          {"jobs", pool_.jobs},
+          {"wall_seconds", wall()},
+          {"cpu_seconds", tree_seconds()},
+          {"busy", busy()},
+          {"workers_lost", report_.workers_lost},
+          {"table", whole ? Json(folder_.table().string()) : Json(nullptr)}};
+}
+
+void StudyRun::tell(bool whole) const {
+  if (common_.json) return print_json(report_json(whole));
+  if (common_.quiet) return;
+  std::string text = fmt::format(
+      "{}: {} of {} points done, {} failed, {:.1f} s, {:.3g} points/s, workers busy {:.2f}\n", plan_.name(), done(),
+      total(), failed(), wall(), running_ > 0.0 ? static_cast<double>(report_.ran) / running_ : 0.0, busy());
+  const auto failures = table_->scan().first_failures(most_listed_failures);
+  if (!failures.empty()) {
+    text += "  failed ";
+    for (const auto& [point, error] : failures) text += fmt::format("  {:>4} {}", point, error);
+    text += "\n";
+  }
+  if (whole) text += fmt::format("  table      {}\n", folder_.table().string());
+  print(text);
+}
+
+}  // namespace
+
+int study_run(const StudyOptions& options, const CommonOptions& common) {
+  StudyInFolder opened = open_in_folder(only_study(options, "run", "FILE or DIR"), options, common);
+  if (!opened.study) return opened.exit_code;
+  return StudyRun(opened, options, common).run();
+}
+
+}  // namespace freeplay

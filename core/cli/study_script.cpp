@@ -1,0 +1,94 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/study_probe.h"
+#include "cli/study_table.h"
+#include "cli/study_views.h"
+#include "cli/terminal.h"
+#include "study/job_scripts.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double longest_script_probe = 60.0;  // [s]
+
+JobEngine engine_of(const std::string& word) {
+  const std::vector<std::string> words = {"slurm", "gnu-parallel", "snakemake"};
+  if (word.empty()) {
+    throw Error(Error::Category::usage, "missing-argument", "study script needs --engine", {},
+                fmt::format("--engine {}", fmt::join(words, "|")));
+  }
+  if (std::ranges::find(words, word) == words.end()) {
+    bad_value("--engine", word, fmt::format("it must be {}", fmt::join(words, ", ")));
+  }
+  return word == "slurm" ? JobEngine::slurm : word == "snakemake" ? JobEngine::snakemake : JobEngine::gnu_parallel;
+}
+
+fs::path whole_path(const std::string& path) { return fs::absolute(path).lexically_normal(); }
+
+}  // namespace
+
+int study_script(const StudyOptions& options, const CommonOptions& common) {
+  constexpr long usual_probe = 32, most_minutes = 60, least_minutes = 10;
+  JobRequest request;
+  request.engine = engine_of(options.engine);
+  StudyInFolder opened = open_in_folder(only_study(options, "script", "FILE or DIR"), options, common);
+  if (!opened.study) return opened.exit_code;
+  OpenStudy& study = *opened.study;
+  const StudyMark mark = study.mark();
+  opened.folder.require_room();
+  if (opened.folder.holds_study() && opened.folder.record()["study"] != mark.study) {
+    throw Error(Error::Category::input, "study-changed",
+                fmt::format("the study is not the one of '{}'", opened.folder.path().string()), {},
+                "freeplay study run FILE --extend or --restart, or another --out");
+  }
+  opened.folder.begin(study.plan(), mark, study_record(study.plan(), mark, study.column_names()));
+  StudyTable table(study, opened.folder);
+  table.look(mark, {}, warn_of_damage(common));
+  request.program = fs::read_symlink("/proc/self/exe");
+  request.folder = whole_path(opened.folder.path().string());
+  request.name = study.plan().name();
+  request.points_left = table.wanted() - std::min(table.wanted(), table.done());
+  if (!options.minutes.empty()) {
+    request.minutes = static_cast<double>(whole_number("--minutes", options.minutes, least_minutes));
+    if (request.minutes > most_minutes) bad_value("--minutes", options.minutes, "it must be from 10 to 60");
+  }
+  if (!options.tasks.empty()) request.tasks = static_cast<std::uint64_t>(whole_number("--tasks", options.tasks, 1));
+  if (!options.cores.empty()) request.cores = static_cast<int>(whole_number("--cores", options.cores, 1));
+  if (!options.max_array.empty()) {
+    request.max_array = static_cast<std::uint64_t>(whole_number("--max-array", options.max_array, 1));
+  }
+  request.time = options.time;
+  if (!options.hosts.empty()) request.hosts = whole_path(options.hosts);
+  const long probe = options.probe.empty() ? usual_probe : whole_number("--probe", options.probe, 1);
+  const auto seconds = probe_points(study, static_cast<std::uint64_t>(probe), longest_script_probe);
+  if (!seconds) {
+    throw Error(Error::Category::numerical, "timeout", fmt::format("no point ended within {} s", longest_script_probe));
+  }
+  request.seconds_per_point = seconds->mean;
+  const JobPlan plan = plan_jobs(request);
+  const JobScripts scripts = write_job_scripts(request, plan);
+  Json files = Json::array();
+  for (const fs::path& file : scripts.files) files.push_back(file.string());
+  if (common.json) {
+    print_json({{"command", scripts.command},
+                {"tasks", plan.tasks},
+                {"points", request.points_left},
+                {"seconds_per_point", request.seconds_per_point},
+                {"minutes", plan.minutes},
+                {"files", files}});
+    return 0;
+  }
+  if (!common.quiet) {
+    print(fmt::format("{}: {} points of {:.3g} s in {} tasks of {:.3g} minutes\n", request.name, request.points_left,
+                      request.seconds_per_point, plan.tasks, plan.minutes));
+  }
+  print_data(scripts.command + "\n");
+  return 0;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,82 @@
+// StudyFile: the file of a study, read once, with the models and tables that it names.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/json_text.h"
+#include "format/document.h"
+#include "format/parameter_scope.h"
+#include "format/study_section.h"
+#include "load/options.h"
+#include "study/model.h"
+#include "study/planned_axis.h"
+
+namespace freeplay {
+
+/// A file that a study's folder keeps, to be made again from there.
+struct KeptFile {
+  std::string path;  ///< from the folder
+  std::string bytes;
+};
+
+/// Has the file nothing but a study, of models that it names?
+bool has_study_alone(const Node& root);
+
+class StudyFile {
+ public:
+  /// `file`: a study file or a model with a section `study`; or, `kept`, study.yaml in the folder of a study, whose
+  /// models are read from the copies there. `set`: of the command line; it wins over the file's. Null after errors.
+  /// Throws Error{usage} for what `set` asks for and a model does not have, and what loading plugins throws.
+  static std::unique_ptr<StudyFile> read(const std::string& file, bool kept, const TargetTexts& set,
+                                         const LoadOptions& options, Diagnostics& diagnostics);
+
+  const std::string& name() const { return name_; }
+  const StudySection& section() const { return *section_; }
+  const std::vector<StudyModel>& models() const { return models_; }
+  const std::vector<PlannedAxis>& axes() const { return axes_; }
+  /// Random numbers of a sample.
+  std::size_t draws() const { return draws_; }
+  /// What holds at every point: of the file, then of the command line.
+  const std::vector<PlannedSetting>& set() const { return set_; }
+  TargetTexts set_texts() const;
+  /// Everything that was read, byte for byte, and what else the copies need.
+  std::vector<KeptFile> kept_files() const;
+  /// Where the copy of a model is among them.
+  std::string copy_of(std::size_t model) const;
+  /// SHA-256 of all that the points follow from.
+  std::string identity() const;
+
+ private:
+  StudyFile(Document document, Diagnostics& diagnostics);
+  bool read_section(Diagnostics& diagnostics);
+  void combine_set(const TargetTexts& set);
+  bool read_models(const LoadOptions& options, Diagnostics& diagnostics);
+  void report_about_set(std::vector<Diagnostic> errors, Diagnostics& diagnostics) const;
+  void name_models();
+  void plan_axes();
+  std::vector<std::string> fitting(const StudyAxis& axis) const;
+  void plan_axis(const StudyAxis& axis);
+  void find_targets(PlannedAxis& axis, const LoadOptions& options) const;
+  void check_targets(const LoadOptions& options);
+  void check_columns() const;
+
+  Document document_;
+  bool kept_ = false, in_model_ = false;
+  Json record_ = nullptr;  ///< of a kept study: what its files do not say
+  UsedKeys none_used_;
+  ParameterScope no_parameters_;
+  Reading reading_;
+  std::optional<StudySection> section_;
+  std::string name_;
+  TargetTexts command_set_;
+  std::vector<PlannedSetting> set_;
+  std::vector<StudyModel> models_;
+  std::vector<PlannedAxis> axes_;
+  std::size_t draws_ = 0;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,195 @@
+#include "study/folder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/whole_file.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* record_name = "study.json";
+/// What a run of a study makes, but for the rows.
+const std::set<std::string> tables = {"study.csv", "samples.csv", "study.h5", "failures.jsonl", "timing.csv"};
+
+/// The second at which a segment was begun, from its name.
+long begun(const fs::path& segment) {
+  const std::string stem = segment.stem().string();
+  const std::size_t dot = stem.rfind('.');
+  long seconds = 0;
+  if (dot != std::string::npos) std::from_chars(stem.data() + dot + 1, stem.data() + stem.size(), seconds);
+  return seconds;
+}
+
+[[noreturn]] void fail_to(const char* what, const fs::path& path, const std::string& why) {
+  throw Error(Error::Category::file, "cannot-write", fmt::format("cannot {} '{}': {}", what, path.string(), why));
+}
+
+void move(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (!fs::exists(from, error)) return;
+  fs::rename(from, to, error);
+  if (error) fail_to("move", from, error.message());
+}
+
+}  // namespace
+
+bool StudyFolder::holds_study() const {
+  std::error_code ignored;
+  return fs::is_regular_file(path_ / record_name, ignored);
+}
+
+void StudyFolder::require_room() const {
+  static const std::set<std::string> own = {"study.yaml", "inputs", "rows", "old"};
+  std::error_code error;
+  if (holds_study() || !fs::exists(path_, error)) return;
+  if (!fs::is_directory(path_, error)) {
+    throw Error(Error::Category::file, "cannot-write", fmt::format("'{}' is no directory", path_.string()));
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (own.contains(name) || name.starts_with('.')) continue;
+    throw Error(Error::Category::file, "not-empty",
+                fmt::format("'{}' holds other files, such as '{}'", path_.string(), name), {},
+                "another --out, or an empty directory");
+  }
+}
+
+Json StudyFolder::record() const {
+  std::ifstream stream(path_ / record_name);
+  const Json record = stream ? Json::parse(stream, nullptr, false) : Json();
+  const auto text = [&](const char* key) { return record.is_object() && record.value(key, Json()).is_string(); };
+  if (text("study") && text("arithmetic") && text("rows") && record.value("program", Json()).is_object()) return record;
+  throw Error(Error::Category::input, "file-not-found",
+              fmt::format("'{}' is no directory of a study: there is no {} of one", path_.string(), record_name), {},
+              "freeplay study run FILE --out DIR makes one");
+}
+
+void StudyFolder::begin(const StudyPlan& plan, const StudyMark& mark, const Json& record) const {
+  std::error_code error;
+  fs::create_directories(rows(), error);
+  if (error) fail_to("make", rows(), error.message());
+  if (holds_study()) return;
+  for (const KeptFile& file : plan.kept_files()) write_whole_file(path_ / file.path, file.bytes, true);
+  const fs::path own = path_ / fmt::format(".study.json.{}.{}", host_name(), ::getpid());
+  write_whole_file(own, json_text(record), true);
+  const fs::path place = path_ / record_name;
+  const int reason = ::link(own.c_str(), place.c_str()) == 0 ? 0 : errno;
+  fs::remove(own, error);
+  if (reason == EEXIST) {
+    if (this->record()["study"] == mark.study) return;
+    throw Error(Error::Category::input, "study-changed",
+                fmt::format("another study was begun in '{}' at the same time", path_.string()), {}, "another --out");
+  }
+  if (reason != 0) fail_to("make", place, std::strerror(reason));
+  sync_folder_of(place);
+}
+
+std::vector<fs::path> StudyFolder::segments() const {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(rows(), error)) {
+    if (entry.path().extension() == ".rows") found.push_back(entry.path());
+  }
+  std::ranges::sort(found, {}, [](const fs::path& path) { return std::pair(begun(path), path.filename().string()); });
+  return found;
+}
+
+bool StudyFolder::is_merged() const {
+  std::error_code error;
+  const auto merged = fs::last_write_time(table(), error);
+  if (error) return false;
+  return std::ranges::all_of(segments(), [&](const fs::path& segment) {
+    const auto written = fs::last_write_time(segment, error);
+    return !error && written < merged;
+  });
+}
+
+fs::path StudyFolder::set_aside() const {
+  std::error_code error;
+  fs::path place;
+  for (int number = 1; place.empty() || fs::exists(place, error); ++number) {
+    place = path_ / "old" / fmt::format("{:04}", number);
+  }
+  fs::create_directories(place, error);
+  if (error) fail_to("make", place, error.message());
+  // The record last: until then the folder is that of the old study.
+  for (const std::string& name : tables) move(path_ / name, place / name);
+  for (const char* name : {"rows", "plots", "kept"}) move(path_ / name, place / name);
+  for (const char* name : {"study.yaml", "inputs", record_name}) move(path_ / name, place / name);
+  return place;
+}
+
+Json study_record(const StudyPlan& plan, const StudyMark& mark, const std::vector<std::string>& columns) {
+  Json axes = Json::array(), models = Json::array();
+  for (const AxisColumn& column : plan.axis_columns()) axes.push_back({{"name", column.name}, {"unit", column.unit}});
+  for (const StudyModel& model : plan.models()) {
+    models.push_back({{"name", model.name}, {"file", model.file}, {"sha256", model.sha256}});
+  }
+  return {{"schema", 1},
+          {"name", plan.name()},
+          {"study", mark.study},
+          {"rows", mark.columns},
+          {"program", {{"version", mark.version}, {"build", mark.build}}},
+          {"arithmetic", mark.arithmetic},
+          {"points", plan.points()},
+          {"axes", axes},
+          {"columns", columns},
+          {"models", models}};
+}
+
+void require_same(const SegmentHeader& header, const fs::path& segment, const StudyMark& mark) {
+  const auto refuse = [&](const char* id, const std::string& message, const std::string& hint) {
+    throw Error(Error::Category::input, id, message, {segment.string(), 1, 0}, hint);
+  };
+  if (header.study != mark.study) {
+    refuse("study-mixed",
+           fmt::format("these rows are of study {}, not of {}", header.study.substr(0, 12), mark.study.substr(0, 12)),
+           "rows of different studies stand in different directories");
+  }
+  if (header.arithmetic != mark.arithmetic) {
+    refuse("arithmetic-differs",
+           fmt::format("these rows were computed on '{}' with arithmetic {}, here it is {}", header.host,
+                       header.arithmetic, mark.arithmetic),
+           "a program that was built the same way on both machines, or --restart");
+  }
+  if (header.program == mark.program()) return;
+  refuse("program-changed",
+         fmt::format("these rows were computed by freeplay {}, this is {}", header.program, mark.program()),
+         "the program and the plugins of then, or --restart, which computes all points again");
+}
+
+std::string host_name() {
+  char name[256] = "";
+  if (::gethostname(name, sizeof name - 1) != 0) return "host";
+  std::string host(name);
+  host = host.substr(0, host.find('.'));
+  std::ranges::replace_if(
+      host, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_'; }, '_');
+  return host.empty() ? "host" : host;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+}  // namespace freeplay

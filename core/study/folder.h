@@ -1,0 +1,65 @@
+// StudyFolder: the directory of a study, its record and its segments.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/json_text.h"
+#include "study/plan.h"
+#include "study/segment_header.h"
+
+namespace freeplay {
+
+/// What must be the same for rows to stand in one table.
+struct StudyMark {
+  std::string study;       ///< StudyPlan::identity()
+  std::string version;     ///< of the program
+  std::string build;       ///< SHA-256 of the program and of every plugin file
+  std::string arithmetic;  ///< fingerprint
+  std::string columns;     ///< SHA-256 of what the columns of reducers are
+
+  std::string program() const { return version + "/" + build; }
+};
+
+class StudyFolder {
+ public:
+  explicit StudyFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path file() const { return path_ / "study.yaml"; }
+  std::filesystem::path rows() const { return path_ / "rows"; }
+  std::filesystem::path table() const { return path_ / "study.csv"; }
+
+  bool holds_study() const;
+  /// Throws Error{file} "not-empty" where there is something else than a study.
+  void require_room() const;
+  /// study.json. Throws Error{input} "file-not-found" where there is none.
+  Json record() const;
+
+  /// Makes study.json, with copies of all that was read; of several that do so at once one wins. Throws Error{file}.
+  void begin(const StudyPlan& plan, const StudyMark& mark, const Json& record) const;
+  /// Segments in the order of their making.
+  std::vector<std::filesystem::path> segments() const;
+  /// Is the table newer than all rows?
+  bool is_merged() const;
+  /// Everything that a run has made goes to a new folder in old/. Returns it.
+  std::filesystem::path set_aside() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The record of a study: what study.json says.
+Json study_record(const StudyPlan& plan, const StudyMark& mark, const std::vector<std::string>& columns);
+
+/// Throws Error{input} where a segment is of another study, program or arithmetic than `mark`: "study-mixed",
+/// "program-changed", "arithmetic-differs".
+void require_same(const SegmentHeader& header, const std::filesystem::path& segment, const StudyMark& mark);
+
+/// The name of this machine as names of files take it.
+std::string host_name();
+/// Now, as headers of segments say it.
+std::string utc_now();
+
+}  // namespace freeplay

@@ -1,0 +1,117 @@
+#include "study/model.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/name_pattern.h"
+#include "base/sha256.h"
+#include "format/model_builder.h"
+#include "format/path_override.h"
+#include "format/run_override.h"
+#include "load/model_file.h"
+#include "load/plugins.h"
+#include "study/document_json.h"
+#include "yaml/document.h"
+
+namespace freeplay {
+namespace {
+
+/// The option as which a target acts: "--ideal", "--end".
+std::string option_of(const std::string& target) { return "--" + target.substr(target.find('.') + 1); }
+
+/// What the command line would refuse, as a message about a value.
+ModelProbe::Result refused(const Error& error, const TargetTexts& set) {
+  ModelProbe::Result result;
+  Diagnostic diagnostic = as_diagnostic(error);
+  diagnostic.location = {};
+  for (const auto& [target, text] : set) {
+    const std::string start = "--set " + target;
+    const bool name = error.message().starts_with(start + ": ");
+    const bool acting = is_run_override(target) && error.message().starts_with(option_of(target) + " ");
+    if (!name && !acting && !error.message().starts_with(start + "=")) continue;
+    result.refused = target;
+    diagnostic.id = name ? "unknown-name" : target == "simulation.integrator" ? "unknown-type" : "bad-value";
+    if (name) diagnostic.message = error.message().substr(start.size() + 2);
+    break;
+  }
+  if (!result.refused) throw error;
+  result.errors.push_back(std::move(diagnostic));
+  return result;
+}
+
+std::string fingerprint(const Document& document, std::vector<InputFile> inputs) {
+  constexpr std::array<std::string_view, 1> without = {"study"};
+  std::ranges::sort(inputs, {}, &InputFile::name);
+  Sha256 hash;
+  const std::string text = document_json(document.root(), without);
+  hash.add(text.data(), text.size());
+  for (const InputFile& input : inputs) hash.add(input.text.data(), input.text.size());
+  return hash.digits();
+}
+
+}  // namespace
+
+bool StudyModel::has(const std::string& target) const {
+  if (is_run_override(target) || parameters.contains(target)) return true;
+  if (!PathOverrides::is_path(target)) return false;
+  if (!is_pattern(target)) return std::ranges::binary_search(addresses, target);
+  return std::ranges::any_of(addresses, [&](const std::string& address) { return matches(target, address); });
+}
+
+ModelProbe::ModelProbe(const Document& document, const LoadOptions& options)
+    : document_(document), registry_(load_registry(options, &document)) {}
+
+ModelProbe::Result ModelProbe::build(const TargetTexts& set, std::vector<std::string>* addresses) const {
+  BuildOptions options;
+  options.set = set;
+  options.parse_value = parse_yaml;
+  options.without_study = true;
+  options.addresses = addresses;
+  Result result;
+  Diagnostics diagnostics;
+  try {
+    result.model = build_model(document_, registry_, options, diagnostics);
+  } catch (const Error& error) {
+    if (error.category() == Error::Category::usage) return refused(error, set);
+    if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw;
+    diagnostics.add(as_diagnostic(error));
+  }
+  for (Diagnostic& diagnostic : diagnostics.sorted()) {
+    if (diagnostic.severity == Severity::error) result.errors.push_back(std::move(diagnostic));
+  }
+  return result;
+}
+
+std::optional<StudyModel> read_study_model(const std::string& place, const std::string& file, const TargetTexts& set,
+                                           const LoadOptions& options, Diagnostics& diagnostics,
+                                           std::vector<Diagnostic>& about_set) {
+  std::optional<Document> document = read_model(place, diagnostics);
+  if (!document || diagnostics.has_errors()) return std::nullopt;
+  StudyModel made;
+  made.file = file;
+  made.document = std::make_unique<const Document>(std::move(*document));
+  const ModelProbe probe(*made.document, options);
+  ModelProbe::Result built = probe.build(set, &made.addresses);
+  for (Diagnostic& error : built.errors) {
+    if (built.refused) error.location.file = "--set " + *built.refused;
+    if (error.location.file.starts_with("--set ")) {
+      about_set.push_back(std::move(error));
+    } else {
+      diagnostics.add(std::move(error));
+    }
+  }
+  if (!built.model) return std::nullopt;
+  std::ranges::sort(made.addresses);
+  made.addresses.erase(std::unique(made.addresses.begin(), made.addresses.end()), made.addresses.end());
+  if (const Node* parameters = made.document->root().find("parameters"); parameters != nullptr) {
+    for (const Node::Entry& entry : parameters->entries) made.parameters.insert(entry.key->text);
+  }
+  made.inputs = built.model->inputs;
+  made.name = built.model->name;
+  made.sha256 = fingerprint(*made.document, made.inputs);
+  return made;
+}
+
+}  // namespace freeplay

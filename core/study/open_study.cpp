@@ -1,0 +1,64 @@
+#include "study/open_study.h"
+
+#include <algorithm>
+
+#include "base/arithmetic.h"
+#include "base/sha256.h"
+#include "base/version.h"
+#include "study/document_json.h"
+
+namespace freeplay {
+
+std::unique_ptr<OpenStudy> OpenStudy::open(const std::string& file, const StudyPlanOptions& options,
+                                           Diagnostics& diagnostics) {
+  std::unique_ptr<OpenStudy> study(new OpenStudy);
+  study->plan_ = StudyPlan::read(file, options, diagnostics);
+  if (!study->plan_) return nullptr;
+  study->runner_ = std::make_unique<PointRunner>(point_source(*study->plan_), options.load, diagnostics);
+  if (diagnostics.has_errors()) return nullptr;
+  study->work_ = std::make_unique<PlannedWork>(*study->plan_, *study->runner_);
+  study->layout_ = row_layout(*study->plan_, *study->runner_);
+  const auto& stop = study->plan_->section().stop;
+  if (stop && study->stop_column() == study->layout_.columns.size()) {
+    study->plan_->section().section.fail("unknown-name",
+                                         "`stop` looks at the reducer '" + stop->reducer + "', which there is not");
+    return nullptr;
+  }
+  return study;
+}
+
+StudyMark OpenStudy::mark() const {
+  std::string program = sha256_of_file("/proc/self/exe");
+  for (const std::string& file : runner_->plugin_files()) program += "\n" + sha256_of_file(file);
+  const auto text_of = [](const Node* node) { return node == nullptr ? std::string() : document_json(*node); };
+  std::string columns = text_of(plan_->section().reducers) + "\n" + text_of(plan_->section().analysis);
+  for (const StudyColumn& column : layout_.columns) columns += "\n" + column.name;
+  return {plan_->identity(), program_version, sha256(program), arithmetic_fingerprint(), sha256(columns)};
+}
+
+std::vector<std::string> OpenStudy::column_names() const {
+  std::vector<std::string> names;
+  for (const StudyColumn& column : layout_.columns) names.push_back(column.name);
+  return names;
+}
+
+std::size_t OpenStudy::stop_column() const {
+  if (!plan_->section().stop) return 0;
+  const auto found = std::ranges::find(layout_.columns, plan_->section().stop->reducer, &StudyColumn::name);
+  return static_cast<std::size_t>(found - layout_.columns.begin());
+}
+
+std::optional<StopRule> OpenStudy::stop_rule() const {
+  const auto& stop = plan_->section().stop;
+  if (!stop) return std::nullopt;
+  const StopOptions options{.reducer = stop->reducer,
+                            .percentile = stop->percentile.value_or(-1.0),
+                            .confidence = stop->confidence,
+                            .half_width = stop->half_width,
+                            .relative = stop->relative,
+                            .min_points = stop->min_points,
+                            .block = stop->block};
+  return StopRule(options, plan_->points() / plan_->samples(), plan_->samples());
+}
+
+}  // namespace freeplay

@@ -1,0 +1,52 @@
+// PlannedWork: the points of a plan, run one by one, as the engine wants them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "study/merge.h"
+#include "study/plan.h"
+#include "study/point_runner.h"
+#include "study/row_text.h"
+#include "study/work.h"
+
+namespace freeplay {
+
+class PlannedWork final : public StudyWork {
+ public:
+  /// Both outlive it.
+  PlannedWork(const StudyPlan& plan, PointRunner& runner) : plan_(plan), runner_(runner) {}
+
+  std::uint64_t points() const override { return plan_.points(); }
+  std::uint64_t units() const override { return plan_.units(); }
+  std::uint64_t unit_size(std::uint64_t unit) const override { return plan_.unit_size(unit); }
+  std::uint64_t unit_point(std::uint64_t unit, std::uint64_t place) const override {
+    return plan_.unit_point(unit, place);
+  }
+  UnitPlace place_of(std::uint64_t point) const override { return plan_.place_of(point); }
+  bool chained() const override { return plan_.chained(); }
+  std::string hash(std::uint64_t point) const override { return plan_.hash(point); }
+  StudyOutcome run(std::uint64_t index, const std::string& state_before) override {
+    const StudyPoint point = plan_.point(index);
+    StudyOutcome outcome = runner_.run(point, state_before);
+    if (after_) after_(point, outcome);
+    return outcome;
+  }
+  /// Called in the worker after each point.
+  void after_each(std::function<void(const StudyPoint&, const StudyOutcome&)> act) { after_ = std::move(act); }
+
+ private:
+  const StudyPlan& plan_;
+  PointRunner& runner_;
+  std::function<void(const StudyPoint&, const StudyOutcome&)> after_;
+};
+
+/// What a runner needs of a plan, which outlives it.
+PointSource point_source(const StudyPlan& plan);
+RowLayout row_layout(const StudyPlan& plan, const PointRunner& runner);
+/// The table of a plan's rows: what merge_rows() wants. Both outlive it.
+MergePlan merge_plan(const StudyPlan& plan, const PointRunner& runner);
+
+}  // namespace freeplay

@@ -1,0 +1,11 @@
+// outcome_of: what a row of a segment says, as numbers.
+#pragma once
+
+#include "study/outcome.h"
+#include "study/segment_reader.h"
+
+namespace freeplay {
+
+StudyOutcome outcome_of(const SegmentRow& row, const RowLayout& layout);
+
+}  // namespace freeplay

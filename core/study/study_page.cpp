@@ -1,0 +1,134 @@
+#include "study/study_page.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/shell_word.h"
+#include "study/picture.h"
+#include "study/point_words.h"
+#include "svg/page.h"
+
+namespace freeplay {
+namespace {
+
+constexpr std::uint64_t most_shown = 20'000;
+constexpr std::size_t most_bytes = 2'000'000;  // of points
+constexpr std::size_t listed_rows = 200;
+
+constexpr std::string_view head = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{}</title>
+<style>body{{font:14px sans-serif;margin:2em;max-width:64em}}svg{{display:block;margin:1em 0;max-width:100%;height:auto}}
+[data-point]{{cursor:pointer}}[data-point]:hover{{stroke:#000;stroke-width:2}}table{{border-collapse:collapse}}
+td,th{{border:1px solid #ccc;padding:2px 8px;text-align:right}}pre{{background:#f4f4f4;padding:8px;white-space:pre-wrap}}
+#point{{position:sticky;bottom:0;background:#fff;border-top:2px solid #444;padding:8px}}.wide{{overflow-x:auto}}</style></head>
+<body><h1>{}</h1>
+<p>{} points{}</p>
+)";
+
+constexpr std::string_view script = R"(<script>
+const data = JSON.parse(document.getElementById('freeplay-study').textContent);
+const place = document.getElementById('point');
+function show(index) {
+  const point = data.points[index];
+  place.textContent = '';
+  const line = document.createElement('p');
+  line.textContent = point ? data.columns.map((name, i) => name + ' = ' + point.row[i]).join('   ')
+                           : 'point ' + index + ' is not on this page: freeplay study point DIR ' + index;
+  place.append(line);
+  if (!point) return;
+  const command = document.createElement('pre'), button = document.createElement('button');
+  command.textContent = point.command;
+  button.textContent = 'copy';
+  button.onclick = () => navigator.clipboard.writeText(command.textContent);
+  place.append(command, button);
+  if (point.kept) {
+    const link = document.createElement('a');
+    link.href = point.kept;
+    link.textContent = ' its result';
+    place.append(link);
+  }
+}
+document.addEventListener('click', event => {
+  const mark = event.target.closest('[data-point]');
+  if (mark) show(mark.dataset.point);
+});
+</script>
+</body></html>
+)";
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+std::string table_row(const std::vector<std::string>& cells, const char* tag) {
+  std::string row = "<tr>";
+  for (const std::string& cell : cells) row += fmt::format("<{0}>{1}</{0}>", tag, svg::escaped(cell));
+  return row + "</tr>\n";
+}
+
+std::string command_of(const StudyPlan& plan, const std::filesystem::path& folder, std::uint64_t index) {
+  std::string command = "freeplay";
+  for (const std::string& word : point_words(plan, folder, plan.point(index))) command += " " + shell_word(word);
+  return command;
+}
+
+}  // namespace
+
+std::string study_page(const OpenStudy& study, const std::filesystem::path& folder) {
+  const StudyPlan& plan = study.plan();
+  std::ifstream table(folder / "study.csv");
+  std::string line;
+  if (!table || !std::getline(table, line)) {
+    throw Error(Error::Category::input, "file-not-found", fmt::format("'{}' has no table yet", folder.string()), {},
+                "freeplay study run or study merge makes it");
+  }
+  const std::filesystem::path place = std::filesystem::absolute(folder).lexically_normal();
+  const std::uint64_t every = plan.points() / most_shown + 1;
+  Json points = Json::object();
+  std::string rows = table_row(split(line), "th");
+  const std::vector<std::string> columns = split(line);
+  std::size_t bytes = 0, count = 0, left_out = 0;
+  for (; std::getline(table, line); ++count) {
+    const std::vector<std::string> cells = split(line);
+    if (count < listed_rows) rows += table_row(cells, "td");
+    const std::uint64_t index = std::stoull(cells.front());
+    if (count % every != 0 || bytes > most_bytes) {
+      ++left_out;
+      continue;
+    }
+    Json point = {{"row", cells}, {"command", command_of(plan, place, index)}};
+    const std::string kept = fmt::format("kept/{:04}/{}", index / 1000, index);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(folder / kept, ignored)) point["kept"] = kept;
+    bytes += line.size() + point["command"].get_ref<const std::string&>().size() + 40;
+    append(points, cells.front(), std::move(point));
+  }
+  const std::string note = left_out == 0 ? "" : fmt::format(", of which {} are not on this page", left_out);
+  const std::string name = svg::escaped(plan.name());
+  std::string page = fmt::format(fmt::runtime(head), name, name, count, note);
+  for (const PictureRequest& request : picture_requests(plan)) {
+    page += fmt::format("<h2>{}</h2>\n{}", svg::escaped(request.name), study_picture(study, folder, request));
+  }
+  page += "<div id=\"point\"><p>A click on a mark shows its point.</p></div>\n<h2>Table</h2>\n";
+  if (count > listed_rows) page += fmt::format("<p>The first {} rows; all are in study.csv.</p>\n", listed_rows);
+  std::string data = Json{{"columns", columns}, {"points", std::move(points)}}.dump();
+  for (std::size_t at = data.find("</"); at != data.npos; at = data.find("</", at + 3)) data.insert(at + 1, "\\");
+  return page + "<div class=\"wide\"><table>" + rows +
+         "</table></div>\n<script type=\"application/json\" id=\"freeplay-study\">" + data + "</script>\n" +
+         std::string(script);
+}
+
+}  // namespace freeplay

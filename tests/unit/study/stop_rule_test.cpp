@@ -1,0 +1,91 @@
+#include "study/stop_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "study/normal_quantile.h"
+
+namespace freeplay {
+namespace {
+
+// Digits of published tables.
+TEST(NormalQuantile, HasPublishedDigits) {
+  EXPECT_NEAR(1.959963984540054, normal_quantile(0.975), 1e-15);
+  EXPECT_NEAR(0.6744897501960817, normal_quantile(0.75), 1e-15);
+  EXPECT_NEAR(-3.090232306167814, normal_quantile(0.001), 5e-15);
+  EXPECT_NEAR(-9.262340089798408, normal_quantile(1e-20), 1e-14);
+  EXPECT_EQ(0.0, normal_quantile(0.5));
+}
+
+StopOptions options(double half_width) {
+  StopOptions result;
+  result.half_width = half_width;
+  result.min_points = 4;
+  result.block = 2;
+  return result;
+}
+
+TEST(StopRule, EndsAtTheFirstLookThatIsNarrowEnough) {
+  const std::vector<double> values{0.0, 4.0, 0.0, 4.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0};
+  // Sum of squares about the mean 2 is 16: s/sqrt(n) is sqrt(16/3/4), sqrt(16/5/6) and sqrt(16/7/8).
+  const double z = normal_quantile(0.975), after_6 = z * std::sqrt(16.0 / 5.0 / 6.0);
+  StopRule rule(options(after_6 * (1.0 + 1e-12)), 1, values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) rule.note(0, k, values[k]);
+  EXPECT_EQ(6u, rule.end());
+  EXPECT_NEAR(after_6, rule.intervals().at(0).half_width, 1e-15);
+  EXPECT_EQ(2.0, rule.intervals()[0].estimate);
+}
+
+TEST(StopRule, OrderOfArrivalChangesNothing) {
+  std::mt19937 random(1);
+  std::vector<double> values(200);
+  for (double& value : values) value = std::generate_canonical<double, 53>(random);
+  std::vector<std::size_t> order(values.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  StopRule reference(options(0.06), 1, values.size());
+  for (const std::size_t k : order) reference.note(0, k, values[k]);
+  ASSERT_TRUE(reference.end());
+  ASSERT_LT(*reference.end(), values.size());
+  for (int turn = 0; turn < 5; ++turn) {
+    std::shuffle(order.begin(), order.end(), random);
+    StopRule rule(options(0.06), 1, values.size());
+    for (const std::size_t k : order) rule.note(0, k, values[k]);
+    EXPECT_EQ(reference.end(), rule.end());
+  }
+}
+
+TEST(StopRule, WaitsForEveryCombinationAndSkipsWhatFailed) {
+  StopRule rule(options(10.0), 2, 100);
+  for (std::uint64_t k = 0; k < 10; ++k) rule.note(0, k, static_cast<double>(k));
+  EXPECT_FALSE(rule.end());
+  for (std::uint64_t k = 0; k < 4; ++k) rule.note(1, k, k == 2 ? std::numeric_limits<double>::quiet_NaN() : 1.0);
+  EXPECT_EQ(4u, rule.end());
+  EXPECT_EQ(1.0, rule.intervals().at(1).estimate);
+}
+
+TEST(StopRule, EndsWithTheSamplesAtTheLatest) {
+  StopRule rule(options(1e-9), 1, 11);
+  for (std::uint64_t k = 0; k < 11; ++k) rule.note(0, k, static_cast<double>(k % 2));
+  EXPECT_EQ(11u, rule.end());
+}
+
+TEST(StopRule, PercentileIsBoundedByRanks) {
+  StopOptions of_median = options(std::numeric_limits<double>::infinity());
+  of_median.percentile = 50.0;
+  of_median.min_points = 100;
+  StopRule rule(of_median, 1, 100);
+  for (std::uint64_t k = 0; k < 100; ++k) rule.note(0, 99 - k, static_cast<double>(k + 1));
+  // 50 -+ 1.96 sqrt(100/4) = 40.2 and 59.8: ranks 40 and 61.
+  EXPECT_EQ(100u, rule.end());
+  EXPECT_EQ(50.0, rule.intervals().at(0).estimate);
+  EXPECT_EQ(10.5, rule.intervals()[0].half_width);
+}
+
+}  // namespace
+}  // namespace freeplay
