@@ -326,7 +326,8 @@ class Assembler {
     }
     start.facts.actual = facts_of(system_);
     if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
-    start.structure = examine_structure(system_, released, closed_, e_, dead_start(system_, start.state));
+    start.structure = examine_structure(system_, released, closed_, e_, dead_start(system_, start.state),
+                                        unstable_start(system_, start.state));
     return start;
   }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include <Eigen/Core>
@@ -30,7 +32,7 @@ class Examination {
     for (const JacobianBlock& block : closed.jacobian().blocks()) blocks_.emplace(block.row, &block);
   }
 
-  Structure run(const std::optional<DeadStart>& dead) {
+  Structure run(const std::optional<DeadStart>& dead, const std::optional<UnstableStart>& unstable) {
     if (dead) {
       const Driver& driver = model_.drivers[at(dead->driver)];
       doubt("dead-point", words(*dead, model_), driver.name, driver.location);
@@ -47,6 +49,7 @@ class Examination {
     judge_plays(open);
     find_undetermined(open);
     if (!dead) judge_locked(open);
+    if (unstable) judge_balance(*unstable);
     if (!dead) find_left_free();
     return std::move(structure_);
   }
@@ -264,6 +267,19 @@ class Examination {
     }
   }
 
+  /// A start from which rounding decides where the mechanism goes, if it goes. A dead point has said so already.
+  void judge_balance(const UnstableStart& unstable) {
+    const auto same = [](const StructureDoubt& doubt) { return doubt.id == std::string_view("dead-point"); };
+    if (std::ranges::any_of(structure_.doubts, same)) return;
+    const Body& body = model_.bodies[at(unstable.body)];
+    doubt("unstable-start",
+          fmt::format("'{}' starts at rest in an unstable equilibrium: what acts moves it neither way, and a deviation "
+                      "would grow tenfold in {:.2g} s; it stays there or rounding decides where it goes: start beside "
+                      "it, or give it a speed",
+                      body.name, std::numbers::ln10 / unstable.growth),
+          body.name, body.location);
+  }
+
   /// Bodies that hang on those of a joint without ground between them.
   std::vector<BodyId> joined_to(const JointElement& joint) const {
     std::vector<BodyId> found;
@@ -307,8 +323,9 @@ class Examination {
 }  // namespace
 
 Structure examine_structure(const System& released, const Evaluation& at_start, const System& closed,
-                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead) {
-  return Examination(released, at_start, closed, closed_at_start).run(dead);
+                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead,
+                            const std::optional<UnstableStart>& unstable) {
+  return Examination(released, at_start, closed, closed_at_start).run(dead, unstable);
 }
 
 }  // namespace freeplay

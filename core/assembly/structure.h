@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assembly/dead_point.h"
+#include "assembly/unstable_start.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -32,9 +33,10 @@ struct Structure {
 
 /// Both systems stand at the start: `released` as it runs, `closed` with every clearance closed; their evaluations hold
 /// positions and coordinates. `dead`: a driver that starts at a dead point, where ranks say little of what is free.
-/// Doubts: `locked`, `not-connected`, `duplicate-joint`, `play-bypassed`, `left-free`, `dead-point`, and those of
-/// doubt_forces().
+/// Doubts: `locked`, `not-connected`, `duplicate-joint`, `play-bypassed`, `left-free`, `dead-point`, `unstable-start`,
+/// and those of doubt_forces().
 Structure examine_structure(const System& released, const Evaluation& at_start, const System& closed,
-                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead);
+                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead,
+                            const std::optional<UnstableStart>& unstable);
 
 }  // namespace freeplay

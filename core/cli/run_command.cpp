@@ -59,8 +59,12 @@ std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<c
 /// What the reader of the model doubts, its results inherit.
 void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
   for (const Diagnostic& diagnostic : diagnostics.sorted()) {
-    if (!diagnostic.id.starts_with("doubtful")) continue;
-    verdict.add({.id = "doubtful-input", .level = Trust::doubtful, .message = diagnostic.message});
+    const bool number = diagnostic.id.starts_with("doubtful");
+    const bool start = diagnostic.id == "unstable-start" || diagnostic.id == "dead-point";
+    if (!number && !start) continue;
+    verdict.add({.id = number ? "doubtful-input" : "unstable-start",
+                 .level = Trust::doubtful,
+                 .message = diagnostic.message});
   }
 }
 

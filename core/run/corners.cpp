@@ -36,7 +36,9 @@ Corners::Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt)
       v_before_(run.e_accepted->v.size()),
       driven_change_(run.e_accepted->driven_a.size()),
       impulses_(at(run.system.layout().all_rows())) {
-  if (run.adaptive) inputs_.emplace(run.system, shortest_change(run.settings), run.allowed);
+  if (!run.adaptive) return;
+  inputs_.emplace(run.system, shortest_change(run.settings), run.allowed);
+  too_short_ = inputs_->look_closer(shortest_part * (run.settings.end - run.settings.start));
 }
 
 void Corners::save(ArchiveWriter& archive) const {
@@ -223,9 +225,8 @@ bool Corners::note_jumps(double kink) {
   return any;
 }
 
-// Of runs in steps of one size: inputs that do more inside a step than it can see.
 void Corners::format_unresolved() {
-  if (run_.adaptive) return;
+  if (run_.adaptive) return format_too_short();
   const double step = std::min(run_.settings.step, run_.settings.interval);
   for (const InputActivity::Unresolved& input :
        InputActivity(run_.system, run_.settings.interval, 0.0).unresolved_by(step)) {
@@ -252,6 +253,27 @@ void Corners::format_unresolved() {
          .element = element,
          .value = apart,
          .limit = step});
+  }
+}
+
+// With error control nothing is gone over but what lasts less than the times of the run are looked at.
+void Corners::format_too_short() {
+  const double least = shortest_part * (run_.settings.end - run_.settings.start);
+  for (const InputActivity::Unresolved& input : too_short_) {
+    const std::string element = fmt::format("{} '{}'", input.section, *input.name);
+    const double lasts = input.to - input.from;
+    const std::string what = fmt::format("changes at t = {:.9g} s for some {:.2g} s, less than a millionth of the run",
+                                         input.from + 0.5 * lasts, lasts);
+    run_.warnings.push_back(
+        fmt::format("{}: it {}, which steps may go over; write it with smooth(), min(), max() or a table, at whose "
+                    "corners steps end, or end the run earlier",
+                    element, what));
+    run_.outcome.doubts.push_back({.id = "unresolved-input",
+                                   .level = Trust::doubtful,
+                                   .message = fmt::format("{} {}, which steps may go over", element, what),
+                                   .element = element,
+                                   .value = lasts,
+                                   .limit = least});
   }
 }
 

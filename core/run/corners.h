@@ -44,7 +44,7 @@ class Corners {
   bool note_jumps(double kink);
   void book_jump(double kink);
 
-  /// Once the run is over: jumps of speeds; inputs that do more inside a step of fixed size than it can see.
+  /// Once the run is over: jumps of speeds; inputs that do more inside a step than it can see.
   void format_jumps();
   void format_unresolved();
 
@@ -52,6 +52,7 @@ class Corners {
   void restore(ArchiveReader& archive);
 
  private:
+  void format_too_short();
   bool loads_jump(double corner);
   void note_driven(const Evaluation& e);
   int row_that_jumps() const;
@@ -60,8 +61,9 @@ class Corners {
   RunContext& run_;
   RunFailure& failure_;
   StepAttempt& attempt_;
-  std::optional<InputActivity> inputs_;          // with error control, unless a test blinds it
-  CornerKind corner_kind_ = CornerKind::smooth;  // of the corner at which the step being accepted ends
+  std::optional<InputActivity> inputs_;               // with error control, unless a test blinds it
+  std::vector<InputActivity::Unresolved> too_short_;  // changes that it does not see
+  CornerKind corner_kind_ = CornerKind::smooth;       // of the corner at which the step being accepted ends
   struct SpeedJump {
     int count = 0;
     double time = 0.0, from = 0.0, to = 0.0;  ///< of the first

@@ -12,15 +12,14 @@
 namespace freeplay {
 namespace {
 
-constexpr double samples_per_change = 3.0;  // in the duration of the shortest change
-constexpr double fewest_samples = 8.0;      // in a step, besides its ends, its middle and its quarters
-constexpr double part_of_form = 0.25;       // as long as a step may be where such a motion has one form for a while
-constexpr double little = 0.01;             // of what positions may err by in a step
-constexpr double slow = 2.0;                // rate times step that every integrator sees
-constexpr double slow_load = 0.5;           // of a short load
-constexpr double slow_bend = 0.4;           // of a motion whose powers are integrated and whose forces have their peaks
-constexpr double coarsest = 0.5;            // of the shortest change: no step up to there goes over one
-constexpr double finest = 1.0 / 32.0;       // of it: where a change begins it is taken in parts as small as that
+constexpr double fewest_samples = 8.0;  // in a step, besides its ends, its middle and its quarters
+constexpr double part_of_form = 0.25;   // as long as a step may be where such a motion has one form for a while
+constexpr double little = 0.01;         // of what positions may err by in a step
+constexpr double slow = 2.0;            // rate times step that every integrator sees
+constexpr double slow_load = 0.5;       // of a short load
+constexpr double slow_bend = 0.4;       // of a motion whose powers are integrated and whose forces have their peaks
+constexpr double coarsest = 0.5;        // of the shortest change: no step up to there goes over one
+constexpr double finest = 1.0 / 32.0;   // of it: where a change begins it is taken in parts as small as that
 constexpr double hidden_after = 64.0, hidden_before = 8.0;
 constexpr int seen_degree = 4;                           // of polynomials that integrators take as they are
 constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
@@ -34,9 +33,9 @@ struct EvenInstants {
   double time, by;
   double operator()() { return std::exchange(time, time + by); }
 };
-auto even(double shortest) {
-  return [shortest](double t, double dt) {
-    const double by = dt / std::max(fewest_samples, std::ceil(samples_per_change * dt / shortest));
+auto even(double apart) {
+  return [apart](double t, double dt) {
+    const double by = dt / std::max(fewest_samples, std::ceil(dt / apart));
     return EvenInstants{t + 0.5 * by, by};
   };
 }
@@ -130,7 +129,8 @@ int InputActivity::bends(int driver) const {
 void InputActivity::add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp,
                         Unit unit, int bends) {
   if (!expression.depends_on_time()) return;
-  formulas_.push_back({section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, bends});
+  formulas_.push_back(
+      {section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, shortest_, bends});
 }
 
 // In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for the run, or
@@ -302,10 +302,11 @@ double InputActivity::hidden_error(double t, double dt) const {
   return times;
 }
 
-// A step from t of the length dt had to be shortened: the change is in it.
+// A step from t of the length dt had to be shortened: the change is in it. It is none the slower where error control
+// alone follows it once steps are short, and what comes once mostly comes again.
 template <class Input>
 void InputActivity::note_change(Input& input, double t, double dt, CornerKind sharp) const {
-  if (dt <= quick(sharp)) input.quick_until = std::max(input.quick_until, t + dt);
+  if (dt <= quick(sharp)) input.quick_until = std::max(input.quick_until, t + quick(sharp));
 }
 
 // A motion is looked at for its acceleration as well where no integrator sees that.
@@ -321,12 +322,13 @@ double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
     if (length < unbounded && std::isfinite(rate)) dt = std::min(dt, slow_load / rate);
   }
   if (rate * dt <= slow) return dt;
-  if (dt <= (formula.bends > 0 ? finest * shortest_ : unwatched(shortest_, formula.most))) return dt;
-  const double wanted = std::min(dt, formula.most), least = finest * shortest_;
-  const double length = resolution_.resolved(t, wanted, least, formula.bends > 0 ? unbounded : 0.0,
-                                             signals(formula.bends), look_at(*formula.expression, formula.bends),
-                                             even(shortest_), light(formula.unit, formula.bends));
-  if (length < wanted) note_change(formula, t, wanted, formula.sharp);
+  if (dt <= (formula.bends > 0 ? finest * formula.shortest : unwatched(formula.shortest, formula.most))) return dt;
+  const double wanted = std::min(dt, formula.most), least = finest * formula.shortest;
+  const double length =
+      resolution_.resolved(t, wanted, least, formula.bends > 0 ? unbounded : 0.0, signals(formula.bends),
+                           look_at(*formula.expression, formula.bends), even(formula.shortest / samples_per_change),
+                           light(formula.unit, formula.bends));
+  if (length < wanted || resolution_.saw_bend()) note_change(formula, t, wanted, formula.sharp);
   formula.most = length < dt ? longer * length : unbounded;
   return length;
 }
@@ -357,7 +359,7 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
     };
     const double wanted = std::min(dt, timed.most), least = finest * timed.shortest;
     const double length = resolution_.resolved(t, wanted, least, coarsest * timed.shortest, timed.signals, look,
-                                               even(timed.shortest), light);
+                                               even(timed.shortest / samples_per_change), light);
     if (!good) return false;
     if (length < wanted) note_change(timed, t, wanted, CornerKind::load);
     timed.varies = timed.varies || length < wanted || resolution_.saw_change();

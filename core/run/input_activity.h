@@ -24,6 +24,11 @@ class InputActivity {
   /// positions may err in a step [m]; what moves them by much less does not matter.
   InputActivity(const System& system, double shortest, double allowed);
 
+  /// Where formulas have changes that last less, and no rule says how fast they may change, they are looked at as
+  /// closely as these need, down to a duration of `least` [s]. Returns what even that does not show.
+  struct Unresolved;
+  std::vector<Unresolved> look_closer(double least);
+
   /// The first corner after t, if it is `until` or earlier; else a later time, or infinity. False, with `fault`, when a
   /// joint fails. Times grow from step to step.
   bool next_corner(double t, double until, double& corner, Fault& fault);
@@ -31,7 +36,7 @@ class InputActivity {
   CornerKind kind_of(double corner, double margin) const;
 
   /// The length, dt or less, of a step from t that no corner lies in and that resolves all formulas and tables: their
-  /// values at the samples are, to a tenth of their range, what a polynomial through five of them makes of them.
+  /// values at the samples are, to a hundredth of their range, what a polynomial through five of them makes of them.
   double resolved(double t, double dt);
   /// The same for joints that may depend on time, as `here` has their markers, internal variables and history: the
   /// start of the step, or its end once it is made.
@@ -82,6 +87,7 @@ class InputActivity {
     FormulaCourse course;
     CornerKind sharp;  ///< kind of its kinks
     Unit unit;
+    double shortest;          ///< duration of its changes that no step may go over [s]
     int bends = 0;            ///< the derivative that moves bodies whose motion is known: no error of a step shows it
     double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
     double quick_until = -unbounded;  ///< there the change lies that had it shortened
@@ -124,6 +130,8 @@ class InputActivity {
       archive(self.most, self.quick_until, self.varies);
     }
   };
+
+  static constexpr double samples_per_change = 3.0;  ///< in the duration of the shortest change
 
   void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit,
            int bends = 0);

@@ -14,7 +14,7 @@ namespace freeplay {
 /// stepped over. Allocates only when it is made.
 class StepResolution {
  public:
-  static constexpr double tolerance = 0.1;   ///< of a signal's range in the step
+  static constexpr double tolerance = 0.01;  ///< of a signal's range in the step
   static constexpr double strict = 1e-3;     ///< the same, where no more than a corner can be inside
   static constexpr double rounding = 1e-12;  ///< of the largest signal: no change
 
@@ -41,6 +41,8 @@ class StepResolution {
 
   /// Whether a signal changed by more than is negligible in the last look.
   bool saw_change() const { return saw_change_; }
+  /// Whether one is no polynomial of degree 4 there, to the strict part.
+  bool saw_bend() const { return saw_bend_; }
 
  private:
   /// If the step is too long, the part of it before a signal changes; else -1.
@@ -73,15 +75,17 @@ class StepResolution {
         worst_[c] = std::max(worst_[c], std::abs(value - expected));
       }
     }
-    const auto coarse = [&](std::size_t c) {
-      const double range = high_[c] - low_[c];
-      return worst_[c] > part * range && range > std::max(rounding * size, negligible(c, dt));
+    const auto changes = [&](std::size_t c) {
+      return high_[c] - low_[c] > std::max(rounding * size, negligible(c, dt));
     };
+    const auto differs = [&](std::size_t c, double by) { return changes(c) && worst_[c] > by * (high_[c] - low_[c]); };
+    const auto coarse = [&](std::size_t c) { return differs(c, part); };
     bool any = false;
-    saw_change_ = false;
+    saw_change_ = saw_bend_ = false;
     for (std::size_t c = 0; c < count; ++c) {
       any = any || coarse(c);
-      saw_change_ = saw_change_ || high_[c] - low_[c] > std::max(rounding * size, negligible(c, dt));
+      saw_change_ = saw_change_ || changes(c);
+      saw_bend_ = saw_bend_ || differs(c, strict);
     }
     if (!any) return -1.0;
     double quiet = 0.0;
@@ -103,7 +107,7 @@ class StepResolution {
             a * b * c * d / 24.0};
   }
 
-  bool saw_change_ = false;
+  bool saw_change_ = false, saw_bend_ = false;
   std::vector<double> nodes_, now_, low_, high_, worst_;
 };
 

@@ -7,6 +7,8 @@
 
 namespace freeplay {
 namespace {
+constexpr double beside = 8.0;               // steps before a change
+constexpr double closer = 0.5;               // a formula is looked at again in changes of at most this part
 constexpr long enough_corners = 20'000'000;  // instructions to find them
 constexpr std::size_t most_corners = 100'000;
 constexpr double one_time = 1e-12;  // of a time: corners that are closer are one
@@ -22,7 +24,37 @@ std::pair<double, double> closest_of(const std::vector<double>& times) {
   }
   return closest;
 }
+
+/// The derivative that acts.
+int derivative(bool load, bool is_speed) { return load ? 0 : is_speed ? 1 : 2; }
+
+/// Whether how fast a formula may change around t is not known.
+bool has_no_rate(const Expression& expression, double from, double to, double t, double by) {
+  FormulaCourse course(expression, from, to);
+  course.next_corner(std::max(from, t - by), t + by);
+  return !std::isfinite(course.rate_within(std::max(from, t - by), t + by));
+}
 }  // namespace
+
+std::vector<InputActivity::Unresolved> InputActivity::look_closer(double least) {
+  std::vector<Unresolved> left;
+  for (Formula& formula : formulas_) {
+    const int order = derivative(formula.sharp == CornerKind::load, formula.unit == Unit::other);
+    for (double from = start_;;) {
+      const double apart = formula.shortest / samples_per_change;
+      const auto change = UnseenChange::of(*formula.expression, from, end_, apart, order);
+      if (!change || !has_no_rate(*formula.expression, start_, end_, change->time, apart)) break;
+      if (formula.shortest <= least) {
+        left.push_back(
+            {formula.section, formula.name, change->time - change->length, change->time + change->length, false});
+        break;
+      }
+      formula.shortest = std::clamp(change->length, least, closer * formula.shortest);
+      from = std::max(start_, change->time - beside * apart);  // what is before it is shown by shorter steps, too
+    }
+  }
+  return left;
+}
 
 std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step) {
   std::vector<Unresolved> found;
@@ -39,9 +71,8 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step)
     if (!change) return;
     found.push_back({section, name, change->time - change->length, change->time + change->length, false});
   };
-  const auto derivative = [](CornerKind sharp, Unit unit) {
-    if (sharp == CornerKind::load) return 0;
-    return unit == Unit::other ? 1 : 2;
+  const auto acting = [](const auto& input) {
+    return derivative(input.sharp == CornerKind::load, input.unit == Unit::other);
   };
   for (Formula& formula : formulas_) {
     std::vector<double> times;
@@ -51,10 +82,9 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step)
       corner = formula.course.next_corner(corner, end_);
     }
     add_corners(formula.section, formula.name, times);
-    add_change(formula.section, formula.name, *formula.expression, derivative(formula.sharp, formula.unit));
+    add_change(formula.section, formula.name, *formula.expression, acting(formula));
   }
-  for (const Table& table : tables_)
-    add_change("driver", table.name, *table.table, derivative(table.sharp, table.unit));
+  for (const Table& table : tables_) add_change("driver", table.name, *table.table, acting(table));
   for (const TellingJoint& telling : telling_) {
     std::vector<double> times;
     Fault fault;

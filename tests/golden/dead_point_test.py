@@ -57,6 +57,40 @@ initial: {joints: {A: 0}}
 simulation: {end: 2 s, step: 1 ms}
 """
 
+# At rest with crank and coupler in line.
+CRANK = """freeplay: 1
+bodies:
+  crank: {mass: 0.3 kg, inertia: 1e-4, frames: {tip: [50 mm, 0]}}
+  coupler: {mass: 0.2 kg, inertia: 2.5e-4, frames: {tip: [120 mm, 0]}}
+  slider: {mass: 0.1 kg, inertia: 1e-4}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  guide: {type: prismatic, between: [ground, slider]}
+  wrist: {type: revolute, between: [coupler/tip, slider]}
+forces: {p: {type: force, at: slider, value: FORCE}}
+initial: {joints: {main: 0}}
+simulation: {end: 0.5 s, STEPS}
+"""
+ROD = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1, inertia: 0.01, com: [0.2, 0], frames: {tip: [0.4, 0]}}}
+joints: {a: {type: revolute, between: [ground, rod]}}
+LOAD
+initial: {joints: {a: 90 deg}}
+simulation: {end: 2 s, output: {frames: [rod/tip]}, STEPS}
+"""
+PUSH_ON_ROD = "forces: {p: {type: force, at: rod/tip, value: [0, -10]}}"
+STACK = ROD.replace("bodies: {", "bodies: {upper: {mass: 1, inertia: 0.01, com: [0.2, 0]}, ").replace(
+    "{a: {type", "{b: {type: revolute, between: [rod/tip, upper]}, a: {type").replace("{a: 90 deg}", "{a: 90 deg, b: 0}")
+BALL = """freeplay: 1
+space: spatial
+gravity: [0, 0, -9.81]
+bodies: {rod: {mass: 1, inertia: [0.01, 0.01, 0.001], com: [0, 0, 0.2]}}
+joints: {a: {type: spherical, between: [ground, rod]}}
+simulation: {end: 2 s, STEPS}
+"""
+
 # A slider-crank whose links lie in line with what pushes its slider.
 IN_LINE = """freeplay: 1
 bodies:
@@ -158,6 +192,30 @@ class DeadPoint(ProgramTest):
                     with open(self.path("r", "results.csv"), encoding="utf-8") as file:
                         last = list(csv.DictReader(file))[-1]
                     self.assertAlmostEqual(0.17, float(last["body.slider.x"]), delta=1e-9)
+
+    def test_a_start_in_an_unstable_equilibrium_is_named(self):
+        push = CRANK.replace("FORCE", "[-100, 0]")
+        for text, body in ((push, "coupler"), (ROD, "rod"), (ROD.replace("LOAD", PUSH_ON_ROD).replace("-9.81", "0"), "rod"), (STACK, "upper"), (BALL, "rod")):
+            for steps in ("step: 100 us", "accuracy: 1 um"):
+                with self.subTest(body + steps):
+                    file = self.write("m.yaml", text.replace("LOAD", "").replace("STEPS", steps))
+                    _, err = self.freeplay("validate", file)
+                    self.assertRegex(err, fr"warning: '{body}' starts at rest in an unstable equilibrium: .*\[unstable-start\]")
+                    out, _ = self.freeplay("run", file, "--out", "r", "--force")
+                    self.assertIn(f"trust: doubtful ('{body}' starts at rest", out)
+
+    def test_other_starts_at_rest_are_no_unstable_equilibrium(self):
+        for text in (CRANK.replace("FORCE", "[100, 0]"),                      # the links are pulled
+                     CRANK.replace("FORCE", "[0, 0]"),
+                     CRANK.replace("FORCE", "[-100, 0]").replace("main: 0", "main: 1 deg"),
+                     CRANK.replace("FORCE", "[-100, 0]").replace("main: 0}", "main: 0}, speeds: {main: 1}"),
+                     CRANK.replace("FORCE", "[-100, '10*smooth(t, 0.1, 0.2)']").replace("at: slider", "at: crank/tip"),
+                     ROD.replace("90 deg", "-90 deg"), ROD.replace("90 deg", "0 deg"),
+                     ROD.replace("LOAD", "frames: {ground/up: [0, 1]}\nforces: {s: {type: spring-damper, between: [ground/up, rod/tip], stiffness: 500, free_length: 0.1}}"),
+                     ROD.replace("LOAD", "drivers: {m: {joint: a, kind: angle, value: 90 deg}}").replace("initial: {joints: {a: 90 deg}}", "")):
+            with self.subTest(text):
+                _, err = self.freeplay("validate", self.write("m.yaml", text.replace("LOAD", "").replace("STEPS", "step: 1 ms")))
+                self.assertNotIn("unstable", err)
 
     def test_what_holds_a_driven_joint_is_named(self):
         text = FOUR_BAR % (0.1, "", SPEED, "A: 60 deg", "step: 1 ms")

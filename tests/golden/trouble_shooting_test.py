@@ -155,6 +155,7 @@ CASES = {
         (0, driven("drivers:", "  held: {type: fixed, between: [ground, rod]}\ndrivers:").replace("kind: angle, value: t", "kind: torque, value: 1"), ["validate", "model.yaml"]),
     "driver '...' starts joint '...' at a dead point...: ... [dead-point]":
         (0, SHORT_ROD.replace("value: 10*t", "value: 0").replace("joint: pivot, kind: angle, value: 0", "joint: guide, kind: position, value: 1.5 m"), ["validate", "model.yaml"]),
+    "'...' starts at rest in an unstable equilibrium: ... [unstable-start]": (0, pendulum("0 deg", "-90 deg").replace("-9.81", "9.81").replace("0.1 s", "2 s"), RUN),
     "a step may err by ... m, but positions of a model of ... m are rounded to ... m [out-of-range]":
         (3, PENDULUM, RUN + ["--accuracy", "1e-17 m"]),
     "integrator '...' gives no error estimate: it takes fixed steps only":

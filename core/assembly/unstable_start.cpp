@@ -1,0 +1,144 @@
+#include "assembly/unstable_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "assembly/continuation.h"
+#include "assembly/row_space.h"
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double in_balance = 1e-10;                             // force along motions, of all that acts
+constexpr double at_rest = 1e-9;                                 // speed, of the model's size in a run
+constexpr double deviation = 1e-5;                               // rad, or of the size of the model
+constexpr double least_growth = 3.0;                             // powers of e in the run
+constexpr double looked_at[] = {0.0, 0.03, 0.1, 0.3, 0.7, 1.0};  // of the run
+
+class Balance {
+ public:
+  Balance(const System& system, const State& start) : mechanism_(system), model_(mechanism_.model()) {
+    mechanism_.stand_at(system, start);
+    evaluate();
+    q_.assign(mechanism_.state.q().begin(), mechanism_.state.q().end());
+    root_mass_ = VectorXd::Map(mechanism_.system.inertia().mass().data(),
+                               static_cast<Eigen::Index>(mechanism_.system.inertia().mass().size()))
+                     .cwiseSqrt();
+  }
+
+  std::optional<UnstableStart> unstable() {
+    if (root_mass_.size() == 0 || !(root_mass_.minCoeff() > 0.0)) return std::nullopt;
+    const MatrixXd free = motions();
+    if (free.cols() == 0 || !balanced(free)) return std::nullopt;
+    MatrixXd stiffness(free.cols(), free.cols());
+    for (Eigen::Index i = 0; i < free.cols(); ++i) {
+      VectorXd ahead, back;
+      const double by = deviation * unit(free.col(i));
+      if (!forces_at(by * free.col(i), ahead) || !forces_at(-by * free.col(i), back)) return std::nullopt;
+      stiffness.col(i) = free.transpose() * (ahead - back) / (2.0 * by);
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(0.5 * (stiffness + stiffness.transpose()));
+    const Eigen::Index last = free.cols() - 1;
+    const double growth = std::sqrt(std::max(0.0, modes.eigenvalues()[last]));
+    if (!(growth * (model_.settings.end - model_.settings.start) > least_growth)) return std::nullopt;
+    return UnstableStart{most_moved(free * modes.eigenvectors().col(last)), growth};
+  }
+
+ private:
+  void evaluate() { mechanism_.evaluate(term_position | term_velocity | term_force); }
+
+  /// With unit kinetic energy each: columns are orthonormal in velocities times the roots of masses.
+  MatrixXd motions() {
+    MatrixXd rows = constraint_matrix(mechanism_.system.jacobian(), mechanism_.e);
+    rows.array().rowwise() /= root_mass_.transpose().array();
+    return kernel(rows);
+  }
+  /// What acts, by the roots of masses.
+  VectorXd loads() const {
+    return VectorXd::Map(mechanism_.e.force.data(), root_mass_.size()).cwiseQuotient(root_mass_);
+  }
+
+  /// Whether nothing that acts moves it, at any time that is looked at, though something acts.
+  bool balanced(const MatrixXd& free) {
+    bool loaded = false;
+    const double start = model_.settings.start, length = model_.settings.end - start;
+    for (const double part : looked_at) {
+      mechanism_.state.t() = start + part * length;
+      evaluate();
+      const VectorXd acting = loads();
+      if ((free.transpose() * acting).norm() > in_balance * acting.norm()) return false;
+      loaded = loaded || acting.norm() > 0.0;
+    }
+    mechanism_.state.t() = start;
+    evaluate();
+    return loaded;
+  }
+
+  /// A deviation of so much along a motion is one of 1 rad or of the size of the model.
+  double unit(const VectorXd& motion) const {
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < motion.size(); ++i) {
+      const bool turn = mechanism_.system.coordinates().is_turn(static_cast<int>(i));
+      largest = std::max(largest, std::abs(motion[i]) / root_mass_[i] / (turn ? 1.0 : mechanism_.system.size()));
+    }
+    return 1.0 / largest;
+  }
+
+  /// What acts along the motions of a position beside the start. False where it cannot be taken.
+  bool forces_at(const VectorXd& by, VectorXd& acting) {
+    const VectorXd change = by.cwiseQuotient(root_mass_);
+    mechanism_.system.coordinates().retract(q_, {change.data(), static_cast<std::size_t>(change.size())},
+                                            mechanism_.state.q());
+    const bool good = mechanism_.holds(mechanism_.converge());
+    if (good) {
+      evaluate();
+      const MatrixXd free = motions();
+      acting = free * (free.transpose() * loads());
+    }
+    std::ranges::copy(q_, mechanism_.state.q().begin());
+    return good;
+  }
+
+  BodyId most_moved(const VectorXd& motion) const {
+    const int width = mechanism_.system.layout().body_velocities();
+    Eigen::Index most = 0;
+    motion.cwiseAbs().maxCoeff(&most);
+    return mechanism_.system.layout().body_at(static_cast<int>(most) / width);
+  }
+
+  ClosedMechanism mechanism_;
+  const Model& model_;
+  std::vector<double> q_;
+  VectorXd root_mass_;
+};
+
+bool moves(const System& system, const State& start) {
+  const double length = system.model().settings.end - system.model().settings.start;
+  return std::ranges::any_of(start.v(), [&](double v) { return std::abs(v) * length > at_rest * system.size(); });
+}
+
+bool moves_by_itself(const Driver& driver) {
+  return prescribes(driver.kind) && (driver.table || driver.kinematics >= 0 || driver.value.depends_on_time() ||
+                                     driver.kind == DriverKind::velocity);
+}
+
+}  // namespace
+
+std::optional<UnstableStart> unstable_start(const System& system, const State& start) {
+  if (system.layout().nv() > most_followed_velocities || moves(system, start)) return std::nullopt;
+  if (std::ranges::any_of(system.model().drivers, moves_by_itself)) return std::nullopt;
+  try {
+    return Balance(system, start).unstable();
+  } catch (const Error&) {
+    return std::nullopt;  // what has no value at some time is reported when a run meets it
+  }
+}
+
+}  // namespace freeplay
