@@ -153,7 +153,7 @@ class StudyOfTheCrank(ProgramTest):
 
     def test_shipped_studies_plan_without_a_message(self):
         for name, points in (("clearance-bifurcation", 800), ("speed-bifurcation", 800), ("tolerance-bound", 120000),
-                             ("tolerance-motion", 2000)):
+                             ("tolerance-motion", 2000), ("3-rrr-vs-4-rrr/series", 22), ("3-rrr-vs-4-rrr/ideal", 8)):
             with self.subTest(study=name):
                 out, err = self.study("plan", mechanism(os.path.join("studies", name)), "--probe", "0", "--json")
                 self.assertEqual("", err)
