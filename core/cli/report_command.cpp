@@ -11,7 +11,7 @@
 #include "cli/study_options.h"
 #include "cli/terminal.h"
 #include "report/report.h"
-#include "study/study_page.h"
+#include "study/page.h"
 
 namespace freeplay {
 namespace {

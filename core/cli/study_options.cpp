@@ -103,11 +103,9 @@ Shard shard_of(const std::string& text) {
   const auto part = std::from_chars(text.data(), end, shard.part);
   const bool divided = part.ec == std::errc() && part.ptr != end && *part.ptr == '/';
   const auto parts = divided ? std::from_chars(part.ptr + 1, end, shard.parts) : part;
-  if (!divided || parts.ec != std::errc() || parts.ptr != end || shard.parts == 0) {
-    bad_value("--shard", text, "it must be I/N, such as 2/8");
-  }
-  if (shard.part < 1 || shard.part > shard.parts) {
-    bad_value("--shard", text, fmt::format("I must be from 1 to {}", shard.parts));
+  const bool read = divided && parts.ec == std::errc() && parts.ptr == end;
+  if (!read || shard.part < 1 || shard.part > shard.parts) {
+    bad_value("--shard", text, "it must be I/N with I from 1 to N, such as 2/8");
   }
   return shard;
 }

@@ -1,4 +1,4 @@
-#include "study/study_page.h"
+#include "study/page.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,0 +1,147 @@
+"""freeplay study: the same bytes however its points are computed, and what is said of a study that has changed."""
+import csv
+import glob
+import json
+import os
+import signal
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree as xml
+
+from program import PROGRAM, ProgramTest
+
+BALL = """freeplay: 1
+name: ball
+parameters: {g: 9.81 m/s^2, v: 0 m/s}
+gravity: [0, -$g]
+bodies:
+  ball: {mass: "$v*(1 kg)/(1 m/s) + 1 kg", inertia: 0.1, velocity: {linear: [$v, 0]}}
+simulation: {end: 0.1 s, step: 10 ms, output: {interval: 10 ms}}
+"""
+# A ball of -1 kg fails.
+GRID = """study:
+  axes: {g: {linspace: [1, 2, 40]}, v: [-2 m/s, 1 m/s]}
+  reducers:
+    y: {channel: body.ball.y, reduce: final}
+    section: {channel: body.ball.y, reduce: poincare, every: 20 ms}
+  plots: {lines: {kind: line, x: g, y: y, by: v}, spread: {kind: histogram, value: y}}
+"""
+SLOW = """study:
+  axes: {g: {linspace: [1, 2, 60]}}
+  set: {simulation.end: 1 s, simulation.step: 10 us}
+  reducers: {y: {channel: body.ball.y, reduce: final}}
+"""
+
+
+class StudyCommand(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("ball.yaml", BALL + GRID)
+
+    def study(self, *words, code=0):
+        return self.freeplay("study", *words, code=code)
+
+    def run_json(self, *words, code=4):
+        return json.loads(self.study("run", *words, "--json", code=code)[0])
+
+    def files(self, folder):
+        found = {}
+        for name in ("study.csv", "samples.csv", "study.h5", "failures.jsonl"):
+            with open(self.path(folder, name), "rb") as file:
+                found[name] = file.read()
+        return found
+
+    def rows(self, folder):
+        with open(self.path(folder, "study.csv"), encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_any_number_of_workers_and_shards_gives_the_same_bytes(self):
+        told = self.run_json("ball.yaml", "--out", "one", "--jobs", "1")
+        self.assertEqual((80, 80, 40, 80), tuple(told[key] for key in ("points", "done", "failed", "ran")))
+        wanted = self.files("one")
+        for words in (("--jobs", "3"), ("--isolate",)):
+            self.run_json("ball.yaml", "--out", words[0][2:], *words)
+            self.assertEqual(wanted, self.files(words[0][2:]))
+        for shard in ("3/3", "1/3", "2/3"):
+            self.run_json("ball.yaml", "--out", "shards", "--shard", shard)
+        self.assertFalse(os.path.exists(self.path("shards", "study.csv")))
+        self.study("merge", "shards")
+        self.assertEqual(wanted, self.files("shards"))
+
+    def test_failed_points_have_their_reason_and_run_again_on_demand(self):
+        self.run_json("ball.yaml", "--out", "r")
+        failed = [row for row in self.rows("r") if row["exit_code"] != "0"]
+        self.assertEqual(40, len(failed))
+        self.assertEqual({("3", "out-of-range", "")}, {(row["exit_code"], row["error"], row["y"]) for row in failed})
+        self.assertEqual(0, self.run_json("ball.yaml", "--out", "r")["ran"])
+        self.assertEqual(40, self.run_json("ball.yaml", "--out", "r", "--retry-failed")["ran"])
+        self.assertEqual(40, self.run_json("ball.yaml", "--out", "r", "--allow-failed", code=0)["failed"])
+
+    def test_a_killed_study_goes_on_to_the_same_bytes(self):
+        self.write("slow.yaml", BALL + SLOW)
+        self.run_json("slow.yaml", "--out", "calm", code=0)
+        with subprocess.Popen([PROGRAM, "study", "run", "slow.yaml", "--out", "killed", "--quiet"], cwd=self.folder) as process:
+            until = time.monotonic() + 60
+            while not any(os.path.getsize(path) > 800 for path in glob.glob(self.path("killed", "rows", "*"))):
+                self.assertLess(time.monotonic(), until)
+                time.sleep(0.01)
+            process.send_signal(signal.SIGKILL)
+        told = self.run_json("slow.yaml", "--out", "killed", code=0)
+        self.assertTrue(0 < told["ran"] < 60, told)
+        for name in ("study.csv", "study.h5"):
+            with open(self.path("calm", name), "rb") as calm, open(self.path("killed", name), "rb") as killed:
+                self.assertEqual(calm.read(), killed.read(), name)
+
+    def test_a_damaged_row_runs_again(self):
+        self.run_json("ball.yaml", "--out", "r")
+        wanted, segment = self.files("r"), glob.glob(self.path("r", "rows", "*"))[0]
+        with open(segment, "r+b") as file:
+            text = bytearray(file.read())
+            text[len(text) // 2] ^= 1
+            file.seek(0)
+            file.write(text)
+        out, err = self.study("run", "ball.yaml", "--out", "r", "--json", code=4)
+        self.assertEqual(1, json.loads(out)["ran"])
+        self.assertIn("[rows-damaged]", err)
+        self.assertEqual(wanted, self.files("r"))
+
+    def test_a_changed_study_is_refused_extended_or_begun_anew(self):
+        self.run_json("ball.yaml", "--out", "r")
+        self.write("ball.yaml", BALL + GRID.replace("[-2 m/s, 1 m/s]", "[1 m/s, 2 m/s]"))
+        _, err = self.study("run", "ball.yaml", "--out", "r", code=3)
+        self.assertIn("[study-changed]", err)
+        self.assertIn("--extend keeps 40 of 80 points", err)
+        self.assertEqual(40, self.run_json("ball.yaml", "--out", "r", "--extend", code=0)["ran"])
+        self.assertEqual(80, self.run_json("ball.yaml", "--out", "r", "--restart", code=0)["ran"])
+        self.assertEqual(["0001", "0002"], sorted(os.listdir(self.path("r", "old"))))
+
+    def test_gaps_and_other_studies_are_not_merged(self):
+        self.run_json("ball.yaml", "--out", "half", "--shard", "1/2", "--allow-failed", code=0)
+        _, err = self.study("merge", "half", code=3)
+        self.assertIn("40 of 80 points are missing (first 1, 3, 5)", err)
+        self.study("merge", "half", "--partial")
+        self.assertEqual(40, len(self.rows("half")))
+        self.write("other.yaml", BALL + SLOW)
+        self.study("run", "other.yaml", "--out", "other", "--only", "0")
+        self.assertIn("[study-mixed]", self.study("merge", "half", "other", code=3)[1])
+
+    def test_a_point_is_a_command_and_is_verified(self):
+        self.run_json("ball.yaml", "--out", "r")
+        told = json.loads(self.study("point", "r", "3", "--json")[0])
+        self.assertEqual({"g", "v"}, set(told["set"]))
+        self.study("point", "r", "3", "--run", "--out", "again")
+        self.assertTrue(os.path.exists(self.path("again", "results.csv")))
+        self.assertEqual("20 points: same\n", self.study("verify", "r")[0])
+
+    def test_pictures_and_page(self):
+        self.run_json("ball.yaml", "--out", "r")
+        self.study("plot", "r")
+        marks = [element for element in xml.parse(self.path("r", "plots", "lines.svg")).iter() if element.get("data-point")]
+        self.assertEqual(40, len(marks))
+        self.freeplay("report", "r")
+        self.assertIn("freeplay run", self.read("r", "report.html"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,197 @@
+"""freeplay study of the slider-crank: what is cut short goes on, rows are those of plain runs, and mistakes are refused."""
+import csv
+import glob
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+import zlib
+
+from program import PROGRAM, ProgramTest, mechanism
+
+STUDY = """study:
+  axes:
+    c: [0.1 mm, 0.2 mm, -1 mm, 0.4 mm]
+    joints.wrist.clearance.contact.restitution: {linspace: [0.6, 0.9, 3]}
+  reducers:
+    force: {channel: joint.wrist.fn, reduce: max}
+    mean: {channel: joint.wrist.delta, reduce: mean}
+    section: {channel: joint.wrist.ex, reduce: poincare, every: 1 ms}
+"""
+TABLES = ("study.csv", "samples.csv", "failures.jsonl", "study.h5")
+
+
+def sealed(fields):
+    """A line of a segment with its checksum."""
+    text = b"\t".join(fields) + b"\t"
+    return text + b"%08x\n" % zlib.crc32(text)
+
+
+class StudyOfTheCrank(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.crank("crank.yaml", STUDY)
+
+    def crank(self, name, study, end="4 ms"):
+        """The shipped slider-crank, short, with a section `study`."""
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            text, found = re.subn(r"(?m)^simulation:.*$", "simulation: {end: %s, accuracy: 1 um}" % end, file.read())
+        self.assertEqual(1, found)
+        return self.write(name, text + study)
+
+    def study(self, *words, **options):
+        return self.freeplay("study", *words, **options)
+
+    def run_study(self, out, *words, code=4, file="crank.yaml"):
+        """The object of `run --json`; three points of the study above fail, which is exit code 4."""
+        return json.loads(self.study("run", file, "--out", out, "--json", *words, code=code)[0])
+
+    def tables(self, out):
+        found = {}
+        for name in TABLES:
+            with open(self.path(out, name), "rb") as file:
+                found[name] = file.read()
+        return found
+
+    def assert_same_tables(self, one, other):
+        ours, theirs = self.tables(one), self.tables(other)
+        for name in TABLES:
+            self.assertTrue(ours[name] == theirs[name], "%s of %s and %s differ" % (name, one, other))
+
+    def segment(self, out):
+        (path,) = glob.glob(self.path(out, "rows", "*.rows"))
+        return path
+
+    def rows(self, out):
+        """Numbers of the points whose rows are in the segments."""
+        found = set()
+        for path in glob.glob(self.path(out, "rows", "*.rows")):
+            with open(path, "rb") as file:
+                for line in file.read().splitlines(keepends=True):
+                    if line[:1].isdigit() and sealed(line.split(b"\t")[:-1]) == line:
+                        found.add(int(line.split(b"\t")[0]))
+        return found
+
+    def test_an_interrupt_ends_it_with_exit_code_130(self):
+        self.crank("endless.yaml", STUDY, end="100 s")
+        child = subprocess.Popen([PROGRAM, "study", "run", "endless.yaml", "--jobs", "1", "--out", "cut"], cwd=self.folder,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        until = time.time() + 60
+        while time.time() < until and not os.path.exists(self.path("cut", "study.json")):
+            time.sleep(0.01)
+        child.send_signal(signal.SIGTERM)
+        self.assertEqual(130, child.wait(timeout=60))
+        self.assertTrue(os.path.exists(self.path("cut", "study.json")))
+
+    def test_shards_in_directories_of_their_own_make_the_table_of_the_whole(self):
+        self.run_study("whole")
+        for number in (2, 3, 1):
+            self.run_study("own%d" % number, "--shard", "%d/3" % number, "--allow-failed", code=0)
+        self.assertIn("study-gaps", self.study("merge", "own1", "own2", code=3)[1])
+        self.study("merge", "own1", "own2", "own3", "--out", "all")
+        self.assert_same_tables("whole", "all")
+
+    def test_status_counts_a_study_that_runs(self):
+        self.crank("endless.yaml", "study:\n  axes: {simulation.end: [1 ms, 100 s, 100 s]}\n"
+                                   "  reducers: {force: {channel: joint.wrist.fn, reduce: max}}\n")
+        child = subprocess.Popen([PROGRAM, "study", "run", "endless.yaml", "--jobs", "1", "--out", "runs"], cwd=self.folder,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            until = time.time() + 60
+            while time.time() < until and not self.rows("runs"):
+                time.sleep(0.01)
+            status = json.loads(self.study("status", "runs", "--json")[0])
+        finally:
+            child.terminate()
+            child.wait(timeout=60)
+        self.assertEqual([1, 2, 1], [status[key] for key in ("done", "left", "active")])
+
+    def test_a_point_is_one_plain_command_with_the_numbers_of_its_row(self):
+        self.run_study("out")
+        row = list(csv.DictReader(self.read("out", "study.csv").splitlines()))[4]
+        point = json.loads(self.study("point", "out", "4", "--json")[0])
+        self.assertEqual(4, point["index"])
+        self.study("point", "out", "4", "--run", "--out", "four")
+        force = json.loads(self.read("four", "summary.json"))["joints"]["wrist"]["max_fn"]
+        self.assertEqual(float(row["force"]), force)
+
+    def test_verify_finds_a_forged_row(self):
+        self.run_study("out", "--jobs", "1")
+        self.assertIn("same", self.study("verify", "out", "--points", "12")[0])
+        with open(self.segment("out"), "rb") as file:
+            lines = file.read().splitlines(keepends=True)
+        at = next(i for i, line in enumerate(lines) if line[:1].isdigit() and line.split(b"\t")[2] == b"0")
+        fields = lines[at].split(b"\t")[:-1]
+        fields[7] = repr(float(fields[7]) * (1 + 1e-12)).encode()
+        forged = sealed(fields)
+        with open(self.segment("out"), "wb") as file:
+            file.write(b"".join(lines[:at] + [forged] + lines[at + 1:]))
+        self.study("merge", "out")
+        self.assertIn("differs: force", "".join(self.study("verify", "out", "--points", "12", code=7)))
+
+    def test_a_torn_row_runs_again(self):
+        self.run_study("whole")
+        self.run_study("torn", "--jobs", "1")
+        with open(self.segment("torn"), "r+b") as file:
+            file.truncate(os.path.getsize(self.segment("torn")) - 5)
+        self.assertEqual(1, self.run_study("torn")["ran"])
+        self.assert_same_tables("whole", "torn")
+
+    def test_a_chain_that_was_cut_goes_on_from_where_it_ended(self):
+        self.crank("chain.yaml", "study:\n  set: {simulation.end: 2*2*pi/$speed}\n  axes: {c: {linspace: [0.1 mm, 0.2 mm, 4]}}\n"
+                                 "  warm_start: {along: c, direction: both}\n"
+                                 "  reducers: {force: {channel: joint.wrist.fn, reduce: max}}\n")
+        self.run_study("whole", file="chain.yaml", code=0)
+        rows = list(csv.DictReader(self.read("whole", "study.csv").splitlines()))
+        self.assertEqual(["cold"] + 7 * ["warm"], [row["start"] for row in rows])
+        self.assertEqual(3, self.run_study("cut", "--only", "2", file="chain.yaml", code=0)["ran"])
+        self.assertEqual(5, self.run_study("cut", file="chain.yaml", code=0)["ran"])
+        self.assertEqual(self.read("whole", "study.csv"), self.read("cut", "study.csv"))
+
+    def test_shipped_studies_plan_without_a_message(self):
+        for name, points in (("clearance-bifurcation", 800), ("speed-bifurcation", 800), ("tolerance-bound", 120000),
+                             ("tolerance-motion", 2000), ("3-rrr-vs-4-rrr/series", 22), ("3-rrr-vs-4-rrr/ideal", 8)):
+            with self.subTest(study=name):
+                out, err = self.study("plan", mechanism(os.path.join("studies", name)), "--probe", "0", "--json")
+                self.assertEqual("", err)
+                self.assertEqual(points, json.loads(out)["points"])
+        told = self.run_study("bound", "--only", "0-3", file=mechanism("studies/tolerance-bound"), code=0)
+        self.assertEqual([4, 0], [told["done"], told["failed"]])
+
+    def test_mistakes_are_refused_before_anything_runs(self):
+        for words, code, said in (
+                (["run", "crank.yaml", "--shard", "5/4"], 2, ["--shard", "I from 1 to N"]),
+                (["run", "crank.yaml", "--shard", "a/b"], 2, ["I from 1 to N"]),
+                (["run", "crank.yaml", "--only", "99"], 2, ["--only"]),
+                (["run", "crank.yaml", "--keep", "al"], 2, ["--keep", "'all'"]),
+                (["run", "crank.yaml", "--set", "cc=1mm"], 2, ["cc"]),
+                (["run", mechanism("slider-crank")], 3, ["missing-key", "study"]),
+                (["status", "nowhere"], 3, ["file-not-found", "nowhere"]),
+                (["point", "nowhere", "1"], 3, ["file-not-found"]),
+                (["runn", "crank.yaml"], 2, ["runn"]),
+                ([], 2, ["study"])):
+            with self.subTest(words=words):
+                err = self.study(*words, code=code)[1]
+                for word in said:
+                    self.assertIn(word, err)
+        for old, new, said in (
+                ("c: [0.1 mm, 0.2 mm, -1 mm, 0.4 mm]", "c: []", ["wrong-length"]),
+                ("    c:", "    cc:", ["unknown-name", "cc"]),
+                ("joints.wrist.clearance", "joints.wirst.clearance", ["unknown-name", "'joints.wrist.clearance.contact.restitution'"]),
+                ("0.9, 3]", "0.9, 100000000]", ["too-large", "--yes"]),
+                ("joint.wrist.fn", "joint.wrist.fnn", ["unknown-name", "joint.wrist.fn"])):
+            with self.subTest(new=new):
+                self.assertIn(old, STUDY)
+                self.crank("wrong.yaml", STUDY.replace(old, new))
+                err = self.study("run", "wrong.yaml", "--out", "wrong", code=3)[1]
+                for word in ["wrong.yaml:", *said]:
+                    self.assertIn(word, err)
+        self.assertFalse(os.path.exists(self.path("wrong")))
+        self.assertFalse(os.path.exists(self.path("results")))
+
+
+if __name__ == "__main__":
+    unittest.main()
