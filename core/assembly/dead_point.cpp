@@ -24,6 +24,10 @@ std::vector<int> joints_in_line(const RowSvd& here, const RowSvd& beside, const 
   return joints_under(stress, rows, mechanism);
 }
 
+bool moves(const Driver& driver) {
+  return driver.table || driver.kind == DriverKind::velocity || driver.value.depends_on_time();
+}
+
 }  // namespace
 
 std::optional<DeadStart> dead_start(const System& system, const State& start) {
@@ -48,20 +52,24 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
   if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > lost_rank * values[0]) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   const std::vector<ClosedMechanism::Lead> leads = mechanism.leads;
+  bool any_way = false;
   for (std::size_t i = 0; i < leads.size(); ++i) {
     for (const double sign : {1.0, -1.0}) {
       mechanism.leads = leads;
       std::swap(mechanism.leads[i], mechanism.leads.back());
       std::ranges::copy(q, mechanism.state.q().begin());
       if (!leave_dead_point(mechanism, sign)) continue;
+      any_way = true;
       std::swap(mechanism.leads[i], mechanism.leads.back());
       const RowSvd there(mechanism.position_rows());
       const Eigen::Index last = there.rank - 1;
       if (last < 0 || !(values[last] < lost_rank * there.svd.singularValues()[last])) continue;
-      return DeadStart{drivers[i], joints_in_line(here, there, rows, mechanism)};
+      return DeadStart{drivers[i], false, joints_in_line(here, there, rows, mechanism)};
     }
   }
-  return std::nullopt;
+  const auto moving = std::ranges::find_if(drivers, [&](int d) { return moves(model.drivers[at(d)]); });
+  if (any_way || moving == drivers.end()) return std::nullopt;
+  return DeadStart{*moving, true, joints_under(here.svd.matrixU().rightCols<1>(), rows, mechanism)};
 }
 
 std::optional<SingularPosition> singular_position(const System& system, const State& now) {
@@ -110,6 +118,13 @@ std::string words(const SingularPosition& position, const Model& model) {
 std::string words(const DeadStart& start, const Model& model) {
   const Driver& driver = model.drivers[at(start.driver)];
   const std::string joints = joint_names(start.joints, model);
+  if (start.stuck) {
+    return fmt::format(
+        "driver '{}' starts joint '{}' at a dead point that it cannot leave either way{}; make a link longer or the "
+        "way between its ends shorter, or start elsewhere",
+        driver.name, model.joints[at(driver.joint)].name,
+        joints.empty() ? std::string{} : fmt::format(": {} hold links in line, with none to spare", joints));
+  }
   return fmt::format(
       "driver '{}' starts joint '{}' at a dead point{}: nothing says which of two ways the mechanism goes "
       "on, or it cannot go as it is driven; start beside it, or drive another joint",

@@ -12,9 +12,11 @@
 
 namespace freeplay {
 
-/// A driver that starts where its joint is at a dead point: with it the rows lose rank there and nowhere around.
+/// A driver that starts where its joint is at a dead point: with it the rows lose rank there and nowhere around; or
+/// there is nothing around, as where the links of a loop are just long enough to close it.
 struct DeadStart {
   int driver = 0;
+  bool stuck = false;       ///< no way leads away
   std::vector<int> joints;  ///< whose rows depend on each other there
 };
 

@@ -292,7 +292,7 @@ class Velocities {
     if (std::ranges::any_of(rows.lead, [](int lead) { return lead >= 0; })) {
       text = fmt::format("drivers and start speeds contradict each other: {} cannot have its speed here", worst.words);
       if (!joints.empty()) text += fmt::format("; {} {} not allow it", held, joints.size() == 1 ? "does" : "do");
-    } else if (const auto dead = dead_start(system_, mechanism_.state)) {
+    } else if (const auto dead = dead_start(system_, mechanism_.state); dead && !dead->stuck) {
       id = "dead-point";
       text = words(*dead, model_);
     } else if (drivers.size() > 1) {

@@ -56,15 +56,13 @@ std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<c
   return warnings;
 }
 
-/// What the reader of the model doubts, its results inherit.
+/// What the model is doubted for.
 void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
   for (const Diagnostic& diagnostic : diagnostics.sorted()) {
-    const bool number = diagnostic.id.starts_with("doubtful");
     const bool start = diagnostic.id == "unstable-start" || diagnostic.id == "dead-point";
-    if (!number && !start) continue;
-    verdict.add({.id = number ? "doubtful-input" : "unstable-start",
-                 .level = Trust::doubtful,
-                 .message = diagnostic.message});
+    if (!start && !diagnostic.id.starts_with("doubtful")) continue;
+    const char* const id = start ? "unstable-start" : "doubtful-input";
+    verdict.add({.id = id, .level = Trust::doubtful, .message = diagnostic.message});
   }
 }
 

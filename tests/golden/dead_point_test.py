@@ -204,6 +204,15 @@ class DeadPoint(ProgramTest):
                     out, _ = self.freeplay("run", file, "--out", "r", "--force")
                     self.assertIn(f"trust: doubtful ('{body}' starts at rest", out)
 
+    def test_a_start_with_links_just_long_enough_is_named(self):
+        model = FOUR_BAR % (0.1, "", "%s", "", "accuracy: 1 um")
+        model = model.replace("[0.4, 0]", "[0.5, 0]").replace("-10 deg", "0").replace("120 deg", "180 deg").replace("initial: {joints: {}}\n", "")
+        _, err = self.freeplay("validate", self.write("m.yaml", model % "angle, value: 0.5*sin(t)"))
+        self.assertRegex(err, r"driver 'motor' starts joint 'A' at a dead point that it cannot leave either way: "
+                              r"joints 'A', 'B', 'C', 'D' hold links in line, with none to spare; .*\[dead-point\]")
+        _, err = self.freeplay("validate", self.write("m.yaml", model % "angle, value: 0"))
+        self.assertNotIn("dead-point", err)
+
     def test_other_starts_at_rest_are_no_unstable_equilibrium(self):
         for text in (CRANK.replace("FORCE", "[100, 0]"),                      # the links are pulled
                      CRANK.replace("FORCE", "[0, 0]"),

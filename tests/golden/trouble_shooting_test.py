@@ -162,6 +162,10 @@ CASES = {
         (2, PENDULUM, RUN + ["--accuracy", "1 um", "--integrator", "my-type", "--plugin", "TEMPLATE"]),
     "--integrator ...: there is no such integrator": (2, PENDULUM, RUN + ["--integrator", "rk4"]),
     "... '...': it has corners at ... s and ... s, closer than the step of ... s, ...": (0, PULSE, RUN),
+    "... '...': it changes at t = ... s for some ... s, which the step of ... s goes over; ...":
+        (0, driven("value: t", "value: exp(-((t - 0.05)/1e-4)^2)"), RUN),
+    "... '...': it changes at t = ... s for some ... s, less than a millionth of the run, which steps may go over; ...":
+        (0, PULSE.replace("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", "1/(1 + ((t - 0.7)/1e-8)^2)").replace("step: 5 ms", "accuracy: 1 um"), RUN),
     "--verify: THE RUNS DISAGREE: ...": (7, PULSE, RUN + ["--verify"]),
     "--verify: the second run was given up at ... s after ... steps": (0, STIFF, RUN + ["--verify"]),
     # Doubted, and run all the same
