@@ -117,14 +117,16 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
                 fmt::format("the run went to {:g} s of {:g} s: a later end than that is needed", at, end));
     }
   }
-  if (status == "stopped" || (status == "completed" && later == end)) {
+  const bool no_twin = out.options.twin && summary.value("twin", Json()).is_null();
+  const bool ended = status == "stopped" || (status == "completed" && later == end);
+  if (ended && !no_twin) {
     out.nothing_to_do = fmt::format("{} at {:g} s", status, reached);
     return out;
   }
-  if (later != end) {
+  if (later != end || ended) {
     if (!status.empty()) require_rows(directory, made);
     out.goes_on = false;
-    out.options.end = asked.end;
+    if (later != end) out.options.end = asked.end;
     out.options.force = true;
   }
   // Those beside it need every channel of all rows.

@@ -374,6 +374,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
 int run_twin(RunOptions options, CommonOptions common, const std::filesystem::path& path, int pipe) {
   options.model_options.ideal = {"all"};
   options.out = (path / "twin").string();
+  options.force = true;  // what an earlier process left of it belongs to this result
   options.verify = options.profile = options.twin = options.report = false;
   options.twin_pipe = pipe;
   common.quiet = true;

@@ -77,12 +77,14 @@ struct Sums {
   }
   double mean(std::size_t k) const { return count[k] > 0.0 ? sum[k] / count[k] : no_slope; }
   /// Of the line of least squares through what there is, over k.
-  double slope() const {
+  double slope() const { return slope(0, sum.size() - 1); }
+  /// The same from one k to another.
+  double slope(std::size_t from, std::size_t to) const {
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-    for (std::size_t k = 0; k < sum.size(); ++k) {
+    for (std::size_t k = from; k <= to; ++k) {
       if (count[k] > 0.0) n += 1.0, x += static_cast<double>(k), y += mean(k);
     }
-    for (std::size_t k = 0; k < sum.size(); ++k) {
+    for (std::size_t k = from; k <= to; ++k) {
       if (!(count[k] > 0.0)) continue;
       const double from_middle = static_cast<double>(k) - x / n;
       xx += from_middle * from_middle;
@@ -91,6 +93,18 @@ struct Sums {
     return n > 1.0 ? xy / xx : no_slope;
   }
 };
+
+/// How far the course of the logarithms is from a straight line: the largest difference between its slope and that of
+/// beginnings, halved again and again; distances that reach the size of the motion grow no more. The first step is left
+/// out of them, in which neighbours turn towards where they go apart. NaN where there is no second one.
+double bend(const Sums& all) {
+  const std::size_t last = all.sum.size() - 1;
+  double most = no_slope;
+  for (std::size_t steps = last - 1; steps > 0; steps /= 2) {
+    most = std::fmax(most, std::abs(all.slope(1, 1 + steps) - all.slope()));
+  }
+  return most;
+}
 
 double standard_error(const std::vector<double>& slopes) {
   const double n = static_cast<double>(slopes.size());
@@ -136,7 +150,7 @@ Divergence divergence(const RowGrid& grid, std::span<const std::span<const doubl
   }
   out.exponent = all.slope() / step;
   if (std::isnan(out.exponent)) too_few("no two parts of the motion are near and apart");
-  out.uncertainty = standard_error(slopes);
+  out.uncertainty = std::hypot(standard_error(slopes), bend(all) / step);
   for (std::size_t k = 0; k <= last; ++k) {
     out.time.push_back(static_cast<double>(k) * step);
     out.logarithm.push_back(all.mean(k));

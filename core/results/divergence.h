@@ -13,7 +13,9 @@ struct Divergence {
   std::vector<double> time;       ///< k D, k = 0 .. K [s]
   std::vector<double> logarithm;  ///< mean of the logarithm of distances; NaN where all are zero
   double exponent = 0.0;          ///< slope of the line of least squares [1/s]
-  /// Standard error of the exponent: by the scatter among eighths of the motion; NaN with fewer than two of them.
+  /// Of the exponent: by the scatter among eighths of the motion, and by how far the logarithms are from a straight
+  /// line, as where the period is so long that distances reach the size of the motion. NaN with fewer than two eighths,
+  /// and where the period is one step: nothing says then whether the line is straight.
   double uncertainty = 0.0;
   std::size_t points = 0;  ///< that have a neighbour
 };

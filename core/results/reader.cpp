@@ -1,6 +1,10 @@
 #include "results/reader.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -22,15 +26,26 @@ std::size_t ResultReader::find(std::string_view name) const {
 }
 
 namespace {
+
 constexpr std::size_t first_column[] = {0};
+
+/// By its first bytes, whatever its name; by its name where these are damaged.
+bool is_hdf5(const fs::path& path) {
+  constexpr std::string_view mark = "\x89HDF\r\n\x1a\n";
+  constexpr const char* endings[] = {".h5", ".hdf5", ".hdf", ".nc"};
+  std::string head(mark.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == mark || std::ranges::find(endings, path.extension()) != std::end(endings);
 }
+
+}  // namespace
 
 std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) unreadable_result(path.string(), "there is no such file or directory");
   if (!fs::is_directory(path, ignored)) {
     const fs::path ending = path.extension();
-    return ending == ".h5"     ? open_hdf5(path)
+    return is_hdf5(path)       ? open_hdf5(path)
            : ending == ".mat"  ? open_mat(path)
            : ending == ".json" ? open_json(path)
                                : open_csv(path);

@@ -75,6 +75,13 @@ class Results(ProgramTest):
             self.assertIn("[cannot-write]", done.stderr)
             self.assertFalse(os.path.exists(self.path("cut.mat")))
 
+    def test_hdf5_is_read_as_such_whatever_its_ending(self):
+        self.freeplay("run", MODEL, "--quiet", "--end", "10 ms", "--out", "r")
+        for name in ("a.hdf5", "b.HDF", "c.dat", "d"):
+            shutil.copy(self.path("r", "results.h5"), self.path(name))
+            self.freeplay("compare", "r", name)
+            self.assertEqual(self.read("r", "results.csv"), self.freeplay("export", name, "--to", "csv")[0])
+
     def test_a_killed_result_is_sealed(self):
         command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.DEVNULL) as run:

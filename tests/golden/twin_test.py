@@ -3,9 +3,13 @@ import csv
 import json
 import math
 import os
+import shutil
+import signal
+import subprocess
+import time
 import unittest
 
-from program import ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, mechanism
 
 CRANK = """freeplay: 1
 name: crank
@@ -89,6 +93,39 @@ class Twin(ProgramTest):
         self.freeplay("run", "m.yaml", "--twin", "--out", "both")
         self.freeplay("run", "m.yaml", "--out", "both")
         self.assertFalse(os.path.exists(self.path("both", "twin")))
+
+    def killed(self, name, late):
+        """A run with its twin, killed once its own rows (late) or some rows of the twin are there."""
+        with subprocess.Popen([PROGRAM, "run", "m.yaml", "--twin", "--out", name, "--quiet"], cwd=self.folder,
+                              stderr=subprocess.DEVNULL) as process:
+            seen = self.path(name, *(("results.csv",) if late else ("twin", "results.csv")))
+            while process.poll() is None and not (os.path.exists(seen) and os.path.getsize(seen) > 2000):
+                time.sleep(0.001)
+            process.kill()
+        return process.returncode
+
+    def test_a_twin_that_was_killed_is_made_again(self):
+        self.write("m.yaml", CRANK.replace("end: 6 ms", "end: 200 ms"))
+        self.freeplay("run", "m.yaml", "--twin", "--out", "both")
+        for late in (False, True):
+            self.assertEqual(-signal.SIGKILL, self.killed("cut%d" % late, late))
+            self.freeplay("run", "--resume", "cut%d" % late)
+            self.assert_same("both", "cut%d" % late)
+        self.assertIn("nothing to do", self.freeplay("run", "--resume", "both")[0])
+
+    def test_a_run_that_ended_without_its_twin_runs_again(self):
+        self.write("m.yaml", CRANK)
+        self.freeplay("run", "m.yaml", "--twin", "--out", "both")
+        shutil.copytree(self.path("both"), self.path("lost"))
+        self.write(os.path.join("lost", "summary.json"), json.dumps({**self.summary("lost"), "twin": None}))
+        self.freeplay("run", "--resume", "lost")
+        self.assert_same("both", "lost")
+
+    def assert_same(self, a, b):
+        for folder in ((), ("twin",)):
+            self.assertEqual(self.read(a, *folder, "results.csv"), self.read(b, *folder, "results.csv"))
+        for key in ("twin", "hashes", "status", "counts"):
+            self.assertEqual(self.summary(a)[key], self.summary(b)[key])
 
     def test_what_has_no_twin(self):
         for arguments, word in (((mechanism("four-bar"), "--twin"), "no-clearance"),

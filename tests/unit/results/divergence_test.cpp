@@ -38,6 +38,20 @@ TEST(Divergence, OfTheHenonMapIsItsExponent) {
   EXPECT_NEAR(of(x, y, 0.5, 3.5).exponent, 2.0 * d.exponent, 1e-12);  // by time, not by step
 }
 
+// x' = 4 x (1 - x): the exponent is ln 2. Over long periods distances reach the size of the motion and grow no more.
+TEST(Divergence, OfTheLogisticMapIsWithinItsUncertaintyForEveryPeriod) {
+  std::vector<double> x;
+  double a = 0.3;
+  for (int i = 0; i < 1500; ++i) x.push_back(a = 4.0 * a * (1.0 - a));
+  const std::span<const double> columns[] = {x};
+  for (const double period : {2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 18.0, 20.0, 40.0, 80.0, 200.0}) {
+    const Divergence d = divergence(grid_of(x.size(), 1.0), columns, period);
+    EXPECT_LT(std::abs(d.exponent - std::log(2.0)), 2.0 * d.uncertainty) << period;
+  }
+  EXPECT_LT(divergence(grid_of(x.size(), 1.0), columns, 7.0).uncertainty, 0.02);
+  EXPECT_TRUE(std::isnan(divergence(grid_of(x.size(), 1.0), columns, 1.0).uncertainty));
+}
+
 TEST(Divergence, OfAPeriodicMotionIsNone) {
   std::vector<double> x, y;
   for (int i = 0; i < 1000; ++i) x.push_back(std::cos(0.1 * i)), y.push_back(std::sin(0.1 * i));
