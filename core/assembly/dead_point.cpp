@@ -67,6 +67,8 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
       return DeadStart{drivers[i], false, joints_in_line(here, there, rows, mechanism)};
     }
   }
+  // More rows than unknowns lock the mechanism wherever its links stand.
+  if (rows.matrix.rows() > values.size()) return std::nullopt;
   const auto moving = std::ranges::find_if(drivers, [&](int d) { return moves(model.drivers[at(d)]); });
   if (any_way || moving == drivers.end()) return std::nullopt;
   return DeadStart{*moving, true, joints_under(here.svd.matrixU().rightCols<1>(), rows, mechanism)};

@@ -129,11 +129,20 @@ bool moves_by_itself(const Driver& driver) {
                                      driver.kind == DriverKind::velocity);
 }
 
+// Forces of which nothing says how they depend on time, as of some plugins, are left to the run.
+bool has_unknown_times(const System& system) {
+  for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
+    const JointLayout& layout = system.joints().layout(j);
+    if (layout.forces != 0 && layout.time_scale == 0.0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<UnstableStart> unstable_start(const System& system, const State& start) {
   if (system.layout().nv() > most_followed_velocities || moves(system, start)) return std::nullopt;
-  if (std::ranges::any_of(system.model().drivers, moves_by_itself)) return std::nullopt;
+  if (std::ranges::any_of(system.model().drivers, moves_by_itself) || has_unknown_times(system)) return std::nullopt;
   try {
     return Balance(system, start).unstable();
   } catch (const Error&) {

@@ -49,9 +49,7 @@ std::filesystem::path result_path(const RunOptions& options, const Model& model)
 
 std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<const std::string> more) {
   std::vector<std::string> warnings;
-  for (const Diagnostic& diagnostic : diagnostics.sorted()) {
-    warnings.push_back(fmt::format("{} [{}]", diagnostic.message, diagnostic.id));
-  }
+  for (const Diagnostic& d : diagnostics.sorted()) warnings.push_back(fmt::format("{} [{}]", d.message, d.id));
   warnings.insert(warnings.end(), more.begin(), more.end());
   return warnings;
 }
