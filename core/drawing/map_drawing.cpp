@@ -14,7 +14,7 @@
 namespace freeplay {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
 constexpr double wide_range = 50.0;  // of values whose levels are powers
 constexpr double plot = 620.0, left = 80.0, top = 50.0, legend = 210.0, bottom = 60.0;
 
@@ -41,7 +41,6 @@ class Drawing {
         "<text x=\"{3}\" y=\"{4}\" font-size=\"14\">{2}</text>\n",
         px(page_width), px(page_height), escaped(map_.title), px(left), px(top - 20.0));
     draw_ground();
-    draw_contours();
     draw_singular();
     draw_path();
     body_ += label_text_;
@@ -86,61 +85,84 @@ class Drawing {
     };
     return fmt::format("#{:02x}{:02x}{:02x}", mixed(0), mixed(1), mixed(2));
   }
-  std::size_t step_of(double v) const {
-    return static_cast<std::size_t>(std::ranges::upper_bound(levels_, v) - levels_.begin());
-  }
 
-  // Around points at the edge of what is reached the ground has their own tone; between four good ones the steps are
-  // those of the contours. All of one tone is one path, so that no seams show between its parts.
+  // Hatched up to half way to the points that are reached, white where those have no value. All of one tone is one
+  // path, so that no seams show between its parts.
   void draw_ground() {
     body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", px(left), px(top),
                          px(width_), px(height_), all_good() ? "white" : "url(#out)");
-    draw_points("white", [&](std::size_t k) { return map_.points[k] == MapPoint::singular; });
-    for (std::size_t step = 0; step <= levels_.size(); ++step) {
-      draw_points(tone(step).c_str(),
-                  [&](std::size_t k) { return map_.points[k] == MapPoint::good && step_of(map_.values[k]) == step; });
+    if (!all_good()) {
+      body_ += fmt::format("<path d=\"{}\" fill=\"white\"/>\n<clipPath id=\"reached\"><path d=\"{}\"/></clipPath>\n",
+                           ground_about([](MapPoint point) { return point != MapPoint::unreachable; }),
+                           ground_about([](MapPoint point) { return point == MapPoint::good; }));
     }
-    const std::vector<double> field = good_values();
+    const std::vector<double> field = values_to_edge();
+    body_ += all_good() ? "<g>\n" : "<g clip-path=\"url(#reached)\">\n";
     for (std::size_t step = 0; step <= levels_.size(); ++step) {
       const double level = step == 0 ? least_ : levels_[step - 1];
-      const double next = step < levels_.size() ? levels_[step] : std::numeric_limits<double>::infinity();
-      std::string d;
-      for (const std::vector<Point>& polygon : region(map_.x, map_.y, field, level, next)) d += line_of(polygon) + "Z";
+      const double next = step < levels_.size() ? levels_[step] : infinity;
+      const std::string d = outline(region(map_.x, map_.y, field, level, next));
       if (!d.empty()) body_ += fmt::format("<path d=\"{}\" fill=\"{}\"/>\n", d, tone(step));
     }
+    draw_contours(field);
+    body_ += "</g>\n";
+  }
+
+  template <class Chosen>
+  std::string ground_about(const Chosen& chosen) const {
+    std::vector<double> field;
+    for (const MapPoint point : map_.points) field.push_back(chosen(point) ? 1.0 : -1.0);
+    return outline(region(map_.x, map_.y, field, 0.0, infinity));
   }
 
   bool all_good() const { return std::ranges::count(map_.points, MapPoint::good) == std::ssize(map_.points); }
 
-  std::vector<double> good_values() const {
-    std::vector<double> field(map_.values.size(), nan);
-    for (std::size_t k = 0; k < field.size(); ++k) {
-      if (map_.points[k] == MapPoint::good) field[k] = map_.values[k];
+  /// The values of good points, and of those beside them what carries their slope on: the edge of what is reached
+  /// crosses the cells between.
+  std::vector<double> values_to_edge() const {
+    const int columns = static_cast<int>(map_.x.size()), rows = static_cast<int>(map_.y.size());
+    const auto known = [&](int i, int j) {
+      const bool inside = i >= 0 && j >= 0 && i < columns && j < rows;
+      return inside ? value(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) : nan;
+    };
+    std::vector<double> field;
+    for (int i = 0; i < columns; ++i) {
+      for (int j = 0; j < rows; ++j) {
+        double sum = 0.0;
+        int count = 0;
+        for (int side = 0; side < 9; ++side) {
+          const int di = side / 3 - 1, dj = side % 3 - 1;
+          const double near = known(i + di, j + dj), far = known(i + 2 * di, j + 2 * dj);
+          if (!std::isfinite(near)) continue;
+          sum += std::isfinite(far) ? 2.0 * near - far : near;
+          ++count;
+        }
+        const double here = known(i, j);
+        field.push_back(std::isfinite(here) ? here : count > 0 ? std::clamp(sum / count, least_, most_) : nan);
+      }
     }
     return field;
   }
 
-  /// Rectangles half way to the neighbours about chosen points.
-  template <class Chosen>
-  void draw_points(const char* fill, const Chosen& chosen) {
-    const auto edge = [](const std::vector<double>& axis, std::size_t i) {
-      if (i == 0) return axis.front();
-      return i == axis.size() ? axis.back() : 0.5 * (axis[i - 1] + axis[i]);
+  /// As one path; rectangles above each other are one, for a small file.
+  std::string outline(const std::vector<std::vector<Point>>& polygons) const {
+    const auto upright = [](const std::vector<Point>& p) {
+      return p.size() == 4 && p[0].x == p[3].x && p[1].x == p[2].x && p[0].y == p[1].y && p[2].y == p[3].y;
     };
     std::string d;
-    for (std::size_t i = 0; i < map_.x.size(); ++i) {
-      for (std::size_t j = 0; j < map_.y.size();) {
-        std::size_t end = j;
-        while (end < map_.y.size() && chosen(i * map_.y.size() + end)) ++end;
-        if (end > j) {
-          const double low = edge(map_.x, i), high = edge(map_.x, i + 1);
-          const double from = edge(map_.y, j), until = edge(map_.y, end);
-          d += line_of({{low, from}, {high, from}, {high, until}, {low, until}}) + "Z";
-        }
-        j = std::max(end, j + 1);
+    std::vector<Point> strip;
+    for (const std::vector<Point>& polygon : polygons) {
+      const bool goes_on = upright(strip) && upright(polygon) && strip[3].x == polygon[0].x &&
+                           strip[3].y == polygon[0].y && strip[2].x == polygon[1].x;
+      if (goes_on) {
+        strip[2] = polygon[2];
+        strip[3] = polygon[3];
+        continue;
       }
+      if (!strip.empty()) d += line_of(strip) + "Z";
+      strip = polygon;
     }
-    if (!d.empty()) body_ += fmt::format("<path d=\"{}\" fill=\"{}\"/>\n", d, fill);
+    return strip.empty() ? d : d + line_of(strip) + "Z";
   }
 
   std::string line_of(const std::vector<Point>& points) const {
@@ -151,8 +173,7 @@ class Drawing {
     return d;
   }
 
-  void draw_contours() {
-    const std::vector<double> field = good_values();
+  void draw_contours(const std::vector<double>& field) {
     for (const double level : levels_) {
       for (const std::vector<Point>& line : joined(contour(map_.x, map_.y, field, level))) {
         body_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"black\" stroke-width=\"0.8\"/>\n", line_of(line));
@@ -166,6 +187,14 @@ class Drawing {
     }
   }
 
+  bool is_good(const Point& p) const {
+    const auto nearest = [](const std::vector<double>& axis, double at) {
+      return std::lround((at - axis.front()) / (axis.back() - axis.front()) * static_cast<double>(axis.size() - 1));
+    };
+    return std::isfinite(
+        value(static_cast<std::size_t>(nearest(map_.x, p.x)), static_cast<std::size_t>(nearest(map_.y, p.y))));
+  }
+
   /// The point of a line that is farthest from the labels so far, off the path; none where the line is short or all is
   /// taken.
   const Point* label_place(const std::vector<Point>& line) {
@@ -177,6 +206,7 @@ class Drawing {
     const Point* best = nullptr;
     double room = 30.0;
     for (const Point& p : line) {
+      if (!is_good(p)) continue;
       double nearest =
           std::min({at_x(p.x) - left, left + width_ - at_x(p.x), at_y(p.y) - top, top + height_ - at_y(p.y)}) + 10.0;
       for (const Point& other : labels_) {

@@ -1,9 +1,11 @@
 #include "drawing/map_drawing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -53,6 +55,62 @@ TEST(MapDrawing, OfNothingReachableIsAllHatched) {
   map.points.assign(6, MapPoint::unreachable);
   EXPECT_THAT(map_svg(map), HasSubstr("out of reach"));
   EXPECT_THAT(map_svg(map), Not(HasSubstr("nan")));
+}
+
+/// A map of x + y, or of what is reached of it: a disc.
+PositionMap disc_map(double radius) {
+  PositionMap map;
+  map.title = map.quantity = "sum";
+  for (int i = -10; i <= 10; ++i) map.x.push_back(0.01 * i), map.y.push_back(0.01 * i);
+  for (const double x : map.x) {
+    for (const double y : map.y) {
+      const bool reached = std::hypot(x, y) < radius;
+      map.values.push_back(reached ? x + y : undefined);
+      map.points.push_back(reached ? MapPoint::good : MapPoint::unreachable);
+    }
+  }
+  return map;
+}
+
+/// The numbers of all paths like `pattern`, whose first group they are.
+std::vector<std::vector<double>> numbers(const std::string& text, const char* pattern) {
+  std::vector<std::vector<double>> all;
+  const std::regex path(pattern), number(R"(-?[\d.]+)");
+  for (std::sregex_iterator at(text.begin(), text.end(), path), end; at != end; ++at) {
+    const std::string d = (*at)[1];
+    all.emplace_back();
+    for (std::sregex_iterator n(d.begin(), d.end(), number); n != end; ++n) all.back().push_back(std::stod(n->str()));
+  }
+  return all;
+}
+
+TEST(MapDrawing, HasNoStairsAtTheEdgeOfWhatIsReached) {
+  const std::string text = map_svg(disc_map(0.083));
+  const double scale = 620.0 / 0.2, middle_x = 80.0 + 310.0, middle_y = 50.0 + 310.0;
+  const auto radius = [&](double x, double y) { return std::hypot(x - middle_x, y - middle_y) / scale; };
+  const auto ends = numbers(text, R"re(<clipPath id="reached"><path d="([^"]*)")re");
+  ASSERT_EQ(ends.size(), 1);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < ends[0].size(); k += 2) largest = std::max(largest, radius(ends[0][k], ends[0][k + 1]));
+  EXPECT_LT(largest, 0.088);  // stairs about points have corners at 0.0886 m
+  // Contours go on, straight, until there.
+  int reaching = 0;
+  for (const auto& line : numbers(text, R"re(<path d="([^"]*)" fill="none" stroke="black" stroke-width="0.8")re")) {
+    const auto level = [&](std::size_t k) { return (line[k] - middle_x - (line[k + 1] - middle_y)) / scale; };
+    for (std::size_t k = 2; k < line.size(); k += 2) EXPECT_NEAR(level(k), level(0), 1e-4);
+    if (radius(line[0], line[1]) > 0.083 && radius(line[line.size() - 2], line.back()) > 0.083) ++reaching;
+  }
+  EXPECT_GT(reaching, 3);
+}
+
+TEST(MapDrawing, IsWhiteWhereWhatIsReachedHasNoValue) {
+  PositionMap map = disc_map(0.2);
+  map.points[220] = MapPoint::singular;
+  const std::string text = map_svg(map);
+  const auto white = numbers(text, R"re(<path d="([^"]*)" fill="white"/>)re");
+  ASSERT_EQ(white.size(), 1);
+  EXPECT_EQ(white[0].size(), 8U * 20);  // all of it, a rectangle for each column
+  EXPECT_THAT(map_svg(disc_map(0.2)), Not(HasSubstr("clip")));
 }
 
 /// A map of x + y with a path along the diagonal of its middle; its contours cross it.
