@@ -75,6 +75,29 @@ class ReportInBrowser(ProgramTest):
                 number *= scales[unit[0]]
             self.assertAlmostEqual(number, float(value), delta=0.051 * abs(float(value)) + 1e-300, msg="%s reads %s" % (path, text))
 
+    def side(self):
+        return {cells[0]: cells[1:] for cells in self.script("return [...document.querySelectorAll('#side tr')].map(r => [...r.children].map(c => c.textContent))")}
+
+    def test_runs_side_by_side_need_not_have_the_same(self):
+        self.write("fall.yaml", "freeplay: 1\nname: fall\nbodies: {b: {mass: 1, inertia: 1}}\njoints: {p: {type: revolute, between: [ground, b]}}\n"
+                   "simulation: {end: 10 ms, step: 1 ms}\n")
+        self.freeplay("run", "fall.yaml", "--quiet", "--out", "fall")
+        for name in ("slider-crank", "spatial/stewart"):
+            self.freeplay("run", mechanism(name), "--quiet", "--end", "14 ms", "--out", os.path.basename(name))
+        stewart = json.loads(self.read("stewart", "summary.json"))["drivers"]
+        for order in (("fall", "slider-crank", "stewart"), ("stewart", "slider-crank", "fall")):
+            self.freeplay("report", *order, "--out", "page.html", "--force")
+            self.browser.open(self.path("page.html"))
+            text = self.script("return document.body.innerText")
+            for wrong in ("[object", "NaN", "undefined", "Infinity"):
+                self.assertNotIn(wrong, text)
+            side, at = self.side(), order.index("stewart")
+            for name in stewart:
+                self.assertRegex(side[name + ", largest effort"][at], r"^[\d.]+\u00a0k?N( \u00b1|$)")
+                self.assertEqual(["\u2013"] * 2, [cell for k, cell in enumerate(side[name + ", rms effort"]) if k != at])
+            self.assertRegex(side["motor, largest effort"][1], r"^[\d.]+\u00a0[mk]?N\u00b7m( \u00b1|$)")
+            self.assertEqual("\u2013", side["largest penetration"][order.index("fall")])
+
     def test_the_cursor_shows_the_row_of_its_frame(self):
         self.open("slider-crank")
         header, *rows = (line.split(",") for line in self.read("slider-crank", "results.csv").splitlines())
@@ -215,6 +238,12 @@ class ReportInBrowser(ProgramTest):
         self.browser.open(self.path("page.html"))
         shown = self.script("freeplay.select(['a']); return [0, 1, 2, 3, 4].map(t => { freeplay.seek(t); return document.querySelector('#now span').textContent; })")
         self.assertEqual(["1", "\u2013", "3", "\u2013", "5"], shown)
+        self.write("r.csv", "time,a,b\n0,1,\n1,inf,nan\n2,3,\n")
+        self.freeplay("report", "r.csv", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        heads = self.script("freeplay.select(['a', 'b']); return [...document.querySelectorAll('#graphs figcaption')].map(e => e.textContent)")
+        self.assertNotIn("no numbers", heads[0])
+        self.assertIn("no numbers", heads[1])
 
     def labels(self, plot):
         return self.script("return [...document.querySelectorAll(arguments[0] + ' .dygraph-axis-label-y')].map(e => e.textContent)", plot)

@@ -55,7 +55,7 @@ function swatch(k) {
 // A plot with its heading, and a place for a value of each curve; `signs` are the colours and dashes of the curves.
 function addPlot(home, title, labels, curves, options) {
   const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k), {signs = [...labels.keys()]} = options;
-  const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
+  const head = make('figcaption', {}, make('b', {}, title), curves.some(c => c[1].some(isFinite)) ? '' : 'no numbers', ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
   const look = () => ({colors: signs.map(k => palette.series[k % 8]), axisLineColor: palette.soft, gridLineColor: palette.line});

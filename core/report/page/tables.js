@@ -1,6 +1,7 @@
 // Tables: facts, joints, impacts, twin, drivers, energy, advice, model, provenance, and runs side by side.
 const at = (part, name, field) => '/' + part + '/' + escaped(name) + '/' + field;
-const effort = x => ['position', 'force'].includes((x || {}).kind) ? 'N' : 'N*m';
+// Of a driver that gives a speed only its channel says whether it turns or slides.
+const effort = (run, name) => run.named.has('driver.' + name + '.force') || ['position', 'force'].includes(run.get(at('drivers', name, 'kind'))) ? 'N' : 'N*m';
 const right = text => ({number: text});
 const few = v => plain(v, 3);
 const has = path => runs.some(r => r.get(path) != null);
@@ -12,7 +13,7 @@ function startTop() {
     byId('verdicts').append(make('div', {}, make('b', {}, titled(run)),
       make('span', {}, shown(run, '/status'), stop_reason ? ' (' + stop_reason + ')' : '', ' at ', shown(run, '/time/reached', instant)),
       make('span', {class: 'chip ' + verdict}, {good: '✓', doubtful: '!', bad: '✕'}[verdict] + (trust ? ' trust: ' + verdict : ' no verdict')),
-      make('span', {class: 'soft'}, run.note),
+      make('b', {}, run.note || ''),
       reasons.length ? make('ul', {}, ...reasons.map(r => make('li', {}, r.level + ': ' + r.message))) : null));
   }
   byId('contents').append(...[...document.querySelectorAll('main section')].map(s => make('a', {href: '#' + s.id}, s.querySelector('h2').textContent)));
@@ -34,25 +35,28 @@ function startFacts() {
   if (!several) document.querySelector('#facts table').className = 'one';
 }
 
-// Where a field of a part is largest in a run.
-function largest(run, part, field) {
+// Where a field of a part is largest in a run; null where none has it.
+const largest = (part, field) => run => {
   const all = Object.entries(run.summary[part] || {}).filter(([, x]) => typeof x[field] === 'number');
-  return all.length ? at(part, all.reduce((a, b) => Math.abs(b[1][field]) > Math.abs(a[1][field]) ? b : a)[0], field) : '';
-}
+  return all.length ? at(part, all.reduce((a, b) => Math.abs(b[1][field]) > Math.abs(a[1][field]) ? b : a)[0], field) : null;
+};
 
 function startSide() {
+  // Path and unit of each are texts, or functions of a run.
   const compare = ([label, path, unit]) => {
-    const paths = runs.map(r => typeof path === 'string' ? path : largest(r, ...path)), values = runs.map((r, k) => r.get(paths[k]));
-    if (!values.some(v => typeof v === 'number')) return [];
-    const percents = values.map(v => typeof v === 'number' && values[0] ? (v >= values[0] ? '+' : '−') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '');
-    return [row(label, ...runs.map((r, k) => right(k ? make('span', {}, scattered(r, paths[k], unit), make('br'), make('span', {class: 'soft'}, percents[k])) : scattered(r, paths[k], unit))))];
+    const of = (x, r) => x.call && x !== String ? x(r) : x;
+    const paths = runs.map(r => of(path, r)), units = runs.map(r => of(unit, r));
+    const values = runs.map((r, k) => paths[k] && r.get(paths[k])), known = v => typeof v === 'number';
+    if (!values.some(known)) return [];
+    const percent = (v, k) => k && values[0] && units[k] === units[0] ? (v >= values[0] ? '+' : '−') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '';
+    return [row(label, ...runs.map((r, k) => right(known(values[k]) ? make('span', {}, scattered(r, paths[k], units[k]), k ? make('br') : '', make('span', {class: 'soft'}, percent(values[k], k))) : '–')))];
   };
-  const first = (part, most) => [...new Set(runs.flatMap(r => Object.keys(r.summary[part] || {})))].slice(0, most), torque = effort(Object.values(runs[0].summary.drivers || {})[0]);
+  const all = part => [...new Set(runs.flatMap(r => Object.keys(r.summary[part] || {})))];
   const errors = [['largest error', 'max_position', 'm'], ['rms error', 'rms_position', 'm'], ['largest angle error', 'max_angle', 'rad'], ['rms angle error', 'rms_angle', 'rad']];
-  const list = [...first('paths', 2).flatMap(n => errors.map(([words, field, unit]) => [n + ', ' + words, at('paths', n, field), unit])),
-    ['largest joint force', ['joints', 'max_force'], 'N'], ['largest rms joint force', ['joints', 'rms_force'], 'N'], ['largest penetration', ['joints', 'max_delta'], 'm'], ['largest driver effort', ['drivers', 'max_abs'], torque],
-    ['largest rms driver effort', ['drivers', 'rms'], torque], ['contacts', '/counts/contacts', String], ['energy lost in joints', '/energy/dissipated', 'J'], ['work of the drivers', '/energy/work', 'J'],
-    ...first('drivers', 6).flatMap(n => [[n + ', largest effort', at('drivers', n, 'max_abs'), torque], [n + ', rms effort', at('drivers', n, 'rms'), torque]])];
+  const list = [...all('paths').flatMap(n => errors.map(([words, field, unit]) => [n + ', ' + words, at('paths', n, field), unit])),
+    ['largest joint force', largest('joints', 'max_force'), 'N'], ['largest rms joint force', largest('joints', 'rms_force'), 'N'], ['largest penetration', largest('joints', 'max_delta'), 'm'],
+    ['contacts', '/counts/contacts', String], ['energy lost in joints', '/energy/dissipated', 'J'], ['work of the drivers', '/energy/work', 'J'],
+    ...all('drivers').flatMap(n => [['largest', 'max_abs'], ['rms', 'rms']].map(([which, field]) => [n + ', ' + which + ' effort', at('drivers', n, field), r => effort(r, n)]))];
   put('side', table(['', ...runs.map(r => right(r.title))], list.flatMap(compare)));
 }
 
@@ -60,7 +64,7 @@ function startSide() {
 function figures(part, heading, columns, needed) {
   return table([heading, ...columns.map(([h, f]) => typeof f === 'string' ? right(h) : h)], ...runs.map(run => {
     const rows = Object.entries(run.get(part) || {}).filter(([, x]) => x && (!needed || x[needed])).map(([name, x]) => row(name, ...columns.map(([, field, unit, scatters]) =>
-      typeof field !== 'string' ? field(x, name, run) : right((scatters ? scattered : shown)(run, part + '/' + escaped(name) + '/' + field, unit || effort((run.summary.drivers || {})[name]))))));
+      typeof field !== 'string' ? field(x, name, run) : right((scatters ? scattered : shown)(run, part + '/' + escaped(name) + '/' + field, unit || effort(run, name))))));
     return several && rows.length ? [make('tr', {}, make('th', {colspan: columns.length + 1, class: 'group'}, run.title)), ...rows] : rows;
   }));
 }
