@@ -32,7 +32,7 @@ constexpr int most_columns = 100;
 struct PlotOptions {
   std::string path, from, until, over, orbit, polar, width, height, out;
   std::vector<std::string> channels, against;
-  bool xy = false, spectrum = false, histogram = false, text = false;
+  bool xy = false, spectrum = false, histogram = false, text = false, force = false;
 };
 
 /// Pixels, or a length on paper: "84 mm".
@@ -105,12 +105,7 @@ fs::path folder_of(const std::string& path) {
   return fs::is_directory(path, ignored) ? fs::path(path) : fs::path(path).parent_path();
 }
 
-Json summary_beside(const std::string& path) {
-  std::string text;
-  if (!read_input((folder_of(path) / "summary.json").string(), text).empty()) return nullptr;
-  Json json = Json::parse(text, nullptr, false);
-  return json.is_discarded() ? Json(nullptr) : json;
-}
+Json summary_beside(const std::string& path) { return read_summary(folder_of(path)); }
 
 /// A dimension of a joint with play [m]; 0 where the result does not say, or it has none.
 double dimension_of(const Json& summary, const std::string& joint, const char* name) {
@@ -160,8 +155,8 @@ class Plot {
     request_.view = view_of(options_);
     size_of_page();
     set_window();
-    readers_.push_back(ResultReader::open(options_.path));
-    for (const std::string& other : options_.against) readers_.push_back(ResultReader::open(other));
+    require_no_other_file(options_.out, options_.force);
+    open_results();
     set_channels();
   }
 
@@ -169,9 +164,7 @@ class Plot {
     const bool as_text = options_.text || (options_.out.empty() && stdout_is_terminal());
     const int columns = std::min(stdout_columns(), most_columns);
     if (as_text) request_.across = 2.0 * columns;
-    std::vector<std::string> paths{options_.path};
-    paths.insert(paths.end(), options_.against.begin(), options_.against.end());
-    const std::vector<std::string> names = legend_names(paths);
+    const std::vector<std::string> names = legend_names(paths_);
     std::vector<plot::Source> sources;
     for (std::size_t i = 0; i < readers_.size(); ++i) sources.push_back({names[i], readers_[i].get()});
     plot::Figure figure = plot::channel_figure(sources, request_);
@@ -184,7 +177,7 @@ class Plot {
       print_data(plot::figure_text(figure, columns, stdout_takes_unicode()));
       return 0;
     }
-    write_output(options_.out, picture_with_record(figure_svg(figure, size_), record(paths)));
+    write_output(options_.out, picture_with_record(figure_svg(figure, size_), record(paths_)));
     return 0;
   }
 
@@ -263,6 +256,22 @@ class Plot {
                             some_channels()));
   }
 
+  void open_results() {
+    std::set<fs::path> seen;
+    paths_.push_back(options_.path);
+    paths_.insert(paths_.end(), options_.against.begin(), options_.against.end());
+    for (const std::string& path : paths_) {
+      readers_.push_back(ResultReader::open(path));
+      if (!seen.insert(whole_result(path)).second) refuse(fmt::format("'{}' is given twice", path));
+      // A file of text has no units.
+      const auto has_no_unit = [](const RecordColumn& column) { return column.unit.empty(); };
+      if (!std::ranges::any_of(readers_.back()->layout().columns, has_no_unit)) continue;
+      if (const auto model = model_beside(folder_of(path), summary_beside(path), loading(common_))) {
+        readers_.back()->know_units(*model);
+      }
+    }
+  }
+
   /// A joint whose journal has a place in its bearing.
   void require_journal(const std::string& joint) const {
     std::vector<std::string> journals;
@@ -276,19 +285,10 @@ class Plot {
 
   /// Radial clearance as the model beside the rows has it, where the run goes on or was killed [m]; 0: there is none.
   double clearance_in_model() const {
-    std::string file = folder_of(options_.path).string();
-    BuildOptions build;
-    LoadOptions quiet = loading(common_);
-    quiet.strict = false;
-    quiet.warn = quiet.note = {};
-    try {
-      use_model_of_result(file, summary_, build);
-      const LoadedModel loaded = load_model(file, build, quiet);
-      if (!loaded.model) return 0.0;
-      for (const JointElement& joint : loaded.model->joints) {
-        if (joint.name == options_.orbit) return std::max(joint.layout.clearance, 0.0);
-      }
-    } catch (const Error&) {  // then there is no circle
+    const auto model = model_beside(folder_of(options_.path), summary_, loading(common_));
+    if (!model) return 0.0;
+    for (const JointElement& joint : model->joints) {
+      if (joint.name == options_.orbit) return std::max(joint.layout.clearance, 0.0);
     }
     return 0.0;
   }
@@ -325,6 +325,7 @@ class Plot {
   const CommonOptions& common_;
   plot::FigureRequest request_;
   plot::PageSize size_;
+  std::vector<std::string> paths_;  // of the result and those that it is drawn against
   std::vector<std::unique_ptr<ResultReader>> readers_;
   Json summary_;
 };
@@ -352,6 +353,7 @@ Command add_plot_command(CLI::App& program, CommonOptions& common) {
   add_option(*app, "--height", options->height, "Height of a panel in the same way (240)", "SIZE");
   add_flag(*app, "--text", options->text, "Draw with characters, as on a terminal");
   add_file_option(*app, "--out", options->out, "SVG file (stdout, where it is no terminal)", "FILE");
+  add_flag(*app, "--force", options->force, "Replace a file that is no picture");
   add_common_options(*app, common);
   return {app, [options, &common] { return Plot(*options, common).execute(); }};
 }

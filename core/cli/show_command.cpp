@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/input_text.h"
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/output_file.h"
@@ -30,6 +29,7 @@ struct ShowOptions {
   std::string model, format, out;
   ResultPictureOptions picture;
   ModelOptions build;
+  bool force = false;
 };
 
 void require_fitting(const ShowOptions& options, bool json) {
@@ -50,10 +50,7 @@ void require_fitting(const ShowOptions& options, bool json) {
 Json summary_of(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return nullptr;
-  std::string text;
-  if (read_input((path / "summary.json").string(), text).empty()) {
-    if (Json summary = json_of(text); summary.is_object()) return summary;
-  }
+  if (Json summary = read_summary(path); summary.is_object()) return summary;
   if (!fs::exists(path / "run.log", ignored)) return nullptr;
   return summary_of_unfinished(path, *ResultReader::open(path));
 }
@@ -64,6 +61,7 @@ class Show {
       : options_(std::move(options)), common_(common), path_(options_.model) {
     if (options_.format.empty()) options_.format = common.json ? "json" : "text";
     require_fitting(options_, common.json);
+    require_no_other_file(options_.out, options_.force);
   }
 
   int execute() {
@@ -101,10 +99,18 @@ class Show {
   }
 
   std::string picture() {
-    if (!options_.picture.any()) return mechanism_svg(assembled_->system, {assembled_->start.state.q()});
-    ResultPicture drawn = result_picture(path_, assembled_->system, options_.picture);
-    drawn.picture.caption += unfinished_words(summary_);
-    return mechanism_svg(assembled_->system, drawn.picture);
+    if (!is_result()) return mechanism_svg(assembled_->system, {assembled_->start.state.q()});
+    try {
+      ResultPicture drawn = result_picture(path_, assembled_->system, options_.picture);
+      drawn.picture.caption += unfinished_words(summary_);
+      return mechanism_svg(assembled_->system, drawn.picture);
+    } catch (const Error& error) {
+      if (options_.picture.any()) throw;
+      // Of rows without poses only the start is known.
+      MechanismPicture start{assembled_->start.state.q()};
+      start.caption = "start: " + error.message();
+      return mechanism_svg(assembled_->system, start);
+    }
   }
 
   std::string text() const {
@@ -148,8 +154,8 @@ Command add_show_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "show", "Print or draw a model after everything in it is expanded");
   const auto options = std::make_shared<ShowOptions>();
   add_option(*app, "MODEL", options->model, "Model file, or result directory: the model as it ran");
-  add_option(*app, "--format", options->format, "text (default), json, dot for Graphviz, svg: a drawing of the start",
-             "FORMAT");
+  add_option(*app, "--format", options->format,
+             "text (default), json, dot for Graphviz, svg: a drawing of a model's start, a result's end", "FORMAT");
   add_option(*app, "--at", options->picture.at, "Of a result: draw it at this time, \"10 ms\" (its end)", "T");
   add_option(*app, "--every", options->picture.every,
              "Of a result: pale, where it was before, each so much time or turn of the first driven joint: \"30 deg\"",
@@ -159,6 +165,7 @@ Command add_show_command(CLI::App& program, CommonOptions& common) {
   add_repeatable(*app, "--magnify", options->picture.magnify,
                  "Of a result: a journal in its clearance, so many times larger: tip=500; repeatable", "JOINT=FACTOR");
   add_file_option(*app, "--out", options->out, "Write into a file instead of stdout", "FILE");
+  add_flag(*app, "--force", options->force, "Replace a file that is no picture");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return Show(*options, common).execute(); }};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <tuple>
 #include <unordered_set>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace {
 constexpr double width = 900.0, most_height = 1400.0, least_height = 260.0, margin = 70.0;
 constexpr double inset_width = 262.0, inset_height = 274.0;
 constexpr double rim = 12.0, least_rim = 8.0;  // radii of gears
+constexpr double most_pitch = 3.0;             // radius of a wheel, of the rest of the mechanism
 
 using svg::length;
 using svg::Point;
@@ -109,12 +111,20 @@ class Drawing {
     for (const Trace& trace : picture_.traces) {
       for (const auto& p : trace.points) all.push_back({p[0], p[1]});
     }
-    Point low{0.0, 0.0}, high{0.0, 0.0};
-    if (!all.empty()) low = high = all.front();
-    for (const Point& p : all) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    auto [low, high] = ends_of(all);
+    largest_pitch_ = most_pitch * std::max(high.x - low.x, high.y - low.y);
+    for (const JointElement& joint : model_.joints) {
+      if (joint.gear < 0) continue;
+      const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
+      const Point from = world_place(gear.first), to = world_place(gear.second);
+      const PitchRadii radii = pitch_radii(length(to - from), gear.ratio);
+      if (!has_pitch_circles(gear, radii)) continue;
+      for (const auto& [at, radius] : {std::pair(from, radii.first), std::pair(to, radii.second)}) {
+        all.push_back({at.x - radius, at.y - radius});
+        all.push_back({at.x + radius, at.y + radius});
+      }
     }
+    std::tie(low, high) = ends_of(all);
     middle_ = 0.5 * (low + high);
     const Point size = high - low;
     const double largest = std::max({size.x, size.y, 1e-9});
@@ -123,6 +133,22 @@ class Drawing {
     // A mechanism on one vertical or horizontal line still gets a picture of ordinary proportions.
     scale_ = std::min(scale_, (width - 2 * margin) / largest);
     height_ = std::max(least_height, scale_ * size.y + 2 * margin);
+  }
+
+  /// Lower left and upper right.
+  static std::pair<Point, Point> ends_of(const std::vector<Point>& all) {
+    Point low{0.0, 0.0}, high{0.0, 0.0};
+    if (!all.empty()) low = high = all.front();
+    for (const Point& p : all) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    return {low, high};
+  }
+
+  /// Wheels that turn, of a size that leaves the mechanism visible.
+  bool has_pitch_circles(const Gear& gear, const PitchRadii& radii) const {
+    return turns(gear.first) && turns(gear.second) && std::max(radii.first, radii.second) <= largest_pitch_;
   }
 
   // --- shapes ----------------------------------------------------------------------------------------------------
@@ -204,6 +230,7 @@ class Drawing {
                "class=\"clearance\" fill=\"none\" stroke=\"#cc3311\" stroke-dasharray=\"5 3\"");
     box.shape("<path d=\"M{0} {1}m-4 0h8m-4 -4v8\" stroke=\"#cc3311\" stroke-width=\"0.8\"/>\n", px(middle.x),
               px(middle.y));
+    const double whole = 0.48 * (bottom - top) / (scale_ * joint.layout.clearance);  // times that fit
     std::vector<Point> points;
     for (const auto& e : magnified.orbit) points.push_back(place(e));
     if (!points.empty()) {
@@ -214,6 +241,11 @@ class Drawing {
         "</g>\n<text x=\"{}\" y=\"{}\" font-weight=\"bold\" paint-order=\"stroke\" stroke=\"white\" "
         "stroke-width=\"4\">{}, {:g} times</text>\n",
         px(left + 8.0), px(top + 16.0), svg::escaped(joint.name), magnified.factor);
+    // Beyond the corners of the box nothing of the circle is seen.
+    if (magnified.factor > 1.45 * whole) {
+      box.shape("<text x=\"{}\" y=\"{}\" fill=\"#cc3311\">its clearance is larger: up to {:g} times</text>\n",
+                px(left + 8.0), px(top + 32.0), whole < 10.0 ? 0.1 * std::floor(10.0 * whole) : std::floor(whole));
+    }
     return box.text() + svg::scale_bar(scale, side / 4.0, left + 8.0, bottom - 10.0);
   }
 
@@ -254,12 +286,11 @@ class Drawing {
   /// Pitch circles about the two joints, which touch, and a line between them.
   void draw_gear(const JointElement& joint) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
-    const Point from = place(gear.first), to = place(gear.second);
-    PitchRadii radii = pitch_radii(length(to - from), gear.ratio);
-    if (!turns(gear.first) || !turns(gear.second) || !(std::min(radii.first, radii.second) > least_rim) ||
-        !(std::max(radii.first, radii.second) < 3.0 * width)) {
-      radii = {rim, rim};
-    }
+    const Point first = world_place(gear.first), second = world_place(gear.second), from = page(first),
+                to = page(second);
+    PitchRadii radii = pitch_radii(length(second - first), gear.ratio);
+    const bool drawn = has_pitch_circles(gear, radii) && scale_ * std::min(radii.first, radii.second) > least_rim;
+    radii = drawn ? PitchRadii{scale_ * radii.first, scale_ * radii.second} : PitchRadii{rim, rim};
     for (const auto& [at, radius] : {std::pair(from, radii.first), std::pair(to, radii.second)}) {
       out_.shape(
           "<circle class=\"pitch\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"3\" "
@@ -275,11 +306,11 @@ class Drawing {
     return one.gear < 0 && one.ideal_layout.coordinate == Coordinate::angle;
   }
 
-  /// On the page: where a joint moves its second body.
-  Point place(int index) const {
+  /// Where a joint moves its second body.
+  Point world_place(int index) const {
     const JointElement& joint = model_.joints[static_cast<std::size_t>(index)];
-    return joint.gear >= 0 ? place(model_.gears[static_cast<std::size_t>(joint.gear)].second)
-                           : page(world(marker(joint.marker_b)));
+    return joint.gear >= 0 ? world_place(model_.gears[static_cast<std::size_t>(joint.gear)].second)
+                           : world(marker(joint.marker_b));
   }
 
   void draw_pin(const JointElement& joint, const Point& at) {
@@ -338,6 +369,7 @@ class Drawing {
   GivenStart given_;
   std::span<const BodyId> moved_;
   double scale_ = 1.0, height_ = least_height;
+  double largest_pitch_ = 0.0;  // [m]
   Point middle_;
   svg::Page out_;
 };

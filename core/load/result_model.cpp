@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
+#include "load/load.h"
 
 namespace freeplay {
 namespace {
@@ -44,6 +45,23 @@ ResultWords use_model_of_result(std::string& path, const Json& summary, BuildOpt
   use_settings(settings, build);
   return {text(summary.value("model", Json::object()), "name"),
           text(settings.value("integrator", Json::object()), "type")};
+}
+
+std::unique_ptr<Model> model_beside(const fs::path& folder, const Json& summary, const LoadOptions& options) {
+  std::error_code ignored;
+  const bool urdf = fs::exists(folder / "model.urdf", ignored);
+  const fs::path file = folder / (urdf ? "model.urdf" : "model.yaml");
+  if (!fs::exists(file, ignored)) return nullptr;
+  BuildOptions build;
+  if (summary.is_object() && summary.contains("settings")) use_settings(summary["settings"], build);
+  LoadOptions quiet = options;
+  quiet.strict = false;
+  quiet.warn = quiet.note = {};
+  try {
+    return load_model(file.string(), build, quiet).model;
+  } catch (const Error&) {
+    return nullptr;
+  }
 }
 
 void use_settings(const Json& settings, BuildOptions& build) {

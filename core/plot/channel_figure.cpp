@@ -15,6 +15,7 @@ namespace freeplay::plot {
 namespace {
 
 constexpr double px_per_x_tick = 90.0, px_per_y_tick = 40.0, orbit_room = 1.05;
+constexpr double least_open = 0.25;  // of the longer side of an orbit: the shorter one
 constexpr double most_bins = 60.0, px_per_bin = 8.0, percent = 100.0;
 
 /// What the first reading of a result tells.
@@ -31,9 +32,8 @@ class ChannelFigure {
       : sources_(sources), request_(request) {
     for (const Source& source : sources) {
       figure_.names.push_back(source.name);
-      columns_.push_back(columns_of(*source.reader));
+      columns_.push_back(columns_.empty() ? columns_of(*source.reader) : columns_beside(*source.reader));
     }
-    require_same_channels();
   }
 
   Figure make() {
@@ -88,17 +88,30 @@ class ChannelFigure {
     return columns;
   }
 
-  void require_same_channels() const {
-    for (std::size_t s = 1; s < sources_.size(); ++s) {
-      bool same = columns_[s].size() == columns_[0].size();
-      for (std::size_t c = 0; same && c < columns_[0].size(); ++c) {
-        same = layout(s)[columns_[s][c]].name == layout(0)[columns_[0][c]].name;
-      }
-      if (same) continue;
-      throw Error(Error::Category::usage, "unknown-channel",
-                  fmt::format("'{}' and '{}' do not have the same channels of these names", sources_[0].reader->file(),
-                              sources_[s].reader->file()));
-    }
+  /// The columns that another result draws beside those of the first, which must be all that fit.
+  std::vector<std::size_t> columns_beside(const ResultReader& other) const {
+    const ResultReader& first = *sources_[0].reader;
+    std::vector<std::size_t> columns;
+    for (const std::size_t column : columns_[0]) columns.push_back(required(layout(0)[column].name, first, other));
+    for (const std::size_t column : columns_of(other)) required(other.layout().columns[column].name, other, first);
+    return columns;
+  }
+
+  /// Where `other` has a channel of `one`.
+  static std::size_t required(const std::string& name, const ResultReader& one, const ResultReader& other) {
+    const std::size_t column = other.find(name);
+    if (column < other.layout().columns.size()) return column;
+    const std::string joint = name.substr(0, name.rfind('.') + 1);
+    const auto has = [](const ResultReader& reader, const std::string& channel) {
+      return reader.find(channel) < reader.layout().columns.size();
+    };
+    // Joints with play have a normal force; all have a force.
+    const bool rigid = has(one, joint + "fn") && !has(other, joint + "fn") && has(other, joint + "fx");
+    throw Error(Error::Category::usage, "unknown-channel",
+                fmt::format("'{}' has no channel '{}', which '{}' has", other.file(), name, one.file()), {},
+                rigid ? fmt::format("joint '{}' has no play there; draw what both have",
+                                    joint.substr(joint.find('.') + 1, joint.size() - joint.find('.') - 2))
+                      : "draw what both have");
   }
 
   template <class Take>
@@ -226,7 +239,8 @@ class ChannelFigure {
       }
       return values;
     };
-    const Extremes wide = range(first), high = range(second);
+    Extremes wide = range(first), high = range(second);
+    open_up(wide, high);
     const RecordColumn& over = column(first);
     const double ticks = std::max(3.0, std::min(request_.across, request_.down) / px_per_x_tick);
     const double longest = std::max(wide.most - wide.least, high.most - high.least);
@@ -241,6 +255,22 @@ class ChannelFigure {
     add_trails(one, second, first_channel() + first, pixel, pixel);
     if (request_.clearance > 0.0) one.circles.push_back({request_.clearance, "clearance", true});
     figure_.panels.push_back(std::move(one));
+  }
+
+  /// What stands still is drawn in a plane, too, and a straight way in a part of one.
+  static void open_up(Extremes& wide, Extremes& high) {
+    const auto size = [](const Extremes& of) { return of.any() ? of.most - of.least : 0.0; };
+    const auto reach = [](const Extremes& of) { return of.any() ? std::max(-of.least, of.most) : 0.0; };
+    double longest = least_open * std::max(size(wide), size(high));
+    if (!(longest > 0.0)) longest = 0.1 * std::max(reach(wide), reach(high));
+    if (!(longest > 0.0)) longest = 1.0;
+    for (Extremes* one : {&wide, &high}) {
+      const double middle = one->any() ? 0.5 * (one->least + one->most) : 0.0, part = 0.5 * (longest - size(*one));
+      if (!(part > 0.0)) continue;
+      const Extremes seen = *one;
+      one->add(0.0, (seen.any() ? seen.least : middle) - part);
+      one->add(0.0, (seen.any() ? seen.most : middle) + part);
+    }
   }
 
   /// Rows count by the time to their neighbours.
@@ -296,12 +326,14 @@ class ChannelFigure {
   }
 
   void draw_spectra() {
+    std::string span;
     std::vector<Panel> panels;
     std::vector<Extremes> values(channels());
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       const DerivedTable table = derived_table(*sources_[s].reader, "spectra", columns_[s], request_.window, 0.0, {});
       const std::size_t width = table.columns.size(), lines = table.rows.size() / width;
       const double last = table.rows[(lines - 1) * width];
+      if (s == 0) span = fmt::format(", rows from {:.6g} s to {:.6g} s", table.from, table.until);
       for (std::size_t c = 0; c < channels(); ++c) {
         if (s == 0) {
           panels.push_back(panel(c, svg::make_axis(0.0, last, "Hz", x_ticks(), svg::Fit::exact), "Hz"));
@@ -319,7 +351,7 @@ class ChannelFigure {
       }
     }
     for (std::size_t c = 0; c < channels(); ++c) add_panel(std::move(panels[c]), values[c]);
-    figure_.panels.back().x_label = "frequency";
+    figure_.panels.back().x_label = "frequency" + span;
   }
 
   const std::vector<Source>& sources_;

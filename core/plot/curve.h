@@ -17,11 +17,15 @@ struct Point {
 /// Least and largest value, and where they were first met.
 struct Extremes {
   double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
+  std::int64_t missing = 0;  ///< values that are no finite numbers
   double least_at = std::numeric_limits<double>::quiet_NaN(), most_at = std::numeric_limits<double>::quiet_NaN();
 
   /// What is no finite number counts for nothing.
   void add(double at, double value) {
-    if (!std::isfinite(value)) return;
+    if (!std::isfinite(value)) {
+      ++missing;
+      return;
+    }
     if (value < least) least = value, least_at = at;
     if (value > most) most = value, most_at = at;
   }

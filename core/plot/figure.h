@@ -18,6 +18,9 @@ struct Line {
   std::int64_t rows = 0;
 };
 
+/// "3 of 100 rows have no number"; empty where all have.
+std::string missing_words(const Line& line);
+
 /// Centred at the origin of a panel with equal scales.
 struct Circle {
   double radius = 0.0;

@@ -15,7 +15,8 @@ using svg::escaped, svg::px;
 constexpr double left = 72.0, right = 16.0, page_top = 28.0, legend_line = 16.0;
 constexpr double panel_top = 22.0, axis_room = 38.0, gap = 10.0;  // of a panel, with and without an axis below
 constexpr double px_per_mm = 96.0 / 25.4;
-constexpr double letter_width = 6.0;  // of 11 px
+constexpr double letter_width = 6.0;                                      // of 11 px
+constexpr double usual_size = 11.0, title_size = 13.0, least_size = 5.0;  // of letters [px]
 
 struct Style {
   const char *colour, *dashes;
@@ -33,6 +34,12 @@ std::string stroke(std::size_t line) {
 
 std::string with_unit(const std::string& words, const std::string& unit) {
   return unit.empty() ? words : fmt::format("{} [{}]", words, unit);
+}
+
+/// A size of the letters that lets words fit where they would be cut.
+std::string fitting(const std::string& words, double room, double size = usual_size) {
+  const double width = letter_width * size / usual_size * static_cast<double>(words.size());
+  return width <= room ? "" : fmt::format(" font-size=\"{:.3g}\"", std::max(least_size, size * room / width));
 }
 
 /// The place of a panel's lines on the page.
@@ -78,8 +85,9 @@ class PanelDrawing {
   }
 
   void draw_axes() {
-    out_ += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", px(area_.left), px(area_.top - 6.0),
-                        escaped(with_unit(panel_.title, panel_.y.unit)));
+    const std::string title = with_unit(panel_.title, panel_.y.unit);
+    out_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(area_.left), px(area_.top - 6.0),
+                        fitting(title, area_.right - area_.left), escaped(title));
     for (std::size_t i = 0; i < panel_.y.ticks.size(); ++i) {
       const double y = at_y(panel_.y.ticks[i]);
       out_ += fmt::format(
@@ -99,9 +107,10 @@ class PanelDrawing {
                           panel_.x.labels[i]);
     }
     if (panel_.x_label.empty()) return;
-    out_ +=
-        fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", px(0.5 * (area_.left + area_.right)),
-                    px(area_.bottom + 31.0), escaped(with_unit(panel_.x_label, panel_.x.unit)));
+    const std::string label = with_unit(panel_.x_label, panel_.x.unit);
+    out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\"{}>{}</text>\n",
+                        px(0.5 * (area_.left + area_.right)), px(area_.bottom + 31.0),
+                        fitting(label, area_.right - area_.left), escaped(label));
   }
 
   void draw_circles() {
@@ -139,9 +148,17 @@ class PanelDrawing {
                           styles[i % std::size(styles)].colour);
     }
     if (!d.empty()) out_ += fmt::format("<path class=\"line\" d=\"{}\" {}/>\n", d, stroke(i));
-    if (!d.empty()) return;
-    out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">no numbers</text>\n",
-                        px(0.5 * (area_.left + area_.right)), px(0.5 * (area_.top + area_.bottom)));
+    const std::string note = missing_words(panel_.lines[i]);
+    if (note.empty()) return;
+    // In the middle of an empty panel, else in its upper right, below those of other lines.
+    const char* colour = panel_.lines.size() > 1 ? styles[i % std::size(styles)].colour : "#333";
+    const double line_height = legend_line * static_cast<double>(i);
+    out_ += fmt::format(
+        "<text class=\"missing\" x=\"{}\" y=\"{}\" text-anchor=\"{}\" fill=\"{}\" paint-order=\"stroke\" "
+        "stroke=\"white\" stroke-width=\"3\">{}</text>\n",
+        px(d.empty() ? 0.5 * (area_.left + area_.right) : area_.right - 6.0),
+        px((d.empty() ? 0.5 * (area_.top + area_.bottom) : area_.top + 14.0) + line_height),
+        d.empty() ? "middle" : "end", colour, note);
   }
 
   const Panel& panel_;
@@ -167,9 +184,13 @@ double line_room(const PageSize& size) { return size.width - left - right; }
 std::string figure_svg(const Figure& figure, const PageSize& size) {
   std::string body;
   double y = page_top;
-  body += fmt::format("<text x=\"{}\" y=\"18\" font-size=\"13\">{}</text>\n", px(left), escaped(figure.title));
+  const std::string smaller = fitting(figure.title, line_room(size), title_size);
+  body +=
+      fmt::format("<text x=\"{}\" y=\"18\"{}>{}</text>\n", px(left),
+                  smaller.empty() ? fmt::format(" font-size=\"{:g}\"", title_size) : smaller, escaped(figure.title));
   const auto legend = [&](const std::string& sign, const std::string& words) {
-    body += fmt::format("{}<text x=\"{}\" y=\"{}\">{}</text>\n", sign, px(left + 36.0), px(y + 9.0), escaped(words));
+    body += fmt::format("{}<text x=\"{}\" y=\"{}\"{}>{}</text>\n", sign, px(left + 36.0), px(y + 9.0),
+                        fitting(words, line_room(size) - 36.0), escaped(words));
     y += legend_line;
   };
   if (figure.names.size() > 1) {

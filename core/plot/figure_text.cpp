@@ -82,6 +82,12 @@ void draw(const Panel& panel, DotScreen& screen) {
 
 }  // namespace
 
+std::string missing_words(const Line& line) {
+  if (!line.seen.any()) return fmt::format("no numbers in {} row{}", line.rows, line.rows == 1 ? "" : "s");
+  if (line.seen.missing == 0) return "";
+  return fmt::format("{} of {} rows have no number", line.seen.missing, line.rows);
+}
+
 std::string figure_text(const Figure& figure, int columns, bool braille) {
   std::string out;
   const char* to = braille ? "…" : "...";
@@ -92,7 +98,9 @@ std::string figure_text(const Figure& figure, int columns, bool braille) {
       const std::string of = figure.names.size() > 1 ? fmt::format("  {}", figure.names[i]) : "";
       const std::string range =
           line.seen.any() ? fmt::format("{:.6g} {} {:.6g}", line.seen.least, to, line.seen.most) : "no numbers";
-      out += fmt::format("{}{}  {}  ({} rows){}\n", panel.title, unit, range, line.rows, of);
+      const std::string missing = line.seen.any() ? missing_words(line) : "";
+      out += fmt::format("{}{}  {}  ({} rows{}{}){}\n", panel.title, unit, range, line.rows,
+                         missing.empty() ? "" : ", ", missing, of);
     }
     DotScreen screen(columns);
     draw(panel, screen);

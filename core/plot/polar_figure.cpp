@@ -57,7 +57,7 @@ Line outline(const std::vector<double>& values) {
       const double angle = sector * (static_cast<double>(k) + static_cast<double>(i) / arc_points);
       line.points.push_back({value * std::cos(angle), value * std::sin(angle)});
     }
-    line.seen.add(sector * (static_cast<double>(k) + 0.5), values[k]);
+    line.seen.add(sector * (static_cast<double>(k) + 0.5), value);
   }
   if (!line.points.empty()) line.points.push_back(line.points.front());
   line.rows = static_cast<std::int64_t>(values.size());
@@ -92,15 +92,20 @@ Figure polar_figure(const std::vector<Source>& sources, const FigureRequest& req
       panel.lines.push_back(outline(values));
       largest = std::fmax(largest, panel.lines.back().seen.most);
     }
-    if (!(largest > 0.0)) largest = 1.0;
+    const bool empty = !(largest > 0.0);
+    if (empty) {
+      largest = 1.0;
+      panel.title += ": 0 in all sectors";
+    }
     panel.x = panel.y = {-room * largest, room * largest, {0.0}, {""}, ""};
     panel.equal_scales = true;
     const double beside = free_angle(panel.lines);
     for (const double ring : svg::round_numbers(0.0, largest, rings)) {
       const PrefixedUnit to = prefixed_unit(ring, panel.unit == "1" ? "" : panel.unit);
-      if (ring > 0.0) panel.circles.push_back({ring, fmt::format("{:g} {}", ring / to.factor, to.unit), false, beside});
+      if (ring > 0.0 && !empty)
+        panel.circles.push_back({ring, fmt::format("{:g} {}", ring / to.factor, to.unit), false, beside});
     }
-    panel.x_label = "0 deg is to the right";
+    panel.x_label = "0 deg is to the right; of the whole time that counts";
     figure.panels.push_back(std::move(panel));
   }
   return figure;

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/name_pattern.h"
-#include "base/suggestion.h"
+#include "results/channel_choice.h"
 
 namespace freeplay {
 namespace {
@@ -54,9 +54,8 @@ void require_fit(std::span<const ReportedRun> runs, const std::string& pattern) 
       names.push_back(run.columns[i].name);
     }
   }
-  const auto nearest = suggestion(pattern, names);
   throw Error(Error::Category::usage, "unknown-channel", fmt::format("--channels: no channel fits '{}'", pattern), {},
-              nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+              channel_hint(pattern, names));
 }
 
 }  // namespace

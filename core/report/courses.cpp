@@ -20,7 +20,8 @@ Courses::Courses(std::size_t channels, std::size_t rows, std::size_t buckets)
       bucket_high_(channels, nothing),
       low_(channels, {nothing, nothing}),
       high_(channels, {nothing, nothing}),
-      values_(channels) {
+      values_(channels),
+      missing_(channels) {
   for (std::vector<double>& values : values_) values.reserve(buckets > 0 ? 2 * buckets : rows);
 }
 
@@ -50,6 +51,7 @@ void Courses::row(std::span<const double> row) {
       bucket_high_[c] = x;
       if (!(high_[c].value >= x)) high_[c] = {x, last_};
     }
+    if (x != x) ++missing_[c];
     if (buckets_ == 0) values_[c].push_back(x);
   }
   if (buckets_ == 0 || row_ < next_) return;
@@ -69,6 +71,7 @@ void Courses::describe(std::size_t channel, Json& json) const {
   json["max"] = json_number(high_[channel].value);
   json["min_time"] = json_number(low_[channel].time);
   json["max_time"] = json_number(high_[channel].time);
+  if (missing_[channel] > 0) json["missing"] = missing_[channel];
   json["offset"] = offset(channel);
   json["values"] = base64_floats(values_[channel], offset(channel));
 }

@@ -29,7 +29,7 @@ class Courses {
   double max(std::size_t channel) const { return high_[channel].value; }
   /// Middle between the extremes of all rows; 0 where there is none.
   double offset(std::size_t channel) const;
-  /// `min, max, min_time, max_time, offset, values` of the page.
+  /// `min, max, min_time, max_time, offset, values` of the page, and how many rows are `missing` where some are.
   void describe(std::size_t channel, Json& json) const;
   /// Time of each row, or the first of each bucket and the last of all, in base64.
   std::string times() const;
@@ -47,6 +47,7 @@ class Courses {
   std::vector<double> bucket_low_, bucket_high_;  // of the present bucket
   std::vector<Extreme> low_, high_;               // of all rows
   std::vector<std::vector<double>> values_;       // by channel
+  std::vector<std::size_t> missing_;              // rows without a number, by channel
 };
 
 }  // namespace freeplay

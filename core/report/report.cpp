@@ -46,8 +46,7 @@ void require_different(const std::vector<std::string>& results) {
   }
   std::set<fs::path> seen;
   for (const std::string& path : results) {
-    std::error_code ignored;
-    if (seen.insert(fs::weakly_canonical(path, ignored)).second) continue;
+    if (seen.insert(whole_result(path)).second) continue;
     throw Error(Error::Category::usage, "bad-value", fmt::format("'{}' is given twice", path));
   }
 }

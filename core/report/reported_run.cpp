@@ -10,7 +10,6 @@
 #include "base/sha256.h"
 #include "base/shell_word.h"
 #include "load/result_model.h"
-#include "model/channel.h"
 #include "results/directory.h"
 #include "results/result_record.h"
 
@@ -31,11 +30,6 @@ std::string text_of(const fs::path& file) {
   return read_input(file.string(), text).empty() ? text : std::string();
 }
 
-Json object(const std::string& text) {
-  Json json = Json::parse(text, nullptr, false);
-  return json.is_object() ? json : Json::object();
-}
-
 Json list_in(const std::string& text) {
   Json json = Json::parse(text, nullptr, false);
   return json.is_array() ? json : Json::array();
@@ -51,8 +45,8 @@ std::string text_in(const Json& json, const char* name) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-void read_summary(ReportedRun& run, const fs::path& folder) {
-  run.summary = object(text_of(folder / "summary.json"));
+void take_summary(ReportedRun& run, const fs::path& folder) {
+  if (const Json summary = read_summary(folder); summary.is_object()) run.summary = summary;
   run.summary.erase("performance");
   if (!run.summary.empty()) return;
   run.note = "no summary.json: the run goes on or was killed, or its files are not all here";
@@ -117,14 +111,8 @@ void read_model(ReportedRun& run, const fs::path& folder, const LoadOptions& opt
 
 /// Names and units as the model has them, where the file of rows says nothing.
 void know_units(ReportedRun& run) {
+  if (run.model) run.reader->know_units(*run.model);
   run.columns = run.reader->layout().columns;
-  if (!run.model) return;
-  const Channels channels(*run.model);
-  for (RecordColumn& column : run.columns) {
-    if (!column.unit.empty()) continue;
-    const int index = channels.find(column.name);
-    if (index >= 0) column.unit = channels.all()[static_cast<std::size_t>(index)].unit;
-  }
 }
 
 }  // namespace
@@ -135,7 +123,7 @@ ReportedRun open_reported(const fs::path& path, const LoadOptions& options) {
   run.reader = ResultReader::open(path);
   const bool directory = fs::is_directory(path, ignored);
   const fs::path folder = directory ? path : path.parent_path();
-  read_summary(run, folder);
+  take_summary(run, folder);
   read_model(run, folder, options);
   know_model(run);
   read_inputs(run, folder);

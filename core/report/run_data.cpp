@@ -1,6 +1,7 @@
 #include "report/run_data.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,7 @@ RunData::RunData(ReportedRun& run, std::vector<std::size_t> channels, const RowW
       shares_(shares),
       summary_(run.summary),
       model_text_(run.model_text),
+      note_(run.note),
       wanted_(std::move(channels)),
       impacts_(*run.reader, window) {
   look_at_times();
@@ -64,9 +66,28 @@ void RunData::look_at_times() {
   if (summary_.value("status", "") == "incomplete") {  // as far as rows go
     summary_["time"]["reached"] = last_;
     summary_["counts"]["rows"] = rows_;
+  } else {
+    note_missing_rows();
   }
   interval_ = counted().interval;
   if (!(interval_ > 0.0) && rows_ > 1) interval_ = (last_ - first_) / static_cast<double>(rows_ - 1);
+}
+
+/// A file of rows may have been cut after its run had ended.
+void RunData::note_missing_rows() {
+  const auto number = [&](const char* path) {
+    const Json::json_pointer at(path);
+    return summary_.contains(at) && summary_[at].is_number() ? summary_[at].get<double>() : std::nan("");
+  };
+  const double wrote = number("/counts/rows"), reached = number("/time/reached");
+  const bool whole = std::isinf(window_.from) && std::isinf(window_.until), to_the_end = std::isinf(window_.until);
+  std::string why;
+  if (whole && static_cast<double>(rows_) < wrote) {
+    why = fmt::format("the file of rows was cut: it has {} of the {:.0f} that the run wrote", rows_, wrote);
+  } else if (to_the_end && last_ < reached - 1.5 * number("/settings/interval")) {
+    why = fmt::format("the file of rows was cut: it ends at {:g} s, the run at {:g} s", last_, reached);
+  }
+  if (!why.empty()) note_ += (note_.empty() ? "" : "; ") + why;
 }
 
 /// As the file of rows says, or else the summary beside it.
@@ -177,7 +198,7 @@ std::size_t RunData::call_margin() const {
 std::size_t RunData::fixed_size() const {
   std::size_t size = 2000 + size_of(summary_) + call_margin() + size_of(Json(model_text_)) + size_of(impacts_json_) +
                      size_of(bearing_) + size_of(Json(rerun_command(run_))) + size_of(Json(left_out_)) +
-                     size_of(Json(run_.note));
+                     size_of(Json(note_));
   if (plan_) {
     Animation empty = *plan_;
     size += size_of(empty.json()) + plan_->size();
@@ -196,7 +217,7 @@ std::size_t RunData::course_size(std::size_t buckets) const {
   std::size_t size = base64_size(8 * times);
   for (const std::size_t column : shown_) {
     const RecordColumn& c = run_.columns[column];
-    size += 92 + c.name.size() + c.unit.size() + c.long_name.size() + 5 * number_size + base64_size(4 * values);
+    size += 104 + c.name.size() + c.unit.size() + c.long_name.size() + 6 * number_size + base64_size(4 * values);
   }
   return size;
 }
@@ -334,7 +355,7 @@ Json RunData::json() const {
                {"bearing", bearing_},
                {"spectra", spectra_},
                {"left_out", left_out_}};
-  if (!run_.note.empty()) json["note"] = run_.note;
+  if (!note_.empty()) json["note"] = note_;
   return json;
 }
 

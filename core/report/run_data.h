@@ -55,6 +55,7 @@ class RunData {
   };
 
   void look_at_times();
+  void note_missing_rows();
   CountedTime counted() const;
   void find_orbits(std::size_t points);
   void find_efforts();
@@ -72,7 +73,7 @@ class RunData {
   RowWindow window_;
   Shares shares_;
   Json summary_;
-  std::string model_text_;
+  std::string model_text_, note_;
   std::vector<std::size_t> wanted_, shown_;  // by rank, and in the order of the columns
   std::size_t rows_ = 0;
   double first_ = 0.0, last_ = 0.0, interval_ = 0.0;

@@ -1,6 +1,7 @@
 #include "results/channel_choice.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,15 @@
 #include "base/suggestion.h"
 
 namespace freeplay {
+
+std::string channel_hint(const std::string& pattern, const std::vector<std::string>& names) {
+  if (const auto nearest = suggestion(pattern, names)) return fmt::format("did you mean '{}'?", *nearest);
+  std::set<std::string> kinds;
+  for (const std::string& name : names) kinds.insert(name.substr(0, name.find('.')));
+  constexpr std::size_t most_kinds = 8;
+  if (kinds.empty() || kinds.size() > most_kinds) return "";
+  return fmt::format("names of channels begin with {}", fmt::join(kinds, ", "));
+}
 
 std::vector<std::size_t> chosen_channels(const ResultReader& reader, const std::vector<std::string>& patterns) {
   const std::vector<RecordColumn>& all = reader.layout().columns;
@@ -26,10 +36,8 @@ std::vector<std::size_t> chosen_channels(const ResultReader& reader, const std::
     if (fits) continue;
     std::vector<std::string> names;
     for (const RecordColumn& column : all) names.push_back(column.name);
-    const auto nearest = suggestion(pattern, names);
     throw Error(Error::Category::usage, "unknown-channel",
-                fmt::format("'{}' has no channel '{}'", reader.file(), pattern), {},
-                nearest ? fmt::format("did you mean '{}'?", *nearest) : "");
+                fmt::format("'{}' has no channel '{}'", reader.file(), pattern), {}, channel_hint(pattern, names));
   }
   return chosen;
 }

@@ -42,6 +42,8 @@ DerivedTable spectra_of(const Columns& columns, const RowGrid& grid) {
   out.columns.push_back({"frequency", "1/s", "frequency", "spectrum with a Hann window"});
   for (std::size_t k = 0; k < spectrum.frequency.size(); ++k)
     put_row(out, spectrum.frequency[k], spectrum.amplitudes, k);
+  out.until = columns.time()[grid.rows.back()];
+  out.from = out.until - 1.0 / spectrum.frequency[1] + grid.interval;
   out.summary = {{"resolution", spectrum.resolution}, {"estimate", true}};
   return out;
 }

@@ -12,8 +12,9 @@ namespace freeplay {
 
 struct DerivedTable {
   std::vector<RecordColumn> columns;
-  std::vector<double> rows;  ///< one after the other
-  Json summary = nullptr;    ///< of estimates: how far they may be trusted
+  std::vector<double> rows;        ///< one after the other
+  double from = 0.0, until = 0.0;  ///< the rows that a spectrum is made from [s]
+  Json summary = nullptr;          ///< of estimates: how far they may be trusted
 };
 
 /// Where counting begins: what a result says of its settings, or of rows alone nothing.

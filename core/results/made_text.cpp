@@ -1,6 +1,7 @@
 #include "results/made_text.h"
 
 #include <cctype>
+#include <fstream>
 #include <utility>
 
 #include "results/result_record.h"
@@ -105,6 +106,16 @@ std::string_view field_text(std::string_view object, std::string_view name) {
     if (walk.now() == ',') walk.step();
   }
   return {};
+}
+
+bool is_own_picture(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(4096, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  if (!head.starts_with("<svg")) return false;
+  const std::string_view rest = std::string_view(head).substr(head.find('>') + 1);
+  return rest.starts_with("\n<metadata>{") || rest.starts_with("\n<metadata>null<");
 }
 
 MadeText split_json(const std::string& text) {

@@ -1,6 +1,7 @@
 // MadeText: where the record of provenance stands in files of text.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ MadeText split_json(const std::string& text);
 
 /// An SVG picture: JSON in `<metadata>`.
 MadeText split_picture(const std::string& text);
+
+/// Is a file that is there an SVG picture with a record?
+bool is_own_picture(const std::filesystem::path& file);
 
 /// Puts a record into an SVG picture, at its beginning.
 std::string picture_with_record(const std::string& picture, const Json& record);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "model/channel.h"
 
 namespace freeplay {
 
@@ -23,6 +24,21 @@ void unreadable_result(const std::string& file, const std::string& why, int line
 std::size_t ResultReader::find(std::string_view name) const {
   return static_cast<std::size_t>(std::ranges::find(layout_.columns, name, &RecordColumn::name) -
                                   layout_.columns.begin());
+}
+
+void ResultReader::know_units(const Model& model) {
+  const Channels channels(model);
+  for (RecordColumn& column : layout_.columns) {
+    const int index = column.unit.empty() ? channels.find(column.name) : -1;
+    if (index >= 0) column.unit = channels.all()[static_cast<std::size_t>(index)].unit;
+  }
+}
+
+fs::path whole_result(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path real = fs::weakly_canonical(path, ignored), name = real.filename();
+  const bool part = (name == "results.csv" || name == "results.h5") && !fs::is_directory(real, ignored);
+  return part ? real.parent_path() : name.empty() ? real.parent_path() : real;
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "model/model.h"
 #include "results/record.h"
 
 namespace freeplay {
@@ -46,6 +47,8 @@ class ResultReader {
   virtual bool sealed() const { return true; }
   /// Index of a column in the layout, or its size.
   std::size_t find(std::string_view name) const;
+  /// Gives columns without a unit that of the channel of this model with their name.
+  void know_units(const Model& model);
   /// Numbers of some columns, row after row. Only these are read; `columns` begins with time. The reader must outlive
   /// what it gives.
   virtual std::unique_ptr<RowSource> open_rows(std::span<const std::size_t> columns) = 0;
@@ -65,6 +68,9 @@ class ResultReader {
   std::string file_;
   RecordLayout layout_;
 };
+
+/// What is the same for all ways to name a result: its directory, also of its results.csv or results.h5.
+std::filesystem::path whole_result(const std::filesystem::path& path);
 
 [[noreturn]] void unreadable_result(const std::string& file, const std::string& why, int line = 0,
                                     const std::string& hint = {});

@@ -3,8 +3,11 @@
 #include <fstream>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "base/input_text.h"
+#include "base/version.h"
 #include "results/checkpoint.h"
 
 namespace freeplay {
@@ -77,6 +80,20 @@ Json record_of_directory(const fs::path& folder) {
     input["text"] = text_of(folder / "inputs" / fs::path(input["name"].get<std::string>()).filename());
   }
   return record;
+}
+
+Json read_summary(const fs::path& folder) {
+  const fs::path file = folder / "summary.json";
+  Json summary = json_of(text_of(file));
+  if (!summary.is_object()) return nullptr;
+  const Json schema = summary.value(Json::json_pointer("/freeplay/schema"), Json(schema_version));
+  if (schema == schema_version) return summary;
+  const Json version = summary.value(Json::json_pointer("/freeplay/version"), Json());
+  unreadable_result(file.string(),
+                    fmt::format("its schema is {}, and this program reads schema {}", schema.dump(), schema_version), 0,
+                    version.is_string() ? fmt::format("it was written by freeplay {}, this is {}",
+                                                      version.get<std::string>(), program_version)
+                                        : "");
 }
 
 Json summary_of_unfinished(const fs::path& folder, const ResultReader& reader) {

@@ -29,6 +29,10 @@ struct MadeOfResult {
 /// it that is exported again.
 Json record_of(const std::filesystem::path& path, ResultReader& reader, const MadeOfResult& made);
 
+/// The summary.json of a result directory; null where there is none, or none that can be read. Throws Error{file}
+/// "unreadable-result" for one whose schema this program does not know.
+Json read_summary(const std::filesystem::path& folder);
+
 /// What stands for the summary of a run that goes on or was killed: `status` "incomplete", `settings`, `provenance` and
 /// the model's name, as the file of rows or the checkpoint beside it has them.
 Json summary_of_unfinished(const std::filesystem::path& folder, const ResultReader& reader);

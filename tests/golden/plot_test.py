@@ -137,6 +137,22 @@ class Plot(ProgramTest):
                       for k in range(1, size // 2 + 1)) * 2 / sum(weights)
         self.assertAlmostEqual(largest, max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
 
+    def test_a_spectrum_names_the_time_that_it_is_of(self):
+        out, _ = self.freeplay("plot", "r", "driver.motor.torque", "--fft", "--from", "2 ms", "--until", "6 ms")
+        first, last = map(float, re.search(r">frequency, rows from (\S+) s to (\S+) s", out).groups())
+        self.assertLessEqual(0.002, first)
+        self.assertAlmostEqual(0.006, last, delta=1e-9)
+        step = self.columns["time"][1] - self.columns["time"][0]
+        lines = len(json.loads(self.freeplay("export", "r", "--to", "json", "--table", "spectra", "--channels", "driver.motor.torque", "--from", "2 ms", "--until", "6 ms")[0])["rows"])
+        self.assertIn(round((last - first) / step) + 1, (2 * lines - 2, 2 * lines - 1))
+
+    def test_tables_by_sector_that_are_empty_say_so(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "20 us", "--out", "short")
+        out, _ = self.freeplay("plot", "short", "--polar", "wrist", "work", "impulse")
+        self.assertEqual(2, out.count(" of wrist by bearing angle: 0 in all sectors"))
+        self.assertNotIn("<circle", out)
+        self.assertIn("of the whole time that counts", out)
+
     def test_tables_by_sector_stand_around_their_joint(self):
         panel = self.plot("--polar", "wrist", "work")[0]
         table = json.loads(self.freeplay("export", "r", "--to", "json", "--table", "bearing")[0])
@@ -154,6 +170,25 @@ class Plot(ProgramTest):
         largest = max(labels, key=lambda label: float(re.match(r"[\d.]+", label.text)[0]))
         self.assertGreater(min(math.dist(p, (float(largest.get("x")), float(largest.get("y")) - 4)) for p in points), 12)
 
+    def test_the_way_of_what_stands_still_has_room(self):
+        self.write("still.csv", "time,a,b,c\n0,2,3,2\n1,2,3,4\n")
+        for channels, sides in ((("a", "b"), (0.3, 0.3)), (("a", "c"), (0.5, 2.0)), (("c", "b"), (2.0, 0.5))):
+            (panel,) = panels(self.freeplay("plot", "still.csv", *channels, "--xy")[0])
+            self.assertAlmostEqual(sides[0], panel.until - panel.from_, delta=0.01 + 0.2 * sides[0], msg=channels)
+            self.assertAlmostEqual(panel.pixel[0], panel.pixel[1], delta=1e-9)
+
+    def test_words_fit_in_a_narrow_picture(self):
+        shutil.copytree(self.made, self.path("other"))
+        summary = self.read("other", "summary.json").replace('"name": "slider-crank"', '"name": "a slider-crank with a long name"')
+        self.write("other/summary.json", summary)
+        for options in (["driver.motor.torque", "--fft"], ["--polar", "wrist"], ["joint.wrist.fn", "--against", "r"]):
+            for width in ("84 mm", "100 mm"):
+                root = ET.fromstring(self.freeplay("plot", "other", *options, "--width", width)[0])
+                right = float(root.get("viewBox").split()[2])
+                for text in root.iter(SVG + "text"):
+                    wide = 0.5 * float(text.get("font-size", 11)) * len(text.text or "") * {"middle": 0.5, "end": 0}.get(text.get("text-anchor"), 1)
+                    self.assertLessEqual(float(text.get("x")) + wide, right, text.text)
+
     def test_another_result_is_drawn_beside(self):
         shutil.copytree(self.made, self.path("other"))
         panel = self.plot("joint.wrist.fn", "--against", "other")[0]
@@ -167,6 +202,47 @@ class Plot(ProgramTest):
         self.freeplay("run", mechanism("pendulum"), "--quiet", "--end", "10 ms", "--out", "pendulum")
         _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", "pendulum", code=2)
         self.assertIn("[unknown-channel]", err)
+        for channels in (["joint.wrist.fn"], ["joint.wrist.*"]):
+            _, err = self.freeplay("plot", "r", *channels, "--against", "ideal", code=2)
+            self.assertIn("'ideal/results.h5' has no channel 'joint.wrist.", err)
+            self.assertIn("which 'r/results.h5' has", err)
+            self.assertIn("joint 'wrist' has no play there", err)
+        _, err = self.freeplay("plot", "ideal", "joint.wrist.*", "--against", "r", code=2)
+        self.assertIn("'ideal/results.h5' has no channel 'joint.wrist.", err)
+
+    def test_a_result_is_not_drawn_against_itself(self):
+        for again in ("r", "r/", "./r/results.h5", self.made):
+            _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", again, code=2)
+            self.assertIn("'%s' is given twice" % again, err)
+
+    def test_files_that_are_no_pictures_are_kept(self):
+        kept = {"rows.csv": "time,a\n0,1\n1,2\n", "drawn.svg": "<svg xmlns='http://www.w3.org/2000/svg'><metadata id='m'/></svg>\n", "model.yaml": "freeplay: 1\n"}
+        draw = (("plot", "r", "joint.wrist.fn"), ("show", "r", "--format", "svg"), ("show", "r", "--format", "json"))
+        for name, text in kept.items():
+            self.write(name, text)
+            for command in draw:
+                _, err = self.freeplay(*command, "--out", name, code=6)
+                self.assertIn("cannot write '%s': it is there already, and no picture of this program [cannot-write]" % name, err)
+                self.assertIn("--force", err)
+                self.assertEqual(text, self.read(name))
+        for command in draw:
+            self.freeplay(*command, "--out", "rows.csv", "--force")
+            self.assertNotEqual(kept["rows.csv"], self.read("rows.csv"))
+        self.write("p.svg", "")
+        for command in draw[:2] * 2 + (("plot", "model.csv", "a"),):
+            self.write("model.csv", kept["rows.csv"])
+            self.freeplay(*command, "--out", "p.svg")  # empty, or a picture of this program
+
+    def test_a_summary_of_another_schema_is_refused(self):
+        shutil.copytree(self.made, self.path("other"))
+        summary = json.loads(self.read("other", "summary.json"))
+        for schema in (0, 99, "1", None):
+            summary["freeplay"]["schema"] = schema
+            self.write("other/summary.json", json.dumps(summary))
+            for command in (("plot", "other", "joint.wrist.fn"), ("show", "other", "--format", "svg"), ("report", "other")):
+                _, err = self.freeplay(*command, code=6)
+                self.assertIn("result 'other/summary.json' cannot be read: its schema is %s, and this program reads schema 1" % json.dumps(schema), err)
+        self.assertFalse(os.path.exists(self.path("other", "report.html")))
 
     def test_a_picture_has_the_same_bytes_in_a_file_and_its_provenance(self):
         out, _ = self.freeplay("plot", "r", "joint.wrist.fn", "--width", "84 mm")
@@ -195,12 +271,17 @@ class Plot(ProgramTest):
 
     def test_text_files_alone_are_drawn_the_same(self):
         os.mkdir(self.path("csv"))
-        for name in ("results.csv", "events.csv"):
-            shutil.copy(os.path.join(self.made, name), self.path("csv"))
-        (from_text,) = panels(self.freeplay("plot", "csv", "joint.wrist.fn")[0])
         (whole,) = self.plot("joint.wrist.fn")
-        self.assertEqual(whole.lines, from_text.lines)
-        self.assertEqual(whole.shades, from_text.shades)
+        for name in ("events.csv", "results.csv", "model.yaml", "summary.json"):
+            shutil.copy(os.path.join(self.made, name), self.path("csv"))
+            if name == "events.csv":
+                continue
+            text = self.freeplay("plot", "csv", "joint.wrist.fn")[0]
+            (from_text,) = panels(text)
+            self.assertEqual(whole.lines, from_text.lines)
+            self.assertEqual(whole.shades, from_text.shades)
+            self.assertEqual(name != "results.csv", bool(re.search(r">joint\.wrist\.fn \[k?N\]<", text)))  # only the model has units
+            self.assertEqual("N" if name != "results.csv" else "", json.loads(self.freeplay("plot", "csv/results.csv", "joint.wrist.fn", "--json")[0])["channels"][0]["unit"])
         times = panels(self.freeplay("plot", "csv", "time", "joint.wrist.fn")[0])
         self.assertEqual(["time", "joint.wrist.fn"], [panel.channel for panel in times])
 
@@ -210,6 +291,14 @@ class Plot(ProgramTest):
         self.assertEqual(7, len(finite.lines[0]))
         self.assertAlmostEqual(7.0, max(y for _, y in finite.lines[0]), delta=finite.pixel[1])
         self.assertEqual([], nothing.lines)
+        text = self.freeplay("plot", "a.csv", "a", "b")[0]
+        self.assertIn(">1 of 8 rows have no number<", text)
+        self.assertIn(">no numbers in 8 rows<", text)
+        text = self.freeplay("plot", "a.csv", "a", "b", "--text", environment={"LC_ALL": "C"})[0]
+        self.assertIn("a  0 ... 7  (8 rows, 1 of 8 rows have no number)\n", text)
+        self.assertIn("b  no numbers  (8 rows)\n", text)
+        for option in ("--histogram", "--x=time"):
+            self.assertIn(">1 of 8 rows have no number<", self.freeplay("plot", "a.csv", "a", option)[0])
 
     def test_a_result_that_is_not_complete_says_so(self):
         shutil.copytree(self.made, self.path("part"))
@@ -227,6 +316,7 @@ class Plot(ProgramTest):
     def test_what_cannot_be_drawn_is_refused(self):
         for arguments, code, words in (
                 (["r", "joint.wrst.fn"], 2, "did you mean 'joint.wrist.fn'?"),
+                (["r", "zz*"], 2, "names of channels begin with body, driver, energy, joint, time"),
                 (["nowhere", "x"], 6, "[unreadable-result]"),
                 (["r"], 2, "plot needs a channel"),
                 ([], 2, "plot needs a result"),

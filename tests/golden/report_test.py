@@ -256,6 +256,16 @@ class Report(ProgramTest):
         self.freeplay("export", "r", "--to", "csv", "--out", "rows.csv")
         self.compare_channels(killed.runs[0], self.table("rows.csv"))
 
+    def test_rows_that_were_cut_are_named(self):
+        self.run_model("--format", "csv")
+        lines = self.read("r", "results.csv").splitlines(keepends=True)
+        rows = len(lines) - 1
+        self.assertNotIn("note", self.report("r").runs[0])
+        self.write("r/results.csv", "".join(lines[: rows // 2 + 1])[:-9])
+        self.assertEqual("the file of rows was cut: it has %d of the %d that the run wrote" % (rows // 2 - 1, rows), self.report("r").runs[0]["note"])
+        self.assertRegex(self.report("r", "--from", "1 ms").runs[0]["note"], "the file of rows was cut: it ends at 0.00.* s, the run at 0.005 s")
+        self.assertNotIn("note", self.report("r", "--until", "1 ms").runs[0])
+
     def test_fields_that_are_empty(self):
         self.run_model("--format", "csv")
         with open(self.path("r", "results.csv"), encoding="utf-8", newline="") as file:
@@ -266,7 +276,10 @@ class Report(ProgramTest):
                 row[place] = ""
         with open(self.path("r", "results.csv"), "w", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
-        self.compare_channels(self.report("r").runs[0], self.table("r", "results.csv"))
+        run = self.report("r").runs[0]
+        self.compare_channels(run, self.table("r", "results.csv"))
+        missing = {channel["name"]: channel["missing"] for channel in run["channels"] if "missing" in channel}
+        self.assertEqual({"joint.wrist.fn": run["rows"], **dict.fromkeys(("joint.wrist.ex", "body.slider.x", "driver.motor.torque"), (run["rows"] + 6) // 7)}, missing)
 
     def test_infinite_values_are_gaps(self):
         self.write("r.csv", "time,a,b\n0,1,inf\n1,inf,-inf\n2,3,inf\n3,-inf,inf\n4,5,nan\n")
@@ -319,6 +332,7 @@ class Report(ProgramTest):
     def test_mistakes(self):
         self.run_model(end="1 ms")
         cases = [((), 2, "report needs a result"), (("nix",), 6, "'nix' cannot be read"), (("r", "r/"), 2, "'r/' is given twice"),
+                 (("r/results.csv", "r"), 2, "'r' is given twice"), (("r", "./r/results.h5"), 2, "'./r/results.h5' is given twice"),
                  (("r", "--channels", "joint.wrist.fm"), 2, "did you mean 'joint.wrist.f"),
                  (("r", "--from", "2 ms"), 2, "no rows in this window"), (("r", "--from", "2 ms", "--until", "1 ms"), 2, "is after"),
                  (("r",) * 9, 2, "8 runs at most"), (("r", "--out", "r"), 6, "it is a directory")]

@@ -40,8 +40,24 @@ class Show(ProgramTest):
         self.assertEqual(json.loads(self.freeplay("show", crank, "--json", "--set", "c=0.1 mm")[0])["joints"],
                          json.loads(self.freeplay("show", "r", "--json", "--set", "c=0.1 mm")[0])["joints"])
         self.freeplay("run", crank, "--ideal", "all", "--end", "20 us", "--out", "i", "--quiet")
-        self.assertEqual(drawing(self.freeplay("show", crank, "--ideal", "all", "--format", "svg")[0]),
-                         drawing(self.freeplay("show", "i", "--format", "svg")[0]))
+        self.assertEqual(self.joints_of(self.freeplay("show", crank, "--ideal", "all", "--format", "svg")[0]),
+                         self.joints_of(self.freeplay("show", "i", "--format", "svg", "--at", "0 s")[0]))
+
+    def joints_of(self, text):
+        return [(e.get("cx"), e.get("cy")) for e in xml.fromstring(text).iter(SVG + "circle")]
+
+    def test_a_result_is_drawn_at_its_end(self):
+        crank = mechanism("slider-crank")
+        self.freeplay("run", crank, "--end", "5 ms", "--out", "r", "--quiet")
+        out, _ = self.freeplay("show", "r", "--format", "svg")
+        self.assertIn("t = 5 ms", out)
+        self.assertEqual(drawing(self.freeplay("show", "r", "--format", "svg", "--at", "5 ms")[0]), drawing(out))
+        self.assertNotEqual(self.joints_of(self.freeplay("show", crank, "--format", "svg")[0]), self.joints_of(out))
+        # Without poses there is the start, which says so.
+        self.freeplay("run", crank, "--end", "1 ms", "--out", "few", "--channels", "joint.*", "--quiet")
+        out, _ = self.freeplay("show", "few", "--format", "svg")
+        self.assertRegex(out, ">start: .*few/results.h5.* has no channel .*body.crank.x")
+        self.assertEqual(self.joints_of(self.freeplay("show", crank, "--format", "svg")[0]), self.joints_of(out))
 
     def test_a_result_directory_has_the_inputs_of_its_model(self):
         os.makedirs(self.path("models", "data"))
@@ -164,6 +180,14 @@ simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], o
         self.assertAlmostEqual(journal_at[0] - tip[0], (float(journal.get("cx")) - float(middle.get("cx"))) / scale, delta=0.2 / scale)
         self.assertAlmostEqual(journal_at[1] - tip[1], (float(middle.get("cy")) - float(journal.get("cy"))) / scale, delta=0.2 / scale)
 
+    def test_a_clearance_that_is_larger_than_its_box_says_so(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--out", "r")
+        words = lambda factor: re.findall(r"its clearance is larger: up to (\S+) times", self.freeplay("show", "r", "--format", "svg", "--magnify", "wrist=%g" % factor)[0])
+        self.assertEqual([], words(60))
+        (most,) = words(500)
+        self.assertEqual([], words(float(most)))
+        self.assertEqual([most], words(1.6 * float(most)))
+
     def test_a_spatial_result_is_drawn_where_its_rows_put_it(self):
         self.freeplay("run", mechanism("spatial/bennett"), "--quiet", "--out", "r")
         start, _ = self.freeplay("show", "r", "--format", "svg", "--at", "0 s")
@@ -253,12 +277,16 @@ joints:
   mesh: {type: gear, of: [A, B], ratio: %s}
 frames: {ground/far: [1, 0]}
 """
-        for ratio, first in ((-2, 2 / 3), (-0.25, 0.2), (2, 2)):
+        for ratio, first in ((-2, 2 / 3), (-0.25, 0.2), (2, 2), (0.6, 1.5)):
             out, _ = self.freeplay("show", self.write("m.yaml", model % ratio), "--format", "svg")
             a, b = self.kind(xml.fromstring(out), "circle", "pitch")
             apart = float(b.get("cx")) - float(a.get("cx"))
             self.assertAlmostEqual(first, float(a.get("r")) / apart, delta=1e-3)
             self.assertAlmostEqual(first / abs(ratio), float(b.get("r")) / apart, delta=1e-3)
+            width, height = map(float, xml.fromstring(out).get("viewBox").split()[2:])
+            for wheel in (a, b):
+                x, y, r = (float(wheel.get(name)) for name in ("cx", "cy", "r"))
+                self.assertTrue(r <= x <= width - r and r <= y <= height - r, (ratio, x, y, r, width, height))
 
     def test_stops_are_bars_at_the_ends_of_a_way(self):
         model = """freeplay: 1
