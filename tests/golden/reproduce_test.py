@@ -209,10 +209,11 @@ class Reproduce(ProgramTest):
 
     def test_pictures_of_results_are_made_again(self):
         self.run_model("r", "--end", "4 ms", "--interval", "0.1 ms")
+        self.run_model("again", "--end", "4 ms", "--interval", "0.1 ms")
         self.run_model("s", "--end", "4 ms", "--interval", "0.1 ms", "--set", "c=0.3 mm")
         for name, words in (("one.svg", ("joint.wrist.fn", "body.slider.x", "--from", "1 ms")), ("orbit.svg", ("--orbit", "wrist")),
                             ("two.svg", ("joint.wrist.fn", "--against", "s")),
-                            ("three.svg", ("body.slider.x", "--against", "r", "--against", "s"))):
+                            ("three.svg", ("body.slider.x", "--against", "again", "--against", "s"))):
             with self.subTest(name):
                 self.freeplay("plot", "r", *words, "--out", name)
                 self.assert_same(name)
