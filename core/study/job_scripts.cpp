@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double longest = 60.0;  // of a task that is made longer so that there are fewer [min]
+constexpr double longest_task = 60.0;  // of a task that is made longer so that there are fewer [min]
 
 std::string clock_time(double minutes) {
   const auto whole = static_cast<std::uint64_t>(minutes);
@@ -148,11 +148,12 @@ JobPlan plan_jobs(const JobRequest& request) {
   };
   plan.tasks = request.tasks ? *request.tasks : number(request.minutes);
   if (!request.tasks && plan.tasks > request.max_array) {
-    if (number(longest) > request.max_array) {
-      const double cores = std::ceil(work * request.cores / (longest * static_cast<double>(request.max_array)));
-      throw Error(Error::Category::usage, "too-large",
-                  fmt::format("{} tasks of an hour are more than --max-array {}", number(longest), request.max_array),
-                  {}, fmt::format("--cores {:.0f} would do", cores));
+    if (number(longest_task) > request.max_array) {
+      const double cores = std::ceil(work * request.cores / (longest_task * static_cast<double>(request.max_array)));
+      throw Error(
+          Error::Category::usage, "too-large",
+          fmt::format("{} tasks of an hour are more than --max-array {}", number(longest_task), request.max_array), {},
+          fmt::format("--cores {:.0f} would do", cores));
     }
     plan.tasks = request.max_array;
   }

@@ -17,7 +17,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::uint64_t most_shown = 20'000;
-constexpr std::size_t most_bytes = 2'000'000;  // of points
+constexpr std::size_t most_page_bytes = 2'000'000;  // of points
 constexpr std::size_t listed_rows = 200;
 
 constexpr std::string_view head = R"(<!DOCTYPE html>
@@ -105,7 +105,7 @@ std::string study_page(const OpenStudy& study, const std::filesystem::path& fold
     const std::vector<std::string> cells = split(line);
     if (count < listed_rows) rows += table_row(cells, "td");
     const std::uint64_t index = std::stoull(cells.front());
-    if (count % every != 0 || bytes > most_bytes) {
+    if (count % every != 0 || bytes > most_page_bytes) {
       ++left_out;
       continue;
     }

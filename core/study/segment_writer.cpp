@@ -15,7 +15,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t most_of_a_segment = std::size_t{64} << 20;
-constexpr std::chrono::minutes longest{10};
+constexpr std::chrono::minutes longest_segment{10};
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void SegmentWriter::open() {
 }
 
 void SegmentWriter::put(std::string_view lines) {
-  if (descriptor_ >= 0 && (size_ >= most_of_a_segment || Clock::now() - opened_ >= longest)) close();
+  if (descriptor_ >= 0 && (size_ >= most_of_a_segment || Clock::now() - opened_ >= longest_segment)) close();
   std::string first;
   if (descriptor_ < 0) {
     open();

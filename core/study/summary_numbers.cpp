@@ -9,7 +9,7 @@
 
 namespace freeplay {
 namespace {
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 SummaryNumbers::SummaryNumbers(const Json& summary) {
@@ -22,12 +22,12 @@ void SummaryNumbers::add(const std::string& path, const Json& value) {
   if (value.is_object()) {
     for (const auto& [key, below] : value.items()) add(path + "." + key, below);
   } else if (value.is_number() || value.is_null()) {
-    all_.emplace_back(path, value.is_null() ? no_number : value.get<double>());
+    all_.emplace_back(path, value.is_null() ? absent : value.get<double>());
   }
 }
 
 double SummaryNumbers::number(const std::string& path, const std::optional<ReducerEntry::Over>& over) const {
-  double low = no_number, high = no_number, sum = 0.0;
+  double low = absent, high = absent, sum = 0.0;
   long count = 0;
   for (const auto& [name, value] : all_) {
     if (std::isnan(value) || !(over ? matches(path, name) : path == name)) continue;
@@ -43,11 +43,11 @@ double SummaryNumbers::number(const std::string& path, const std::optional<Reduc
     case ReducerEntry::Over::min:
       return low;
     case ReducerEntry::Over::sum:
-      return count > 0 ? sum : no_number;
+      return count > 0 ? sum : absent;
     case ReducerEntry::Over::mean:
       break;
   }
-  return count > 0 ? sum / static_cast<double>(count) : no_number;
+  return count > 0 ? sum / static_cast<double>(count) : absent;
 }
 
 bool SummaryNumbers::has(const std::string& path) const {
