@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -30,12 +31,15 @@ class GrowingFile {
   void flush();
   /// The same, and tells the disk.
   void sync();
-  /// Notes as a failure that the file was removed or replaced.
+  /// Notes as a failure that another program removed, replaced, cut or wrote the file.
   void look_after();
-  /// Writes everything. Throws Error{file} "cannot-write" for the first failure of all, and where the file was removed.
+  /// Writes everything. Throws Error{file} "cannot-write" for the first failure of all, and where another program
+  /// changed it.
   void close();
 
-  bool ok() const { return failure_ == 0 && !removed_; }
+  bool ok() const { return failure_ == 0 && disturbed_ == nullptr; }
+  /// Whether another program removed, replaced, cut or wrote it.
+  bool disturbed() const { return disturbed_ != nullptr; }
   /// Whether lines wait to be written.
   bool waits() const { return !text_.empty(); }
   /// "cannot write 'FILE': REASON"; empty while all is well.
@@ -44,8 +48,9 @@ class GrowingFile {
  private:
   std::filesystem::path path_;
   int descriptor_ = -1;
-  int failure_ = 0;  // errno of the first failure
-  bool removed_ = false;
+  int failure_ = 0;                  // errno of the first failure
+  const char* disturbed_ = nullptr;  // what another program did to it
+  std::int64_t size_ = 0;            // bytes that it has
   std::string text_;
   std::chrono::steady_clock::time_point last_flush_;
 };

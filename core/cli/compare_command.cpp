@@ -10,6 +10,7 @@
 #include "base/number_text.h"
 #include "cli/terminal.h"
 #include "results/comparison.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -99,6 +100,10 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
   }
   const ComparisonRules rules = rules_of(options);
   const std::unique_ptr<ResultReader> a = ResultReader::open(options.a), b = ResultReader::open(options.b);
+  for (ResultReader* const reader : {a.get(), b.get()}) {
+    const std::string missing = missing_part(*reader);
+    if (!missing.empty()) print_messages("freeplay: warning: " + missing + "\n", common.no_color);
+  }
   const Comparison comparison = compare(*a, *b, rules);
   if (common.json) {
     print_json(table_json(comparison));

@@ -14,6 +14,7 @@
 #include "results/reader.h"
 #include "results/result_record.h"
 #include "results/table_files.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -72,12 +73,16 @@ class Export {
  public:
   Export(const ExportOptions& options, const CommonOptions& common, const TableRequest& request)
       : options_(options),
+        common_(common),
         name_(request.table),
         reader_(ResultReader::open(options.path)),
         table_(*reader_, request),
         provenance_(record_of(options.path, *reader_, {"export", common.command, arguments_of(options)})) {}
 
   void execute() {
+    if (const std::string missing = missing_part(*reader_); !missing.empty()) {
+      print_messages("freeplay: warning: " + missing + "\n", common_.no_color);
+    }
     if (options_.out.empty()) return give(print_data);
     StagedFile file(options_.out, options_.force);
     const bool text = options_.to == "csv" || options_.to == "json";
@@ -106,6 +111,7 @@ class Export {
   }
 
   const ExportOptions& options_;
+  const CommonOptions& common_;
   std::string name_;
   std::unique_ptr<ResultReader> reader_;
   TableView table_;

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "results/checkpoints.h"
-#include "results/kept_part.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -67,17 +67,12 @@ void require_same_program(const Checkpoint& checkpoint) {
   }
 }
 
-/// A result that is replaced is one: what the end of its run counted is there.
-void require_rows(const std::filesystem::path& directory, const Json& made) {
-  const std::filesystem::path file = directory / "results.csv";
-  std::error_code error;
-  const std::int64_t rows = made.value("rows", std::int64_t{0});
-  if (rows == 0 || !std::filesystem::exists(file, error)) return;
-  const std::int64_t there = whole_lines(file, rows + 1).lines - 1;
-  if (there >= rows) return;
-  throw Error(Error::Category::file, "bad-checkpoint",
-              fmt::format("'{}' has {} rows, and the checkpoint counts {}", file.string(),
-                          std::max<std::int64_t>(there, 0), rows));
+/// A result that stays or is replaced is one: made from what lies beside it, with all that its summary counts.
+void require_whole(const std::filesystem::path& directory, const Json& summary, const Json& record) {
+  if (const auto changed = changed_source(directory, record)) mismatch(changed->name, changed->then, changed->now);
+  if (const std::string misfit = misfit_of(directory, summary); !misfit.empty()) {
+    throw Error(Error::Category::file, "bad-checkpoint", misfit, {}, "run the model again");
+  }
 }
 
 }  // namespace
@@ -118,13 +113,13 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
     }
   }
   const bool no_twin = out.options.twin && summary.value("twin", Json()).is_null();
-  const bool ended = status == "stopped" || (status == "completed" && later == end);
-  if (ended && !no_twin) {
+  const bool ended = status == "stopped" || status == "completed", there = status == "stopped" || later == end;
+  if (ended) require_whole(directory, summary, record);
+  if (ended && there && !no_twin) {
     out.nothing_to_do = fmt::format("{} at {:g} s", status, reached);
     return out;
   }
   if (later != end || ended) {
-    if (!status.empty()) require_rows(directory, made);
     out.goes_on = false;
     if (later != end) out.options.end = asked.end;
     out.options.force = true;

@@ -31,6 +31,7 @@
 #include "results/checkpoints.h"
 #include "results/directory.h"
 #include "results/judgement.h"
+#include "results/owner.h"
 #include "results/record_thread.h"
 #include "results/recording.h"
 #include "results/row_memory.h"
@@ -118,7 +119,7 @@ class RunJob {
     for (const MovedStart& moved : assembled_.start.report.moved) note(sentence(moved));
     Outcome outcome = run();
     Ended ended = end();
-    if (twin_ != nullptr) compare_with_twin(ended);
+    if (twin_ != nullptr) compare_with_twin(outcome, ended);
     for (const std::string& text : ended.warnings) warn(text);
     note(fmt::format("{} at {:g} s after {} steps, {} rows", status_word(outcome.status), outcome.time, outcome.steps,
                      outcome.rows));
@@ -127,9 +128,7 @@ class RunJob {
     if (options_.verify && outcome.exit_code == 0) verification = verify(outcome, ended);
     if (verification && verification->agreement == Agreement::disagree) outcome.exit_code = runs_disagree;
     if (options_.verify && outcome.exit_code == 0 && watch_interrupts() != 0) {
-      outcome.exit_code = 130;
-      outcome.status = RunStatus::interrupted;
-      outcome.reason = "interrupted during the second run of --verify: this one had come to its end";
+      interrupted_beside(outcome, "the second run of --verify");
       recording_.log().write("note", outcome.reason);
     }
     close(outcome);
@@ -181,9 +180,19 @@ class RunJob {
     return verification;
   }
 
-  void compare_with_twin(Ended& ended) {
+  /// This run had come to its end, one beside it that its summary needs had not.
+  static void interrupted_beside(Outcome& outcome, const char* other) {
+    outcome.exit_code = 130;
+    outcome.status = RunStatus::interrupted;
+    outcome.reason = fmt::format("interrupted during {}: this one had come to its end", other);
+  }
+
+  void compare_with_twin(Outcome& outcome, Ended& ended) {
     std::string trouble;
     ended.twin = twin_->finish(trouble);
+    if (ended.twin.is_null() && trouble.empty() && outcome.exit_code == 0) {
+      interrupted_beside(outcome, "the run without clearances of --twin");
+    }
     if (trouble.empty()) return;
     ended.warnings.push_back("--twin: the run without clearances failed: " + trouble);
   }
@@ -213,7 +222,10 @@ class RunJob {
     outcome.exit_code = 6;
     outcome.reason = failure;
     outcome.rows = 0;
-    if (!recording_.in_place()) return;
+    if (!recording_.undisturbed()) {
+      outcome.reason += "; no row is certain: keep other programs out of the directory and run the model again";
+      return;
+    }
     const HeldRows held = recording_.held();
     outcome.rows = held.count;
     const std::string rows = held.count > 0 ? fmt::format("rows up to t = {:g} s", held.last_time) : "no rows";
@@ -240,25 +252,7 @@ class RunJob {
                      outcome,           ended.statistics,    ended.clearances,
                      ended.last_row,    recording_.advice(), warnings_of(loaded_.diagnostics, ended.warnings),
                      recording_.files()};
-    if (verification) {
-      for (const ChannelError& channel : verification->channels)
-        record.verify.emplace_back(channel.name, channel.error);
-      record.agree_until = verification->agree_until;
-      record.verification = verification_json(*verification);
-      const bool peaks_differ = std::ranges::any_of(verification->peaks, &PeakPair::differs);
-      if (verification->agreement == Agreement::err && peaks_differ) {
-        record.trust.add({.id = "verify",
-                          .level = Trust::doubtful,
-                          .message = fmt::format("a second run, by {}, has other peaks", verification->method)});
-      }
-      if (verification->agreement == Agreement::disagree) {
-        record.trust.add({.id = "verify",
-                          .level = Trust::bad,
-                          .message = fmt::format("a second run, by {}, disagrees", verification->method),
-                          .value = verification->largest,
-                          .limit = verification->limit});
-      }
-    }
+    if (verification) add_verification(*verification, record);
     recording_.bearing(ended.clearances);
     record.hashes = recording_.hashes();
     record.provenance = recording_.provenance();
@@ -368,7 +362,7 @@ int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const Co
 
 int run(const RunOptions& options, const CommonOptions& common, const Resumption* resumed);
 
-/// The same run with every clearance closed, into the folder `twin` of the result.
+/// The same run with every clearance closed, into the folder `twin` of the result, whatever an earlier one left there.
 int run_twin(RunOptions options, CommonOptions common, const std::filesystem::path& path, int pipe) {
   options.model_options.ideal = {"all"};
   options.out = (path / "twin").string();
@@ -417,6 +411,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   const auto repeats = plan.runs > 0 ? std::make_unique<RepeatRuns>(*loaded.model, plan, processor_count()) : nullptr;
   std::unique_ptr<TwinRun> twin;
   if (options.twin) {
+    require_no_owner(path / "twin");
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
   require_thread();

@@ -7,6 +7,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/loading.h"
+#include "cli/verify_table.h"
 #include "load/plugins.h"
 #include "results/row_memory.h"
 
@@ -181,6 +182,25 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   run_to_end(third, most_steps);
   if (third.assembled && third.rows) judge(result, first, second.result(), third.result(), rules);
   return result;
+}
+
+void add_verification(const Verification& verification, RunRecord& record) {
+  for (const ChannelError& channel : verification.channels) record.verify.emplace_back(channel.name, channel.error);
+  record.agree_until = verification.agree_until;
+  record.verification = verification_json(verification);
+  const bool peaks_differ = std::ranges::any_of(verification.peaks, &PeakPair::differs);
+  if (verification.agreement == Agreement::err && peaks_differ) {
+    record.trust.add({.id = "verify",
+                      .level = Trust::doubtful,
+                      .message = fmt::format("a second run, by {}, has other peaks", verification.method)});
+  }
+  if (verification.agreement == Agreement::disagree) {
+    record.trust.add({.id = "verify",
+                      .level = Trust::bad,
+                      .message = fmt::format("a second run, by {}, disagrees", verification.method),
+                      .value = verification.largest,
+                      .limit = verification.limit});
+  }
 }
 
 }  // namespace freeplay

@@ -6,6 +6,7 @@
 
 #include "cli/options.h"
 #include "load/load.h"
+#include "results/summary.h"
 #include "results/verification.h"
 #include "run/simulation.h"
 
@@ -27,6 +28,9 @@ struct VerifiedRun {
 /// the two do not agree a third run, of the second's method, shows why. Empty, with `trouble`, when there is no second
 /// run.
 std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trouble);
+
+/// Adds what the other runs say to the record of this one, and to its verdict.
+void add_verification(const Verification& verification, RunRecord& record);
 
 /// The largest values of the table that a run prints.
 std::vector<Peak> peaks_of(const Model& model, const Statistics& statistics);

@@ -385,6 +385,7 @@ void Hdf5Writer::fail(const char* reason) {
 
 template <class Act>
 void Hdf5Writer::attempt(Act&& act) {
+  look_after();  // more rows would hide what another program cut
   if (!failure_.empty()) return;
   const Hdf5Lock lock;
   try {
@@ -397,6 +398,8 @@ void Hdf5Writer::attempt(Act&& act) {
     fail(std::strerror(ENOMEM));
   }
   if (file_ != nullptr) held_ = file_->held;
+  struct stat there {};
+  if (::stat(path_.c_str(), &there) == 0) size_ = there.st_size;
 }
 
 void Hdf5Writer::write(const RecordBlock& block) {
@@ -425,8 +428,11 @@ void Hdf5Writer::put_in_place() {
 void Hdf5Writer::look_after() {
   struct stat there {};
   if (file_ == nullptr || file_->inode == 0 || !failure_.empty()) return;
-  if (::stat(path_.c_str(), &there) == 0 && there.st_ino == file_->inode && there.st_dev == file_->device) return;
-  failure_ = fmt::format("cannot write '{}': it was removed or replaced while it was written", path_.string());
+  const bool same = ::stat(path_.c_str(), &there) == 0 && there.st_ino == file_->inode && there.st_dev == file_->device;
+  disturbed_ = !same || there.st_size < size_;
+  if (!disturbed_) return;
+  failure_ = fmt::format("cannot write '{}': {} while it was written", path_.string(),
+                         same ? "another program cut it" : "it was removed or replaced");
 }
 
 void Hdf5Writer::finish(const BearingTables& tables, const std::string& summary) {

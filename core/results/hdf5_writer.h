@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -42,6 +43,7 @@ class Hdf5Writer : public RecordWriter {
   /// Hands over the rest; the file stays open for finish().
   void close() override { flush(); }
   void look_after() override;
+  bool disturbed() const override { return disturbed_; }
   const HeldRows* held() const override { return &held_; }
   const std::string& failure() const override { return failure_; }
   /// Gives the file its name, with what was written so far.
@@ -63,6 +65,8 @@ class Hdf5Writer : public RecordWriter {
   std::unique_ptr<File> file_;
   HeldRows held_;
   std::string failure_;
+  bool disturbed_ = false;
+  std::int64_t size_ = 0;  // bytes after the last call that wrote
 };
 
 }  // namespace freeplay

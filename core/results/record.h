@@ -53,8 +53,10 @@ class RecordWriter {
   /// The same, and tells the disk.
   virtual void sync() = 0;
   virtual void close() = 0;
-  /// Notes as a failure that the file was removed or replaced.
+  /// Notes as a failure that another program removed, replaced or changed the file.
   virtual void look_after() = 0;
+  /// Whether that is the failure.
+  virtual bool disturbed() const { return false; }
   /// What was handed over, at least; null for what holds no rows.
   virtual const HeldRows* held() const { return nullptr; }
   /// "cannot write 'DIR/FILE': REASON"; empty while all is well.

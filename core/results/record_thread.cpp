@@ -141,6 +141,10 @@ HeldRows RecordThread::held() const {
   return least != nullptr ? *least : HeldRows{};
 }
 
+bool RecordThread::disturbed() const {
+  return std::ranges::any_of(writers_, [](const auto& writer) { return writer->disturbed(); });
+}
+
 std::string RecordThread::close() {
   if (thread_.joinable()) {
     {

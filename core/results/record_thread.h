@@ -41,6 +41,8 @@ class RecordThread {
   std::string close();
   /// After close(): the rows that every file holds, and processor time that the thread took [s].
   HeldRows held() const;
+  /// After close(): whether another program removed, replaced or changed a file.
+  bool disturbed() const;
   double thread_seconds() const { return thread_seconds_; }
 
  private:

@@ -72,6 +72,8 @@ class Recording {
   /// Ends the growing files. Returns the first failure to write any of them, empty without: "cannot write 'FILE':
   /// REASON".
   std::string close();
+  /// After close(): false where another program removed, replaced or changed a file: who knows what it holds.
+  bool undisturbed() const { return in_place() && !thread_.disturbed(); }
   /// After close(): rows that every file holds.
   HeldRows held() const { return thread_.held(); }
   /// Processor time of the thread that writes [s].

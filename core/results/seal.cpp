@@ -23,6 +23,7 @@
 #include "results/reader.h"
 #include "results/row_hash.h"
 #include "results/summary.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -60,6 +61,7 @@ class Sealing {
 
   Sealed execute() {
     const bool has_summary = there_is(directory_ / "summary.json");
+    if (has_summary) require_whole();
     const std::vector<fs::path> cut = unfinished();
     Sealed out{.changed = !has_summary || !cut.empty() || !reader_->sealed()};
     copy();
@@ -89,6 +91,23 @@ class Sealing {
 
  private:
   static constexpr std::int64_t most_lines = std::numeric_limits<std::int64_t>::max();
+
+  /// Nothing that its summary speaks of is missing or was changed.
+  void require_whole() const {
+    std::string text;
+    if (const std::string why = read_input((directory_ / "summary.json").string(), text); !why.empty()) {
+      unreadable_result((directory_ / "summary.json").string(), why);
+    }
+    const Json summary = json_of_text(text);
+    if (!summary.is_object()) unreadable_result((directory_ / "summary.json").string(), "it is not JSON");
+    std::string misfit = misfit_of(directory_, summary);
+    if (const auto changed = changed_source(directory_, summary.value("provenance", Json()))) {
+      misfit = fmt::format("{} in '{}' is not that of the run: {} then, {} now", changed->name, directory_.string(),
+                           changed->then, changed->now);
+    }
+    if (!misfit.empty())
+      throw Error(Error::Category::file, "changed-result", misfit, {}, "take it from a copy, or run the model again");
+  }
 
   /// Where results.csv stood in for it nothing would be said of it.
   void require_readable_hdf5() const {

@@ -19,6 +19,7 @@ class TextWriter : public RecordWriter {
   void sync() override { file_.sync(), note(); }
   void close() override;
   void look_after() override { file_.look_after(), note(); }
+  bool disturbed() const override { return file_.disturbed(); }
   const std::string& failure() const override { return failure_; }
 
  protected:

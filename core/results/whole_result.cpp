@@ -1,0 +1,143 @@
+#include "results/whole_result.h"
+
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/input_text.h"
+#include "base/sha256.h"
+#include "results/kept_part.h"
+#include "results/row_hash.h"
+
+namespace freeplay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t shown_digits = 12;
+
+bool is_file(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
+Json field(const Json& json, const char* pointer) {
+  const Json::json_pointer path(pointer);
+  return json.contains(path) ? json.at(path) : Json();
+}
+
+Json json_in(const fs::path& file) {
+  std::string text;
+  if (!is_file(file) || !read_input(file.string(), text).empty()) return nullptr;
+  return Json::parse(text, nullptr, false);
+}
+
+std::optional<ChangedSource> changed_file(const fs::path& file, const std::string& name, const Json& then) {
+  if (!then.is_string()) return std::nullopt;
+  std::string text;
+  const bool gone = !is_file(file) || !read_input(file.string(), text).empty();
+  const std::string now = gone ? "none" : sha256(text), before = then.get<std::string>();
+  if (now == before) return std::nullopt;
+  return ChangedSource{name, before.substr(0, shown_digits), now.substr(0, shown_digits)};
+}
+
+/// Whether a file of rows is CSV: its first column is the time.
+bool is_text(const fs::path& file) {
+  constexpr std::string_view mark = "time";
+  std::string head(mark.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == mark;
+}
+
+/// Of results.csv or results.h5.
+std::string misfit_of_rows(const fs::path& file, const Json& count, const Json& digits) {
+  const auto reader = ResultReader::open(file);
+  const std::size_t width = reader->layout().columns.size();
+  std::vector<std::size_t> all(width);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  RowHash hash;
+  std::int64_t rows = 0;
+  reader->rows(all, {}, [&](std::span<const double> some) {
+    hash.write({.rows = some, .events = {}});
+    rows += static_cast<std::int64_t>(some.size() / width);
+  });
+  const std::int64_t counted = count.is_number_integer() ? count.get<std::int64_t>() : rows;
+  // Without a fingerprint a file may hold more: another one could not be written.
+  if (digits.is_string() ? rows != counted : rows < counted) {
+    return fmt::format("'{}' has {} rows, and its summary counts {}", file.string(), rows, counted);
+  }
+  if (!digits.is_string() || hash.digits() == digits.get<std::string>()) return {};
+  return fmt::format("'{}' was changed: its rows are not those that its summary has the fingerprint of", file.string());
+}
+
+std::string misfit_of_events(const fs::path& file, const Json& digits) {
+  if (!digits.is_string()) return {};
+  if (!is_file(file)) return fmt::format("'{}' is gone", file.string());
+  Sha256 hash;
+  whole_lines(file, std::numeric_limits<std::int64_t>::max(), &hash);
+  if (hash.digits() == digits.get<std::string>()) return {};
+  return fmt::format("'{}' was changed or cut: its events are not those that its summary has the fingerprint of",
+                     file.string());
+}
+
+}  // namespace
+
+std::optional<ChangedSource> changed_source(const fs::path& directory, const Json& record) {
+  const fs::path urdf = directory / "model.urdf";
+  const fs::path model = is_file(urdf) ? urdf : directory / "model.yaml";
+  if (!record.is_object()) return std::nullopt;
+  if (auto changed = changed_file(model, "the model", field(record, "/model/sha256"))) return changed;
+  for (const Json& input : record.value("inputs", Json::array())) {
+    const std::string name = input.value("name", "");
+    auto changed =
+        changed_file(directory / "inputs" / name, fmt::format("'{}' of the inputs", name), field(input, "/sha256"));
+    if (changed) return changed;
+  }
+  return std::nullopt;
+}
+
+std::string misfit_of(const fs::path& directory, const Json& summary) {
+  const Json count = field(summary, "/counts/rows"), digits = field(summary, "/hashes/rows");
+  // The files of a killed run end at different rows.
+  const bool killed = field(summary, "/stop_reason") == Json("killed");
+  bool any = false;
+  for (const char* name : {"results.h5", "results.csv"}) {
+    const fs::path file = directory / name;
+    if (!is_file(file) || (killed && any)) continue;
+    any = true;
+    if (std::string misfit = misfit_of_rows(file, count, digits); !misfit.empty()) return misfit;
+  }
+  if (!any && count.is_number_integer() && count.get<std::int64_t>() > 0) {
+    return fmt::format("'{}' holds neither results.h5 nor results.csv", directory.string());
+  }
+  return misfit_of_events(directory / "events.csv", field(summary, "/hashes/events"));
+}
+
+std::string missing_part(ResultReader& reader) {
+  const fs::path file = reader.file();
+  if (!is_text(file)) return {};  // others are read as a whole or not at all
+  Sha256 hash;
+  const WholeLines lines = whole_lines(file, std::numeric_limits<std::int64_t>::max(), &hash);
+  const Json record = json_in(file.string() + ".provenance.json");
+  const Json digits = record.is_object() ? field(record, "/data_sha256") : Json();
+  if (digits.is_string() && (lines.more || hash.digits() != digits.get<std::string>())) {
+    return fmt::format("'{}' was changed or cut: it has not the fingerprint in the record beside it", file.string());
+  }
+  const Json summary = file.filename() == "results.csv" ? json_in(file.parent_path() / "summary.json") : Json();
+  const Json counted = summary.is_object() ? field(summary, "/counts/rows") : Json();
+  if (counted.is_number_integer() && counted.get<std::int64_t>() > lines.lines - 1) {
+    return fmt::format("rows of '{}' are missing: it has {}, and its summary counts {}", file.string(), lines.lines - 1,
+                       counted.get<std::int64_t>());
+  }
+  if (!lines.more) return {};
+  return fmt::format("the last line of '{}' has no end and is left out: its run goes on or was killed, or it was cut",
+                     file.string());
+}
+
+}  // namespace freeplay

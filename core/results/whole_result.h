@@ -1,0 +1,31 @@
+// WholeResult: whether the files of a result are those that its summary speaks of.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/json_text.h"
+#include "results/reader.h"
+
+namespace freeplay {
+
+/// The model or an input beside a result that is not the one it was made from.
+struct ChangedSource {
+  std::string name;       ///< "the model", "'motor.csv' of the inputs"
+  std::string then, now;  ///< first digits of their fingerprints; now: "none" where it is gone
+};
+
+/// The first of them; `record` is the provenance of the result.
+std::optional<ChangedSource> changed_source(const std::filesystem::path& directory, const Json& record);
+
+/// Why rows and events are not those that the summary counts and has fingerprints of: "'FILE' has 100 rows, its summary
+/// counts 301"; empty where they are. Either of results.csv and results.h5 may be gone, not both. Reads every row;
+/// throws Error{file} "unreadable-result" where a file cannot be read.
+std::string misfit_of(const std::filesystem::path& directory, const Json& summary);
+
+/// What of a file of rows is missing, as far as a count shows: lines of a results.csv that its summary counts, the end
+/// of a last line, text that the record beside a table has the fingerprint of. Empty where nothing is known to be.
+std::string missing_part(ResultReader& reader);
+
+}  // namespace freeplay

@@ -1,0 +1,134 @@
+"""Results that other programs cut, changed or replaced, and twins that were ended: what is said of them."""
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ProgramTest, mechanism
+
+CRANK = mechanism("slider-crank")
+
+
+class Changed(ProgramTest):
+    def cut(self, keep, *names):
+        with open(self.path(*names), "rb+") as file:
+            file.truncate(int(os.path.getsize(self.path(*names)) * keep))
+
+    def summary(self, *folders):
+        return json.loads(self.read(*folders, "summary.json"))
+
+    def begun(self, name, *options, until="results.csv", size=0):
+        """A run that goes on and has that file, of more than so many bytes."""
+        process = subprocess.Popen([PROGRAM, "run", CRANK, "--quiet", "--out", name, *options], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.kill)
+        file = self.path(name, until)
+        while process.poll() is None and (not os.path.exists(file) or os.path.getsize(file) <= size):
+            time.sleep(0.005)
+        return process
+
+    def test_a_killed_twin_is_run_again(self):
+        self.freeplay("run", CRANK, "--twin", "--quiet", "--end", "0.3 s", "--out", "whole")
+        whole = self.summary("whole")
+        self.assertIsNotNone(whole["twin"])
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            name = "cut%d" % number
+            process = self.begun(name, "--twin", "--end", "0.3 s", until="twin/results.csv", size=1000)
+            process.send_signal(number)
+            process.wait()
+            self.freeplay("run", "--resume", name, "--quiet")
+            self.assertEqual(whole["twin"], self.summary(name)["twin"])
+            for file in ("results.csv", "events.csv"):
+                for folder in ((), ("twin",)):
+                    self.assertEqual(self.read("whole", *folder, file), self.read(name, *folder, file))
+
+    def test_a_twin_that_was_ended_alone_is_run_again(self):
+        self.freeplay("run", CRANK, "--twin", "--quiet", "--end", "20 ms", "--out", "whole")
+        whole = self.summary("whole")
+        shutil.copytree(self.path("whole"), self.path("cut"))
+        os.remove(self.path("cut", "twin", "summary.json"))
+        self.write("cut/summary.json", json.dumps({**whole, "twin": None}))
+        self.freeplay("run", "--resume", "cut", "--quiet")
+        self.assertEqual(whole["twin"], self.summary("cut")["twin"])
+        self.assertEqual("completed", self.summary("cut", "twin")["status"])
+
+    def test_a_completed_result_that_was_changed_is_not_called_done(self):
+        self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--out", "whole")
+        out, _ = self.freeplay("run", "--resume", "whole")
+        self.assertIn("nothing to do", out)
+        out, _ = self.freeplay("seal", "whole")
+        self.assertIn("nothing to do", out)
+
+        def swap(name):
+            def change(folder):
+                text = self.read(folder, name)
+                place = next(i for i in range(len(text) // 2, len(text)) if text[i] in "12345678")
+                self.write(os.path.join(folder, name), text[:place] + str(int(text[place]) + 1) + text[place + 1:])
+            return change
+
+        def comment(folder):
+            self.write(os.path.join(folder, "model.yaml"), self.read(folder, "model.yaml") + "# another\n")
+
+        cases = (("results.csv", lambda folder: self.cut(0.5, folder, "results.csv"), 6),
+                 ("results.csv", swap("results.csv"), 6),
+                 ("results.h5", lambda folder: self.cut(0.5, folder, "results.h5"), 6),
+                 ("events.csv", lambda folder: self.cut(0.5, folder, "events.csv"), 6),
+                 ("events.csv", lambda folder: os.remove(self.path(folder, "events.csv")), 6),
+                 ("model", comment, 3))
+        for number, (word, change, code) in enumerate(cases):
+            folder = "changed%d" % number
+            shutil.copytree(self.path("whole"), self.path(folder))
+            change(folder)
+            with self.subTest(word, number=number):
+                _, err = self.freeplay("run", "--resume", folder, code=code)
+                self.assertIn(word, err)
+                _, err = self.freeplay("seal", folder, code=6)
+                self.assertIn(word, err)
+
+    def test_either_file_of_rows_may_go(self):
+        self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--out", "r")
+        os.remove(self.path("r", "results.csv"))
+        self.assertIn("nothing to do", self.freeplay("run", "--resume", "r")[0])
+        self.assertIn("nothing to do", self.freeplay("seal", "r")[0])
+
+    def test_an_export_of_a_part_says_so(self):
+        self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--format", "csv", "--out", "r")
+        _, err = self.freeplay("export", "r", "--to", "csv", "--out", "whole.csv")
+        self.assertNotIn("warning", err)
+        shutil.copy(self.path("whole.csv"), self.path("alone.csv"))
+        rows = self.summary("r")["counts"]["rows"]
+        for name, words in (("r/results.csv", "its summary counts %d" % rows), ("whole.csv", "was changed or cut"),
+                            ("alone.csv", "the last line of 'alone.csv' has no end")):
+            self.cut(0.7, name)
+            _, err = self.freeplay("export", name, "--to", "csv")
+            self.assertIn(words, err)
+        self.assertIn(words, self.freeplay("compare", name, name)[1])
+
+    def test_a_file_that_another_program_cuts_or_replaces_ends_the_run(self):
+        def replace(path):
+            with open(path + ".new", "w", encoding="utf-8") as file:
+                file.write("time\n0\n1\n")
+            os.rename(path + ".new", path)
+
+        for number, (name, change, words) in enumerate((
+                ("results.csv", lambda path: os.truncate(path, 100_000), "another program cut it"),
+                ("results.csv", replace, "it was removed or replaced"),
+                ("results.h5", lambda path: os.truncate(path, os.path.getsize(path) // 2), "another program cut it"))):
+            folder = "r%d" % number
+            process = self.begun(folder, "--end", "1000 s", "--yes", until=name, size=1_000_000)
+            change(self.path(folder, name))
+            _, err = process.communicate(timeout=20)
+            with self.subTest(name, words=words):
+                self.assertEqual(6, process.returncode, err)
+                self.assertIn("cannot write '%s/%s': %s" % (folder, name, words), err)
+                self.assertIn("run the model again", err)
+                self.assertNotIn("free some space", err)
+                self.assertEqual(0, self.summary(folder)["counts"]["rows"])
+
+
+if __name__ == "__main__":
+    unittest.main()
