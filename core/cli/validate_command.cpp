@@ -11,7 +11,7 @@
 #include "cli/loading.h"
 #include "cli/terminal.h"
 #include "load/load.h"
-#include "study/plan.h"
+#include "study/open_study.h"
 
 namespace freeplay {
 namespace {
@@ -42,8 +42,8 @@ void judge_study(Validation& verdict, const ValidateOptions& options, const Comm
   plan.load = loading(common);
   plan.set = build_options(options.model).set;
   plan.many_points = true;
-  const auto study = StudyPlan::read(verdict.file, plan, verdict.loaded.diagnostics);
-  if (study) verdict.points = study->points();
+  const auto study = OpenStudy::open(verdict.file, plan, verdict.loaded.diagnostics);
+  if (study) verdict.points = study->plan().points();
   verdict.loaded.exit_code = study && !verdict.loaded.diagnostics.has_errors() ? 0 : 3;
 }
 

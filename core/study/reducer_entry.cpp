@@ -170,7 +170,7 @@ class EntryReader {
 std::vector<ReducerEntry> read_reducers(const CheckedValue& section, bool analysis) {
   std::vector<ReducerEntry> entries;
   for (const CheckedValue& value : entries_of(section)) {
-    Draft::check_name(value, {"index", "model", "direction", "sample", "start", "exit_code", "error"});
+    Draft::check_name(value, {"index", "model", "direction", "sample", "start", "exit_code", "error_of_point"});
     if (auto entry = EntryReader(value, analysis).read()) entries.push_back(std::move(*entry));
   }
   return entries;

@@ -39,6 +39,12 @@ void append_cell(std::string& line, std::string_view cell) {
   line += ',';
 }
 
+/// Of the column of reasons; a reducer may be called `error`, too.
+std::string error_name(const MergePlan& plan) {
+  const bool taken = std::ranges::find(plan.layout.columns, "error", &StudyColumn::name) != plan.layout.columns.end();
+  return taken ? "error_of_point" : "error";
+}
+
 }  // namespace
 
 struct TableWriter::Files {
@@ -70,7 +76,7 @@ TableWriter::Files::Files(const std::filesystem::path& folder, const MergePlan& 
   table.line() += "index,";
   for (const KeyColumn& key : plan.keys) append_cell(table.line(), key.name);
   for (const StudyColumn& column : plan.layout.columns) append_cell(table.line(), column.name);
-  table.line() += "exit_code,error";
+  table.line() += "exit_code," + error_name(plan);
   table.end_line();
   samples.line() += "index,reducer,k,time,value";
   samples.end_line();
@@ -90,7 +96,7 @@ void TableWriter::Files::declare(const MergePlan& plan) {
     values.push_back(columns.add_column(point, {column.name, column.unit, "", "a reducer"}, Kind::number));
   }
   exit_code = columns.add_column(point, {"exit_code", "1", "how the point ended", "the study"}, Kind::whole);
-  error = columns.add_column(point, {"error", "", "why the point failed", "the study"}, Kind::words);
+  error = columns.add_column(point, {error_name(plan), "", "why the point failed", "the study"}, Kind::words);
   if (plan.layout.samples.empty()) return;
   row_size = columns.add_column(point, {"row_size", "1", "values of the point", "the study"}, Kind::whole, "value");
   value = columns.add_dimension("value", any_number_of_samples);

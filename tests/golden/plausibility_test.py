@@ -283,7 +283,7 @@ simulation: {end: 0.01, step: 1e-3}
         self.assertEqual([["guide", "two"], []], [facts["undetermined"], facts["left_free"]])
 
     def test_shipped_models_are_not_doubted(self):
-        files = [file for file in models("mechanisms") if not file.endswith("study.yaml")]
+        files = [file for file in models("mechanisms")]
         out, _ = self.freeplay("validate", *files, "--json")
         for one in json.loads(out):
             with self.subTest(one["file"]):

@@ -69,6 +69,15 @@ class StudyCommand(ProgramTest):
         self.study("merge", "shards")
         self.assertEqual(wanted, self.files("shards"))
 
+    def test_a_reducer_called_error_leaves_the_reason_its_own_column(self):
+        self.write("e.yaml", BALL + GRID.replace("y: {channel", "error: {channel").replace("value: y", "value: error").replace("y: y", "y: error"))
+        self.run_json("e.yaml", "--out", "e", "--jobs", "2")
+        rows = self.rows("e")
+        self.assertEqual(["error", "section", "exit_code", "error_of_point"], list(rows[0])[-4:])
+        self.assertEqual({("", "out-of-range")}, {(row["error"], row["error_of_point"]) for row in rows if row["exit_code"] != "0"})
+        self.assertTrue(all(float(row["error"]) < 0 for row in rows if row["exit_code"] == "0"))
+        self.study("plot", "e")
+
     def test_failed_points_have_their_reason_and_run_again_on_demand(self):
         self.run_json("ball.yaml", "--out", "r")
         failed = [row for row in self.rows("r") if row["exit_code"] != "0"]

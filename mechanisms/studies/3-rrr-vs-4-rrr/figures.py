@@ -1,6 +1,8 @@
-"""Figures that go across runs; those of single runs are drawn by the program. Lines differ in their styles, so that they can be
-read in print."""
+"""Pictures of the mechanisms at rest and of single runs; those across runs are the `plots` of series.yaml. Lines differ in
+their styles, so that they can be read in print."""
 import os
+import re
+import subprocess
 
 import matplotlib
 
@@ -8,19 +10,10 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend comes first
 
 STYLE = {"3-rrr": dict(color="#d55e00", linestyle="-"), "4-rrr": dict(color="#0072b2", linestyle="--")}
-MARK = {"3-rrr": "o", "4-rrr": "s"}
-NAMES = {"c": "radial clearance [mm]", "T": "time for one turn [s]", "mu": "friction coefficient"}
-SCALES = {"c": 1e3, "T": 1.0, "mu": 1.0}
-
-
-def save(figure, folder, name):
-    figure.tight_layout()
-    # Neither date nor random ids: the same numbers make the same bytes.
-    figure.savefig(os.path.join(folder, name + ".svg"), metadata={"Date": None})
-    plt.close(figure)
 
 
 def bounds(static, folder):
+    matplotlib.rcParams.update({"svg.hashsalt": "freeplay", "font.size": 9, "svg.fonttype": "none"})
     figure, axes = plt.subplots(1, 2, figsize=(10, 3.6))
     for mechanism, own in static.items():
         rows = own["bounds"]
@@ -36,39 +29,38 @@ def bounds(static, folder):
         ax.set_xlabel("place on the circle [deg]")
         ax.set_ylim(bottom=0)
         ax.legend(fontsize=8)
-    save(figure, folder, "bounds")
+    figure.tight_layout()
+    # Neither date nor random ids: the same numbers make the same bytes.
+    figure.savefig(os.path.join(folder, "bounds.svg"), metadata={"Date": None})
+    plt.close(figure)
 
 
-def series_of(plan, runs, mechanism, name):
-    return [(value, runs[mechanism, name, value]) for value in plan["series"][name]]
+class Pictures:
+    """What the program draws, without the record of provenance, which holds the paths of this machine."""
 
+    def __init__(self, program, folder):
+        self.program, self.folder = program, folder
 
-def trends(plan, static, runs, folder):
-    rows = [("largest position error [um]", lambda run: 1e6 * run.path()["max_position"]),
-            ("rms joint force, worst joint [N]", lambda run: run.over_joints("rms_force")),
-            ("largest joint force [N]", lambda run: run.over_joints("max_force")),
-            ("out of contact, worst joint [%]", lambda run: 100 * (1 - run.over_joints("contact_fraction", min)))]
-    figure, axes = plt.subplots(len(rows), 3, figsize=(11, 11), sharey="row")
-    for row, (title, value) in zip(axes, rows):
-        for ax, name in zip(row, plan["series"]):
-            for mechanism in static:
-                points = series_of(plan, runs, mechanism, name)
-                ax.plot([SCALES[name] * at for at, _ in points], [value(run) for _, run in points], label=mechanism,
-                        marker=MARK[mechanism], **STYLE[mechanism])
-            if name == "T":
-                ax.set_xscale("log")
-                ax.set_xticks(plan["series"][name], ["%g" % at for at in plan["series"][name]])
-                ax.minorticks_off()
-        row[0].set_ylabel(title, fontsize=9)
-        row[0].set_ylim(bottom=0)  # of the whole row
-    for ax, name in zip(axes[-1], plan["series"]):
-        ax.set_xlabel(NAMES[name])
-    axes[0][0].legend(fontsize=8)
-    save(figure, folder, "trends")
+    def draw(self, name, *words):
+        path = os.path.join(self.folder, name + ".svg")
+        where = ["--svg", path, "--out", os.devnull] if words[0] == "analyze" else ["--out", path]
+        done = subprocess.run([self.program, *words, *where], capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit("freeplay %s exits %d: %s" % (" ".join(words), done.returncode, done.stderr.strip()))
+        with open(path, encoding="utf-8") as file:
+            text = re.sub(r"\n<metadata>.*?</metadata>", "", file.read(), flags=re.S)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
 
-
-def draw(plan, static, runs, folder):
-    matplotlib.rcParams.update({"svg.hashsalt": "freeplay", "font.size": 9, "svg.fonttype": "none",
-                                "path.simplify_threshold": 0.3})
-    bounds(static, folder)
-    trends(plan, static, runs, folder)
+    def of_runs(self, runs, base):
+        """The last turn at the base values."""
+        loose = {m: run for (m, name, value), run in runs.items() if name == "c" and value == base["c"]}
+        first, second = loose
+        end = loose[first].end()
+        window = ["--from", "%r s" % (end - base["T"]), "--until", "%r s" % end]
+        self.draw("errors", "plot", loose[first].folder, "driver.circle.ex", "driver.circle.ey", *window,
+                  "--against", loose[second].folder)
+        for m, run in loose.items():
+            self.draw("loads-" + m, "plot", run.folder, "driver.leg1.A.torque", "joint.leg1.B.fx", *window,
+                      "--against", runs[m, "ideal", base["T"]].folder)
+            self.draw("orbit-" + m, "plot", run.folder, "--orbit", "leg1.B", *window, "--width", "480")
