@@ -42,7 +42,7 @@ std::optional<ChangedSource> changed_file(const fs::path& file, const std::strin
   if (!then.is_string()) return std::nullopt;
   std::string text;
   const bool gone = !is_file(file) || !read_input(file.string(), text).empty();
-  const std::string now = gone ? "none" : sha256(text), before = then.get<std::string>();
+  const std::string now = gone ? "gone" : sha256(text), before = then.get<std::string>();
   if (now == before) return std::nullopt;
   return ChangedSource{name, before.substr(0, shown_digits), now.substr(0, shown_digits)};
 }

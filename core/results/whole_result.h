@@ -13,7 +13,7 @@ namespace freeplay {
 /// The model or an input beside a result that is not the one it was made from.
 struct ChangedSource {
   std::string name;       ///< "the model", "'motor.csv' of the inputs"
-  std::string then, now;  ///< first digits of their fingerprints; now: "none" where it is gone
+  std::string then, now;  ///< first digits of their fingerprints; now: "gone" where there is none left
 };
 
 /// The first of them; `record` is the provenance of the result.

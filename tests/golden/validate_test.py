@@ -100,8 +100,8 @@ class Validate(ProgramTest):
     def test_reducers_of_a_study_are_checked(self):
         with open(mechanism("pendulum"), encoding="utf-8") as file:
             text = file.read()
-        self.write("m.yaml", text + "study: {reducers: {x: {channel: body.rod.xx, reduce: final}}}\n")
-        self.assertIn("there is no channel 'body.rod.xx' [unknown-name]", self.freeplay("validate", "m.yaml", code=3)[1])
+        self.write("m.yaml", text + "study: {reducers: {x: {value: '[body.rod.xx]', reduce: final}}}\n")
+        self.assertIn("unknown channel 'body.rod.xx' [unknown-name]", self.freeplay("validate", "m.yaml", code=3)[1])
 
     def test_a_model_with_a_study_has_its_own_facts_too(self):
         with open(mechanism("pendulum"), encoding="utf-8") as file:
