@@ -190,7 +190,7 @@ class RunJob {
   void compare_with_twin(Outcome& outcome, Ended& ended) {
     std::string trouble;
     ended.twin = twin_->finish(trouble);
-    if (ended.twin.is_null() && trouble.empty() && outcome.exit_code == 0) {
+    if (ended.twin.is_null() && trouble.empty() && outcome.exit_code == 0 && watch_interrupts() != 0) {
       interrupted_beside(outcome, "the run without clearances of --twin");
     }
     if (trouble.empty()) return;
