@@ -120,7 +120,7 @@ JobScripts snakemake(const JobRequest& request, const JobPlan& plan) {
   Writer writer(request);
   const Words& words = writer.words();
   const auto text = [](const std::string& value) { return Json(value).dump(); };
-  const auto braces = [](std::string value) {  // Snakemake fills in what stands in braces
+  const auto braces = [](const std::string& value) {  // Snakemake fills in what stands in braces
     std::string doubled;
     for (const char c : value) doubled += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
     return doubled;

@@ -39,12 +39,12 @@ class RowSorter {
   void put(const SegmentRow& row, std::uint32_t segment);
   /// All rows of a point at once, in the order in which they were put. May be called once.
   using Visit = std::function<void(const std::vector<SortedRow>&)>;
-  void visit(const Visit& visit);
+  void visit(const Visit& each);
 
  private:
   class Bucket;
   void put(std::uint64_t index, std::string_view record);
-  void visit(Bucket& bucket, const Visit& visit) const;
+  void visit(Bucket& bucket, const Visit& each) const;
 
   std::filesystem::path folder_;
   std::uint64_t first_, end_;  ///< points
