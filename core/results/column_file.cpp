@@ -76,7 +76,7 @@ ColumnFile::File::File(const std::filesystem::path& path,
   const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   checked(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
-  checked(H5Pset_obj_track_times(creation, 0));
+  checked(H5Pset_obj_track_times(creation, false));
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
   file = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access));
@@ -89,7 +89,7 @@ Hdf5Id ColumnFile::File::make_dataset(const std::string& name, hid_t type, const
   const hsize_t chunk = dimension.chunk;
   checked(H5Pset_chunk(creation, 1, &chunk));
   checked(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_INCR));
-  checked(H5Pset_obj_track_times(creation, 0));
+  checked(H5Pset_obj_track_times(creation, false));
   checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   checked(H5Pset_shuffle(creation));
   checked(H5Pset_deflate(creation, 1));

@@ -32,7 +32,7 @@ Json field(const Json& json, const char* pointer) {
   return json.contains(path) ? json.at(path) : Json();
 }
 
-Json json_in(const fs::path& file) {
+Json record_in(const fs::path& file) {
   std::string text;
   if (!is_file(file) || !read_input(file.string(), text).empty()) return nullptr;
   return Json::parse(text, nullptr, false);
@@ -124,12 +124,12 @@ std::string missing_part(ResultReader& reader) {
   if (!is_text(file)) return {};  // others are read as a whole or not at all
   Sha256 hash;
   const WholeLines lines = whole_lines(file, std::numeric_limits<std::int64_t>::max(), &hash);
-  const Json record = json_in(file.string() + ".provenance.json");
+  const Json record = record_in(file.string() + ".provenance.json");
   const Json digits = record.is_object() ? field(record, "/data_sha256") : Json();
   if (digits.is_string() && (lines.more || hash.digits() != digits.get<std::string>())) {
     return fmt::format("'{}' was changed or cut: it has not the fingerprint in the record beside it", file.string());
   }
-  const Json summary = file.filename() == "results.csv" ? json_in(file.parent_path() / "summary.json") : Json();
+  const Json summary = file.filename() == "results.csv" ? record_in(file.parent_path() / "summary.json") : Json();
   const Json counted = summary.is_object() ? field(summary, "/counts/rows") : Json();
   if (counted.is_number_integer() && counted.get<std::int64_t>() > lines.lines - 1) {
     return fmt::format("rows of '{}' are missing: it has {}, and its summary counts {}", file.string(), lines.lines - 1,
