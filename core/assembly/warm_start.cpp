@@ -124,7 +124,7 @@ class WarmStart {
     if (const int turn = system_.layout().turn(joint); turn >= 0) state_.h()[at(turn)] += whole_turn * turns;
   }
 
-  void turn_bodies(std::vector<Turn> wanted) {
+  void turn_bodies(const std::vector<Turn>& wanted) {
     for (bool more = true; more;) {
       more = false;
       for (const Turn& turn : wanted) more = relate(turn) || more;
