@@ -19,7 +19,7 @@ struct EngineReport {
   double busy_seconds = 0.0;  ///< of all workers together
 };
 
-/// What is left of a study's samples where it has a rule for its end; may be null.
+/// Gives the values of a study's samples to the rule by which it may end early; `rule` is null where there is none.
 struct StopWatch {
   StopRule* rule = nullptr;
   std::uint64_t samples = 1;  ///< of each combination

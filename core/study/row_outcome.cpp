@@ -1,28 +1,10 @@
 #include "study/row_outcome.h"
 
-#include <algorithm>
-#include <charconv>
-#include <limits>
 #include <string_view>
 
+#include "study/fields.h"
+
 namespace freeplay {
-namespace {
-
-double number_in(std::string_view text) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
-std::string_view cut_field(std::string_view& rest, char separator) {
-  const std::size_t end = std::min(rest.find(separator), rest.size());
-  const std::string_view field = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return field;
-}
-
-}  // namespace
-
 StudyOutcome outcome_of(const SegmentRow& row, const RowLayout& layout) {
   StudyOutcome outcome;
   outcome.exit_code = row.exit_code;

@@ -1,7 +1,6 @@
 #include "study/table_writer.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -12,26 +11,13 @@
 #include "base/json_text.h"
 #include "base/staged_file.h"
 #include "results/column_file.h"
+#include "study/fields.h"
 
 namespace freeplay {
 namespace {
 
 using Kind = ColumnFile::Kind;
 constexpr std::uint64_t any_number_of_samples = std::uint64_t{1} << 62;
-
-/// NaN for an empty field.
-double number_of(std::string_view field) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  std::from_chars(field.data(), field.data() + field.size(), value);
-  return value;
-}
-
-std::string_view take_up_to(std::string_view& rest, char separator) {
-  const std::size_t end = std::min(rest.find(separator), rest.size());
-  const std::string_view field = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return field;
-}
 
 /// A field of a table without quotes.
 void append_cell(std::string& line, std::string_view cell) {
@@ -118,7 +104,7 @@ void TableWriter::put(const SortedRow& row, const std::string& host) {
   if (plan_.start_cell) cells_[*plan_.start_cell] = row.start;
   for (const std::string& cell : cells_) append_cell(line, cell);
   std::string_view rest = row.values;
-  for (std::size_t i = 0; i < plan_.layout.columns.size(); ++i) append_cell(line, take_up_to(rest, '\t'));
+  for (std::size_t i = 0; i < plan_.layout.columns.size(); ++i) append_cell(line, cut_field(rest, '\t'));
   fmt::format_to(std::back_inserter(line), "{},", row.exit_code);
   append_cell(line, row.error);
   line.pop_back();
@@ -144,11 +130,11 @@ void TableWriter::put_columns(const SortedRow& row) {
     if (plan_.keys[i].words) {
       columns.put_word(files_->keys[i], cells_[i]);
     } else {
-      columns.put(files_->keys[i], number_of(cells_[i]));
+      columns.put(files_->keys[i], number_in(cells_[i]));
     }
   }
   std::string_view rest = row.values;
-  for (const std::size_t column : files_->values) columns.put(column, number_of(take_up_to(rest, '\t')));
+  for (const std::size_t column : files_->values) columns.put(column, number_in(cut_field(rest, '\t')));
   columns.put_whole(files_->exit_code, row.exit_code);
   columns.put_word(files_->error, row.error);
 }
@@ -158,14 +144,14 @@ void TableWriter::put_samples(const SortedRow& row) {
   for (std::size_t i = 0; i < row.samples.size(); ++i) {
     std::string_view rest = row.samples[i];
     for (std::int64_t k = 0; !rest.empty(); ++k, ++count) {
-      std::string_view value = take_up_to(rest, '\t');
-      const std::string_view time = take_up_to(value, ':');
+      std::string_view value = cut_field(rest, '\t');
+      const std::string_view time = cut_field(value, ':');
       fmt::format_to(std::back_inserter(files_->samples.line()), "{},{},{},{},{}", row.index, plan_.layout.samples[i],
                      k, time, value);
       files_->samples.end_line();
       files_->columns.put_word(files_->reducer, plan_.layout.samples[i]);
-      files_->columns.put(files_->time, number_of(time));
-      files_->columns.put(files_->sample, number_of(value));
+      files_->columns.put(files_->time, number_in(time));
+      files_->columns.put(files_->sample, number_in(value));
       files_->columns.end_row(files_->value);
     }
   }
