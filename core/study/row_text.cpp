@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t checksum_digits = 8;
 
 /// What separates fields and lines is none of a text.
-void append_text(std::string& out, std::string_view text) {
+void append_plain(std::string& out, std::string_view text) {
   for (const char c : text) out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
 }
 
@@ -62,7 +62,7 @@ void append_point(std::string& out, std::uint64_t index, const std::string& hash
   if (!good) {
     out += '!';
     append_index(out, index);
-    append_text(out, outcome.message);
+    append_plain(out, outcome.message);
     out += '\t';
     seal_line(out, from);
     from = out.size();
@@ -77,7 +77,7 @@ void append_point(std::string& out, std::uint64_t index, const std::string& hash
   }
   append_index(out, index);
   fmt::format_to(std::back_inserter(out), "{}\t{}\t", hash, outcome.exit_code);
-  append_text(out, outcome.error);
+  append_plain(out, outcome.error);
   for (const double seconds : {outcome.wall, outcome.cpu, outcome.run}) {
     out += '\t';
     append_number(out, seconds);
