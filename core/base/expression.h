@@ -42,6 +42,13 @@ class Scope {
   virtual std::vector<std::string> names() const = 0;
 };
 
+/// Of formulas that know no parameters.
+class EmptyScope final : public Scope {
+ public:
+  const Quantity* find(std::string_view) const override { return nullptr; }
+  std::vector<std::string> names() const override { return {}; }
+};
+
 /// What `[name]` stands for in formulas that have such values: a number that is given with each evaluation.
 struct FormulaVariable {
   int index = 0;  ///< into the numbers that are given

@@ -10,16 +10,6 @@
 #include "base/suggestion.h"
 
 namespace freeplay {
-namespace {
-
-class NoParameters : public Scope {
- public:
-  const Quantity* find(std::string_view) const override { return nullptr; }
-  std::vector<std::string> names() const override { return {}; }
-};
-
-}  // namespace
-
 void bad_value(const std::string& option, const std::string& text, const std::string& why, const std::string& hint) {
   throw Error(Error::Category::usage, "bad-value", fmt::format("bad value '{}' of {}: {}", text, option, why), {},
               hint);
@@ -27,7 +17,7 @@ void bad_value(const std::string& option, const std::string& text, const std::st
 
 double signed_quantity(const std::string& option, const std::string& text, const Dimension& dimension) {
   try {
-    const Expression expression = Expression::compile(text, NoParameters{}, false);
+    const Expression expression = Expression::compile(text, EmptyScope{}, false);
     expression.require(dimension);
     return expression.constant().value;
   } catch (const ExpressionError& e) {
@@ -43,6 +33,7 @@ double positive_quantity(const std::string& option, const std::string& text, con
 
 void require_word(const std::string& what, const std::string& word, const std::vector<std::string>& allowed) {
   if (std::ranges::find(allowed, word) != allowed.end()) return;
+  if (allowed.empty()) throw Error(Error::Category::usage, "unknown-name", fmt::format("there is no {}", what));
   const auto nearest = suggestion(word, allowed);
   throw Error(
       Error::Category::usage, "unknown-name", fmt::format("there is no {} '{}'", what, word), {},

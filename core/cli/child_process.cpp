@@ -19,9 +19,9 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/whole_text.h"
 #include "cli/address_sanitizer.h"
 #include "cli/interrupt.h"
-#include "cli/whole_text.h"
 
 namespace freeplay {
 namespace {

@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/whole_text.h"
 #include "cli/interrupt.h"
-#include "cli/whole_text.h"
 
 namespace freeplay {
 namespace {

@@ -21,10 +21,10 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/whole_text.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
-#include "cli/whole_text.h"
 #include "results/summary.h"
 #include "run/play_start.h"
 #include "run/simulation.h"

@@ -17,9 +17,9 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/whole_text.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
-#include "cli/whole_text.h"
 
 namespace freeplay {
 namespace {

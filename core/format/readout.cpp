@@ -5,11 +5,6 @@
 namespace freeplay {
 namespace {
 
-struct NoParameters final : Scope {
-  const Quantity* find(std::string_view) const override { return nullptr; }
-  std::vector<std::string> names() const override { return {}; }
-};
-
 /// "(0.24 m^1)", a factor of a formula; exponents in full.
 std::string factor(const Quantity& quantity) {
   std::string unit;
@@ -50,7 +45,7 @@ void Readout::note_function(const std::string& instance, const Node& node, const
   }
   // A parameter without a unit fits anywhere, a number in its place may not: what depends on t fits anywhere, too.
   if (expression.kind() == DimensionKind::free &&
-      Expression::compile(text, NoParameters(), true).kind() != DimensionKind::free) {
+      Expression::compile(text, EmptyScope(), true).kind() != DimensionKind::free) {
     text = "(1 + 0*t)*(" + text + ")";
   }
   texts_[{instance, &node}] = {std::move(text)};

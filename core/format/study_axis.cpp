@@ -13,12 +13,6 @@
 namespace freeplay {
 namespace {
 
-class NoScope : public Scope {
- public:
-  const Quantity* find(std::string_view) const override { return nullptr; }
-  std::vector<std::string> names() const override { return {}; }
-};
-
 /// Such as a law or an integrator: what is no quantity and could not be meant as one either. Texts in quotes are meant
 /// as they are.
 bool is_word(const Node& node) {
@@ -195,7 +189,7 @@ class AxisReader {
 
 std::optional<Quantity> constant_quantity(const std::string& text) {
   try {
-    return Expression::compile(text, NoScope(), false).constant();
+    return Expression::compile(text, EmptyScope(), false).constant();
   } catch (const ExpressionError&) {
     return std::nullopt;
   }

@@ -22,6 +22,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/whole_text.h"
 #include "study/outcome_bytes.h"
 
 namespace freeplay {
@@ -46,16 +47,6 @@ double processor_seconds() {
   timespec time{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-bool send_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
 }
 
 /// In a worker: the point, with what it took. What its run throws is a mistake of this program, and costs the point.
@@ -158,7 +149,7 @@ void WorkerProcess::live(StudyWork& work, bool one_point, int parent, int tasks,
         StudyOutcome outcome = run_point(work, point, task.state, note_);
         answer.clear();
         append_message(answer, point, outcome);
-        if (!send_all(results, answer)) _exit(1);
+        if (!write_all(results, answer)) _exit(1);
         note_.point = 0;
         if (one_point) _exit(0);
         task.state = std::move(outcome.state);

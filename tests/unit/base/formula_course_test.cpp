@@ -12,12 +12,7 @@
 namespace freeplay {
 namespace {
 
-struct NoParameters final : Scope {
-  const Quantity* find(std::string_view) const override { return nullptr; }
-  std::vector<std::string> names() const override { return {}; }
-};
-
-Expression expression_of(std::string_view text) { return Expression::compile(text, NoParameters{}, true); }
+Expression expression_of(std::string_view text) { return Expression::compile(text, EmptyScope{}, true); }
 
 /// All corners of (from, to), asked for in steps of at most `dt`; `unknown` sums what is not known.
 struct Walk {

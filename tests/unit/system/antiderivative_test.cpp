@@ -8,12 +8,7 @@
 namespace freeplay {
 namespace {
 
-class NoParameters final : public Scope {
- public:
-  const Quantity* find(std::string_view) const override { return nullptr; }
-  std::vector<std::string> names() const override { return {}; }
-};
-Expression compiled(const char* text) { return Expression::compile(text, NoParameters(), true); }
+Expression compiled(const char* text) { return Expression::compile(text, EmptyScope(), true); }
 
 /// Largest error over many instants, those between panels included.
 double worst_error(const char* text, double start, double end, const std::function<double(double)>& exact) {

@@ -1,4 +1,4 @@
-#include "cli/whole_text.h"
+#include "base/whole_text.h"
 
 #include <cerrno>
 
