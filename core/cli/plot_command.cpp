@@ -243,12 +243,7 @@ class Plot {
         const bool along = channel[1] == 'z' && dimension_of(summary_, options_.orbit, "length") > 0.0;
         if (there && !along) request_.channels.push_back(name);
       }
-      request_.clearance = dimension_of(summary_, options_.orbit, "radial_clearance");
-      if (request_.clearance == 0.0) request_.clearance = clearance_in_model();
-      if (request_.clearance == 0.0) {
-        print_messages("freeplay: note: no model or summary beside says how large the clearance is: no circle\n",
-                       common_.no_color);
-      }
+      for (const std::string& path : paths_) request_.clearances.push_back(clearance_of(path));
     }
     if (!request_.channels.empty()) return;
     throw Error(Error::Category::usage, "missing-argument", "plot needs a channel, such as 'joint.*.fn'", {},
@@ -283,13 +278,19 @@ class Plot {
     require_word("joint with play", joint, journals);
   }
 
-  /// Radial clearance as the model beside the rows has it, where the run goes on or was killed [m]; 0: there is none.
-  double clearance_in_model() const {
-    const auto model = model_beside(folder_of(options_.path), summary_, loading(common_));
-    if (!model) return 0.0;
-    for (const JointElement& joint : model->joints) {
-      if (joint.name == options_.orbit) return std::max(joint.layout.clearance, 0.0);
+  /// Radial clearance of the joint [m] as the summary has it or, where the run goes on or was killed, the model beside
+  /// the rows; 0, with a note, where neither does.
+  double clearance_of(const std::string& path) const {
+    const Json summary = path == options_.path ? summary_ : summary_beside(path);
+    if (const double known = dimension_of(summary, options_.orbit, "radial_clearance"); known > 0.0) return known;
+    if (const auto model = model_beside(folder_of(path), summary, loading(common_))) {
+      const auto joint = std::ranges::find(model->joints, options_.orbit, &JointElement::name);
+      if (joint != model->joints.end() && joint->layout.clearance > 0.0) return joint->layout.clearance;
     }
+    print_messages(fmt::format("freeplay: note: no model or summary beside '{}' says how large the clearance is: no "
+                               "circle\n",
+                               path),
+                   common_.no_color);
     return 0.0;
   }
 

@@ -173,7 +173,7 @@ bool Remaking::execute(std::vector<std::string> words, const Json& run) {
   const std::vector<std::string> plugins = plugin_words(run);
   words.insert(words.end(), plugins.begin(), plugins.end());
   const bool shows = stderr_is_terminal() && !common_.quiet;
-  words.emplace_back("--json");
+  if (words.front() != "plot") words.emplace_back("--json");  // the numbers of a picture, which not every view has
   if (!shows) words.emplace_back("--quiet");
   if (common_.no_color) words.emplace_back("--no-color");
   end_ = run_own_program(words, shows);

@@ -18,6 +18,8 @@ constexpr double px_per_x_tick = 90.0, px_per_y_tick = 40.0, orbit_room = 1.05;
 constexpr double least_open = 0.25;  // of the longer side of an orbit: the shorter one
 constexpr double most_bins = 60.0, px_per_bin = 8.0, percent = 100.0;
 
+std::string named(const std::string& unit) { return unit.empty() || unit == "1" ? "no unit" : unit; }
+
 /// What the first reading of a result tells.
 struct Ranges {
   Extremes time;
@@ -84,6 +86,15 @@ class ChannelFigure {
     if (request_.view == View::orbit && request_.joint.empty() && columns.size() != 3) {
       throw Error(Error::Category::usage, "bad-value",
                   fmt::format("--xy draws one channel over another, and {} are given", columns.size() - 1));
+    }
+    if (request_.view == View::orbit) {
+      const RecordColumn &x = reader.layout().columns[columns[1]], &y = reader.layout().columns[columns[2]];
+      if (x.unit != y.unit) {
+        throw Error(Error::Category::usage, "bad-value",
+                    fmt::format("--xy has equal scales, and '{}' is in {}, '{}' in {}", x.name, named(x.unit), y.name,
+                                named(y.unit)),
+                    {}, fmt::format("plot '{}' --x '{}'", y.name, x.name));
+      }
     }
     return columns;
   }
@@ -234,8 +245,8 @@ class ChannelFigure {
   void draw_orbit(std::size_t first, std::size_t second) {
     const auto range = [&](std::size_t c) {
       Extremes values = common([&](const Ranges& ranges) -> const Extremes& { return ranges.channels[c]; });
-      if (request_.clearance > 0.0) {
-        for (const double side : {-orbit_room, orbit_room}) values.add(0.0, side * request_.clearance);
+      for (const double clearance : request_.clearances) {
+        for (const double side : {-orbit_room, orbit_room}) values.add(0.0, side * clearance);
       }
       return values;
     };
@@ -253,8 +264,21 @@ class ChannelFigure {
     one.x_label = over.name;
     const double pixel = std::max(longest / std::max(1.0, std::min(request_.across, request_.down)), 1e-300);
     add_trails(one, second, first_channel() + first, pixel, pixel);
-    if (request_.clearance > 0.0) one.circles.push_back({request_.clearance, "clearance", true});
+    one.circles = clearance_circles();
     figure_.panels.push_back(std::move(one));
+  }
+
+  /// One for all results, or where they differ one for each in its colour.
+  std::vector<Circle> clearance_circles() const {
+    const std::vector<double>& all = request_.clearances;
+    std::vector<Circle> circles;
+    if (all.empty()) return circles;
+    const bool same = std::ranges::all_of(all, [&](double one) { return one == all[0]; });
+    for (std::size_t s = 0; s < (same ? 1 : all.size()); ++s) {
+      if (all[s] > 0.0) circles.push_back({.radius = all[s], .label = "clearance", .dashed = true});
+      if (all[s] > 0.0 && !same) circles.back().line = static_cast<int>(s);
+    }
+    return circles;
   }
 
   /// What stands still is drawn in a plane, too, and a straight way in a part of one.

@@ -24,7 +24,7 @@ struct FigureRequest {
   std::vector<std::string> channels;  ///< patterns; of polar: words of tables
   std::string over;                   ///< the other channel
   std::string joint;                  ///< of polar, and of the orbit of a journal
-  double clearance = 0.0;             ///< circle of an orbit [m]; 0: none
+  std::vector<double> clearances;     ///< of an orbit by result: radius of its circle [m]; 0: none
   RowWindow window;
   double across = 800.0, down = 180.0;  ///< room of the lines of a panel [px]
 };

@@ -27,6 +27,7 @@ struct Circle {
   std::string label;
   bool dashed = false;
   double label_angle = std::numbers::pi / 2.0;  ///< where the label stands, from x on
+  int line = -1;                                ///< whose colour it has; -1: grey
 };
 
 struct Panel {

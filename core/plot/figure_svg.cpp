@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
 #include "plot/figure.h"
 #include "svg/page.h"
 
@@ -116,9 +117,10 @@ class PanelDrawing {
   void draw_circles() {
     for (const Circle& circle : panel_.circles) {
       const double radius = circle.radius / (panel_.x.until - panel_.x.from) * (area_.right - area_.left);
-      out_ +=
-          fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"#555\" stroke-width=\"0.8\"{}/>\n",
-                      px(at_x(0.0)), px(at_y(0.0)), px(radius), circle.dashed ? " stroke-dasharray=\"5 3\"" : "");
+      out_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"0.8\"{}/>\n",
+                          px(at_x(0.0)), px(at_y(0.0)), px(radius),
+                          circle.line < 0 ? "#555" : styles[at(circle.line) % std::size(styles)].colour,
+                          circle.dashed ? " stroke-dasharray=\"5 3\"" : "");
       if (circle.label.empty()) continue;
       out_ += fmt::format(
           "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#333\" paint-order=\"stroke\" stroke=\"white\" "

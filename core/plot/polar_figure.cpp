@@ -25,6 +25,7 @@ std::size_t place_of(const std::string& word, const std::vector<std::string>& wo
   const auto found = std::ranges::find(words, word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   const auto nearest = suggestion(word, words);
+  if (words.empty()) throw Error(Error::Category::usage, "unknown-name", fmt::format("'{}' has no {}", file, what));
   throw Error(Error::Category::usage, "unknown-name", fmt::format("'{}' has no {} '{}'", file, what, word), {},
               nearest ? fmt::format("did you mean '{}'?", *nearest) : fmt::format("one of {}", fmt::join(words, ", ")));
 }
@@ -83,19 +84,21 @@ Figure polar_figure(const std::vector<Source>& sources, const FigureRequest& req
     panel.unit = tables[0].columns[table].unit;
     panel.title = fmt::format("{} of {} by bearing angle", word, request.joint);
     double largest = 0.0;
+    bool known = false;
     for (std::size_t s = 0; s < sources.size(); ++s) {
       const std::vector<std::string>& joints = sources[s].reader->layout().bearings;
       const std::size_t joint = place_of(request.joint, joints, "joint with play", sources[s].reader->file());
       const std::size_t width = tables[s].columns.size(), sectors = tables[s].rows.size() / width / joints.size();
       std::vector<double> values;
       for (std::size_t k = 0; k < sectors; ++k) values.push_back(tables[s].rows[(joint * sectors + k) * width + table]);
+      known = known || std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
       panel.lines.push_back(outline(values));
       largest = std::fmax(largest, panel.lines.back().seen.most);
     }
     const bool empty = !(largest > 0.0);
     if (empty) {
       largest = 1.0;
-      panel.title += ": 0 in all sectors";
+      panel.title += known ? ": 0 in all sectors" : ": not known, the bearing has no 'length'";
     }
     panel.x = panel.y = {-room * largest, room * largest, {0.0}, {""}, ""};
     panel.equal_scales = true;

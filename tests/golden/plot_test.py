@@ -94,6 +94,18 @@ class Plot(ProgramTest):
         same = self.plot("joint.wrist.ex", "joint.wrist.ey", "--xy")[0]
         self.assertAlmostEqual(min(self.columns["joint.wrist.ey"]), min(y for _, y in same.lines[0]), delta=same.pixel[1])
 
+    def test_each_orbit_has_the_circle_of_its_own_clearance(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--set", "c=1 mm", "--out", "wide")
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--integrator", "newmark", "--out", "same")
+        panel = self.plot("--orbit", "wrist", "--against", "wide")[0]
+        self.assertEqual(2, len(panel.circles))
+        for expected, drawn in zip((0.5e-3, 1e-3), panel.circles):
+            self.assertAlmostEqual(expected, drawn, delta=2 * panel.pixel[0])
+        out, _ = self.freeplay("plot", "r", "--orbit", "wrist", "--against", "wide")
+        colours = [circle.get("stroke") for circle in ET.fromstring(out).iter(SVG + "circle") if circle.get("stroke-dasharray")]
+        self.assertEqual(["#0072B2", "#D55E00"], colours)
+        self.assertEqual(1, len(self.plot("--orbit", "wrist", "--against", "same")[0].circles))
+
     def test_the_orbit_of_a_ball_is_seen_from_three_sides(self):
         self.freeplay("run", mechanism("spatial/four-bar"), "--quiet", "--end", "2 ms", "--out", "space")
         found = panels(self.freeplay("plot", "space", "--orbit", "B")[0])
@@ -152,6 +164,8 @@ class Plot(ProgramTest):
         self.assertEqual(2, out.count(" of wrist by bearing angle: 0 in all sectors"))
         self.assertNotIn("<circle", out)
         self.assertIn("of the whole time that counts", out)
+        out, _ = self.freeplay("plot", "short", "--polar", "wrist", "pv_mean")  # the file gives no length
+        self.assertIn("pv_mean of wrist by bearing angle: not known, the bearing has no 'length'", out)
 
     def test_tables_by_sector_stand_around_their_joint(self):
         panel = self.plot("--polar", "wrist", "work")[0]
@@ -314,7 +328,11 @@ class Plot(ProgramTest):
         self.assertEqual([], panels(out)[0].circles)
 
     def test_what_cannot_be_drawn_is_refused(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--ideal", "all", "--out", "ideal")
         for arguments, code, words in (
+                (["ideal", "--orbit", "wrist"], 2, "there is no joint with play ["),
+                (["r", "joint.wrist.fn", "body.slider.x", "--xy"], 2,
+                 "--xy has equal scales, and 'joint.wrist.fn' is in N, 'body.slider.x' in m"),
                 (["r", "joint.wrst.fn"], 2, "did you mean 'joint.wrist.fn'?"),
                 (["r", "zz*"], 2, "names of channels begin with body, driver, energy, joint, time"),
                 (["nowhere", "x"], 6, "[unreadable-result]"),

@@ -212,6 +212,9 @@ class Reproduce(ProgramTest):
         self.run_model("again", "--end", "4 ms", "--interval", "0.1 ms")
         self.run_model("s", "--end", "4 ms", "--interval", "0.1 ms", "--set", "c=0.3 mm")
         for name, words in (("one.svg", ("joint.wrist.fn", "body.slider.x", "--from", "1 ms")), ("orbit.svg", ("--orbit", "wrist")),
+                            ("over.svg", ("joint.wrist.fn", "--x", "body.slider.x", "--width", "84 mm")),
+                            ("xy.svg", ("body.slider.x", "body.slider.y", "--xy")), ("polar.svg", ("--polar", "wrist")),
+                            ("fft.svg", ("driver.motor.torque", "--fft")), ("parts.svg", ("joint.wrist.fn", "--histogram")),
                             ("two.svg", ("joint.wrist.fn", "--against", "s")),
                             ("three.svg", ("body.slider.x", "--against", "again", "--against", "s"))):
             with self.subTest(name):
