@@ -31,6 +31,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       statistics_(run.model, run.channels, run.adaptive),
       clearances_(run.model, run.system.joints(), run.channels),
       ledger_(run.system.joints(), run.channels),
+      maxima_(run.system.joints(), run.channels),
       peaks_(statistics_.largest().places().size()),
       contact_rows_(run.system, run.channels, statistics_, run.adaptive),
       contact_peaks_(contact_rows_.largest().size()),
@@ -141,6 +142,7 @@ bool Recorder::write_row() {
 }
 
 bool Recorder::write_events() {
+  maxima_.raise(run_.events);
   run_.outcome.events += static_cast<long>(run_.events.happenings().size());
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   if (ledger_.active()) {
@@ -238,6 +240,7 @@ bool Recorder::see_at(double t, std::span<double> row) {
 bool Recorder::write_row_at(double t) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::output);
   if (!see_at(t, row_between_)) return false;
+  maxima_.see(row_between_);
   if (contact_rows_.active()) {
     if (!contact_rows_.idle()) {
       statistics_.note(row_between_);
@@ -275,6 +278,7 @@ void Recorder::see_contact_end(std::span<const double> row) {
 bool Recorder::look_for_peak(double s, const Ends& step, bool wanted_row) {
   if (!observe_inside(step.start.t() + s * (step.end.t() - step.start.t()), step, row_between_)) return false;
   statistics_.note(row_between_);
+  maxima_.see(row_between_);
   if (!contact_rows_.active() && !feed_.active()) return true;
   run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row_between_);
   feed_.see_inside(row_between_);

@@ -8,6 +8,7 @@
 #include "run/contact_ledger.h"
 #include "run/contact_rows.h"
 #include "run/event_storm.h"
+#include "run/impact_maxima.h"
 #include "run/observer.h"
 #include "run/peak_search.h"
 #include "run/sink.h"
@@ -55,11 +56,12 @@ class Recorder {
 
   const Statistics& statistics() const { return statistics_; }
   const ClearanceStatistics& clearances() const { return clearances_; }
+  std::vector<OpenContacts> open_contacts() const { return ledger_.still_open(); }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.statistics_, self.clearances_, self.ledger_, self.peaks_, self.storm_, self.row_, self.row_is_known_,
-            self.next_row_, self.contact_rows_, self.contact_peaks_);
+    archive(self.statistics_, self.clearances_, self.ledger_, self.maxima_, self.peaks_, self.storm_, self.row_,
+            self.row_is_known_, self.next_row_, self.contact_rows_, self.contact_peaks_);
   }
 
  private:
@@ -92,6 +94,7 @@ class Recorder {
   Statistics statistics_;
   ClearanceStatistics clearances_;
   ContactLedger ledger_;
+  ImpactMaxima maxima_;
   PeakSearch peaks_;  // with error control
   ContactRows contact_rows_;
   PeakSearch contact_peaks_;  // the same of each contact

@@ -73,6 +73,7 @@ class StepEvents {
   };
   const std::vector<Happening>& happenings() const { return happenings_; }
   std::span<const double> fields(const Happening& h) const { return {values_.data() + h.fields, h.count}; }
+  std::span<double> fields(const Happening& h) { return {values_.data() + h.fields, h.count}; }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
