@@ -139,7 +139,8 @@ TEST(Accuracy, ThreeRrrAtOneNanometreFollowsTheReferenceForTwentyMilliseconds) {
                                                   {"leg1.C", 0.0067390359026056},  {"leg3.C", 0.00744866421410308},
                                                   {"leg2.B", 0.00844143722135433}, {"leg2.C", 0.00851851940436134}};
   for (const auto& [joint, time] : known) {
-    const auto first = std::ranges::find_if(run.events(), [&](const Event& e) { return e.joint == joint; });
+    const auto first =
+        std::ranges::find_if(run.events(), [&joint = joint](const Event& e) { return e.joint == joint; });
     ASSERT_NE(first, run.events().end()) << joint;
     EXPECT_NEAR(first->time, time, 1e-9) << joint;
   }

@@ -151,7 +151,7 @@ Errors double_rod_errors(double step) {
     struct Point {
       long double x = 0, y = 0, vx = 0, vy = 0, ax = 0, ay = 0;
     };
-    const auto along = [&](const Point& p, std::size_t rod, long double r) {
+    const auto along = [&q = q, &w = w, &a = a](const Point& p, std::size_t rod, long double r) {
       const long double c = r * std::cos(q[rod]), s = r * std::sin(q[rod]), rate = w[rod], second = a[rod];
       return Point{p.x + c,
                    p.y + s,

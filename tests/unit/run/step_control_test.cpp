@@ -109,7 +109,7 @@ TEST(StepControl, LawThatEndedInItsFirstStepLeavesTheProposal) {
   StepControl control({1.0, 1e-6, 1e3}, 5);
   control.accept(1.0, 0.5);
   const double before = control.next();
-  for (const std::uint64_t law : {1, 2, 1}) {
+  for (const std::uint64_t law : {1u, 2u, 1u}) {
     control.cut(law);
     EXPECT_EQ(control.next(), before);
   }
