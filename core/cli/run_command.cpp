@@ -141,7 +141,6 @@ class RunJob {
     Statistics statistics;
     ClearanceStatistics clearances;
     RunExtremes extremes;
-    std::vector<OpenContacts> open_contacts;
     std::vector<double> last_row;
     std::vector<std::string> warnings;
     Json twin = nullptr;
@@ -238,8 +237,11 @@ class RunJob {
   Ended end() {
     const auto row = simulation_->last_row();
     const auto warnings = simulation_->warnings();
-    Ended ended{simulation_->statistics(),    simulation_->clearances(), simulation_->extremes(),
-                simulation_->open_contacts(), {row.begin(), row.end()},  {warnings.begin(), warnings.end()}};
+    Ended ended{simulation_->statistics(),
+                simulation_->clearances(),
+                simulation_->extremes(),
+                {row.begin(), row.end()},
+                {warnings.begin(), warnings.end()}};
     simulation_.reset();
     twin_rows_.reset();
     return ended;
@@ -256,7 +258,6 @@ class RunJob {
     record.provenance = recording_.provenance();
     record.provenance["hashes"] = record.hashes;
     record.extremes = ended.extremes;
-    record.open_contacts = ended.open_contacts;
     record.twin = ended.twin;
     record.trust.add(outcome.doubts);
     doubt_input(loaded_.diagnostics, record.trust);

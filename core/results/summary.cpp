@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/index.h"
 #include "base/sha256.h"
 #include "base/version.h"
 
@@ -138,16 +137,6 @@ Json bodies_part(const RunRecord& record) {
   return part;
 }
 
-/// Null where every contact has ended.
-Json open_part(const OpenContacts& open) {
-  if (open.contacts == 0) return nullptr;
-  return {{"contacts", open.contacts},
-          {"begin", json_number(open.begin)},
-          {"impulse", json_number(open.impulse)},
-          {"tangential_impulse", json_number(open.tangential_impulse)},
-          {"energy_lost", json_number(open.energy_lost)}};
-}
-
 /// Null for a joint without a normal force, numbers null where nothing was counted.
 Json play_part(const RunRecord& record, int joint) {
   if (!record.clearances.has(joint)) return nullptr;
@@ -164,8 +153,7 @@ Json play_part(const RunRecord& record, int joint) {
           {"sliding", json_number(seen.sliding)},
           {"work", json_number(seen.work)},
           {"pv_mean", json_number(seen.pv_mean)},
-          {"pv_max", json_number(seen.pv_max)},
-          {"open", record.open_contacts.empty() ? Json(nullptr) : open_part(record.open_contacts[at(joint)])}};
+          {"pv_max", json_number(seen.pv_max)}};
 }
 
 /// Null for a joint without play; what the file leaves open is null, too.

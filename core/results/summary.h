@@ -30,7 +30,6 @@ struct RunRecord {
   std::vector<std::pair<std::string, double>> verify{};
   double agree_until = std::numeric_limits<double>::quiet_NaN();
   RunExtremes extremes{};
-  std::vector<OpenContacts> open_contacts{};  ///< by joint
   Json verification{};  ///< what the second run was and what it says of the first; null without one
   Verdict trust{};
   Json hashes = nullptr, provenance = nullptr;  ///< of Recording

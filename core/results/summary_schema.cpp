@@ -74,12 +74,6 @@ Json joint_part() {
                             "load_concentration", "sliding", "work", "pv_mean", "pv_max"});
   fields["play"]["properties"]["impacts"] = integer();
   fields["play"]["required"].push_back("impacts");
-  Json& open = fields["play"]["properties"]["open"] =
-      numbers({"begin", "impulse", "tangential_impulse", "energy_lost"});
-  open["properties"]["contacts"] = integer();
-  open["required"].push_back("contacts");
-  open["type"] = {"object", "null"};
-  fields["play"]["required"].push_back("open");
   for (const char* name : {"clearance", "play"}) fields[name]["type"] = {"object", "null"};
   return record(std::move(fields));
 }

@@ -215,20 +215,4 @@ const ContactRecord* ContactLedger::ended(std::size_t happening) const {
   return found == ended_.end() ? nullptr : &found->record;
 }
 
-std::vector<OpenContacts> ContactLedger::still_open() const {
-  std::vector<OpenContacts> open(at(all_.count()));
-  for (const OfJoint& joint : joints_) {
-    OpenContacts& sum = open[at(joint.joint)];
-    for (const Contact& contact : joint.contacts) {
-      if (!contact.on) continue;
-      sum.begin = sum.contacts > 0 ? std::min(sum.begin, contact.begin) : contact.begin;
-      ++sum.contacts;
-      sum.impulse += contact.normal.value();
-      sum.tangential_impulse += contact.tangential.value();
-      sum.energy_lost += contact.lost;
-    }
-  }
-  return open;
-}
-
 }  // namespace freeplay

@@ -27,8 +27,6 @@ class ContactLedger {
                  const Point& point, const Evaluation& e, Fault& fault);
   /// The contact that an event of the last step ended, by its place among them; null for other events.
   const ContactRecord* ended(std::size_t happening) const;
-  /// What is on at the accepted state, by joint of the model.
-  std::vector<OpenContacts> still_open() const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

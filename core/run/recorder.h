@@ -56,7 +56,6 @@ class Recorder {
 
   const Statistics& statistics() const { return statistics_; }
   const ClearanceStatistics& clearances() const { return clearances_; }
-  std::vector<OpenContacts> open_contacts() const { return ledger_.still_open(); }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

@@ -119,7 +119,6 @@ EndedMotion Simulation::motion() const { return impl_->motion(); }
 Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
 const Statistics& Simulation::statistics() const { return impl_->recorder.statistics(); }
 const ClearanceStatistics& Simulation::clearances() const { return impl_->recorder.clearances(); }
-std::vector<OpenContacts> Simulation::open_contacts() const { return impl_->recorder.open_contacts(); }
 const RunExtremes& Simulation::extremes() const { return impl_->context.watch.seen(); }
 std::span<const double> Simulation::last_row() const { return impl_->recorder.row(); }
 std::span<const std::string> Simulation::warnings() const { return impl_->context.warnings; }

@@ -39,8 +39,6 @@ class Simulation {
   EndedMotion motion() const;
   const Statistics& statistics() const;
   const ClearanceStatistics& clearances() const;
-  /// Contacts that have not ended, by joint of the model.
-  std::vector<OpenContacts> open_contacts() const;
   const RunExtremes& extremes() const;
   /// The last accepted row, every channel.
   std::span<const double> last_row() const;

@@ -19,15 +19,6 @@ struct ContactRecord {
   double begin;               ///< [s]
 };
 
-/// The contacts of a joint that have not ended, together; NaN: not known.
-struct OpenContacts {
-  int contacts = 0;
-  double begin = 0.0;               ///< of the first of them [s]
-  double impulse = 0.0;             ///< of the normal forces [N s]
-  double tangential_impulse = 0.0;  ///< of the friction forces [N s]
-  double energy_lost = 0.0;         ///< [J]
-};
-
 /// One event of a joint. Fields that were not given are NaN.
 struct EventRecord {
   double time = 0.0;

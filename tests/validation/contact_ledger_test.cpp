@@ -90,39 +90,6 @@ TEST(ContactLedger, ContactsLoseTogetherWhatTheAccountSays) {
   }
 }
 
-// A puck that falls straight down: what the ring gives it is its weight over the time, and its change of speed.
-TEST(ContactLedger, WhatIsOpenAtTheEndHasItsPartOfLossAndImpulse) {
-  Puck puck;
-  puck.contact = "{law: lankarani-nikravesh, restitution: 0.5}";
-  puck.end = 0.05;
-  puck.sections = "gravity: [0, -9.81]\n";
-  const auto until = [&](double end, const char* step) {
-    puck.end = end;
-    return ModelRun(replaced(puck.text(), "step: " + number(puck.step), step));
-  };
-  for (const char* step : {"step: 2 us", "accuracy: 1e-9"}) {
-    const auto bounces = contacts(until(0.05, step));
-    ASSERT_GE(bounces.size(), 3u);
-    const double begin = bounces[2].begin.time, end = begin + 0.6 * (bounces[2].end.time - begin);
-    const ModelRun run = until(end, step);
-    const OpenContacts open = run.open_contacts().at(0);
-    double lost = open.energy_lost, impulse = open.impulse;
-    for (const Event& event : run.events()) {
-      if (!event.contact) continue;
-      lost += event.contact->energy_lost;
-      impulse += event.contact->impulse;
-    }
-    const double account = run.last("energy.dissipated"), given = 0.2 * (9.81 * end + run.last("body.puck.vy"));
-    test::record(std::string("impulse, ") + step, impulse / given - 1.0);
-    EXPECT_EQ(open.contacts, 1) << step;
-    EXPECT_NEAR(open.begin, begin, 1e-9) << step;
-    EXPECT_GT(open.energy_lost, 0.0) << step;
-    EXPECT_NEAR(lost, account, 1e-12 * account) << step;
-    EXPECT_NEAR(impulse, given, 1e-3 * given) << step;
-  }
-  EXPECT_EQ(until(1e-3, "step: 2 us").open_contacts().at(0).contacts, 0);
-}
-
 TEST(ContactLedger, LastingContactIsNoImpact) {
   const ModelRun run(bouncing("step: 2 us"));
   const auto all = contacts(run);

@@ -148,7 +148,6 @@ class ModelRun {
   const Outcome& outcome() const { return outcome_; }
   const Statistics& statistics() const { return simulation_.statistics(); }
   const ClearanceStatistics& clearances() const { return simulation_.clearances(); }
-  std::vector<OpenContacts> open_contacts() const { return simulation_.open_contacts(); }
   const std::vector<Event>& events() const { return keeper_.events(); }
   const RowKeeper& kept() const { return keeper_; }
 
