@@ -63,11 +63,17 @@ bool any_energy(const Json& run) {
 bool has_section(std::string_view name, const Json& runs, bool pictures) {
   using Has = std::function<bool(const Json&)>;
   const auto field = [](const char* path) { return [path](const Json& run) { return filled(run, path); }; };
-  static const std::map<std::string_view, Has> sections = {
-      {"mechanism", field("/animation")},     {"orbits", field("/orbits")},       {"clearance", any_play},
-      {"bearing", field("/bearing")},         {"impacts", field("/events/rows")}, {"twin", field("/summary/twin")},
-      {"drivers", field("/summary/drivers")}, {"spectra", field("/spectra")},     {"energy", any_energy},
-      {"advice", field("/summary/advice")},   {"model", field("/model")}};
+  static const std::map<std::string_view, Has> sections = {{"mechanism", field("/animation")},
+                                                           {"orbits", field("/orbits")},
+                                                           {"clearance", any_play},
+                                                           {"bearing", field("/bearing")},
+                                                           {"impacts", field("/events/rows")},
+                                                           {"twin", field("/summary/twin")},
+                                                           {"drivers", field("/summary/drivers")},
+                                                           {"spectra", field("/spectra")},
+                                                           {"energy", any_energy},
+                                                           {"advice", any_play},
+                                                           {"model", field("/model")}};
   if (name == "side") return runs.size() > 1;
   if (name == "pictures") return pictures;
   return std::ranges::any_of(runs, sections.at(name));

@@ -49,7 +49,10 @@ void take_summary(ReportedRun& run, const fs::path& folder) {
   if (const Json summary = read_summary(folder); summary.is_object()) run.summary = summary;
   run.summary.erase("performance");
   if (!run.summary.empty()) return;
-  run.note = "no summary.json: the run goes on or was killed, or its files are not all here";
+  std::error_code ignored;
+  run.note = fs::exists(folder / "summary.json", ignored)
+                 ? "summary.json is damaged: what it said is not here"
+                 : "no summary.json: the run goes on or was killed, or its files are not all here";
   run.summary = summary_of_unfinished(folder, *run.reader);
 }
 
@@ -88,6 +91,11 @@ void read_model(ReportedRun& run, const fs::path& folder, const LoadOptions& opt
   const bool beside = fs::exists(file, ignored);
   run.model_text = beside ? text_of(file) : attribute(*run.reader, "model");
   if (run.model_text.empty()) return;
+  const std::string digits = text_in(field(run.summary, "model"), "sha256");
+  if (!digits.empty() && digits != sha256(run.model_text)) {
+    run.note += (run.note.empty() ? "" : "; ") +
+                fmt::format("'{}' is not the model of this run: it was changed since", file.filename().string());
+  }
   BuildOptions build;
   use_settings(field(run.summary, "settings"), build);
   LoadOptions quiet = options;

@@ -59,9 +59,10 @@ void RunData::look_at_times() {
     rows_ += block.size();
   });
   if (rows_ == 0) {
+    const bool all = std::isinf(window_.from) && std::isinf(window_.until);
     throw Error(Error::Category::usage, "bad-value",
-                fmt::format("'{}' has no rows in this window", run_.reader->file()), {},
-                "change --from and --until, or wait until the run has written rows");
+                fmt::format("'{}' has no rows{}", run_.reader->file(), all ? "" : " in this window"), {},
+                all ? "the run ended, or goes on, without a row" : "change --from and --until");
   }
   if (summary_.value("status", "") == "incomplete") {  // as far as rows go
     summary_["time"]["reached"] = last_;
@@ -69,6 +70,9 @@ void RunData::look_at_times() {
   } else {
     note_missing_rows();
   }
+  if (!std::isinf(window_.from) || !std::isinf(window_.until))
+    add_note(fmt::format("motion, curves and impacts from {:g} s to {:g} s alone; tables as of the whole run", first_,
+                         last_));
   interval_ = counted().interval;
   if (!(interval_ > 0.0) && rows_ > 1) interval_ = (last_ - first_) / static_cast<double>(rows_ - 1);
 }
@@ -87,8 +91,10 @@ void RunData::note_missing_rows() {
   } else if (to_the_end && last_ < reached - 1.5 * number("/settings/interval")) {
     why = fmt::format("the file of rows was cut: it ends at {:g} s, the run at {:g} s", last_, reached);
   }
-  if (!why.empty()) note_ += (note_.empty() ? "" : "; ") + why;
+  if (!why.empty()) add_note(why);
 }
+
+void RunData::add_note(const std::string& text) { note_ += (note_.empty() ? "" : "; ") + text; }
 
 /// As the file of rows says, or else the summary beside it.
 CountedTime RunData::counted() const {

@@ -56,6 +56,7 @@ class RunData {
 
   void look_at_times();
   void note_missing_rows();
+  void add_note(const std::string& text);
   CountedTime counted() const;
   void find_orbits(std::size_t points);
   void find_efforts();

@@ -4,13 +4,15 @@ import json
 import math
 import os
 import re
+import signal
+import subprocess
 import tempfile
 import time
 import unittest
 
 from browser import Browser, needs_browser
 from page_reader import Page, numbers
-from program import ROOT, ProgramTest, mechanism
+from program import PROGRAM, ROOT, ProgramTest, mechanism
 
 LEFT, RIGHT, HOME, END = "\ue012", "\ue014", "\ue011", "\ue010"
 PICTURE = """const c = document.getElementById('scene'), d = c.getContext('2d', {willReadFrequently: true}).getImageData(0, 0, c.width, c.height).data;
@@ -64,7 +66,7 @@ class ReportInBrowser(ProgramTest):
         scales = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
         for run, path, value, text in shown:
             self.assertEqual(pointed(summaries[run], path), float(value), path)
-            found = re.fullmatch(r"(\u2212?[\d.]+(?:e\u2212?\d+)?)(?:\u00a0(.*))?", text)
+            found = re.fullmatch(r"~?(\u2212?[\d.]+(?:e\u2212?\d+)?)(?:\u00a0(.*))?", text)
             self.assertTrue(found, text)
             number, unit = float(found[1].replace("\u2212", "-")), found[2] or ""
             if unit == "%":
@@ -74,6 +76,47 @@ class ReportInBrowser(ProgramTest):
             elif len(unit) > 1 and unit[0] in scales and not re.match("(m/s|mol|min)", unit):
                 number *= scales[unit[0]]
             self.assertAlmostEqual(number, float(value), delta=0.051 * abs(float(value)) + 1e-300, msg="%s reads %s" % (path, text))
+
+    def cells(self, section):
+        """Texts of the rows of its tables by their first cell."""
+        rows = self.script("return [...document.querySelectorAll('#' + arguments[0] + ' tr')].map(r => [...r.children].map(c => c.textContent))", section)
+        return {cells[0]: cells[1:] for cells in rows}
+
+    def test_facts_say_how_far_a_run_may_be_trusted(self):
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "14 ms", "--accuracy", "1 um", "--verify", "--out", "r")
+        self.freeplay("report", "r", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        facts, summary = self.cells("facts"), json.loads(self.read("r", "summary.json"))
+        self.assertEqual(["1\u00a0µm"], facts["Accuracy"])
+        self.assertEqual([summary["time"]["smallest_step"], summary["time"]["largest_step"]],
+                         self.script("return [...document.querySelectorAll('#facts [data-path^=\"/time/\"][data-path$=step]')].map(e => +e.dataset.value)"))
+        self.assertIn(summary["verification"]["method"], facts["Second run"][0])
+        self.assertIn("Sums are of the whole run", self.script("return document.getElementById('energy').innerText"))
+        self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "14 ms", "--repeat", "2", "--out", "s")
+        self.freeplay("report", "s", "--out", "page.html", "--force")
+        self.browser.open(self.path("page.html"))
+        self.assertRegex(self.script("return document.getElementById('clearance').innerText"), r"\([\d.]+\u00a0kN to [\d.]+\u00a0kN in 2 runs\)")
+
+    def test_a_page_has_the_forces_of_a_model_and_no_empty_tables(self):
+        self.write("spring.yaml", "freeplay: 1\nname: spring\nbodies: {b: {mass: 1, inertia: 1}}\njoints: {g: {type: prismatic, between: [ground, b]}}\n"
+                   "forces: {s: {type: spring-damper, between: [ground, b], stiffness: 100 N/m, damping: 1 N*s/m, free_length: 0.2 m}}\n"
+                   "initial: {joints: {g: 0.3 m}}\nsimulation: {end: 1 s, step: 1 ms}\n")
+        self.freeplay("run", "spring.yaml", "--quiet", "--out", "r")
+        self.freeplay("report", "r", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        self.assertEqual([], self.script("return [...document.querySelectorAll('table')].filter(t => t.tHead && t.tHead.innerText.trim() && !t.tBodies.length).map(t => t.innerText)"))
+        work = json.loads(self.read("r", "summary.json"))["forces"]["s"]["work"]
+        self.assertEqual([work], self.script("return [...document.querySelectorAll('#energy [data-path=\"/forces/s/work\"]')].map(e => +e.dataset.value)"))
+        self.assertFalse(self.script("return !!document.getElementById('advice')"))
+
+    def test_a_sealed_result_has_no_verdict(self):
+        with subprocess.Popen([PROGRAM, "run", mechanism("slider-crank"), "--quiet", "--end", "100 s", "--out", "r"], cwd=self.folder, stderr=subprocess.DEVNULL) as process:
+            time.sleep(1.5)
+            process.send_signal(signal.SIGKILL)
+        self.freeplay("seal", "r")
+        self.freeplay("report", "r", "--out", "page.html")
+        self.browser.open(self.path("page.html"))
+        self.assertEqual("! no verdict", self.script("return document.querySelector('.chip').textContent"))
 
     def side(self):
         return {cells[0]: cells[1:] for cells in self.script("return [...document.querySelectorAll('#side tr')].map(r => [...r.children].map(c => c.textContent))")}

@@ -264,7 +264,8 @@ class Report(ProgramTest):
         self.write("r/results.csv", "".join(lines[: rows // 2 + 1])[:-9])
         self.assertEqual("the file of rows was cut: it has %d of the %d that the run wrote" % (rows // 2 - 1, rows), self.report("r").runs[0]["note"])
         self.assertRegex(self.report("r", "--from", "1 ms").runs[0]["note"], "the file of rows was cut: it ends at 0.00.* s, the run at 0.005 s")
-        self.assertNotIn("note", self.report("r", "--until", "1 ms").runs[0])
+        self.assertEqual("motion, curves and impacts from 0 s to 0.001 s alone; tables as of the whole run",
+                         self.report("r", "--until", "1 ms").runs[0]["note"])
 
     def test_fields_that_are_empty(self):
         self.run_model("--format", "csv")

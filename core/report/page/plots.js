@@ -186,6 +186,10 @@ function startPlots() {
   startChoice();
   byId('coarse').textContent = [
     coarse.length && 'Drawn are the smallest and the largest value of every ' + Math.ceil(Math.max(...coarse.map(r => r.rows / r.buckets))) + ' rows, and all rows around the largest impacts.',
+    ...runs.filter(r => r.start <= r.get('/statistics/from') && r.end >= r.get('/time/reached')).flatMap(r => Object.entries(r.get('/joints') || {}).flatMap(([name, {max_fn}]) => {
+      const fn = r.named.get('joint.' + name + '.fn');
+      return fn && max_fn > 1.1 * fn.max ? [titled(r) + ' Rows miss peaks between them: of ' + name + ' they show ' + quantity(fn.max, 'N') + ' of ' + quantity(max_fn, 'N') + '.'] : [];
+    }).slice(0, 1)),
     ...runs.filter(r => r.left_out.length).map(r => titled(r) + ' has no room for ' + r.left_out.slice(0, 5).join(', ') + (r.left_out.length > 5 ? ' and ' + (r.left_out.length - 5) + ' more.' : '.'))
   ].filter(Boolean).join(' ');
   const counted = Math.min(...runs.map(r => r.get('/statistics/from') || timeStart));

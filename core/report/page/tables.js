@@ -4,15 +4,15 @@ const at = (part, name, field) => '/' + part + '/' + escaped(name) + '/' + field
 const effort = (run, name) => run.named.has('driver.' + name + '.force') || ['position', 'force'].includes(run.get(at('drivers', name, 'kind'))) ? 'N' : 'N*m';
 const right = text => ({number: text});
 const few = v => plain(v, 3);
-const has = path => runs.some(r => r.get(path) != null);
+const has = path => runs.some(r => Object.keys(Object(r.get(path) ?? {})).length || typeof r.get(path) === 'number');
 const put = (id, ...content) => { if (byId(id)) byId(id).append(make('div', {class: 'wide'}, ...content)); };
 
 function startTop() {
   for (const run of runs) {
-    const {stop_reason, trust} = run.summary, {verdict, reasons} = trust || {verdict: 'doubtful', reasons: []};
+    const {stop_reason, trust} = run.summary, {verdict, reasons} = trust && trust.verdict ? trust : {verdict: 'none', reasons: []};
     byId('verdicts').append(make('div', {}, make('b', {}, titled(run)),
       make('span', {}, shown(run, '/status'), stop_reason ? ' (' + stop_reason + ')' : '', ' at ', shown(run, '/time/reached', instant)),
-      make('span', {class: 'chip ' + verdict}, {good: '✓', doubtful: '!', bad: '✕'}[verdict] + (trust ? ' trust: ' + verdict : ' no verdict')),
+      make('span', {class: 'chip ' + verdict}, {good: '✓ trust: good', doubtful: '! trust: doubtful', bad: '✕ trust: bad', none: '! no verdict'}[verdict]),
       make('b', {}, run.note || ''),
       reasons.length ? make('ul', {}, ...reasons.map(r => make('li', {}, r.level + ': ' + r.message))) : null));
   }
@@ -27,12 +27,15 @@ const heads = () => ['', ...runs.map(titled)];
 
 function startFacts() {
   const changed = r => [...Object.entries(r.get('/settings/set') || {}).map(([k, v]) => k + ' = ' + v), ...(r.get('/settings/ideal') || []).map(n => n + ' ideal')].join(', ');
+  const steps = r => r.get('/settings/step/adaptive') ? make('span', {}, shown(r, '/time/smallest_step', 's'), ' to ', shown(r, '/time/largest_step', 's')) : shown(r, '/settings/step/size', 's');
+  const second = r => r.summary.verification ? r.summary.verification.method + ': ' + {agree: 'agrees', err: 'one of both errs', part: 'agrees up to a time', disagree: 'disagrees'}[r.summary.verification.agreement] : '';
   const warnings = r => (r.summary.warnings || []).length ? make('span', {}, ...r.summary.warnings.flatMap(w => [w, make('br')])) : '';
   put('facts', table(heads(), lines([['Model', '/model/space'], ['Bodies', '/model/bodies', String], ['Joints', '/model/joints', String], ['Joints with play', '/model/clearance_joints', String], ['Drivers', '/model/drivers', String],
-    ['Degrees of freedom', '/model/dof', String], ['Driven', '/model/dof_driven', String], ['Changed', changed], ['Integrator', '/settings/integrator/type'], ['Step', '/settings/step/size', 's'], ['Row every', '/settings/interval', 's'],
+    ['Degrees of freedom', '/model/dof', String], ['Left by the drivers', '/model/dof_driven', String], ['Changed', changed], ['Integrator', '/settings/integrator/type'], ['Accuracy', '/settings/step/accuracy', 'm'], ['Tolerance', '/settings/step/tolerance', '1'],
+    ['Steps of', steps], ['Second run', second], ['Row every', '/settings/interval', 's'],
     ['Status', '/status'], ['Time reached', '/time/reached', instant], ['Counted from', '/statistics/from', 's'], ['Rows', '/counts/rows', String], ['Steps', '/counts/steps', String], ['Contacts', '/counts/contacts', String],
     ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm'], ['Warnings', warnings]])));
-  if (!several) document.querySelector('#facts table').className = 'one';
+  if (several) byId('facts').style.flexBasis = '100%'; else document.querySelector('#facts table').className = 'one';
 }
 
 // Where a field of a part is largest in a run; null where none has it.
@@ -48,7 +51,7 @@ function startSide() {
     const paths = runs.map(r => of(path, r)), units = runs.map(r => of(unit, r));
     const values = runs.map((r, k) => paths[k] && r.get(paths[k])), known = v => typeof v === 'number';
     if (!values.some(known)) return [];
-    const percent = (v, k) => k && values[0] && units[k] === units[0] ? (v >= values[0] ? '+' : '−') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '';
+    const noise = k => runs[k].get('/noise' + paths[k]) || 0, percent = (v, k) => k && values[0] && units[k] === units[0] ? Math.abs(v - values[0]) < noise(k) + noise(0) ? 'within the scatter' : (v >= values[0] ? '+' : '−') + plain(Math.abs(100 * (v / values[0] - 1)), 3) + '\u00a0%' : '';
     return [row(label, ...runs.map((r, k) => right(known(values[k]) ? make('span', {}, scattered(r, paths[k], units[k]), k ? make('br') : '', make('span', {class: 'soft'}, percent(values[k], k))) : '–')))];
   };
   const all = part => [...new Set(runs.flatMap(r => Object.keys(r.summary[part] || {})))];
@@ -63,8 +66,13 @@ function startSide() {
 // A row per element of a part, a group per run. Columns: heading, field or a function of the element, unit, whether it scatters.
 function figures(part, heading, columns, needed) {
   return table([heading, ...columns.map(([h, f]) => typeof f === 'string' ? right(h) : h)], ...runs.map(run => {
-    const rows = Object.entries(run.get(part) || {}).filter(([, x]) => x && (!needed || x[needed])).map(([name, x]) => row(name, ...columns.map(([, field, unit, scatters]) =>
-      typeof field !== 'string' ? field(x, name, run) : right((scatters ? scattered : shown)(run, part + '/' + escaped(name) + '/' + field, unit || effort(run, name))))));
+    const rows = Object.entries(run.get(part) || {}).filter(([, x]) => x && (!needed || x[needed])).map(([name, x]) => row(name, ...columns.map(([, field, unit, scatters]) => {
+      if (typeof field !== 'string') return field(x, name, run);
+      const path = at(part.slice(1), name, ''), known = unit || effort(run, name);
+      // Where impacts make a joint's largest force uncertain its sums are, too.
+      const rough = !scatters && run.get('/noise' + path + 'max_force') >= 0.005 * x.max_force;
+      return right((scatters ? scattered : shown)(run, path + field, rough ? v => '~' + (known.call ? known(+v.toPrecision(2)) : quantity(v, known, 2)) : known));
+    })));
     return several && rows.length ? [make('tr', {}, make('th', {colspan: columns.length + 1, class: 'group'}, run.title)), ...rows] : rows;
   }));
 }
@@ -81,8 +89,9 @@ function startFigures() {
   const pose = [['largest error', 'max_position', 'm', true], ['rms', 'rms_position', 'm'], ['largest angle', 'max_angle', 'rad', true], ['rms', 'rms_angle', 'rad']];
   put('twin', figures('/twin/drivers', 'Driver', [['largest difference', 'max'], ['rms', 'rms'], ['ripple', 'ripple', percent]]), figures('/twin/bodies', 'Body', pose));
   put('drivers', figures('/drivers', 'Driver', [['gives', x => x.kind], ['largest effort', 'max_abs', null, true], ['rms', 'rms'], ['work', 'work', 'J']]), has('/paths') ? figures('/paths', 'Path', pose) : '');
+  if (runs.some(r => r.get('/settings/discard') > 0)) put('energy', make('p', {class: 'lead'}, 'Sums are of the whole run, those by driver, force and joint of the time that counts.'));
   put('energy', table(heads(), lines([['Kinetic, at the end', '/energy/kinetic', 'J'], ['Potential, at the end', '/energy/potential', 'J'], ['Work of drivers and forces', '/energy/work', 'J'], ['Lost', '/energy/dissipated', 'J'], ['Residual', '/energy/residual', 'J']])),
-    make('div', {class: 'columns'}, has('/drivers') ? figures('/drivers', 'Work of driver', [['', 'work', 'J']]) : '', has('/joints') ? figures('/joints', 'Lost in joint', [['', 'dissipated', 'J']], 'dissipated') : ''), make('div', {class: 'graph'}));
+    make('div', {class: 'columns'}, has('/drivers') ? figures('/drivers', 'Work of driver', [['', 'work', 'J']]) : '', has('/forces') ? figures('/forces', 'Force', [['largest', 'max_force', 'N', true], ['largest moment', 'max_torque', 'N*m', true], ['work', 'work', 'J']]) : '', has('/joints') ? figures('/joints', 'Lost in joint', [['', 'dissipated', 'J']], 'dissipated') : ''), make('div', {class: 'graph'}));
   const step = r => r.get('/advice/step');
   put('advice', table(heads(), lines([['Impacts with too few steps', '/advice/under_resolved', String], ['Fewest steps in an impact', '/advice/min_steps_per_contact', few],
     ['Step that would do', r => step(r) ? shown(r, '/advice/step', 's') : 'the one taken'], ['Command', r => step(r) && make('code', {}, r.rerun + ' --step "' + step(r).toPrecision(2) + ' s"')]])));

@@ -54,6 +54,8 @@ function shown(run, path, write, attributes = {}) {
 
 // The same with the scatter that impacts leave on it, where the run knows it.
 function scattered(run, path, unit) {
+  const spread = '/repeat' + path, [median, least, most] = ['/median', '/min', '/max'].map(end => shown(run, spread + end, unit));
+  if (run.get(spread + '/median') != null) return make('span', {}, median, ' (', least, ' to ', most, ' in ' + run.summary.repeat.completed + ' runs)');
   const noise = '/noise' + path, by = run.get(noise), value = run.get(path);
   const e = make('span', {}, shown(run, path, by > 0 ? v => quantity(v, unit, Math.max(2, Math.min(4, 2 + Math.floor(Math.log10(Math.abs(value) / by))))) : unit));
   if (by > 0) e.append(' ±\u00a0', shown(run, noise, v => quantity(v, unit, 2), {class: 'soft', title: 'scatter by chance of impacts'}));
