@@ -13,6 +13,7 @@
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/terminal.h"
+#include "results/directory.h"
 
 namespace freeplay {
 namespace {
@@ -54,7 +55,8 @@ StudyInFolder open_study(const std::string& given, StudyPlanOptions options, con
   print_messages(diagnostics.format(common.max_errors), common.no_color);
   if (!options.kept) {
     opened.folder =
-        StudyFolder(out.empty() ? fs::path("results") / (opened.study->plan().name() + "-study") : fs::path(out));
+        StudyFolder(out.empty() ? fs::path("results") / (result_name(opened.study->plan().name(), false) + "-study")
+                                : fs::path(out));
   }
   return opened;
 }

@@ -6,6 +6,7 @@
 #include "cli/own_program.h"
 #include "cli/study_views.h"
 #include "cli/terminal.h"
+#include "study/plan.h"
 #include "study/point_words.h"
 
 namespace freeplay {
@@ -26,6 +27,17 @@ int study_point(const StudyOptions& options, const CommonOptions& common) {
       point_words(plan, std::filesystem::absolute(opened.folder.path()).lexically_normal(), point);
   for (const std::string& plugin : common.plugins) words.insert(words.end(), {"--plugin", plugin});
   if (common.allow_plugins) words.emplace_back("--allow-plugins");
+  // In a chain the point goes on from the end of that before it, which no command of a single run knows.
+  const UnitPlace place = plan.place_of(point.index);
+  const bool goes_on = plan.chained() && place.place > 0;
+  if (goes_on) {
+    print_messages(
+        fmt::format("freeplay: warning: point {} goes on from the end of point {} (`warm_start`), the command "
+                    "of a single run starts anew: its figures are others\n"
+                    "      = freeplay study run DIR --only {} computes the row of the study\n",
+                    point.index, plan.unit_point(place.unit, place.place - 1), point.index),
+        common.no_color);
+  }
   if (options.run_point) {
     if (!options.out.empty()) words.insert(words.end(), {"--out", options.out});
     if (common.quiet) words.emplace_back("--quiet");
@@ -39,7 +51,10 @@ int study_point(const StudyOptions& options, const CommonOptions& common) {
   if (common.json) {
     Json set = Json::object();
     for (const StudySetting& setting : point.settings) set[setting.target] = setting.text;
-    print_json({{"index", point.index}, {"hash", point.hash}, {"command", command}, {"set", set}});
+    Json before = nullptr;
+    if (goes_on) before = plan.unit_point(place.unit, place.place - 1);
+    print_json(
+        {{"index", point.index}, {"hash", point.hash}, {"command", command}, {"set", set}, {"goes_on_from", before}});
   } else {
     print_data(command + "\n");
   }

@@ -263,6 +263,7 @@ class StudyReader {
     const Range open{.minimum = 0.0, .maximum = 1.0, .open = Open::both};
     if (confidence) stop.confidence = confidence->quantity(dimension::none, open).value_or(0.95);
     if (width) {
+      stop.width = *width;
       const auto quantity = width->any_quantity();
       if (quantity) stop.half_width = quantity->value;
       if (quantity && !(quantity->value > 0.0)) width->fail("out-of-range", "'half_width' must be > 0");

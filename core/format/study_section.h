@@ -32,6 +32,7 @@ struct StudyStop {
   std::optional<double> percentile{};  ///< else the mean
   double confidence = 0.95;
   std::optional<double> half_width{}, relative{};  ///< one of them
+  std::optional<CheckedValue> width{};             ///< where the former stands: its unit is that of the reducer
   std::uint64_t min_points = 200, block = 100;
 };
 

@@ -1,13 +1,49 @@
 #include "study/open_study.h"
 
 #include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
 
 #include "base/arithmetic.h"
 #include "base/sha256.h"
+#include "base/unit.h"
 #include "base/version.h"
 #include "study/document_json.h"
 
 namespace freeplay {
+namespace {
+
+/// Reports reducers whose columns are called as others of the table are. Those of a set have the name of the reducer
+/// before a dot.
+void check_names(const StudyPlan& plan, std::span<const StudyColumn> columns, Diagnostics& diagnostics) {
+  if (plan.section().reducers == nullptr) return;
+  const auto& axes = plan.axis_columns();
+  for (const Node::Entry& entry : plan.section().reducers->entries) {
+    const std::string& name = entry.key->text;
+    const auto is_of_it = [&](const StudyColumn& column) {
+      return column.name == name || column.name.starts_with(name + ".");
+    };
+    for (const StudyColumn& column : columns) {
+      if (!is_of_it(column)) continue;
+      const bool own = std::ranges::find(own_columns, column.name) != own_columns.end();
+      if (!own && std::ranges::find(axes, column.name, &AxisColumn::name) == axes.end()) continue;
+      diagnostics.error(entry.key->location(), static_cast<int>(name.size()), own ? "reserved-name" : "duplicate-name",
+                        own ? fmt::format("the table has a column '{}' of its own", column.name)
+                            : fmt::format("an axis is called '{}', too: the table needs two names", column.name));
+      break;
+    }
+  }
+}
+
+/// The half width of an interval is in the unit of its reducer.
+void check_width(const StudyStop& stop, const std::string& unit) {
+  if (!stop.width) return;
+  const Dimension dimension = unit.empty() || unit == "1" ? dimension::none : parse_unit(unit).dimension;
+  stop.width->quantity(dimension);
+}
+
+}  // namespace
 
 std::unique_ptr<OpenStudy> OpenStudy::open(const std::string& file, const StudyPlanOptions& options,
                                            Diagnostics& diagnostics) {
@@ -24,6 +60,9 @@ std::unique_ptr<OpenStudy> OpenStudy::open(const std::string& file, const StudyP
                                          "`stop` looks at the reducer '" + stop->reducer + "', which there is not");
     return nullptr;
   }
+  check_names(*study->plan_, study->layout_.columns, diagnostics);
+  if (stop) check_width(*stop, study->layout_.columns[study->stop_column()].unit);
+  if (diagnostics.has_errors()) return nullptr;
   return study;
 }
 

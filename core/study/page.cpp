@@ -41,6 +41,11 @@ function show(index) {
                            : 'point ' + index + ' is not on this page: freeplay study point DIR ' + index;
   place.append(line);
   if (!point) return;
+  if (point.before !== undefined) {
+    const note = document.createElement('p');
+    note.textContent = 'In the study this point goes on from the end of point ' + point.before + '; the command starts anew.';
+    place.append(note);
+  }
   const command = document.createElement('pre'), button = document.createElement('button');
   command.textContent = point.command;
   button.textContent = 'copy';
@@ -110,6 +115,8 @@ std::string study_page(const OpenStudy& study, const std::filesystem::path& fold
       continue;
     }
     Json point = {{"row", cells}, {"command", command_of(plan, place, index)}};
+    const UnitPlace at = plan.place_of(index);
+    if (plan.chained() && at.place > 0) point["before"] = plan.unit_point(at.unit, at.place - 1);
     const std::string kept = fmt::format("kept/{:04}/{}", index / 1000, index);
     std::error_code ignored;
     if (std::filesystem::is_directory(folder / kept, ignored)) point["kept"] = kept;

@@ -3,6 +3,7 @@ import csv
 import glob
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -150,6 +151,39 @@ class StudyCommand(ProgramTest):
         self.assertEqual(40, len(marks))
         self.freeplay("report", "r")
         self.assertIn("freeplay run", self.read("r", "report.html"))
+
+    def test_columns_of_one_name_and_units_that_do_not_fit_are_refused_before_anything_runs(self):
+        for section, words in (
+                ("  axes: {g: [1, 2]}\n  reducers: {g: {channel: body.ball.y, reduce: final}}\n", "an axis is called 'g', too"),
+                ("  axes: {g: [1, 2]}\n  reducers: {index: {channel: body.ball.y, reduce: final}}\n", "a column 'index' of its own"),
+                ("  sample: {method: random, points: 100, seed: 1}\n  axes: {g: {uniform: [1 m/s^2, 2 m/s^2]}}\n"
+                 "  reducers: {y: {channel: body.ball.y, reduce: final}}\n  stop: {reducer: y, of: mean, half_width: 1 N}\n",
+                 "[dimension-mismatch]")):
+            with self.subTest(words):
+                self.write("bad.yaml", BALL + "study:\n" + section)
+                for command in ("plan", "run"):
+                    _, err = self.study(command, "bad.yaml", code=3)
+                    self.assertIn(words, err)
+                    self.assertRegex(err, r"bad\.yaml:\d+:\d+: error: ")
+        self.assertNotIn("results", os.listdir(self.folder))
+
+    def test_a_study_stays_in_the_folder_of_results(self):
+        self.write("far.yaml", BALL + GRID.replace("study:\n", "study:\n  name: ../../far/away\n"))
+        self.study("run", "far.yaml", code=4)
+        self.assertEqual(["___.._far_away-study"], os.listdir(self.path("results")))
+
+    def test_a_point_of_a_chain_says_what_its_command_leaves_out(self):
+        self.write("chain.yaml", BALL + "study:\n  axes: {g: {linspace: [1, 2, 4]}}\n  warm_start: {axis: g}\n"
+                   "  reducers: {y: {channel: body.ball.y, reduce: final}}\n")
+        self.study("run", "chain.yaml", "--out", "chain")
+        self.assertEqual("", self.study("point", "chain", "0")[1])
+        out, err = self.study("point", "chain", "2")
+        self.assertIn("run ", out)
+        self.assertIn("point 2 goes on from the end of point 1", err)
+        self.assertEqual(1, json.loads(self.study("point", "chain", "2", "--json")[0])["goes_on_from"])
+        self.freeplay("report", "chain")
+        page = self.read("chain", "report.html")
+        self.assertEqual([0, 1, 2], sorted(int(n) for n in re.findall(r'"before":(\d+)', page)))
 
 
 if __name__ == "__main__":
