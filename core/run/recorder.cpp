@@ -39,6 +39,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       feed_(run.channels.time, run.channels.all().size()),
       row_(run.channels.all().size(), 0.0),
       row_between_(row_.size(), 0.0),
+      row_middle_(row_.size(), 0.0),
       residual_(at(run.system.layout().nc())) {}
 
 bool Recorder::observe_start() {
@@ -317,8 +318,16 @@ bool Recorder::note_abrupt_end() {
   Fault fault;
   if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
-  if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial);
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
+  if (statistics_.end_stretch(row_between_)) {
+    clearances_.add(row_between_, run_.e_trial);
+    if (statistics_.wants_middle() && observe_inside(0.5 * (step.start.t() + step.end.t()), step, row_middle_)) {
+      maxima_.see(row_middle_);
+      statistics_.add_middle(row_middle_);
+      statistics_.note(row_between_);  // the step ends with it
+    }
+    statistics_.begin_stretch();
+  }
   if (contact_rows_.active() || feed_.active()) run_.energy.fill(run_.e_trial, run_.channels, row_between_);
   feed_.see_inside(row_between_);
   if (contact_rows_.active()) see_contact_end(row_between_);

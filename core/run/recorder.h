@@ -99,7 +99,7 @@ class Recorder {
   PeakSearch contact_peaks_;  // the same of each contact
   EventStorm storm_;
   StepFeed feed_;
-  std::vector<double> row_, row_between_, residual_;
+  std::vector<double> row_, row_between_, row_middle_, residual_;
   bool row_is_known_ = false;  // row_ is that of the accepted state
   long next_row_ = 1;
 };

@@ -9,6 +9,7 @@
 namespace freeplay {
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double small_part = 1e-4;  // of an integral
 }  // namespace
 
 void Statistics::Mean::add(double value, double dt, bool first, bool by_parabolas) {
@@ -34,6 +35,15 @@ void Statistics::Mean::begin_anew() {
   integral -= pending;
   pending = 0.0;
   known = 1;
+}
+
+bool Statistics::Mean::wants_middle() const {
+  return known == 2 && 0.5 * length * (before + last * last) > small_part * integral;
+}
+
+// What the parabola through the three lies beside the straight line.
+void Statistics::Mean::add_middle(double value) {
+  if (known == 2) integral += length * (2.0 * value * value - before - last * last) / 3.0;
 }
 
 double Statistics::Mean::rms(double duration) const { return std::sqrt(std::max(integral - pending, 0.0) / duration); }
@@ -106,22 +116,14 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
 
 // Of the row that was noted last.
 void Statistics::add_means(std::span<const double> row, double dt, bool first) {
-  const PeakValues& places = largest_.places();
   const std::span<const double> values = largest_.last();
+  each_mean(*this, [&](Mean& mean, std::size_t place) { mean.add(values[place], dt, first, long_steps_); });
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
     JointSums& sums = joints_[at(j)];
-    sums.force.add(values[places.force(j)], dt, first, long_steps_);
     if (channels_.joints[at(j)].contact < 0) continue;
     const double contact = row[at(channels_.joints[at(j)].contact)];
     if (!first) sums.contact_time += 0.5 * dt * (sums.last_contact + contact);
     sums.last_contact = contact;
-  }
-  for (int d = 0; d < static_cast<int>(drivers_.size()); ++d) {
-    drivers_[at(d)].effort.add(values[places.effort(d)], dt, first, long_steps_);
-  }
-  for (int p = 0; p < static_cast<int>(paths_.size()); ++p) {
-    paths_[at(p)].position.add(values[places.position_error(p)], dt, first, long_steps_);
-    paths_[at(p)].angle.add(values[places.angle_error(p)], dt, first, long_steps_);
   }
 }
 
@@ -132,14 +134,23 @@ bool Statistics::end_stretch(std::span<const double> row) {
   add_means(row, t - last_time_, false);
   duration_ += t - last_time_;
   last_time_ = t;
-  begin_stretch();
   return true;
 }
 
+bool Statistics::wants_middle() const {
+  bool wanted = false;
+  each_mean(*this, [&](const Mean& mean, std::size_t) { wanted = wanted || mean.wants_middle(); });
+  return wanted;
+}
+
+void Statistics::add_middle(std::span<const double> row) {
+  note(row);
+  const std::span<const double> values = largest_.last();
+  each_mean(*this, [&](Mean& mean, std::size_t place) { mean.add_middle(values[place]); });
+}
+
 void Statistics::begin_stretch() {
-  for (JointSums& sums : joints_) sums.force.begin_anew();
-  for (DriverSums& sums : drivers_) sums.effort.begin_anew();
-  for (PathSums& sums : paths_) sums.position.begin_anew(), sums.angle.begin_anew();
+  each_mean(*this, [](Mean& mean, std::size_t) { mean.begin_anew(); });
 }
 
 void Statistics::add_contact(int joint, double time) {

@@ -52,6 +52,11 @@ class Statistics {
   /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
   /// instant, is on the other side. False where it does not count.
   bool end_stretch(std::span<const double> row);
+  /// Whether that was the only step since values went on otherwise: a mean over it needs a state inside, as parabolas
+  /// have no third point. Where it is a small part of what there is, the straight line does.
+  bool wants_middle() const;
+  /// The row in the middle of that step.
+  void add_middle(std::span<const double> row);
   /// After the row that was added last values go on otherwise than before.
   void begin_stretch();
   /// A row that is written; of one that was noted when it was seen.
@@ -92,6 +97,8 @@ class Statistics {
     int known = 0;                      ///< ends of steps since values went on smoothly
     void add(double value, double dt, bool first, bool by_parabolas);
     void begin_anew();
+    bool wants_middle() const;
+    void add_middle(double value);
     double rms(double duration) const;
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
@@ -131,6 +138,19 @@ class Statistics {
     }
   };
   void add_means(std::span<const double> row, double dt, bool first);
+  /// Calls `visit(mean, place)` for all, with the place of the value that it is of.
+  template <class Self, class Visit>
+  static void each_mean(Self& self, const Visit& visit) {
+    const PeakValues& places = self.largest_.places();
+    for (int j = 0; j < static_cast<int>(self.joints_.size()); ++j)
+      visit(self.joints_[static_cast<std::size_t>(j)].force, places.force(j));
+    for (int d = 0; d < static_cast<int>(self.drivers_.size()); ++d)
+      visit(self.drivers_[static_cast<std::size_t>(d)].effort, places.effort(d));
+    for (int p = 0; p < static_cast<int>(self.paths_.size()); ++p) {
+      visit(self.paths_[static_cast<std::size_t>(p)].position, places.position_error(p));
+      visit(self.paths_[static_cast<std::size_t>(p)].angle, places.angle_error(p));
+    }
+  }
 
   const Channels& channels_;
   LargestValues largest_;

@@ -52,5 +52,22 @@ INSTANTIATE_TEST_SUITE_P(Models, ClearanceStatisticsLong,
                          ::testing::Values(Means{"3-rrr", 306.30e-6, 275.86e-6, 0.9097e-3, 1.527, 5.646},
                                            Means{"4-rrr", 285.09e-6, 261.33e-6, 0.2565e-3, 1.1978, 4.215}));
 
+// Triangles of a force between corners of a table: a step each side, and the square of the force is a parabola.
+TEST(Statistics, MeanSquareOfShortPulsesIsThatOfTheirTable) {
+  for (const int pulses : {1, 3, 40}) {
+    std::string points = "[0, 0]";
+    for (int i = 0; i < pulses; ++i) {
+      const double at = 0.1 + 0.04 * i;
+      points += ", [" + number(at) + ", 0], [" + number(at + 1e-4) + ", 1000], [" + number(at + 3e-4) + ", 0]";
+    }
+    const ModelRun run(
+        "freeplay: 1\nbodies: {m: {mass: 1, inertia: 1}}\njoints: {g: {type: prismatic, between: [ground, m]}}\n"
+        "drivers: {d: {joint: g, kind: force, table: {interpolation: linear, points: [" +
+        points + ", [2, 0]]}}}\nsimulation: {end: 2 s, accuracy: 1 um}\n");
+    const double rms = 1000.0 * std::sqrt(pulses * 3e-4 / 3.0 / 2.0);
+    EXPECT_NEAR(run.statistics().driver(0).rms, rms, 1e-9 * rms) << pulses;
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::test
