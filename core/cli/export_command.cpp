@@ -80,7 +80,7 @@ class Export {
         provenance_(record_of(options.path, *reader_, {"export", common.command, arguments_of(options)})) {}
 
   void execute() {
-    if (const std::string missing = missing_part(*reader_); !missing.empty()) {
+    if (const std::string missing = missing_part(*reader_, name_); !missing.empty()) {
       print_messages("freeplay: warning: " + missing + "\n", common_.no_color);
     }
     if (options_.out.empty()) return give(print_data);

@@ -67,11 +67,24 @@ void require_same_program(const Checkpoint& checkpoint) {
   }
 }
 
+/// Whether a comparison with the run without clearances that is null is to stay so: another would find the same.
+bool has_no_comparison(const std::filesystem::path& directory, const Json& summary) {
+  const Json twin = summary_of(directory / "twin");
+  const std::string status = twin.value("status", "");
+  if (status == "failed") return number_at(twin, "/exit_code") != 6.0;
+  const Json::json_pointer until("/statistics/to");
+  return (status == "completed" || status == "stopped") && summary.contains(until) && summary.at(until).is_null();
+}
+
 /// A result that stays or is replaced is one: made from what lies beside it, with all that its summary counts.
 void require_whole(const std::filesystem::path& directory, const Json& summary, const Json& record) {
   if (const auto changed = changed_source(directory, record)) mismatch(changed->name, changed->then, changed->now);
   if (const std::string misfit = misfit_of(directory, summary); !misfit.empty()) {
     throw Error(Error::Category::file, "bad-checkpoint", misfit, {}, "run the model again");
+  }
+  if (const std::string part = part_of_a_line(directory); !part.empty()) {
+    throw Error(Error::Category::file, "bad-checkpoint", part, {},
+                fmt::format("cut it off with `freeplay seal {}`", directory.string()));
   }
 }
 
@@ -112,7 +125,8 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
                 fmt::format("the run went to {:g} s of {:g} s: a later end than that is needed", at, end));
     }
   }
-  const bool no_twin = out.options.twin && summary.value("twin", Json()).is_null();
+  const bool no_twin =
+      out.options.twin && summary.value("twin", Json()).is_null() && !has_no_comparison(directory, summary);
   const bool ended = status == "stopped" || status == "completed", there = status == "stopped" || later == end;
   if (ended) require_whole(directory, summary, record);
   if (ended && there && !no_twin) {

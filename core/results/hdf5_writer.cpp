@@ -165,10 +165,12 @@ void Hdf5Writer::File::make() {
   time.close();
 
   Hdf5Id length = make_dataset(root, "summary_length", H5T_IEEE_F32BE, {0}, summary_chunk, nullptr);
+  put_column(length, {"summary_length", "1", "number of characters of the summary", "text of summary.json"});
   put_scale(length, bare_dimension(0));
   DimensionScale along_length{object_reference(root, "summary_length"), {}};
   const Hdf5Id letter = string_type(1, H5T_CSET_ASCII);
   Hdf5Id summary = make_dataset(root, "summary", letter, {0}, summary_chunk, nullptr);
+  put_column(summary, {"summary", "1", "what the run came to, as JSON", "text of summary.json"});
   put_along(summary, object_reference(root, "summary"), {&along_length});
   put_users(length, along_length);
   length.close();
@@ -187,6 +189,7 @@ void Hdf5Writer::File::make() {
 
 void Hdf5Writer::File::make_events(hid_t group) {
   Hdf5Id counter = make_dataset(group, "event", H5T_IEEE_F32BE, {0}, event_chunk, nullptr);
+  put_column(counter, {"event", "1", "number of events", "events of joints"});
   put_scale(counter, bare_dimension(0));
   DimensionScale along_event{object_reference(group, "event"), {}};
   constexpr std::int32_t none = -1;

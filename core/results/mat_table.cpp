@@ -1,6 +1,7 @@
 #include "results/mat_table.h"
 
 #include <cstdint>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <string_view>
@@ -36,6 +37,37 @@ std::vector<double> numbers_in(const matvar_t& variable) {
   if (variable.class_type != MAT_C_DOUBLE || variable.data_type != MAT_T_DOUBLE || variable.isComplex != 0) return {};
   const auto* first = static_cast<const double*>(variable.data);
   return {first, first + bytes_of(variable) / sizeof(double)};
+}
+
+/// Bytes that the parts of a MAT-file of level 5 end at, 0 of another one. The library takes zeros for what a cut file
+/// has lost.
+std::uint64_t end_of_parts(const std::filesystem::path& path) {
+  constexpr std::uint64_t head_bytes = 128, mark_at = 124, tag_bytes = 8, size_at = 4;
+  std::ifstream file(path, std::ios::binary);
+  char head[head_bytes] = {}, tag[tag_bytes];
+  if (!file.read(head, sizeof head)) return 0;
+  const std::string_view mark(head + mark_at, 4);
+  const bool little = mark == std::string_view("\0\1IM", 4);
+  if (!little && mark != std::string_view("\1\0MI", 4)) return 0;
+  std::uint64_t end = head_bytes;
+  while (file.read(tag, sizeof tag)) {
+    std::uint64_t size = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      size = size << 8 | static_cast<unsigned char>(tag[size_at + (little ? 3 - i : i)]);
+    }
+    end += tag_bytes + size;
+    file.seekg(static_cast<std::streamoff>(end));
+  }
+  return file.gcount() > 0 ? end + tag_bytes : end;
+}
+
+void require_whole(const std::filesystem::path& path) {
+  const std::uint64_t end = end_of_parts(path);
+  std::error_code ignored;
+  const std::uint64_t size = std::filesystem::file_size(path, ignored);
+  if (end > size) {
+    unreadable_result(path.string(), fmt::format("it was cut: it has {} bytes, its last part ends at {}", size, end));
+  }
 }
 
 /// In a process of its own: on a damaged file the library may crash or never come back.
@@ -85,6 +117,7 @@ MatTable table_of(std::string_view bytes) {
 }  // namespace
 
 MatTable read_mat(const std::filesystem::path& path) {
+  require_whole(path);
   ServantProcess reader([&]() -> ServantProcess::Serve {
     return [&path](std::string_view, const ServantProcess::Send& send) {
       try {

@@ -86,6 +86,22 @@ std::string misfit_of_events(const fs::path& file, const Json& digits) {
                      file.string());
 }
 
+bool has_open_line(const fs::path& file) { return whole_lines(file, std::numeric_limits<std::int64_t>::max()).more; }
+
+std::string left_out(const fs::path& file) {
+  return fmt::format("the last line of '{}' has no end and is left out: its run goes on or was killed, or it was cut",
+                     file.string());
+}
+
+/// Of events.csv in a directory that may have a summary.
+std::string missing_events(const fs::path& directory) {
+  const fs::path file = directory / "events.csv";
+  const Json summary = record_in(directory / "summary.json");
+  if (!is_file(file)) return {};
+  std::string misfit = summary.is_object() ? misfit_of_events(file, field(summary, "/hashes/events")) : std::string();
+  return misfit.empty() && has_open_line(file) ? left_out(file) : misfit;
+}
+
 }  // namespace
 
 std::optional<ChangedSource> changed_source(const fs::path& directory, const Json& record) {
@@ -119,9 +135,20 @@ std::string misfit_of(const fs::path& directory, const Json& summary) {
   return misfit_of_events(directory / "events.csv", field(summary, "/hashes/events"));
 }
 
-std::string missing_part(ResultReader& reader) {
+std::string part_of_a_line(const fs::path& directory) {
+  for (const char* name : {"results.csv", "events.csv"}) {
+    const fs::path file = directory / name;
+    if (is_file(file) && has_open_line(file)) {
+      return fmt::format("'{}' was changed: it ends in part of a line, which its run did not write", file.string());
+    }
+  }
+  return {};
+}
+
+std::string missing_part(ResultReader& reader, const std::string& table) {
   const fs::path file = reader.file();
   if (!is_text(file)) return {};  // others are read as a whole or not at all
+  if (table == "events" || table == "impacts") return missing_events(file.parent_path());
   Sha256 hash;
   const WholeLines lines = whole_lines(file, std::numeric_limits<std::int64_t>::max(), &hash);
   const Json record = record_in(file.string() + ".provenance.json");
@@ -135,9 +162,7 @@ std::string missing_part(ResultReader& reader) {
     return fmt::format("rows of '{}' are missing: it has {}, and its summary counts {}", file.string(), lines.lines - 1,
                        counted.get<std::int64_t>());
   }
-  if (!lines.more) return {};
-  return fmt::format("the last line of '{}' has no end and is left out: its run goes on or was killed, or it was cut",
-                     file.string());
+  return lines.more ? left_out(file) : std::string();
 }
 
 }  // namespace freeplay

@@ -24,8 +24,13 @@ std::optional<ChangedSource> changed_source(const std::filesystem::path& directo
 /// throws Error{file} "unreadable-result" where a file cannot be read.
 std::string misfit_of(const std::filesystem::path& directory, const Json& summary);
 
-/// What of a file of rows is missing, as far as a count shows: lines of a results.csv that its summary counts, the end
-/// of a last line, text that the record beside a table has the fingerprint of. Empty where nothing is known to be.
-std::string missing_part(ResultReader& reader);
+/// What follows the last line of results.csv or events.csv, which its run has ended: "'FILE' ends in part of a line".
+/// Empty where nothing does.
+std::string part_of_a_line(const std::filesystem::path& directory);
+
+/// What is missing of that table of a file of rows, as far as a count shows: lines of a results.csv that its summary
+/// counts, events that it has the fingerprint of, the end of a last line, text that the record beside a table has the
+/// fingerprint of. Empty where nothing is known to be.
+std::string missing_part(ResultReader& reader, const std::string& table = "results");
 
 }  // namespace freeplay

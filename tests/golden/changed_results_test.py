@@ -56,6 +56,13 @@ class Changed(ProgramTest):
         self.assertEqual(whole["twin"], self.summary("cut")["twin"])
         self.assertEqual("completed", self.summary("cut", "twin")["status"])
 
+    def test_a_twin_without_a_row_that_counts_is_not_run_again(self):
+        self.freeplay("run", CRANK, "--twin", "--quiet", "--end", "5 ms", "--out", "short")
+        self.assertIsNone(self.summary("short")["twin"])
+        made = os.stat(self.path("short", "twin", "summary.json"))
+        self.assertIn("nothing to do", self.freeplay("run", "--resume", "short")[0])
+        self.assertEqual(made.st_mtime_ns, os.stat(self.path("short", "twin", "summary.json")).st_mtime_ns)
+
     def test_a_completed_result_that_was_changed_is_not_called_done(self):
         self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--out", "whole")
         out, _ = self.freeplay("run", "--resume", "whole")
@@ -88,6 +95,37 @@ class Changed(ProgramTest):
                 self.assertIn(word, err)
                 _, err = self.freeplay("seal", folder, code=6)
                 self.assertIn(word, err)
+
+    def test_part_of_a_line_after_the_last_one_is_named_and_cut_off(self):
+        self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--format", "csv", "--out", "whole")
+        for name in ("results.csv", "events.csv"):
+            shutil.copytree(self.path("whole"), self.path(name))
+            with open(self.path(name, name), "a", encoding="utf-8") as file:
+                file.write("0.1,wri")
+            _, err = self.freeplay("run", "--resume", name, code=6)
+            self.assertIn("'%s/%s' was changed: it ends in part of a line" % (name, name), err)
+            self.assertIn("freeplay seal %s" % name, err)
+            table = "events" if name == "events.csv" else "results"
+            self.assertIn("is left out", self.freeplay("export", name, "--to", "csv", "--table", table)[1])
+            self.freeplay("seal", name)
+            self.assertEqual(self.read("whole", name), self.read(name, name))
+            self.assertIn("nothing to do", self.freeplay("run", "--resume", name)[0])
+        self.cut(0.5, "events.csv", "events.csv")
+        self.assertIn("was changed or cut", self.freeplay("export", "events.csv", "--to", "csv", "--table", "impacts")[1])
+
+    def test_a_cut_mat_file_is_refused_wherever_it_ends(self):
+        self.freeplay("run", CRANK, "--quiet", "--end", "4 ms", "--out", "r")
+        self.freeplay("export", "r", "--to", "mat", "--out", "whole.mat")
+        self.freeplay("compare", "whole.mat", "r/results.csv")
+        size = os.path.getsize(self.path("whole.mat"))
+        for end in [129, 135, *range(200, size, size // 20), size - 5000, size - 9, size - 1]:
+            shutil.copy(self.path("whole.mat"), self.path("cut.mat"))
+            os.truncate(self.path("cut.mat"), end)
+            for command in (("compare", "cut.mat", "r"), ("export", "cut.mat", "--to", "csv")):
+                with self.subTest(end=end, command=command[0]):
+                    out, err = self.freeplay(*command, code=6)
+                    self.assertEqual("", out)
+                    self.assertIn("'cut.mat' cannot be read: it was cut", err)
 
     def test_either_file_of_rows_may_go(self):
         self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--out", "r")
