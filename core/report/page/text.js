@@ -9,13 +9,11 @@ function make(tag, attributes = {}, ...children) {
   e.append(...children.filter(c => c != null));
   return e;
 }
-const byId = id => document.getElementById(id);
-
 const minus = text => text.replace('-', '−');
 
 function plain(x, digits = 4) {
   if (x === 0) return '0';
-  const size = Math.abs(x);
+  const size = abs(x);
   return minus(size >= 1e6 || size < 1e-4 ? x.toExponential(digits - 2).replace('e+', 'e') : String(+x.toPrecision(digits)));
 }
 
@@ -25,19 +23,19 @@ const people = unit => unit.replace(/\*/g, '·');
 // Power of ten and unit that suit numbers of this size.
 function scale(size, unit) {
   if (unit === '1' || !unit || (size > 0 && size < 1e-12)) return {power: 0, unit: unit === '1' ? '' : people(unit)};
-  const power = size > 0 && isFinite(size) ? Math.max(-12, Math.min(9, 3 * Math.floor(Math.log10(size * 1.0000001) / 3))) : 0;
+  const power = size > 0 && isFinite(size) ? max(-12, min(9, 3 * floor(log10(size * 1.0000001) / 3))) : 0;
   return {power, unit: prefixes[power] + people(unit)};
 }
 
 function quantity(x, unit, digits = 4) {
   if (x == null || Number.isNaN(x)) return '–';
-  const s = scale(Math.abs(x), unit);
+  const s = scale(abs(x), unit);
   return plain(x / 10 ** s.power, digits) + (s.unit && '\u00a0' + s.unit);
 }
 
 function quantityRange(low, high, unit) {
   if (Number.isNaN(low)) return '–';
-  const s = scale(Math.max(Math.abs(low), Math.abs(high)), unit), f = x => plain(x / 10 ** s.power);
+  const s = scale(max(abs(low), abs(high)), unit), f = x => plain(x / 10 ** s.power);
   return f(low) + ' … ' + f(high) + (s.unit && '\u00a0' + s.unit);
 }
 
