@@ -48,15 +48,13 @@ class Motion {
     });
   }
 
-  direction(body, d) {
+  direction(body, d, poses = this.poses) {
     if (body < 0) return d;
-    const {r} = this.poses[body];
+    const {r} = poses[body];
     return [0, 3, 6].map(i => r[i] * d[0] + r[i + 1] * d[1] + r[i + 2] * d[2]);
   }
   world(body, p, poses = this.poses) {
-    if (body < 0) return p;
-    const {at, r} = poses[body];
-    return [at[0] + r[0] * p[0] + r[1] * p[1] + r[2] * p[2], at[1] + r[3] * p[0] + r[4] * p[1] + r[5] * p[2], at[2] + r[6] * p[0] + r[7] * p[1] + r[8] * p[2]];
+    return body < 0 ? p : this.direction(body, p, poses).map((x, i) => x + poses[body].at[i]);
   }
   worldIn(frame, body, p) { return body < 0 ? p : this.world(body, p, {[body]: this.pose(this.numbers(body, frame))}); }
 

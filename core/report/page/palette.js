@@ -54,8 +54,9 @@ function disc(c, [x, y], radius, fill, stroke, width = 1) {
   c.stroke();
 }
 
+const font = ' 12px system-ui, sans-serif';
 function note(c, text, x, y, colour, align = 'left', weight = '') {
-  c.font = weight + ' 12px system-ui, "DejaVu Sans", sans-serif';
+  c.font = weight + font;
   c.textAlign = align;
   c.lineWidth = 3;
   c.strokeStyle = palette.card;

@@ -47,7 +47,7 @@ function swatch(k) {
 // A plot with its heading, and a place for a value of each curve; `signs` are the colours and dashes of the curves.
 function addPlot(home, title, labels, curves, options) {
   const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k), {signs = [...labels.keys()]} = options;
-  const head = make('figcaption', {}, make('b', {}, title), curves.some(c => c[1].some(isFinite)) ? '' : 'no numbers', ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
+  const head = make('figcaption', {}, make('b', {}, title), curves.some(c => c[1].some(isFinite)) ? '' : 'no numbers', ...labels.map((label, k) => span(swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
   const look = () => ({colors: signs.map(k => palette.series[k % 8]), axisLineColor: palette.soft, gridLineColor: palette.line});
@@ -149,7 +149,7 @@ function fillNow(t) {
   for (const {e, run, name} of cells) {
     const v = run.value(name, t), {unit} = run.named.get(name);
     if (run.buckets) [e.dataset.low, e.dataset.high] = v; else e.dataset.value = v;
-    e.textContent = run.buckets && v[0] !== v[1] ? quantityRange(...v, unit) : quantity(run.buckets ? v[0] : v, unit);
+    e.textContent = quantity(run.buckets && v[0] === v[1] ? v[0] : v, unit);
   }
 }
 
@@ -158,7 +158,7 @@ function presets() {
   const like = pattern => channelNames.filter(n => pattern.test(n)), largest = names => [...names].sort((a, b) => peak(b) - peak(a)).slice(0, most).sort((a, b) => channelNames.indexOf(a) - channelNames.indexOf(b));
   const lists = {'Contact forces': largest(like(/^joint\..*\.fn$/)), Drivers: like(/^driver\..*\.(torque|force)$/).slice(0, most), 'Path errors': like(/^driver\..*\.e(x|y|angle)$/),
                  Sliding: largest(like(/^joint\..*\.vt$/)), Penetration: largest(like(/^joint\..*\.delta$/)), Bodies: like(/^body\.[^.]*\.(x|y|z|angle)$/).slice(0, 6)};
-  return Object.fromEntries(Object.entries(lists).filter(([, names]) => names.length));
+  return Object.fromEntries(entries(lists).filter(([, names]) => names.length));
 }
 
 function startChoice() {
@@ -173,12 +173,12 @@ function startChoice() {
 
 function startPlots() {
   const lists = presets(), coarse = runs.filter(r => r.buckets);
-  byId('presets').append(...Object.entries(lists).map(([title, names]) => make('button', {onclick: () => select(names)}, title)));
+  byId('presets').append(...entries(lists).map(([title, names]) => make('button', {onclick: () => select(names)}, title)));
   byId('unzoom').onclick = unzoom;
   startChoice();
   byId('coarse').textContent = [
-    coarse.length && 'Drawn are the smallest and the largest value of every ' + Math.ceil(Math.max(...coarse.map(r => r.rows / r.buckets))) + ' rows, and all rows around the largest impacts.',
-    ...runs.filter(r => r.start <= r.get('/statistics/from') && r.end >= r.get('/time/reached')).flatMap(r => Object.entries(r.get('/joints') || {}).flatMap(([name, {max_fn}]) => {
+    coarse.length && 'Drawn are the smallest and the largest value of every ' + ceil(max(...coarse.map(r => r.rows / r.buckets))) + ' rows, and all rows around the largest impacts.',
+    ...runs.filter(r => r.start <= r.get('/statistics/from') && r.end >= r.get('/time/reached')).flatMap(r => entries(r.get('/joints')).flatMap(([name, {max_fn}]) => {
       const fn = r.named.get('joint.' + name + '.fn');
       return fn && max_fn > 1.1 * fn.max ? [titled(r) + ' Rows miss peaks between them: of ' + name + ' they show ' + quantity(fn.max, 'N') + ' of ' + quantity(max_fn, 'N') + '.'] : [];
     }).slice(0, 1)),

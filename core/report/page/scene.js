@@ -144,8 +144,10 @@ function drawGround(c, [x, y]) {
   for (let k = -9; k <= 9; k += 4.5) line(c, [[x + k + 2, y + 15], [x + k - 2, y + 20]], palette.edge);
 }
 
+const from = (p, q) => [q[0] - p[0], q[1] - p[1]];
+
 function drawTie(c, p, q, spring) {
-  const d = [q[0] - p[0], q[1] - p[1]], length = hypot(...d) || 1, at = k => {
+  const d = from(p, q), length = hypot(...d) || 1, at = k => {
     const side = spring && k > 0 && k < 12 ? (k % 2 ? 5 : -5) / length : 0;
     return [p[0] + k / 12 * d[0] - side * d[1], p[1] + k / 12 * d[1] + side * d[0]];
   };
@@ -182,9 +184,9 @@ function drawClearance(c, m, joint, p, first, project) {
 }
 
 function arrow(c, p, tip, colour) {
-  const d = [tip[0] - p[0], tip[1] - p[1]], length = hypot(...d), [x, y] = d.map(v => v / length), b = min(8, length / 2);
-  line(c, [p, [tip[0] - x * b * 0.7, tip[1] - y * b * 0.7]], colour, 2);
-  shape(c, [tip, [tip[0] - b * x + 0.45 * b * y, tip[1] - b * y - 0.45 * b * x], [tip[0] - b * x - 0.45 * b * y, tip[1] - b * y + 0.45 * b * x]], colour);
+  const [x, y] = from(p, tip), b = min(8 / hypot(x, y), 0.5), back = (along, aside) => [tip[0] - b * (along * x + aside * y), tip[1] - b * (along * y - aside * x)];
+  line(c, [p, back(0.7, 0)], colour, 2);
+  shape(c, [tip, back(1, 0.45), back(1, -0.45)], colour);
 }
 
 // Force on the second body; what would leave the picture is cut and has its number.
@@ -193,7 +195,7 @@ function drawForce(c, m, {joint, q, second}, project) {
   const f = m.force(joint), px = hypot(...f) * 60 / scene.newton, cut = min(1, 170 / px);
   if (!(px > 4)) return;
   const tip = project(second.map((x, i) => x + cut * 60 / scene.newton / scene.scale * f[i]));
-  if (hypot(tip[0] - q[0], tip[1] - q[1]) < 2) return;
+  if (hypot(...from(q, tip)) < 2) return;
   arrow(c, q, tip, palette.blue);
   if (cut < 1) note(c, quantity(hypot(...f), 'N', 3), tip[0] + 5, tip[1] - 5, palette.blue);
 }
@@ -221,7 +223,7 @@ function drawNotes(c, m, cell) {
 function drawNames(c, m, joints, {x, y, w, h}) {
   const meets = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3], sides = [[1, -1], [1, 1], [-1, -1], [-1, 1], [0, -1.3], [0, 1.3]];
   const taken = [...joints.map(({p}) => [p[0] - 6, p[1] - 6, p[0] + 6, p[1] + 6]), [x, y, x + (several ? 150 : 0), y + 30], [x, y + h - 34, x + 150, y + h]];
-  c.font = '12px system-ui, "DejaVu Sans", sans-serif';
+  c.font = font;
   for (const {joint, p} of joints) {
     const key = m.run.index + joint.name, width = c.measureText(joint.name).width, r = 4 + 0.75 * max(7, (joint.clearance || 0) * scene.scale * scene.exaggerate);
     const boxes = sides.map(([sx, sy]) => {
