@@ -47,7 +47,7 @@ function swatch(k) {
 // A plot with its heading, and a place for a value of each curve; `signs` are the colours and dashes of the curves.
 function addPlot(home, title, labels, curves, options) {
   const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k), {signs = [...labels.keys()]} = options;
-  const head = make('figcaption', {}, make('b', {}, title), curves.some(c => c[1].some(isFinite)) ? '' : 'no numbers', ...labels.map((label, k) => span(swatch(signs[k]), label + ' ', values[k])));
+  const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => span(swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
   const look = () => ({colors: signs.map(k => palette.series[k % 8]), axisLineColor: palette.soft, gridLineColor: palette.line});
@@ -71,7 +71,10 @@ const tidy = (s, range, unit = '') => (v, _, options, g) => minus(String(+(v / 1
 function addGraph(home, title, names) {
   const series = names.flatMap(name => owners(name).map(run => ({run, name}))), unit = unitOf(names[0]), s = scale(max(...names.map(peak)), unit);
   const ends = series.flatMap(({run, name}) => [run.named.get(name).min, run.named.get(name).max]), width = 10 + 7 * digits(min(...ends), max(...ends));
-  const label = ({run, name}) => [titled(run), parts(name).of || parts(name).what].filter(Boolean).join(' ');
+  const label = ({run, name}) => {
+    const {of, what} = parts(name), {missing} = run.named.get(name);
+    return [titled(run), of || what, missing && '(' + missing + ' of ' + run.rows + ' rows without a number)'].filter(Boolean).join(' ');
+  };
   const graph = addPlot(home, title + (s.unit && ' [' + s.unit + ']'), series.map(label), series.map(({run, name}) => points(run, name)), {
     say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 'xAxisRange', '\u00a0' + clockScale.unit), 76, 84), y: axis(tidy(s, 'yAxisRange'), width, 28)},
     clickCallback: (_, t) => seek(t), drawCallback: g => { clock.range = g.xAxisRange(); moveCursors(clock.time); },
