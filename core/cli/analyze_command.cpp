@@ -101,7 +101,7 @@ void write_results(const AnalysisResult& result, const std::string& map, Json re
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(options.out, ignored)) return;  // stdout, a terminal, a pipe
   record["data_sha256"] = sha256(table);
-  write_whole_file(options.out + ".provenance.json", json_text(record));
+  write_whole_file(record_file(options.out), json_text(record));
 }
 
 int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
@@ -110,6 +110,8 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
                 "freeplay analyze ik|workspace|singularity|error|inverse-dynamics MODEL");
   }
   require_sense(options);
+  require_no_other_table(options.out, options.force);
+  require_no_other_file(options.svg, own_picture, options.force);
   if (options.coloured && options.svg.empty()) {
     throw Error(Error::Category::usage, "bad-value", "--colours is given without --svg", {}, "--svg FILE draws a map");
   }
@@ -176,6 +178,7 @@ Command add_analyze_command(CLI::App& program, CommonOptions& common) {
   add_file_option(*app, "--out", options->out, "Write the CSV into a file instead of stdout", "FILE");
   add_file_option(*app, "--svg", options->svg, "Draw the map of a grid of x and y into a file", "FILE");
   add_flag(*app, "--colours", options->coloured, "The map in colours in place of greys");
+  add_flag(*app, "--force", options->force, "Replace files that are no table or picture");
   add_model_options(*app, options->build);
   add_common_options(*app, common);
   return {app, [options, &common] { return analyze(*options, common); }};

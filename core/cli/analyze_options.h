@@ -11,7 +11,7 @@ namespace freeplay {
 
 struct AnalyzeOptions : AnalysisWords {
   std::string model, out, svg;
-  bool coloured = false;
+  bool coloured = false, force = false;
   ModelOptions build;
 };
 

@@ -10,6 +10,7 @@
 #include "base/sha256.h"
 #include "base/staged_file.h"
 #include "base/whole_file.h"
+#include "cli/output_file.h"
 #include "cli/terminal.h"
 #include "results/reader.h"
 #include "results/result_record.h"
@@ -85,6 +86,7 @@ class Export {
     }
     if (options_.out.empty()) return give(print_data);
     StagedFile file(options_.out, options_.force);
+    if (options_.to == "csv") require_no_other_file(record_file(options_.out), own_record, options_.force);
     const bool text = options_.to == "csv" || options_.to == "json";
     if (text) {
       GrowingFile growing(file.temporary());
@@ -102,7 +104,7 @@ class Export {
     file.commit();
     if (options_.to != "csv") return;
     provenance_["data_sha256"] = hash_.digits();
-    write_whole_file(options_.out + ".provenance.json", json_text(provenance_));
+    write_whole_file(record_file(options_.out), json_text(provenance_));
   }
 
  private:

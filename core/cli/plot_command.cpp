@@ -155,7 +155,7 @@ class Plot {
     request_.view = view_of(options_);
     size_of_page();
     set_window();
-    require_no_other_file(options_.out, options_.force);
+    require_no_other_file(options_.out, own_picture, options_.force);
     open_results();
     set_channels();
   }

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 #include "cli/loading.h"
+#include "cli/output_file.h"
 #include "cli/study_options.h"
 #include "cli/terminal.h"
 #include "report/report.h"
@@ -39,8 +40,9 @@ std::vector<std::string> arguments_of(const ReportOptions& options) {
 int report_study(const std::string& folder, const ReportOptions& options, const CommonOptions& common) {
   const StudyInFolder opened = open_kept(folder, common);
   if (!opened.study) return opened.exit_code;
-  const std::string page = study_page(*opened.study, folder);
   const std::string file = options.out.empty() ? (opened.folder.path() / "report.html").string() : options.out;
+  require_no_other_file(file, own_page, options.force);
+  const std::string page = study_page(*opened.study, folder);
   write_whole_file(file, page);
   if (common.json) {
     print_json(Json{{"file", file}, {"bytes", page.size()}});

@@ -61,7 +61,7 @@ class Show {
       : options_(std::move(options)), common_(common), path_(options_.model) {
     if (options_.format.empty()) options_.format = common.json ? "json" : "text";
     require_fitting(options_, common.json);
-    require_no_other_file(options_.out, options_.force);
+    require_no_other_file(options_.out, own_picture, options_.force);
   }
 
   int execute() {

@@ -77,6 +77,7 @@ void add_point(CLI::App& app, StudyOptions& options) {
 
 void add_plot(CLI::App& app, StudyOptions& options) {
   add_file_option(app, "--out", options.out, "File of the picture (DIR/plots/NAME.svg)", "FILE");
+  add_flag(app, "--force", options.force, "Replace a file that is no picture");
   add_option(app, "--kind", options.kind, "One picture: line, heat, bifurcation, histogram or tornado", "KIND");
   add_option(app, "--x", options.x, "With --kind: the axis", "AXIS");
   add_option(app, "--y", options.y, "With --kind: the reducer; of heat the second axis", "NAME");

@@ -19,7 +19,7 @@ struct StudyOptions {
   std::string end, step, accuracy, integrator;
   std::string jobs, shard, only, keep, point_timeout, sync;
   bool retry_failed = false, allow_failed = false, isolate = false, extend = false, restart = false, yes = false;
-  bool partial = false, list_points = false, watch = false, run_point = false;
+  bool partial = false, list_points = false, watch = false, run_point = false, force = false;
   std::string probe, points, seed;
   std::string engine, minutes, tasks, cores, time, hosts, max_array;
   std::string kind, x, y, value, by;

@@ -63,6 +63,7 @@ int study_plot(const StudyOptions& options, const CommonOptions& common) {
   if (!options.out.empty() && requests.size() > 1) {
     throw Error(Error::Category::usage, "bad-value", "--out is for one picture", {}, "name a plot");
   }
+  require_no_other_file(options.out, own_picture, options.force);
   Json files = Json::array();
   for (const PictureRequest& request : requests) {
     const std::filesystem::path file = !options.out.empty() ? std::filesystem::path(options.out)

@@ -17,7 +17,7 @@ constexpr double left = 72.0, right = 16.0, page_top = 28.0, legend_line = 16.0;
 constexpr double panel_top = 22.0, axis_room = 38.0, gap = 10.0;  // of a panel, with and without an axis below
 constexpr double px_per_mm = 96.0 / 25.4;
 constexpr double letter_width = 6.0;                                      // of 11 px
-constexpr double usual_size = 11.0, title_size = 13.0, least_size = 5.0;  // of letters [px]
+constexpr double usual_size = 11.0, title_size = 13.0, least_size = 6.0;  // of letters [px]
 
 struct Style {
   const char *colour, *dashes;
@@ -37,10 +37,21 @@ std::string with_unit(const std::string& words, const std::string& unit) {
   return unit.empty() ? words : fmt::format("{} [{}]", words, unit);
 }
 
-/// A size of the letters that lets words fit where they would be cut.
-std::string fitting(const std::string& words, double room, double size = usual_size) {
-  const double width = letter_width * size / usual_size * static_cast<double>(words.size());
-  return width <= room ? "" : fmt::format(" font-size=\"{:.3g}\"", std::max(least_size, size * room / width));
+struct Fitted {
+  std::string size, words;  ///< attribute, and content of a text
+};
+
+/// In smaller letters where words would be cut; where not even these fit, what fits, and all of it in a title.
+Fitted fitted(const std::string& words, double room, double size = usual_size) {
+  const double letter = letter_width / usual_size, width = letter * size * static_cast<double>(words.size());
+  if (width <= room) return {"", escaped(words)};
+  const double small = std::max(least_size, size * room / width);
+  const std::string attribute = fmt::format(" font-size=\"{:.3g}\"", small);
+  auto most = static_cast<std::size_t>(std::max(2.0, 1e-9 + room / (letter * small)));
+  if (words.size() <= most) return {attribute, escaped(words)};
+  --most;
+  while (most > 0 && (static_cast<unsigned char>(words[most]) & 0xC0U) == 0x80U) --most;  // whole characters
+  return {attribute, fmt::format("<title>{}</title>{}\u2026", escaped(words), escaped(words.substr(0, most)))};
 }
 
 /// The place of a panel's lines on the page.
@@ -86,9 +97,9 @@ class PanelDrawing {
   }
 
   void draw_axes() {
-    const std::string title = with_unit(panel_.title, panel_.y.unit);
-    out_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(area_.left), px(area_.top - 6.0),
-                        fitting(title, area_.right - area_.left), escaped(title));
+    const Fitted title = fitted(with_unit(panel_.title, panel_.y.unit), area_.right - area_.left);
+    out_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(area_.left), px(area_.top - 6.0), title.size,
+                        title.words);
     for (std::size_t i = 0; i < panel_.y.ticks.size(); ++i) {
       const double y = at_y(panel_.y.ticks[i]);
       out_ += fmt::format(
@@ -108,10 +119,9 @@ class PanelDrawing {
                           panel_.x.labels[i]);
     }
     if (panel_.x_label.empty()) return;
-    const std::string label = with_unit(panel_.x_label, panel_.x.unit);
+    const Fitted label = fitted(with_unit(panel_.x_label, panel_.x.unit), area_.right - area_.left);
     out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\"{}>{}</text>\n",
-                        px(0.5 * (area_.left + area_.right)), px(area_.bottom + 31.0),
-                        fitting(label, area_.right - area_.left), escaped(label));
+                        px(0.5 * (area_.left + area_.right)), px(area_.bottom + 31.0), label.size, label.words);
   }
 
   void draw_circles() {
@@ -122,11 +132,13 @@ class PanelDrawing {
                           circle.line < 0 ? "#555" : styles[at(circle.line) % std::size(styles)].colour,
                           circle.dashed ? " stroke-dasharray=\"5 3\"" : "");
       if (circle.label.empty()) continue;
+      const double x = at_x(circle.radius * std::cos(circle.label_angle));
+      const Fitted label = fitted(circle.label, 2.0 * std::min(x - area_.left, area_.right - x));
       out_ += fmt::format(
           "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#333\" paint-order=\"stroke\" stroke=\"white\" "
-          "stroke-width=\"3\">{}</text>\n",
-          px(at_x(circle.radius * std::cos(circle.label_angle))),
-          px(at_y(circle.radius * std::sin(circle.label_angle)) + (circle.dashed ? 12.0 : 4.0)), escaped(circle.label));
+          "stroke-width=\"3\"{}>{}</text>\n",
+          px(x), px(at_y(circle.radius * std::sin(circle.label_angle)) + (circle.dashed ? 12.0 : 4.0)), label.size,
+          label.words);
     }
   }
 
@@ -150,17 +162,17 @@ class PanelDrawing {
                           styles[i % std::size(styles)].colour);
     }
     if (!d.empty()) out_ += fmt::format("<path class=\"line\" d=\"{}\" {}/>\n", d, stroke(i));
-    const std::string note = missing_words(panel_.lines[i]);
-    if (note.empty()) return;
+    const Fitted note = fitted(missing_words(panel_.lines[i]), area_.right - area_.left - 12.0);
+    if (note.words.empty()) return;
     // In the middle of an empty panel, else in its upper right, below those of other lines.
     const char* colour = panel_.lines.size() > 1 ? styles[i % std::size(styles)].colour : "#333";
     const double line_height = legend_line * static_cast<double>(i);
     out_ += fmt::format(
         "<text class=\"missing\" x=\"{}\" y=\"{}\" text-anchor=\"{}\" fill=\"{}\" paint-order=\"stroke\" "
-        "stroke=\"white\" stroke-width=\"3\">{}</text>\n",
+        "stroke=\"white\" stroke-width=\"3\"{}>{}</text>\n",
         px(d.empty() ? 0.5 * (area_.left + area_.right) : area_.right - 6.0),
         px((d.empty() ? 0.5 * (area_.top + area_.bottom) : area_.top + 14.0) + line_height),
-        d.empty() ? "middle" : "end", colour, note);
+        d.empty() ? "middle" : "end", colour, note.size, note.words);
   }
 
   const Panel& panel_;
@@ -186,13 +198,13 @@ double line_room(const PageSize& size) { return size.width - left - right; }
 std::string figure_svg(const Figure& figure, const PageSize& size) {
   std::string body;
   double y = page_top;
-  const std::string smaller = fitting(figure.title, line_room(size), title_size);
-  body +=
-      fmt::format("<text x=\"{}\" y=\"18\"{}>{}</text>\n", px(left),
-                  smaller.empty() ? fmt::format(" font-size=\"{:g}\"", title_size) : smaller, escaped(figure.title));
-  const auto legend = [&](const std::string& sign, const std::string& words) {
-    body += fmt::format("{}<text x=\"{}\" y=\"{}\"{}>{}</text>\n", sign, px(left + 36.0), px(y + 9.0),
-                        fitting(words, line_room(size) - 36.0), escaped(words));
+  const Fitted title = fitted(figure.title, line_room(size), title_size);
+  body += fmt::format("<text x=\"{}\" y=\"18\"{}>{}</text>\n", px(left),
+                      title.size.empty() ? fmt::format(" font-size=\"{:g}\"", title_size) : title.size, title.words);
+  const auto legend = [&](const std::string& sign, const std::string& all) {
+    const Fitted words = fitted(all, line_room(size) - 36.0);
+    body += fmt::format("{}<text x=\"{}\" y=\"{}\"{}>{}</text>\n", sign, px(left + 36.0), px(y + 9.0), words.size,
+                        words.words);
     y += legend_line;
   };
   if (figure.names.size() > 1) {

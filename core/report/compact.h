@@ -6,11 +6,18 @@
 
 namespace freeplay {
 
-/// Leaves out lines of comment, indents, and blanks beside the characters `marks` outside of strings, except between
-/// two `+` or two `-`; a line goes on with the next where it ends in one of `{;,(`. In what it is given no regular
-/// expression has a quote or a blank, and no string a line feed.
-std::string compact(std::string_view source, std::string_view marks);
+/// Where blanks and line feeds mean nothing.
+struct Syntax {
+  std::string_view marks;  ///< blanks beside one of these, outside of strings
+  std::string_view ends;   ///< line feeds after one of these
+};
 
-inline constexpr std::string_view script_marks = "{}()[];,:=<>+-*/?&|!", style_marks = "{}:;,";
+inline constexpr Syntax script_syntax{"{}()[];,:=<>+-*/?&|!", "{;,("}, style_syntax{"{}:;,", "{};,"},
+    html_syntax{"", ">"};
+
+/// Leaves out lines of comment, indents, blanks and line feeds that mean nothing, and, where `}` is a mark, `;` and
+/// line feeds before it. In what it is given no regular expression has a quote or a blank, no string a line feed, and
+/// no statement is empty.
+std::string compact(std::string_view source, const Syntax& syntax);
 
 }  // namespace freeplay

@@ -106,7 +106,7 @@ std::string page_json(const Json& json) {
 
 std::size_t page_frame_size() {
   const PageParts parts = page_parts();
-  return parts.html.size() + compact(parts.style, style_marks).size() + compact(parts.script, script_marks).size() +
+  return parts.html.size() + compact(parts.style, style_syntax).size() + compact(parts.script, script_syntax).size() +
          parts.plot_style.size() + parts.plot_script.size();
 }
 
@@ -121,8 +121,9 @@ std::string picture_element(const std::string& svg) {
 
 std::string page_text(const std::string& title, const Json& runs, std::string_view data, const std::string& pictures) {
   const PageParts parts = page_parts();
-  const std::string html = compact(with_sections(parts.html, runs, !pictures.empty()), ""), name = escaped(title);
-  const std::string style = compact(parts.style, style_marks), script = compact(parts.script, script_marks);
+  const std::string html = compact(with_sections(parts.html, runs, !pictures.empty()), html_syntax),
+                    name = escaped(title);
+  const std::string style = compact(parts.style, style_syntax), script = compact(parts.script, script_syntax);
   const std::map<std::string_view, std::string_view> fields = {{"title", name},
                                                                {"style", style},
                                                                {"plot_style", parts.plot_style},

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "model/channel.h"
+#include "results/result_record.h"
 
 namespace freeplay {
 
@@ -54,6 +55,17 @@ bool is_hdf5(const fs::path& path) {
   return head == mark || std::ranges::find(endings, path.extension()) != std::end(endings);
 }
 
+/// The record in the file says of which schema it is, whatever stands beside it.
+std::unique_ptr<ResultReader> open_known_hdf5(const fs::path& path) {
+  auto reader = open_hdf5(path);
+  for (const auto& [name, text] : reader->layout().attributes) {
+    const Json record = name == "provenance" ? Json::parse(text, nullptr, false) : Json();
+    if (record.is_object() && record.contains("schema"))
+      require_known_schema(reader->file(), record["schema"], record.value("freeplay", Json()));
+  }
+  return reader;
+}
+
 }  // namespace
 
 std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
@@ -61,7 +73,7 @@ std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   if (!fs::exists(path, ignored)) unreadable_result(path.string(), "there is no such file or directory");
   if (!fs::is_directory(path, ignored)) {
     const fs::path ending = path.extension();
-    return is_hdf5(path)       ? open_hdf5(path)
+    return is_hdf5(path)       ? open_known_hdf5(path)
            : ending == ".mat"  ? open_mat(path)
            : ending == ".json" ? open_json(path)
                                : open_csv(path);
@@ -69,7 +81,7 @@ std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
   const bool text = fs::exists(path / "results.csv", ignored);
   if (fs::exists(path / "results.h5", ignored)) {
     try {
-      auto reader = open_hdf5(path / "results.h5");
+      auto reader = open_known_hdf5(path / "results.h5");
       // Of a run that was killed early the text may hold rows when the other file has none yet.
       if (!text || reader->sealed() || !reader->open_rows(first_column)->next().empty()) return reader;
     } catch (const Error&) {

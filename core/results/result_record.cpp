@@ -86,14 +86,18 @@ Json read_summary(const fs::path& folder) {
   const fs::path file = folder / "summary.json";
   Json summary = json_of(text_of(file));
   if (!summary.is_object()) return nullptr;
-  const Json schema = summary.value(Json::json_pointer("/freeplay/schema"), Json(schema_version));
-  if (schema == schema_version) return summary;
-  const Json version = summary.value(Json::json_pointer("/freeplay/version"), Json());
-  unreadable_result(file.string(),
-                    fmt::format("its schema is {}, and this program reads schema {}", schema.dump(), schema_version), 0,
-                    version.is_string() ? fmt::format("it was written by freeplay {}, this is {}",
-                                                      version.get<std::string>(), program_version)
-                                        : "");
+  require_known_schema(file.string(), summary.value(Json::json_pointer("/freeplay/schema"), Json(schema_version)),
+                       summary.value(Json::json_pointer("/freeplay/version"), Json()));
+  return summary;
+}
+
+void require_known_schema(const std::string& file, const Json& schema, const Json& version) {
+  if (schema == schema_version) return;
+  unreadable_result(
+      file, fmt::format("its schema is {}, and this program reads schema {}", schema.dump(), schema_version), 0,
+      version.is_string()
+          ? fmt::format("it was written by freeplay {}, this is {}", version.get<std::string>(), program_version)
+          : "");
 }
 
 Json summary_of_unfinished(const fs::path& folder, const ResultReader& reader) {

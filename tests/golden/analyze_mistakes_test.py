@@ -1,6 +1,7 @@
 """freeplay analyze: poses that no mechanism takes, and words that are none."""
 import json
 import math
+import os
 import unittest
 
 from analyze_cases import FOUR_BAR, KINDS, AnalyzeTest
@@ -128,6 +129,21 @@ class AnalyzeMistakes(AnalyzeTest):
                 (("error", "missing.yaml"), 3, "missing.yaml")):
             with self.subTest(words=words):
                 self.assertIn(text, self.message(*words, code=code))
+
+    def test_files_that_are_no_tables_or_maps_are_kept(self):
+        command = ("error", mechanism("3-rrr"), "--grid", "x=0:1cm:2", "--grid", "y=0:1cm:2")
+        for option, name, what in (("--out", "t.csv", "table"), ("--svg", "t.csv", "picture"), ("--out", "t.csv.provenance.json", "record of a table")):
+            for other in ("t.csv", "t.csv.provenance.json"):
+                if os.path.exists(self.path(other)):
+                    os.remove(self.path(other))
+            self.write(name, "time,a\n0,1\n")
+            err = self.message(*command, option, "t.csv", code=6)
+            self.assertIn("cannot write '%s': it is there already, and no %s of this program [cannot-write]" % (name, what), err)
+            self.assertIn("--force", err)
+            self.assertEqual(["time,a\n0,1\n"], [self.read(other) for other in ("t.csv", "t.csv.provenance.json") if os.path.exists(self.path(other))])
+            for force in (("--force",), ()):  # then it is its own
+                self.rows(*command, option, "t.csv", *force)
+            self.assertNotEqual("time,a\n0,1\n", self.read(name))
 
     def test_mistakes_of_the_section_have_a_place(self):
         text = self.text("five-bar")

@@ -196,12 +196,14 @@ class Plot(ProgramTest):
         summary = self.read("other", "summary.json").replace('"name": "slider-crank"', '"name": "a slider-crank with a long name"')
         self.write("other/summary.json", summary)
         for options in (["driver.motor.torque", "--fft"], ["--polar", "wrist"], ["joint.wrist.fn", "--against", "r"]):
-            for width in ("84 mm", "100 mm"):
+            for width in ("53 mm", "60 mm", "84 mm", "100 mm"):
                 root = ET.fromstring(self.freeplay("plot", "other", *options, "--width", width)[0])
                 right = float(root.get("viewBox").split()[2])
                 for text in root.iter(SVG + "text"):
-                    wide = 0.5 * float(text.get("font-size", 11)) * len(text.text or "") * {"middle": 0.5, "end": 0}.get(text.get("text-anchor"), 1)
-                    self.assertLessEqual(float(text.get("x")) + wide, right, text.text)
+                    whole, words = text.findtext(SVG + "title"), "".join([text.text or ""] + [child.tail for child in text])
+                    self.assertTrue(whole is None or len(words) > 2 and words[-1] == "\u2026" and whole.startswith(words[:-1]), words)
+                    wide = 0.5 * float(text.get("font-size", 11)) * len(words) * {"middle": 0.5, "end": 0}.get(text.get("text-anchor"), 1)
+                    self.assertLessEqual(float(text.get("x")) + wide, right, words)
 
     def test_another_result_is_drawn_beside(self):
         shutil.copytree(self.made, self.path("other"))

@@ -281,12 +281,13 @@ class ReportInBrowser(ProgramTest):
         self.browser.open(self.path("page.html"))
         shown = self.script("freeplay.select(['a']); return [0, 1, 2, 3, 4].map(t => { freeplay.seek(t); return document.querySelector('#now span').textContent; })")
         self.assertEqual(["1", "\u2013", "3", "\u2013", "5"], shown)
-        self.write("r.csv", "time,a,b\n0,1,\n1,inf,nan\n2,3,\n")
+        self.write("r.csv", "time,a,b,c\n0,1,,1\n1,inf,nan,2\n2,3,,3\n")
         self.freeplay("report", "r.csv", "--out", "page.html")
         self.browser.open(self.path("page.html"))
-        heads = self.script("freeplay.select(['a', 'b']); return [...document.querySelectorAll('#graphs figcaption')].map(e => e.textContent)")
-        self.assertNotIn("no numbers", heads[0])
-        self.assertIn("no numbers", heads[1])
+        heads = self.script("freeplay.select(['a', 'b', 'c']); return [...document.querySelectorAll('#graphs figcaption')].map(e => e.textContent)")
+        self.assertIn("(1 of 3 rows without a number)", heads[0])
+        self.assertIn("(3 of 3 rows without a number)", heads[1])
+        self.assertNotIn("without", heads[2])
 
     def labels(self, plot):
         return self.script("return [...document.querySelectorAll(arguments[0] + ' .dygraph-axis-label-y')].map(e => e.textContent)", plot)

@@ -121,6 +121,20 @@ class Results(ProgramTest):
         self.assertIn("[unreadable-result]", stderr)
 
     @needs("h5py")
+    def test_a_file_of_another_schema_is_refused(self):
+        import h5py
+        self.run_model("--format", "hdf5")
+        shutil.copy(self.path("r", "results.h5"), self.path("alone.h5"))
+        with h5py.File(self.path("alone.h5"), "r+") as file:
+            record = json.loads(file.attrs["provenance"])
+            self.assertEqual(1, record["schema"])
+            file.attrs["provenance"] = json.dumps(dict(record, schema=2, freeplay="9.9"))
+        for command in (("plot", "alone.h5", "time"), ("report", "alone.h5"), ("export", "alone.h5", "--to", "csv"), ("compare", "alone.h5", "r")):
+            _, err = self.freeplay(*command, code=6)
+            self.assertIn("result 'alone.h5' cannot be read: its schema is 2, and this program reads schema 1", err)
+            self.assertIn("it was written by freeplay 9.9", err)
+
+    @needs("h5py")
     def test_a_sealed_file_opens_plainly(self):
         import h5py
         command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r", "--format", "hdf5"]

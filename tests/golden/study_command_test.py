@@ -151,6 +151,12 @@ class StudyCommand(ProgramTest):
         self.assertEqual(40, len(marks))
         self.freeplay("report", "r")
         self.assertIn("freeplay run", self.read("r", "report.html"))
+        for name, what, command in (("p.svg", "picture", ("study", "plot", "r", "lines")), ("p.html", "page", ("report", "r"))):
+            self.write(name, "mine")
+            self.assertIn("it is there already, and no %s of this program" % what, self.freeplay(*command, "--out", name, code=6)[1])
+            self.assertEqual("mine", self.read(name))
+            for force in (("--force",), ()):  # then it is its own
+                self.freeplay(*command, "--out", name, *force)
 
     def test_columns_of_one_name_and_units_that_do_not_fit_are_refused_before_anything_runs(self):
         for section, words in (

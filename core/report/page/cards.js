@@ -11,7 +11,7 @@ const seen = new IntersectionObserver(entries => entries.forEach(e => {
 function drawCard({canvas, back, paint, mark}) {
   const surface = sharp(canvas);
   if (!surface) return;
-  const {context, width, height, ratio} = surface, half = Math.min(width, height) / 2, kind = canvas.width + (palette.dark ? ' dark' : '');
+  const {context, width, height, ratio} = surface, half = min(width, height) / 2, kind = canvas.width + (palette.dark ? ' dark' : '');
   const middle = c => c.setTransform(ratio, 0, 0, ratio, width / 2 * ratio, height / 2 * ratio);
   if (back.kind !== kind) {
     back.kind = kind;
@@ -48,8 +48,8 @@ function startCards(section, list, kind, draw) {
 const jointChannels = joint => ['fn', 'delta', 'vt', 'ft'].map(q => 'joint.' + joint + '.' + q);
 
 function orbitCard(run, {joint, clearance, rows: rowText, points: pointText, radius}) {
-  const rows = decode(rowText, Int32Array), points = decode(pointText, Float32Array), path = '/joints/' + escaped(joint) + '/clearance/radial_clearance';
-  const at = (k, r) => [r * points[2 * k], -r * points[2 * k + 1]], indices = Array.from(rows.keys()), radii = radius && decode(radius, Float32Array), touches = k => (radii ? radii[k] : Math.hypot(points[2 * k], points[2 * k + 1])) >= 1;
+  const rows = decode(rowText, Int32Array), points = decode(pointText), path = '/joints/' + escaped(joint) + '/clearance/radial_clearance';
+  const at = (k, r) => [r * points[2 * k], -r * points[2 * k + 1]], indices = Array.from(rows.keys()), radii = radius && decode(radius), touches = k => (radii ? radii[k] : hypot(points[2 * k], points[2 * k + 1])) >= 1;
   const paint = (c, half) => {
     const r = half * 0.88;
     line(c, [[-half, 0], [half, 0]], palette.line);
@@ -62,7 +62,7 @@ function orbitCard(run, {joint, clearance, rows: rowText, points: pointText, rad
     for (const k of indices.filter(touches)) c.fillRect(at(k, r)[0] - 1.5, at(k, r)[1] - 1.5, 3, 3);
   };
   const mark = (c, half) => {
-    const k = lastUpTo(rows, run.row(clock.time), rows.length), p = at(k, half * 0.88);
+    const k = lastUpTo(rows, run.row(clock.time)), p = at(k, half * 0.88);
     line(c, [[0, 0], p], palette.ink);
     disc(c, p, 5, touches(k) ? palette.red : palette.card, palette.ink, 2);
   };
@@ -71,13 +71,13 @@ function orbitCard(run, {joint, clearance, rows: rowText, points: pointText, rad
 
 // Polar histogram of 72 sectors; angle 0 is to the right, counted anticlockwise.
 function bearingCard(run, {joint, work, pv_mean}) {
-  const path = '/joints/' + escaped(joint) + '/play/', tables = [work, pv_mean].map(text => decode(text, Float32Array));
+  const path = '/joints/' + escaped(joint) + '/play/', tables = [work, pv_mean].map(text => decode(text));
   const paint = (c, half) => {
     const inner = half * 0.3, room = half * 0.66, outline = numbers => {
-      const top = Math.max(...numbers.filter(isFinite), 1e-300), points = [];
+      const top = max(...numbers.filter(isFinite), 1e-300), points = [];
       numbers.forEach((v, k) => [k, k + 1].forEach(edge => {
-        const radius = inner + room * (v > 0 ? v / top : 0), angle = edge * Math.PI / 36;
-        points.push([radius * Math.cos(angle), -radius * Math.sin(angle)]);
+        const radius = inner + room * (v > 0 ? v / top : 0), angle = edge * PI / 36;
+        points.push([radius * cos(angle), -radius * sin(angle)]);
       }));
       return [...points, points[0]];
     };

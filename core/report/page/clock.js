@@ -2,32 +2,28 @@
 const clock = {time: timeStart, playing: false, speed: 1, drawn: 0, range: [timeStart, timeEnd]};
 const listeners = [], onTime = listener => listeners.push(listener);
 const frameTimes = runs.map(r => r.animation ? decode(r.animation.times, Float64Array) : r.times), frames = frameTimes[0];
-const clockScale = scale(Math.max(Math.abs(timeStart), Math.abs(timeEnd)), 's');
-const clockDigits = Math.max(0, Math.min(9, Math.ceil(4 - Math.log10((timeEnd - timeStart) / 10 ** clockScale.power || 1))));
+const clockScale = scale(max(abs(timeStart), abs(timeEnd)), 's');
+const clockDigits = max(0, min(9, ceil(4 - log10((timeEnd - timeStart) / 10 ** clockScale.power || 1))));
 
 function show(t) {
   clock.time = t;
   for (const listener of listeners) listener(t);
 }
-function nearestFrame(t) {
-  const k = lastUpTo(frames, t, frames.length);
-  return k + 1 < frames.length && frames[k + 1] - t < t - frames[k] ? k + 1 : k;
-}
 function seek(t) {
   pause();
-  show(frames[nearestFrame(t)]);
+  show(frames[nearest(frames, t)]);
   return clock.time;
 }
 // Frames on or back from the present one; an instant between two frames counts as the one before it.
 function stepFrames(by) {
-  const slack = 1e-9 * (timeEnd - timeStart), k = lastUpTo(frames, clock.time + slack, frames.length), between = by < 0 && clock.time > frames[k] + slack;
-  seek(frames[Math.max(0, Math.min(frames.length - 1, k + by + between))]);
+  const slack = 1e-9 * (timeEnd - timeStart), k = lastUpTo(frames, clock.time + slack), between = by < 0 && clock.time > frames[k] + slack;
+  seek(frames[max(0, min(frames.length - 1, k + by + between))]);
 }
 
 let before = null;
 function tick(now) {
   if (!clock.playing) return;
-  const [from, until] = clock.range, t = clock.time + (before === null ? 0 : Math.min(now - before, 100) / 1000 * clock.speed);
+  const [from, until] = clock.range, t = clock.time + (before === null ? 0 : min(now - before, 100) / 1000 * clock.speed);
   before = now;
   show(t > until || t < from ? from : t);
   requestAnimationFrame(tick);
@@ -46,7 +42,7 @@ function setSpeed(speed) {
   clock.speed = speed;
   if (byId('speed')) byId('speed').value = speed;
 }
-const changeSpeed = by => setSpeed(speeds[Math.max(0, Math.min(speeds.length - 1, speeds.indexOf(clock.speed) + by))]);
+const changeSpeed = by => setSpeed(speeds[max(0, min(speeds.length - 1, speeds.indexOf(clock.speed) + by))]);
 
 const impactTimes = runs.flatMap(r => r.events.rows.map(e => e[0])).sort((a, b) => a - b);
 function stepImpact(by) {
@@ -64,11 +60,11 @@ function startClock() {
     scrub.max = frames.length - 1;
     scrub.oninput = () => seek(frames[scrub.value]);
     onTime(t => {
-      scrub.value = nearestFrame(t);
+      scrub.value = nearest(frames, t);
       scrub.setAttribute('aria-valuetext', instant(t));
       byId('clock').textContent = 't = ' + (t / 10 ** clockScale.power).toFixed(clockDigits) + '\u00a0' + clockScale.unit;
     });
   }
   const wanted = (timeEnd - timeStart) / 10 || 1;
-  setSpeed(speeds.reduce((a, b) => Math.abs(Math.log(b / wanted)) < Math.abs(Math.log(a / wanted)) ? b : a));
+  setSpeed(speeds.reduce((a, b) => abs(Math.log(b / wanted)) < abs(Math.log(a / wanted)) ? b : a));
 }

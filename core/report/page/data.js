@@ -1,20 +1,25 @@
 // The data of the page: numbers in base64, made into what the rest draws.
-const data = JSON.parse(document.getElementById('freeplay-data').textContent);
+const {abs, ceil, cos, floor, hypot, log10, max, min, round, sin, PI} = Math, page = document.documentElement;
+const byId = id => document.getElementById(id), data = JSON.parse(byId('freeplay-data').textContent);
 
-function decode(text, Type) {
+function decode(text, Type = Float32Array) {
   const raw = atob(text), bytes = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
   return new Type(bytes.buffer);
 }
 
 // Index of the last of some growing numbers that is not above `value`, at least 0.
-function lastUpTo(numbers, value, count) {
+function lastUpTo(numbers, value, count = numbers.length) {
   let low = 0, high = count - 1;
   while (low < high) {
     const middle = (low + high + 1) >> 1;
     if (numbers[middle] <= value) low = middle; else high = middle - 1;
   }
   return low;
+}
+function nearest(numbers, value) {
+  const k = lastUpTo(numbers, value);
+  return numbers[k + 1] - value < value - numbers[k] ? k + 1 : k;
 }
 
 class Run {
@@ -37,17 +42,15 @@ class Run {
   // What stands for a channel: a minimum and a maximum per bucket, or a number per row. What is as small as the rounding is 0.
   values(name) {
     if (!this.decoded.has(name)) {
-      const {offset, values, min, max} = this.named.get(name), rounding = 6e-8 * (max - min);
-      this.decoded.set(name, Float64Array.from(decode(values, Float32Array), v => Math.abs(offset + v) < rounding ? 0 : Math.max(min, Math.min(max, offset + v))));
+      const c = this.named.get(name), rounding = 6e-8 * (c.max - c.min);
+      this.decoded.set(name, Float64Array.from(decode(c.values), v => abs(c.offset + v) < rounding ? 0 : max(c.min, min(c.max, c.offset + v))));
     }
     return this.decoded.get(name);
   }
 
   // Bucket, or row where each has its number, at a time.
   place(t) {
-    if (this.buckets) return lastUpTo(this.times, t, this.buckets);
-    const k = lastUpTo(this.times, t, this.times.length), next = this.times[k + 1];
-    return next !== undefined && next - t < t - this.times[k] ? k + 1 : k;
+    return this.buckets ? lastUpTo(this.times, t, this.buckets) : nearest(this.times, t);
   }
 
   value(name, t) {
@@ -59,15 +62,15 @@ class Run {
   // Row at a time; between the ends of a bucket rows are taken as evenly spaced.
   row(t) {
     if (!this.buckets) return this.place(t);
-    const k = this.place(t), first = i => Math.floor(i * this.rows / this.buckets);
+    const k = this.place(t), first = i => floor(i * this.rows / this.buckets);
     const begin = first(k), end = k + 1 < this.buckets ? first(k + 1) : this.rows - 1;
     const length = this.times[k + 1] - this.times[k];
-    return Math.round(begin + (length > 0 ? (end - begin) * Math.min(1, (t - this.times[k]) / length) : 0));
+    return round(begin + (length > 0 ? (end - begin) * min(1, (t - this.times[k]) / length) : 0));
   }
 }
 
 const runs = data.runs.map((raw, index) => new Run(raw, index));
 const several = runs.length > 1, titled = run => several ? run.title : '';  // where there is but one it needs no name
-const timeStart = Math.min(...runs.map(r => r.start)), timeEnd = Math.max(...runs.map(r => r.end));
+const timeStart = min(...runs.map(r => r.start)), timeEnd = max(...runs.map(r => r.end));
 
 const escaped = key => key.replace(/~/g, '~0').replace(/\//g, '~1');

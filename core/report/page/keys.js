@@ -13,7 +13,7 @@ function repaint() {
 
 // The theme of the system until another is chosen; the style sheet knows that paper is light.
 function startTheme() {
-  const choose = theme => { document.documentElement.dataset.theme = theme; repaint(); };
+  const choose = theme => { page.dataset.theme = theme; repaint(); };
   matchMedia('(prefers-color-scheme: dark)').onchange = e => choose(e.matches ? 'dark' : 'light');
   matchMedia('print').onchange = repaint;
   byId('theme').onclick = () => choose(dark() ? 'light' : 'dark');
@@ -25,7 +25,7 @@ function startKeys() {
   dialog.querySelector('dl').append(...keyHelp.flatMap(([k, v]) => [make('dt', {}, k), make('dd', {}, v)]));
   byId('help').onclick = help;
   const actions = {' ': toggle, ArrowLeft: e => stepFrames(e.shiftKey ? -10 : -1), ArrowRight: e => stepFrames(e.shiftKey ? 10 : 1), Home: () => seek(timeStart), End: () => seek(timeEnd), '+': () => changeSpeed(1),
-                   '=': () => changeSpeed(1), '-': () => changeSpeed(-1), e: () => changeExaggeration(false), E: () => changeExaggeration(true), z: unzoom, t: () => byId('theme').click(), '?': help};
+                   '=': () => changeSpeed(1), '-': () => changeSpeed(-1), e: () => changeExaggeration(0.5), E: () => changeExaggeration(2), z: unzoom, t: () => byId('theme').click(), '?': help};
   document.addEventListener('keydown', e => {
     const {tagName: tag, type, id} = e.target, slides = type === 'range' && id !== 'scrub';
     if (e.ctrlKey || e.altKey || e.metaKey || !Object.hasOwn(actions, e.key) || tag === 'SELECT' || type === 'search') return;

@@ -7,15 +7,15 @@ class Motion {
     this.spatial = a.space === 'spatial';
     this.size = this.spatial ? 7 : 3;
     this.times = frameTimes[run.index];
-    this.bodies = a.bodies.map(b => ({...b, points: b.points.map(three), poses: decode(b.poses, Float32Array)}));
+    this.bodies = a.bodies.map(b => ({...b, points: b.points.map(three), poses: decode(b.poses)}));
     this.joints = a.joints.map(j => ({...j, first: body(j.first), second: body(j.second), at_first: three(j.at_first), at_second: three(j.at_second),
-                                      axis: three(j.axis), forces: decode(j.forces, Float32Array)}));
+                                      axis: three(j.axis), forces: decode(j.forces)}));
     this.marks = a.marks.map(m => ({...m, body: body(m.body), at: three(m.at)}));
     this.poses = [];
     this.offsets = new Map(this.joints.filter(j => j.clearance).map(j => [j, this.offsetsOf(j)]));
     this.box();
     const {columns, rows} = run.events, at = name => columns.indexOf(name), force = r => r[at('max_fn')] || 0;
-    const largest = Math.max(...rows.map(force), 1e-300);
+    const largest = max(...rows.map(force), 1e-300);
     this.flashes = rows.map(r => [r[at('joint')], r[0] - (r[at('duration')] || 0), Math.sqrt(force(r) / largest)]);
   }
 
@@ -27,19 +27,19 @@ class Motion {
   // Position, and rotation matrix by rows.
   pose(numbers) {
     if (!this.spatial) {
-      const c = Math.cos(numbers[2]), s = Math.sin(numbers[2]);
+      const c = cos(numbers[2]), s = sin(numbers[2]);
       return {at: [numbers[0], numbers[1], 0], r: [c, -s, 0, s, c, 0, 0, 0, 1]};
     }
-    const n = Math.hypot(...numbers.slice(3)) || 1, [w, x, y, z] = numbers.slice(3).map(v => v / n);
+    const n = hypot(...numbers.slice(3)) || 1, [w, x, y, z] = numbers.slice(3).map(v => v / n);
     return {at: numbers.slice(0, 3), r: [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
                                          2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]};
   }
 
   // Between two frames: straight in positions and angles; quaternions on the same side.
   moveTo(t) {
-    const k = lastUpTo(this.times, t, this.times.length), next = this.times[k + 1];
+    const k = lastUpTo(this.times, t), next = this.times[k + 1];
     this.frame = k;
-    this.part = next === undefined ? 0 : Math.max(0, Math.min(1, (t - this.times[k]) / (next - this.times[k])));
+    this.part = next === undefined ? 0 : max(0, min(1, (t - this.times[k]) / (next - this.times[k])));
     this.poses = this.bodies.map((_, body) => {
       const a = this.numbers(body, k);
       if (!this.part) return this.pose(a);
@@ -48,15 +48,13 @@ class Motion {
     });
   }
 
-  direction(body, d) {
+  direction(body, d, poses = this.poses) {
     if (body < 0) return d;
-    const {r} = this.poses[body];
+    const {r} = poses[body];
     return [0, 3, 6].map(i => r[i] * d[0] + r[i + 1] * d[1] + r[i + 2] * d[2]);
   }
   world(body, p, poses = this.poses) {
-    if (body < 0) return p;
-    const {at, r} = poses[body];
-    return [at[0] + r[0] * p[0] + r[1] * p[1] + r[2] * p[2], at[1] + r[3] * p[0] + r[4] * p[1] + r[5] * p[2], at[2] + r[6] * p[0] + r[7] * p[1] + r[8] * p[2]];
+    return body < 0 ? p : this.direction(body, p, poses).map((x, i) => x + poses[body].at[i]);
   }
   worldIn(frame, body, p) { return body < 0 ? p : this.world(body, p, {[body]: this.pose(this.numbers(body, frame))}); }
 
@@ -76,7 +74,7 @@ class Motion {
 
   // How bright the latest impact of a joint still is, 0 to 1.
   flash(joint) {
-    return Math.max(0, ...this.flashes.filter(f => f[0] === joint.name).map(([, t, size]) => {
+    return max(0, ...this.flashes.filter(f => f[0] === joint.name).map(([, t, size]) => {
       const age = (clock.time - t) / flashSeconds / clock.speed;
       return age >= 0 && (1 - age) * (0.3 + 0.7 * size);
     }));
@@ -84,12 +82,12 @@ class Motion {
 
   // Everything that is ever drawn lies between low and high.
   box() {
-    const all = [], some = Math.max(1, Math.floor(this.times.length / 60));
+    const all = [], some = max(1, floor(this.times.length / 60));
     for (let k = 0; k < this.times.length; k += some) this.bodies.forEach((b, body) => all.push(...b.points.map(p => this.worldIn(k, body, p))));
     for (const j of this.joints) if (j.first < 0) all.push(j.at_first); else if (j.second < 0) all.push(j.at_second);
     const ends = [0, 1, 2].map(i => all.map(p => p[i]).filter(isFinite));
-    this.low = ends.map(xs => xs.reduce((a, b) => Math.min(a, b), Infinity));
-    this.high = ends.map(xs => xs.reduce((a, b) => Math.max(a, b), -Infinity));
+    this.low = ends.map(xs => xs.reduce((a, b) => min(a, b), Infinity));
+    this.high = ends.map(xs => xs.reduce((a, b) => max(a, b), -Infinity));
   }
 
   // Points of the path of a body or a mark, one per frame.

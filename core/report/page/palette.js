@@ -4,9 +4,9 @@ const seriesColours = {light: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#a87
 const dashes = [null, [7, 3], [2, 2], [9, 3, 2, 3], [4, 4], [12, 3], [2, 5], [6, 2, 2, 2, 2, 2]];
 let palette = {};
 
-const dark = () => getComputedStyle(document.documentElement).colorScheme === 'dark';
+const dark = () => getComputedStyle(page).colorScheme === 'dark';
 function readPalette() {
-  const style = getComputedStyle(document.documentElement);
+  const style = getComputedStyle(page);
   palette = {dark: dark(), series: seriesColours[dark() ? 'dark' : 'light']};
   for (const name of ['card', 'ink', 'soft', 'line', 'faint', 'blue', 'red', 'green', 'body', 'edge', 'platform']) {
     palette[name] = style.getPropertyValue('--' + name).trim();
@@ -15,9 +15,9 @@ function readPalette() {
 
 // Context of a canvas with CSS pixels as its unit; null where it is not laid out.
 function sharp(canvas) {
-  const ratio = Math.min(window.devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight;
+  const ratio = min(window.devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight;
   if (!width || !height) return null;
-  const w = Math.round(width * ratio), h = Math.round(height * ratio), context = canvas.getContext('2d');
+  const w = round(width * ratio), h = round(height * ratio), context = canvas.getContext('2d');
   if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
@@ -46,7 +46,7 @@ function shape(c, points, fill) {
 
 function disc(c, [x, y], radius, fill, stroke, width = 1) {
   c.beginPath();
-  c.arc(x, y, radius, 0, 2 * Math.PI);
+  c.arc(x, y, radius, 0, 2 * PI);
   c.fillStyle = fill || 'transparent';
   c.fill();
   c.strokeStyle = stroke || 'transparent';
@@ -54,8 +54,9 @@ function disc(c, [x, y], radius, fill, stroke, width = 1) {
   c.stroke();
 }
 
+const font = ' 12px system-ui, sans-serif';
 function note(c, text, x, y, colour, align = 'left', weight = '') {
-  c.font = weight + ' 12px system-ui, "DejaVu Sans", sans-serif';
+  c.font = weight + font;
   c.textAlign = align;
   c.lineWidth = 3;
   c.strokeStyle = palette.card;
@@ -66,6 +67,6 @@ function note(c, text, x, y, colour, align = 'left', weight = '') {
 
 // 1, 2 or 5 times a power of ten, not above x.
 function roundDown(x) {
-  const power = 10 ** Math.floor(Math.log10(x)), digit = x / power;
+  const power = 10 ** floor(log10(x)), digit = x / power;
   return (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power;
 }

@@ -12,30 +12,22 @@ function phrase(name) {
 const channelNames = [...new Set(runs.flatMap(r => r.channels.map(c => c.name)))];
 const owners = name => runs.filter(r => r.named.has(name));
 const unitOf = name => owners(name)[0].named.get(name).unit;
-const peak = name => Math.max(...owners(name).map(r => r.named.get(name)).map(c => Math.max(Math.abs(c.min), Math.abs(c.max)) || 0));
+const peak = name => max(...owners(name).map(r => r.named.get(name)).map(c => max(abs(c.min), abs(c.max)) || 0));
 
 // Points of a channel: rows where there are any, else a minimum and a maximum per bucket in the order that its course suggests.
 function points(run, name) {
-  const values = run.values(name), xs = [], ys = [];
+  const values = run.values(name), middle = k => values[2 * k] + values[2 * k + 1], last = run.buckets - 1, all = [];
   if (!run.buckets) return [run.times, values];
-  const windows = run.windows.filter(w => Object.hasOwn(w.channels, name)).map(w => ({times: decode(w.times, Float64Array), values: decode(w.channels[name].values, Float32Array).map(v => v + w.channels[name].offset)}));
-  windows.sort((a, b) => a.times[0] - b.times[0]);
-  let until = -Infinity;
-  const add = (x, y) => { if (x > until) { xs.push(x); ys.push(y); } }, middle = k => values[2 * k] + values[2 * k + 1], last = run.buckets - 1;
-  const addUpTo = (x, y) => {
-    while (windows.length && windows[0].times[0] <= x) {
-      const w = windows.shift();
-      w.times.forEach((t, i) => add(t, w.values[i]));
-      until = Math.max(until, w.times[w.times.length - 1]);
-    }
-    add(x, y);
-  };
   for (let k = 0; k <= last; ++k) {
-    const t = run.times[k], next = run.times[k + 1], falls = middle(Math.min(k + 1, last)) < middle(Math.max(k - 1, 0));
-    addUpTo(t, values[2 * k + falls]);
-    if (next > t) addUpTo(k === last ? next : (t + next) / 2, values[2 * k + !falls]);
+    const t = run.times[k], next = run.times[k + 1], falls = middle(min(k + 1, last)) < middle(max(k - 1, 0));
+    all.push([t, values[2 * k + falls]]);
+    if (next > t) all.push([k === last ? next : (t + next) / 2, values[2 * k + !falls]]);
   }
-  return [xs, ys];
+  // Around the largest impacts rows take the place of buckets.
+  const windows = run.windows.filter(w => Object.hasOwn(w.channels, name)).map(({times, channels: {[name]: c}}) => [decode(times, Float64Array), decode(c.values).map(v => v + c.offset)]);
+  const list = all.filter(([x]) => !windows.some(([ts]) => x >= ts[0] && x <= ts[ts.length - 1])).concat(windows.flatMap(([ts, ys]) => Array.from(ts, (t, i) => [t, ys[i]])));
+  list.sort((a, b) => a[0] - b[0]);
+  return [0, 1].map(i => list.map(p => p[i]));
 }
 
 // Rows of dygraphs for several curves with instants of their own.
@@ -55,7 +47,7 @@ function swatch(k) {
 // A plot with its heading, and a place for a value of each curve; `signs` are the colours and dashes of the curves.
 function addPlot(home, title, labels, curves, options) {
   const values = labels.map(() => make('span', {class: 'soft'})), keys = labels.map((_, k) => 's' + k), {signs = [...labels.keys()]} = options;
-  const head = make('figcaption', {}, make('b', {}, title), curves.some(c => c[1].some(isFinite)) ? '' : 'no numbers', ...labels.map((label, k) => make('span', {}, swatch(signs[k]), label + ' ', values[k])));
+  const head = make('figcaption', {}, make('b', {}, title), ...labels.map((label, k) => span(swatch(signs[k]), label + ' ', values[k])));
   const plot = make('div', {class: options.logscale ? 'spectrum' : 'plot', role: 'img', 'aria-label': title});
   home.append(make('figure', {}, head, plot));
   const look = () => ({colors: signs.map(k => palette.series[k % 8]), axisLineColor: palette.soft, gridLineColor: palette.line});
@@ -73,18 +65,21 @@ function addPlot(home, title, labels, curves, options) {
 }
 const axis = (write, width, room) => ({axisLabelFormatter: write, axisLabelWidth: width, pixelsPerLabel: room});
 // Digits that tell round numbers between two values apart.
-const digits = (a, b) => Math.min(15, Math.max(6, 3 + Math.log10(Math.max(Math.abs(a), Math.abs(b)) / (b - a || Infinity))));
+const digits = (a, b) => min(15, max(6, 3 + log10(max(abs(a), abs(b)) / (b - a || Infinity))));
 const tidy = (s, range, unit = '') => (v, _, options, g) => minus(String(+(v / 10 ** s.power).toPrecision(digits(...g[range]())))) + unit;
 
 function addGraph(home, title, names) {
-  const series = names.flatMap(name => owners(name).map(run => ({run, name}))), unit = unitOf(names[0]), s = scale(Math.max(...names.map(peak)), unit);
-  const ends = series.flatMap(({run, name}) => [run.named.get(name).min, run.named.get(name).max]), width = 10 + 7 * digits(Math.min(...ends), Math.max(...ends));
-  const label = ({run, name}) => [titled(run), parts(name).of || parts(name).what].filter(Boolean).join(' ');
+  const series = names.flatMap(name => owners(name).map(run => ({run, name}))), unit = unitOf(names[0]), s = scale(max(...names.map(peak)), unit);
+  const ends = series.flatMap(({run, name}) => [run.named.get(name).min, run.named.get(name).max]), width = 10 + 7 * digits(min(...ends), max(...ends));
+  const label = ({run, name}) => {
+    const {of, what} = parts(name), {missing} = run.named.get(name);
+    return [titled(run), of || what, missing && '(' + missing + ' of ' + run.rows + ' rows without a number)'].filter(Boolean).join(' ');
+  };
   const graph = addPlot(home, title + (s.unit && ' [' + s.unit + ']'), series.map(label), series.map(({run, name}) => points(run, name)), {
     say: v => quantity(v, unit), dateWindow: [...clock.range], axes: {x: axis(tidy(clockScale, 'xAxisRange', '\u00a0' + clockScale.unit), 76, 84), y: axis(tidy(s, 'yAxisRange'), width, 28)},
     clickCallback: (_, t) => seek(t), drawCallback: g => { clock.range = g.xAxisRange(); moveCursors(clock.time); },
     underlayCallback: (c, area, g) => {  // what does not count
-      const from = runs[0].get('/statistics/from'), x = from > timeStart ? Math.min(g.toDomXCoord(from), area.x + area.w) : area.x;
+      const from = runs[0].get('/statistics/from'), x = from > timeStart ? min(g.toDomXCoord(from), area.x + area.w) : area.x;
       c.fillStyle = palette.faint;
       if (x > area.x) c.fillRect(area.x, area.y, x - area.x, area.h);
     }
@@ -104,7 +99,7 @@ function moveCursors(t) {
 }
 
 // Channels that mean the same of different elements share a plot, eight curves at most.
-const most = Math.max(1, Math.floor(8 / runs.length));
+const most = max(1, floor(8 / runs.length));
 function drawGraphs() {
   if (sync) sync.detach();
   for (const g of [...graphs, ...spectra]) g.destroy();
@@ -157,7 +152,7 @@ function fillNow(t) {
   for (const {e, run, name} of cells) {
     const v = run.value(name, t), {unit} = run.named.get(name);
     if (run.buckets) [e.dataset.low, e.dataset.high] = v; else e.dataset.value = v;
-    e.textContent = run.buckets && v[0] !== v[1] ? quantityRange(...v, unit) : quantity(run.buckets ? v[0] : v, unit);
+    e.textContent = quantity(run.buckets && v[0] === v[1] ? v[0] : v, unit);
   }
 }
 
@@ -166,7 +161,7 @@ function presets() {
   const like = pattern => channelNames.filter(n => pattern.test(n)), largest = names => [...names].sort((a, b) => peak(b) - peak(a)).slice(0, most).sort((a, b) => channelNames.indexOf(a) - channelNames.indexOf(b));
   const lists = {'Contact forces': largest(like(/^joint\..*\.fn$/)), Drivers: like(/^driver\..*\.(torque|force)$/).slice(0, most), 'Path errors': like(/^driver\..*\.e(x|y|angle)$/),
                  Sliding: largest(like(/^joint\..*\.vt$/)), Penetration: largest(like(/^joint\..*\.delta$/)), Bodies: like(/^body\.[^.]*\.(x|y|z|angle)$/).slice(0, 6)};
-  return Object.fromEntries(Object.entries(lists).filter(([, names]) => names.length));
+  return Object.fromEntries(entries(lists).filter(([, names]) => names.length));
 }
 
 function startChoice() {
@@ -181,18 +176,18 @@ function startChoice() {
 
 function startPlots() {
   const lists = presets(), coarse = runs.filter(r => r.buckets);
-  byId('presets').append(...Object.entries(lists).map(([title, names]) => make('button', {onclick: () => select(names)}, title)));
+  byId('presets').append(...entries(lists).map(([title, names]) => make('button', {onclick: () => select(names)}, title)));
   byId('unzoom').onclick = unzoom;
   startChoice();
   byId('coarse').textContent = [
-    coarse.length && 'Drawn are the smallest and the largest value of every ' + Math.ceil(Math.max(...coarse.map(r => r.rows / r.buckets))) + ' rows, and all rows around the largest impacts.',
-    ...runs.filter(r => r.start <= r.get('/statistics/from') && r.end >= r.get('/time/reached')).flatMap(r => Object.entries(r.get('/joints') || {}).flatMap(([name, {max_fn}]) => {
+    coarse.length && 'Drawn are the smallest and the largest value of every ' + ceil(max(...coarse.map(r => r.rows / r.buckets))) + ' rows, and all rows around the largest impacts.',
+    ...runs.filter(r => r.start <= r.get('/statistics/from') && r.end >= r.get('/time/reached')).flatMap(r => entries(r.get('/joints')).flatMap(([name, {max_fn}]) => {
       const fn = r.named.get('joint.' + name + '.fn');
       return fn && max_fn > 1.1 * fn.max ? [titled(r) + ' Rows miss peaks between them: of ' + name + ' they show ' + quantity(fn.max, 'N') + ' of ' + quantity(max_fn, 'N') + '.'] : [];
     }).slice(0, 1)),
     ...runs.filter(r => r.left_out.length).map(r => titled(r) + ' has no room for ' + r.left_out.slice(0, 5).join(', ') + (r.left_out.length > 5 ? ' and ' + (r.left_out.length - 5) + ' more.' : '.'))
   ].filter(Boolean).join(' ');
-  const counted = Math.min(...runs.map(r => r.get('/statistics/from') || timeStart));
+  const counted = min(...runs.map(r => r.get('/statistics/from') || timeStart));
   if (counted > timeStart && counted < timeEnd) clock.range = [counted, timeEnd];
   const first = ['Contact forces', 'Path errors', 'Drivers'].flatMap(t => lists[t] || []);
   select(first.length ? first : Object.values(lists)[0] || channelNames.slice(0, 3));
@@ -207,7 +202,7 @@ function drawSpectra() {
   if (box) box.replaceChildren();
   for (const name of box ? new Set(runs.flatMap(r => r.spectra.map(s => s.name))) : []) {
     const series = runs.map(run => ({run, s: run.spectra.find(s => s.name === name)})).filter(x => x.s), unit = series[0].s.unit;
-    const curves = series.map(({s}) => [decode(s.frequency, Float32Array), decode(s.amplitude, Float32Array).map(v => v || 1e-30)]), top = Math.max(...curves.flatMap(c => [...c[1]].filter(isFinite)));
+    const curves = series.map(({s}) => [decode(s.frequency), decode(s.amplitude).map(v => v || 1e-30)]), top = max(...curves.flatMap(c => [...c[1]].filter(isFinite)));
     const y = scale(top, unit), decades = [-5, -4, -3, -2, -1, 0, 1, 2, 3].map(k => ({v: 10 ** (k + y.power), label: plain(10 ** k, 2)}));
     spectra.push(addPlot(box, parts(name).of + ', ' + parts(name).what + ' [' + y.unit + ']', series.map(({run}) => titled(run)), curves,
       {say: v => quantity(v, unit), signs: series.map(({run}) => run.index), logscale: true, valueRange: [top * 1e-5, top * 2], axes: {x: axis(v => quantity(v, 'Hz'), 66, 84), y: {ticker: () => decades, axisLabelWidth: 52}}}));

@@ -8,10 +8,10 @@ function startScene() {
   scene.spatial = scene.motions.some(m => m.spatial);
   scene.canvas.setAttribute('aria-label', 'In motion: ' + document.title);
   const sizes = scene.motions.flatMap(m => m.joints.filter(j => j.forces.length).map(j => {
-    const n = m.spatial ? 3 : 2, all = Array.from({length: j.forces.length / n}, (_, k) => Math.hypot(...j.forces.subarray(n * k, n * k + n)));
-    return all.filter(isFinite).sort((a, b) => a - b)[Math.floor(all.length * 0.9)] || 0;
+    const n = m.spatial ? 3 : 2, all = Array.from({length: j.forces.length / n}, (_, k) => hypot(...j.forces.subarray(n * k, n * k + n)));
+    return all.filter(isFinite).sort((a, b) => a - b)[floor(all.length * 0.9)] || 0;
   }));
-  scene.newton = roundDown(Math.max(...sizes, 1e-9));
+  scene.newton = roundDown(max(...sizes, 1e-9));
   byId('forces').closest('label').hidden = !sizes.length;
   const loose = scene.motions.flatMap(m => [...m.offsets.keys()]);
   byId('magnified').hidden = !loose.length;
@@ -20,37 +20,36 @@ function startScene() {
   const setTrace = name => { for (const m of scene.motions) m.traced = name ? m.path(name) : null; };
   setTrace(byId('trace').value = marks[0] || '');
   byId('trace').onchange = e => { setTrace(e.target.value); drawScene(); };
-  byId('exaggerate').oninput = e => { exaggerate(+e.target.value); drawScene(); };
-  byId('labels').checked = Math.max(...scene.motions.map(m => m.joints.length)) <= 16;
+  byId('exaggerate').oninput = e => exaggerate(+e.target.value);
+  byId('labels').checked = max(...scene.motions.map(m => m.joints.length)) <= 16;
   for (const option of ['forces', 'labels']) byId(option).onchange = drawScene;
   fit();
-  exaggerate(2 ** Math.floor(Math.log2(Math.max(1, 20 / (Math.max(...loose.map(j => j.clearance)) * scene.scale)))));  // circles that can be seen
+  exaggerate(2 ** floor(Math.log2(max(1, 20 / (max(...loose.map(j => j.clearance)) * scene.scale)))));  // circles that can be seen
   if (scene.spatial) turnable();
   onTime(drawScene);
   new ResizeObserver(() => { fit(); drawScene(); }).observe(scene.canvas);
 }
 
 function exaggerate(factor) {
-  scene.exaggerate = Math.max(1, Math.min(1000, factor || 1));
+  scene.exaggerate = max(1, min(1000, factor || 1));
   byId('exaggerate').value = scene.exaggerate;
   byId('factor').textContent = '×' + plain(scene.exaggerate, 3);
-}
-function changeExaggeration(up) {
-  if (!scene.canvas) return;
-  exaggerate(scene.exaggerate * (up ? 2 : 0.5));
   drawScene();
+}
+function changeExaggeration(factor) {
+  if (scene.canvas) exaggerate(scene.exaggerate * factor);
 }
 
 // Cells and the scale that holds the whole motion of every run.
 function fit() {
   const n = scene.motions.length, width = scene.canvas.clientWidth || 600;
-  const columns = Math.min(n, width < 480 ? 1 : n <= 4 ? 2 : n <= 6 ? 3 : 4), rows = Math.ceil(n / columns);
+  const columns = min(n, width < 480 ? 1 : n <= 4 ? 2 : n <= 6 ? 3 : 4), rows = ceil(n / columns);
   scene.canvas.style.height = (rows > 1 ? 280 * rows : width < 480 ? 330 : 470) + 'px';
   const w = width / columns, h = scene.canvas.clientHeight / rows;
-  scene.cells = scene.motions.map((m, k) => ({x: w * (k % columns), y: h * Math.floor(k / columns), w, h}));
-  scene.scale = Math.min(...scene.motions.map(m => {
-    const size = m.low.map((l, i) => m.high[i] - l), round = Math.hypot(...size), [x, y] = m.spatial ? [round, round * 0.9] : size;
-    return Math.min((w - 80) / (x || 1e-9), (h - 90) / (y || 1e-9));
+  scene.cells = scene.motions.map((m, k) => ({x: w * (k % columns), y: h * floor(k / columns), w, h}));
+  scene.scale = min(...scene.motions.map(m => {
+    const size = m.low.map((l, i) => m.high[i] - l), round = hypot(...size), [x, y] = m.spatial ? [round, round * 0.9] : size;
+    return min((w - 80) / (x || 1e-9), (h - 90) / (y || 1e-9));
   }));
 }
 
@@ -65,7 +64,7 @@ function projection(m, cell) {
   };
 }
 function view() {
-  const ca = Math.cos(scene.yaw), sa = Math.sin(scene.yaw), cb = Math.cos(scene.pitch), sb = Math.sin(scene.pitch);
+  const ca = cos(scene.yaw), sa = sin(scene.yaw), cb = cos(scene.pitch), sb = sin(scene.pitch);
   return ([x, y, z]) => [ca * x + sa * y, -cb * z - sb * (ca * y - sa * x), sb * z - cb * (ca * y - sa * x)];
 }
 
@@ -145,8 +144,10 @@ function drawGround(c, [x, y]) {
   for (let k = -9; k <= 9; k += 4.5) line(c, [[x + k + 2, y + 15], [x + k - 2, y + 20]], palette.edge);
 }
 
+const from = (p, q) => [q[0] - p[0], q[1] - p[1]];
+
 function drawTie(c, p, q, spring) {
-  const d = [q[0] - p[0], q[1] - p[1]], length = Math.hypot(...d) || 1, at = k => {
+  const d = from(p, q), length = hypot(...d) || 1, at = k => {
     const side = spring && k > 0 && k < 12 ? (k % 2 ? 5 : -5) / length : 0;
     return [p[0] + k / 12 * d[0] - side * d[1], p[1] + k / 12 * d[1] + side * d[0]];
   };
@@ -171,8 +172,8 @@ function drawJoint(c, m, {joint, p, q, first, second}, project) {
 
 // The bearing as a circle of its clearance, the journal's centre in it, both larger about the joint.
 function drawClearance(c, m, joint, p, first, project) {
-  const factor = scene.exaggerate, radius = joint.clearance * scene.scale * factor, e = m.offset(joint), shown = Math.max(radius, 4.5);
-  const touching = Math.hypot(...e) >= joint.clearance * 0.99999, at = project(first.map((x, i) => x + factor * e[i])), flash = m.flash(joint);
+  const factor = scene.exaggerate, radius = joint.clearance * scene.scale * factor, e = m.offset(joint), shown = max(radius, 4.5);
+  const touching = hypot(...e) >= joint.clearance * 0.99999, at = project(first.map((x, i) => x + factor * e[i])), flash = m.flash(joint);
   if (flash > 0) disc(c, p, shown + 5 + 16 * (1 - flash), null, palette.red, 1 + 3 * flash);
   c.globalAlpha = 0.88;
   disc(c, p, shown, palette.card, touching ? palette.red : palette.edge, touching ? 2.6 : 1.4);
@@ -183,20 +184,20 @@ function drawClearance(c, m, joint, p, first, project) {
 }
 
 function arrow(c, p, tip, colour) {
-  const d = [tip[0] - p[0], tip[1] - p[1]], length = Math.hypot(...d), [x, y] = d.map(v => v / length), b = Math.min(8, length / 2);
-  line(c, [p, [tip[0] - x * b * 0.7, tip[1] - y * b * 0.7]], colour, 2);
-  shape(c, [tip, [tip[0] - b * x + 0.45 * b * y, tip[1] - b * y - 0.45 * b * x], [tip[0] - b * x - 0.45 * b * y, tip[1] - b * y + 0.45 * b * x]], colour);
+  const [x, y] = from(p, tip), b = min(8 / hypot(x, y), 0.5), back = (along, aside) => [tip[0] - b * (along * x + aside * y), tip[1] - b * (along * y - aside * x)];
+  line(c, [p, back(0.7, 0)], colour, 2);
+  shape(c, [tip, back(1, 0.45), back(1, -0.45)], colour);
 }
 
 // Force on the second body; what would leave the picture is cut and has its number.
 function drawForce(c, m, {joint, q, second}, project) {
   if (!joint.forces.length) return;
-  const f = m.force(joint), px = Math.hypot(...f) * 60 / scene.newton, cut = Math.min(1, 170 / px);
+  const f = m.force(joint), px = hypot(...f) * 60 / scene.newton, cut = min(1, 170 / px);
   if (!(px > 4)) return;
   const tip = project(second.map((x, i) => x + cut * 60 / scene.newton / scene.scale * f[i]));
-  if (Math.hypot(tip[0] - q[0], tip[1] - q[1]) < 2) return;
+  if (hypot(...from(q, tip)) < 2) return;
   arrow(c, q, tip, palette.blue);
-  if (cut < 1) note(c, quantity(Math.hypot(...f), 'N', 3), tip[0] + 5, tip[1] - 5, palette.blue);
+  if (cut < 1) note(c, quantity(hypot(...f), 'N', 3), tip[0] + 5, tip[1] - 5, palette.blue);
 }
 
 // Scale bar, key of the arrows, name of the run, axes in space.
@@ -222,9 +223,9 @@ function drawNotes(c, m, cell) {
 function drawNames(c, m, joints, {x, y, w, h}) {
   const meets = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3], sides = [[1, -1], [1, 1], [-1, -1], [-1, 1], [0, -1.3], [0, 1.3]];
   const taken = [...joints.map(({p}) => [p[0] - 6, p[1] - 6, p[0] + 6, p[1] + 6]), [x, y, x + (several ? 150 : 0), y + 30], [x, y + h - 34, x + 150, y + h]];
-  c.font = '12px system-ui, "DejaVu Sans", sans-serif';
+  c.font = font;
   for (const {joint, p} of joints) {
-    const key = m.run.index + joint.name, width = c.measureText(joint.name).width, r = 4 + 0.75 * Math.max(7, (joint.clearance || 0) * scene.scale * scene.exaggerate);
+    const key = m.run.index + joint.name, width = c.measureText(joint.name).width, r = 4 + 0.75 * max(7, (joint.clearance || 0) * scene.scale * scene.exaggerate);
     const boxes = sides.map(([sx, sy]) => {
       const left = p[0] + sx * r - (sx < 0 ? width : sx ? 0 : width / 2), base = p[1] + sy * r + 4;
       return [left, base - 10, left + width, base + 3];
@@ -242,7 +243,7 @@ function drawNames(c, m, joints, {x, y, w, h}) {
 function turnable() {
   const {canvas} = scene, turn = (dx, dy) => {
     scene.yaw += dx;
-    scene.pitch = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, scene.pitch + dy));
+    scene.pitch = max(-PI / 2, min(PI / 2, scene.pitch + dy));
     drawScene();
   };
   let from = null;
