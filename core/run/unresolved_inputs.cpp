@@ -100,6 +100,10 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step,
     const JointLayout& layout = system_.joints().layout(timed.joint);
     if (known(name) || layout.forces == 0) continue;
     const JointInput in = system_.joints().input(timed.joint, here, e);
+    // What promises no force as long as it stays where it is has none that comes with time.
+    double distance = 0.0;
+    Fault ignored;
+    if (!system_.joints().handle(timed.joint).free_distance(in, distance, ignored.message) || distance > 0.0) continue;
     std::vector<double> all(timed.signals);
     const std::size_t forces = timed.signals - static_cast<std::size_t>(layout.constraint_rows);
     const auto look = [&](double t, std::span<double> values) {
