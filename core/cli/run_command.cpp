@@ -12,6 +12,7 @@
 #include "base/version.h"
 #include "cli/facts.h"
 #include "cli/failure.h"
+#include "cli/input_doubts.h"
 #include "cli/interrupt.h"
 #include "cli/loading.h"
 #include "cli/processors.h"
@@ -53,16 +54,6 @@ std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<c
   for (const Diagnostic& d : diagnostics.sorted()) warnings.push_back(fmt::format("{} [{}]", d.message, d.id));
   warnings.insert(warnings.end(), more.begin(), more.end());
   return warnings;
-}
-
-/// What the model is doubted for.
-void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
-  for (const Diagnostic& diagnostic : diagnostics.sorted()) {
-    const bool start = diagnostic.id == "unstable-start" || diagnostic.id == "dead-point";
-    if (!start && !diagnostic.id.starts_with("doubtful")) continue;
-    const char* const id = start ? "unstable-start" : "doubtful-input";
-    verdict.add({.id = id, .level = Trust::doubtful, .message = diagnostic.message});
-  }
 }
 
 /// What the run is made from and with, for its checkpoints.

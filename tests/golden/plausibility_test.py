@@ -251,6 +251,16 @@ class Plausibility(ProgramTest):
             with self.subTest(new or model[:60]):
                 self.assertEqual([], self.messages(text_of(model, old, new, *more)))
 
+    def test_a_structure_that_is_hardly_meant_is_in_the_verdict(self):
+        for old, new, words in [(GUIDE, "", "left over"), (GUIDE, GUIDE + GUIDE.replace("guide", "two"), "joint 'two' holds nothing")]:
+            self.write("m.yaml", text_of(CRANK, old, new))
+            self.freeplay("run", "m.yaml", "--out", "r", "--force", "--end", "1 ms")
+            trust = json.loads(self.read("r", "summary.json"))["trust"]
+            messages = [r["message"] for r in trust["reasons"] if r["id"] == "doubtful-structure"]
+            self.assertEqual(1, len(messages), trust)
+            self.assertIn(words, messages[0])
+            self.assertNotEqual("good", trust["verdict"])
+
     def test_strict_makes_doubts_errors_before_and_after_assembly(self):
         for old, new, wanted in [("{main: 1}", "{main: 60}", "doubtful-angle"), (GUIDE, GUIDE + GUIDE.replace("guide", "two"), "duplicate-joint")]:
             text = text_of(CRANK, old, new)
