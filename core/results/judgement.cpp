@@ -110,21 +110,43 @@ void judge_constraints(const RunRecord& record, Verdict& verdict) {
         verdict);
 }
 
+/// The largest force of a joint's rows in the table, which may lie inside a step; its time is not known.
+NearForce largest_of_rows(const RunRecord& record) {
+  const LargestValues& largest = record.statistics.largest();
+  NearForce most;
+  for (std::size_t j = 0; j < record.model.joints.size(); ++j) {
+    const JointElement& joint = record.model.joints[j];
+    if (joint.layout.constraint_rows == 0 || joint.gear >= 0) continue;
+    const std::size_t place = largest.places().force(static_cast<int>(j));
+    const double force = std::max(largest.in_window()[place], largest.before()[place]);
+    if (force > most.force) most = {.force = force, .joint = static_cast<int>(j)};
+  }
+  return most;
+}
+
 /// Multipliers are quotients of two vanishing numbers there. Where the position is one of the chosen rows alone, as of
 /// redundant constraints, forces pass it smoothly.
 void judge_singular(const RunRecord& record, Verdict& verdict) {
   const RunExtremes& seen = record.extremes;
   if (!(seen.passed_at < unbounded)) return;
   // A long step may pass the position and end a little beside it, where forces are still far above all others.
-  const NearForce& near = seen.near.force > of_beside * seen.beside.force ? seen.near : seen.beside;
-  const double usual = near.force > seen.beside.force && seen.beside.force > 0.0 ? seen.beside.force : seen.away.force;
+  NearForce near = seen.near.force > of_beside * seen.beside.force ? seen.near : seen.beside;
+  const bool above = near.force > seen.beside.force && seen.beside.force > 0.0;
+  double usual = above ? seen.beside.force : seen.away.force;
+  // So may a row inside such a step, of which its ends show nothing.
+  const NearForce most = largest_of_rows(record);
+  const bool inside = most.force > of_beside * seen.row_force;
+  if (inside && !(near.force > of_beside * usual)) usual = seen.row_force;
+  if (inside) near = most;
   if (near.joint < 0 || !(near.force > of_beside * usual)) return;
   const std::string joint = name(record.model.joints[at(near.joint)]);
   verdict.add({.id = "singular-position",
                .level = Trust::doubtful,
-               .message = fmt::format("the mechanism went through a singular position of its constraints at t = {:.6g} "
-                                      "s, where forces are not determined; beside it {} has {:.3g} N at t = {:.6g} s",
-                                      seen.passed_at, joint, near.force, near.time),
+               .message = fmt::format("the mechanism went through a singular position of its constraints, first at t = "
+                                      "{:.6g} s: beside one, forces hang on where steps and rows end, whatever their "
+                                      "length; {} has {:.4g} N{}",
+                                      seen.passed_at, joint, near.force,
+                                      inside ? std::string() : fmt::format(" at t = {:.6g} s", near.time)),
                .element = joint,
                .value = near.force,
                .limit = of_beside * usual});

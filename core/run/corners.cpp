@@ -228,8 +228,8 @@ bool Corners::note_jumps(double kink) {
 void Corners::format_unresolved() {
   if (run_.adaptive) return format_too_short();
   const double step = std::min(run_.settings.step, run_.settings.interval);
-  for (const InputActivity::Unresolved& input :
-       InputActivity(run_.system, run_.settings.interval, 0.0).unresolved_by(step)) {
+  for (const InputActivity::Unresolved& input : InputActivity(run_.system, run_.settings.interval, 0.0)
+                                                    .unresolved_by(step, point(run_.accepted), run_.e_accepted)) {
     const std::string element = fmt::format("{} '{}'", input.section, *input.name);
     const double apart = input.to - input.from, wanted = (input.corners ? 0.1 : 0.25) * apart;
     const std::string what =

@@ -60,9 +60,9 @@ class InputActivity {
     double from, to;  ///< its closest two corners, or where it changes in between [s]
     bool corners;
   };
-  /// To be asked of a run that has not begun: those with corners closer than `step`, and those that do something
-  /// between the ends of steps that these do not show.
-  std::vector<Unresolved> unresolved_by(double step);
+  /// To be asked before any step is: those with corners closer than `step`, and those that do something between the
+  /// ends of steps that these do not show. Joints are looked at as `here` has their markers, variables and history.
+  std::vector<Unresolved> unresolved_by(double step, const Point& here, const Evaluation& e);
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

@@ -16,7 +16,7 @@ void raise(std::span<const double> values, std::vector<double>& largest) {
 
 LargestValues::LargestValues(const Model& model, const Channels& channels)
     : places_(model, channels),
-      noise_(model, places_.size()),
+      noise_(model, places_),
       last_(places_.size()),
       window_(places_.size(), nothing),
       before_(places_.size(), nothing),

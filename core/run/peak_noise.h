@@ -7,26 +7,30 @@
 #include <vector>
 
 #include "model/model.h"
+#include "run/peak_values.h"
 
 namespace freeplay {
 
 /// Impacts make small differences grow: what another step, machine or start changes by little changes the impacts that
-/// follow more and more. Two estimates, both without a second run:
+/// follow more and more. Two estimates, both without a second run, for each group of bodies that joints, gears and
+/// springs hold together:
 ///
 /// 1. Growth. Of a difference of a hundredth of the play, what has come of it at the time of a peak is
-///    g = min(1, 0.01 (2^n - 1)) of all that chance can do. n counts the impacts so far, in the joint that has
-///    most, that come faster than the body left the contact before: those that do not, as of a ball that comes to rest,
-///    let differences die out.
+///    g = min(1, 0.01 (2^n - 1)) of all that chance can do. n counts the impacts so far, in the joint of the group that
+///    has most, that come faster than the body left the contact before: those that do not, as of a ball that comes to
+///    rest, let differences die out.
 /// 2. What chance can do. The time of the statistics is cut into 32 parts. Their largest values, in falling order
 ///    X1 > X2 > ..., are taken as draws from a distribution with an exponential tail, whose scale is the mean of
 ///    i (X_i - X_i+1) over the first eight (Weissman 1978, J Am Stat Assoc 73); the largest of many such draws varies
 ///    by about as much. 1.5 times that, at least X1 - X2, is the noise. Where X1 to X5 agree to a hundredth the
-///    same peak comes again and again, and X1 - X5 is.
+///    same peak comes again and again, and a hundredth of it is: another start may settle to a motion a little beside.
+///    The forces of all loose joints of the group must agree so, as one alone does by chance, or X1 to X5 to 1e-4.
 ///
-/// Without impacts the noise is zero. The cost is a comparison for each value and step.
+/// Without impacts the noise is zero, and so is that of loads that the model gives. The cost is a comparison for each
+/// value and step.
 class PeakNoise {
  public:
-  PeakNoise(const Model& model, std::size_t values);
+  PeakNoise(const Model& model, const PeakValues& places);
 
   /// Values inside the window of the statistics, in rising order of time [s].
   void see(double t, std::span<const double> values) {
@@ -40,7 +44,7 @@ class PeakNoise {
   /// By how much the largest value may differ in another run; of its unit.
   double of(std::size_t value) const;
   /// Impacts that let differences grow, in the joint that has most.
-  int growing_impacts() const { return impacts_; }
+  int growing_impacts() const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -73,13 +77,19 @@ class PeakNoise {
   };
   void add(double t, std::span<const double> values);
   void end_part();
+  /// The largest values of the parts, the largest first.
+  std::array<double, kept + 1> in_order(const Peak& peak) const;
+  /// Whether all loose joints of a group have the same peak again and again.
+  bool repeats(int group) const;
 
   bool active_ = false;
   double from_, part_length_, part_end_;
   std::size_t parts_over_ = 0;
-  int impacts_ = 0;
+  std::vector<int> impacts_;  // by group
+  std::vector<int> groups_;   // of each value
   std::vector<Peak> peaks_;
   std::vector<Contact> contacts_;              // by joint
+  std::vector<std::size_t> forces_;            // the value of each joint
   std::vector<std::vector<EventKind>> kinds_;  // by joint and event
 };
 

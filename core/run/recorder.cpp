@@ -331,15 +331,12 @@ bool Recorder::note_abrupt_end() {
   if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
-  if (statistics_.end_stretch(row_between_)) {
-    clearances_.add(row_between_, run_.e_trial, {});
-    if (statistics_.wants_middle() && observe_inside(0.5 * (step.start.t() + step.end.t()), step, row_middle_)) {
-      maxima_.see(row_middle_);
-      statistics_.add_middle(row_middle_);
-      statistics_.note(row_between_);  // the step ends with it
-    }
-    statistics_.begin_stretch();
-  }
+  const auto middle = [this, &step]() -> std::span<const double> {
+    if (!observe_inside(0.5 * (step.start.t() + step.end.t()), step, row_middle_)) return {};
+    maxima_.see(row_middle_);
+    return row_middle_;
+  };
+  if (statistics_.end_stretch(row_between_, middle)) clearances_.add(row_between_, run_.e_trial, {});
   if (contact_rows_.active() || feed_.active()) run_.energy.fill(run_.e_trial, run_.channels, row_between_);
   feed_.see_inside(row_between_);
   if (contact_rows_.active()) see_contact_end(row_between_);

@@ -127,13 +127,22 @@ void Statistics::add_means(std::span<const double> row, double dt, bool first) {
   }
 }
 
-bool Statistics::end_stretch(std::span<const double> row) {
+bool Statistics::end_stretch(std::span<const double> row, const std::function<std::span<const double>()>& middle) {
   note(row);
   const double t = row[at(channels_.time)];
   if (!seen_ || !counts(t)) return false;
   add_means(row, t - last_time_, false);
   duration_ += t - last_time_;
   last_time_ = t;
+  if (wants_middle()) {
+    if (const std::span<const double> half_way = middle(); !half_way.empty()) {
+      note(half_way);
+      const std::span<const double> values = largest_.last();
+      each_mean(*this, [&](Mean& mean, std::size_t place) { mean.add_middle(values[place]); });
+      note(row);  // the step ends with it
+    }
+  }
+  begin_stretch();
   return true;
 }
 
@@ -141,12 +150,6 @@ bool Statistics::wants_middle() const {
   bool wanted = false;
   each_mean(*this, [&](const Mean& mean, std::size_t) { wanted = wanted || mean.wants_middle(); });
   return wanted;
-}
-
-void Statistics::add_middle(std::span<const double> row) {
-  note(row);
-  const std::span<const double> values = largest_.last();
-  each_mean(*this, [&](Mean& mean, std::size_t place) { mean.add_middle(values[place]); });
 }
 
 void Statistics::begin_stretch() {

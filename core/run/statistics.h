@@ -1,6 +1,7 @@
 // Statistics: maxima, time means and counts over every accepted step from `discard` on.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,13 +51,10 @@ class Statistics {
   /// A row inside a step: its values may be the largest.
   void note(std::span<const double> row);
   /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
-  /// instant, is on the other side. False where it does not count.
-  bool end_stretch(std::span<const double> row);
-  /// Whether that was the only step since values went on otherwise: a mean over it needs a state inside, as parabolas
-  /// have no third point. Where it is a small part of what there is, the straight line does.
-  bool wants_middle() const;
-  /// The row in the middle of that step.
-  void add_middle(std::span<const double> row);
+  /// instant, is on the other side. False where it does not count. A step that is the only one since the last such
+  /// instant has no third point for a parabola: `middle` gives the row half way, or none, unless the step is a small
+  /// part of all means.
+  bool end_stretch(std::span<const double> row, const std::function<std::span<const double>()>& middle);
   /// After the row that was added last values go on otherwise than before.
   void begin_stretch();
   /// A row that is written; of one that was noted when it was seen.
@@ -138,6 +136,7 @@ class Statistics {
     }
   };
   void add_means(std::span<const double> row, double dt, bool first);
+  bool wants_middle() const;
   /// Calls `visit(mean, place)` for all, with the place of the value that it is of.
   template <class Self, class Visit>
   static void each_mean(Self& self, const Visit& visit) {

@@ -56,7 +56,8 @@ std::vector<InputActivity::Unresolved> InputActivity::look_closer(double least) 
   return left;
 }
 
-std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step) {
+std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step, const Point& here,
+                                                                    const Evaluation& e) {
   std::vector<Unresolved> found;
   const auto known = [&](const std::string* name) {
     return std::ranges::any_of(found, [&](const Unresolved& u) { return u.name == name; });
@@ -93,6 +94,22 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step)
       if (corner < end_) times.push_back(corner);
     }
     add_corners("joint", &system_.model().joints[static_cast<std::size_t>(telling.joint)].name, times);
+  }
+  for (const TimedJoint& timed : joints_) {
+    const std::string* name = &system_.model().joints[static_cast<std::size_t>(timed.joint)].name;
+    const JointLayout& layout = system_.joints().layout(timed.joint);
+    if (known(name) || layout.forces == 0) continue;
+    const JointInput in = system_.joints().input(timed.joint, here, e);
+    std::vector<double> all(timed.signals);
+    const std::size_t forces = timed.signals - static_cast<std::size_t>(layout.constraint_rows);
+    const auto look = [&](double t, std::span<double> values) {
+      Fault fault;
+      if (!signals_of(timed, in, t, all.data(), fault)) return false;
+      std::ranges::copy(std::span(all).first(forces), values.begin());
+      return true;
+    };
+    const auto change = UnseenChange::of(look, forces, start_, end_, step, timed.shortest / samples_per_change);
+    if (change) found.push_back({"joint", name, change->time - change->length, change->time + change->length, false});
   }
   return found;
 }

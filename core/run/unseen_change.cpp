@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "base/formula_course.h"
 
@@ -15,10 +17,53 @@ constexpr long enough_work = 20'000'000;  // instructions of bounds
 constexpr double shortest = 1e-12;        // of a step: spans that are not halved any more
 constexpr double same_time = 1e-15;       // of times: those closer are one
 constexpr int parts = 64;                 // of a step, to see how far a change goes
+constexpr double fewest_looks = 8.0;      // at a step
+constexpr double enough_looks = 1e6;
+constexpr double unchanged = 1e-9;  // of the largest value
 
 const Interval& signal(const IntervalJet& range, int derivative) {
   return derivative == 0 ? range.value : derivative == 1 ? range.rate : range.acceleration;
 }
+
+/// One of the signals that are looked at together, as a function of time.
+struct OneSignal {
+  const UnseenChange::Look& look;
+  std::size_t which;
+  std::span<double> values;
+  bool evaluate(double t, Jet& out, EvaluationFailure& /*failure*/) const {
+    if (!look(t, values)) return false;
+    out.value = values[which];
+    return true;
+  }
+};
+
+/// What one of them does inside four steps, and over the run at the ends of steps.
+struct Sight {
+  double low = 0.0, high = 0.0;  // of the ends of these steps
+  double inside_low = 0.0, inside_high = 0.0, low_at = 0.0, high_at = 0.0;
+  double run_low = std::numeric_limits<double>::infinity(), run_high = -run_low;
+  double beyond = 0.0, at = 0.0, begin = 0.0;  // the farthest so far
+
+  void begin_with(double value) { low = high = inside_low = inside_high = value, note_end(value); }
+  void note_end(double value) {
+    low = std::min(low, value), high = std::max(high, value);
+    run_low = std::min(run_low, value), run_high = std::max(run_high, value);
+  }
+  void note_inside(double value, double t) {
+    if (value < inside_low) inside_low = value, low_at = t;
+    if (value > inside_high) inside_high = value, high_at = t;
+  }
+  void end(double from) {
+    const double above = inside_high - high, below = low - inside_low;
+    const double most = std::max(above, below);
+    if (most > noticed * (high - low) && most > beyond)
+      beyond = most, at = above > below ? high_at : low_at, begin = from;
+  }
+  bool hides() const {
+    const double largest = std::max({std::abs(run_low), std::abs(run_high), beyond});
+    return beyond > std::max(little_of_run * (run_high - run_low), unchanged * largest);
+  }
+};
 
 }  // namespace
 
@@ -159,6 +204,35 @@ std::optional<UnseenChange::Found> UnseenChange::of(const TimeTable& table, doub
       point = next;
     }
     if (found) return change.measured(table, window, *found);
+  }
+  return {};
+}
+
+std::optional<UnseenChange::Found> UnseenChange::of(const Look& look, std::size_t signals, double from, double to,
+                                                    double step, double apart) {
+  std::vector<double> values(signals);
+  std::vector<Sight> sights(signals);
+  const double looks = std::clamp(std::ceil(step / apart), fewest_looks, enough_looks), length = 4.0 * step;
+  const double stride = std::max(1.0, std::ceil(4.0 * looks * (to - from) / length / enough_looks)) * length;
+  for (double begin = from; begin + length <= to + 0.5 * step; begin += stride) {
+    for (double k = 0.0; k <= 4.0 * looks; ++k) {
+      const double t = std::min(begin + k * step / looks, to);
+      if (!look(t, values)) return {};
+      const bool at_end = std::fmod(k, looks) == 0.0;
+      for (std::size_t c = 0; c < signals; ++c) {
+        if (k == 0.0) sights[c].begin_with(values[c]);
+        if (at_end) sights[c].note_end(values[c]);
+        if (!at_end) sights[c].note_inside(values[c], t);
+      }
+    }
+    for (Sight& sight : sights) sight.end(begin);
+  }
+  for (std::size_t c = 0; c < signals; ++c) {
+    if (!sights[c].hides()) continue;
+    UnseenChange change(from, to, step, 0);
+    const OneSignal one{look, c, values};
+    Window window;
+    if (change.look(one, sights[c].begin, window)) return change.measured(one, window, sights[c].at);
   }
   return {};
 }

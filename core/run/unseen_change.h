@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <span>
 
 #include "base/expression.h"
 #include "base/formula_sides.h"
@@ -25,6 +27,12 @@ class UnseenChange {
   static std::optional<Found> of(const Expression& formula, double from, double to, double step, int derivative);
   /// Of tables by their points and the middles between them.
   static std::optional<Found> of(const TimeTable& table, double from, double to, double step, int derivative);
+  /// Of signals that can be looked at alone: fills them at a time; false where it cannot.
+  using Look = std::function<bool(double t, std::span<double> values)>;
+  /// The one that is farthest from what the ends of four steps show, at instants no more than `apart` from each other,
+  /// a bounded number of times [s]. What may jump is compared with their range.
+  static std::optional<Found> of(const Look& look, std::size_t signals, double from, double to, double step,
+                                 double apart);
 
  private:
   UnseenChange(double from, double to, double step, int derivative)

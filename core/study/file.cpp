@@ -29,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* record_file = "inputs/study.json";  // beside the copies: what they do not say
+constexpr std::array reserved_columns = {"index", "model", "direction", "sample", "start", "exit_code", "error"};
 
 constexpr std::size_t most_fitting = 10'000;  // axes of one pattern
 
@@ -301,7 +302,7 @@ void StudyFile::check_columns() const {
   for (const PlannedAxis& axis : axes_) {
     for (const AxisColumn& column : axis.columns()) {
       const CheckedValue& entry = axis.source().entry;
-      if (std::ranges::find(own_columns, column.name) != own_columns.end()) {
+      if (std::ranges::find(reserved_columns, column.name) != reserved_columns.end()) {
         entry.fail_at_key("reserved-name", fmt::format("the table has a column '{}' of its own", column.name), {},
                           "give the axis another name, and `target: " + column.name + "`");
       } else if (!seen.insert(column.name).second) {

@@ -1,11 +1,9 @@
 // StudyFile: the file of a study, read once, with the models and tables that it names.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -18,10 +16,6 @@
 #include "study/planned_axis.h"
 
 namespace freeplay {
-
-/// Columns that every table of a study may have besides those of axes and reducers.
-inline constexpr std::array<std::string_view, 7> own_columns = {"index", "model",     "direction", "sample",
-                                                                "start", "exit_code", "error"};
 
 /// A file that a study's folder keeps, to be made again from there.
 struct KeptFile {

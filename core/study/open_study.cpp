@@ -14,25 +14,20 @@
 namespace freeplay {
 namespace {
 
-/// Reports reducers whose columns are called as others of the table are. Those of a set have the name of the reducer
-/// before a dot.
+/// Reports reducers whose columns are called as those of axes. Those of a set have the name of the reducer before a
+/// dot.
 void check_names(const StudyPlan& plan, std::span<const StudyColumn> columns, Diagnostics& diagnostics) {
   if (plan.section().reducers == nullptr) return;
-  const auto& axes = plan.axis_columns();
   for (const Node::Entry& entry : plan.section().reducers->entries) {
     const std::string& name = entry.key->text;
-    const auto is_of_it = [&](const StudyColumn& column) {
-      return column.name == name || column.name.starts_with(name + ".");
+    const auto clashes = [&](const StudyColumn& column) {
+      return (column.name == name || column.name.starts_with(name + ".")) &&
+             std::ranges::find(plan.axis_columns(), column.name, &AxisColumn::name) != plan.axis_columns().end();
     };
-    for (const StudyColumn& column : columns) {
-      if (!is_of_it(column)) continue;
-      const bool own = std::ranges::find(own_columns, column.name) != own_columns.end();
-      if (!own && std::ranges::find(axes, column.name, &AxisColumn::name) == axes.end()) continue;
-      diagnostics.error(entry.key->location(), static_cast<int>(name.size()), own ? "reserved-name" : "duplicate-name",
-                        own ? fmt::format("the table has a column '{}' of its own", column.name)
-                            : fmt::format("an axis is called '{}', too: the table needs two names", column.name));
-      break;
-    }
+    if (std::ranges::none_of(columns, clashes)) continue;
+    diagnostics.error(
+        entry.key->location(), static_cast<int>(name.size()), "duplicate-name",
+        fmt::format("an axis has a column of the reducer '{}', too: one of them needs another name", name));
   }
 }
 

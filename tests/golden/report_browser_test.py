@@ -334,7 +334,7 @@ class ReportInBrowser(ProgramTest):
         self.write("slider-crank/summary.json", "{")
         self.freeplay("report", "slider-crank", "--out", "page.html")
         self.browser.open(self.path("page.html"))
-        self.assertIn("no summary.json", self.script("return document.getElementById('verdicts').textContent"))
+        self.assertIn("summary.json is damaged", self.script("return document.getElementById('verdicts').textContent"))
         self.assertEqual("\u2013", self.script("freeplay.select(['joint.wrist.fn']); return document.querySelector('#now span').textContent"))
         self.write("alone.csv", self.read("slider-crank", "results.csv"))
         self.freeplay("report", "alone.csv", "--out", "page.html")

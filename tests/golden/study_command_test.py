@@ -160,8 +160,8 @@ class StudyCommand(ProgramTest):
 
     def test_columns_of_one_name_and_units_that_do_not_fit_are_refused_before_anything_runs(self):
         for section, words in (
-                ("  axes: {g: [1, 2]}\n  reducers: {g: {channel: body.ball.y, reduce: final}}\n", "an axis is called 'g', too"),
-                ("  axes: {g: [1, 2]}\n  reducers: {index: {channel: body.ball.y, reduce: final}}\n", "a column 'index' of its own"),
+                ("  axes: {g: [1, 2]}\n  reducers: {g: {channel: body.ball.y, reduce: final}}\n", "an axis has a column of the reducer 'g', too"),
+                ("  axes: {g: [1, 2]}\n  reducers: {index: {channel: body.ball.y, reduce: final}}\n", "the name 'index' is reserved"),
                 ("  sample: {method: random, points: 100, seed: 1}\n  axes: {g: {uniform: [1 m/s^2, 2 m/s^2]}}\n"
                  "  reducers: {y: {channel: body.ball.y, reduce: final}}\n  stop: {reducer: y, of: mean, half_width: 1 N}\n",
                  "[dimension-mismatch]")):
@@ -179,7 +179,7 @@ class StudyCommand(ProgramTest):
         self.assertEqual(["___.._far_away-study"], os.listdir(self.path("results")))
 
     def test_a_point_of_a_chain_says_what_its_command_leaves_out(self):
-        self.write("chain.yaml", BALL + "study:\n  axes: {g: {linspace: [1, 2, 4]}}\n  warm_start: {axis: g}\n"
+        self.write("chain.yaml", BALL + "study:\n  axes: {g: {linspace: [1, 2, 4]}}\n  warm_start: {along: g}\n"
                    "  reducers: {y: {channel: body.ball.y, reduce: final}}\n")
         self.study("run", "chain.yaml", "--out", "chain")
         self.assertEqual("", self.study("point", "chain", "0")[1])

@@ -394,6 +394,22 @@ TEST(InputActivity, FixedStepsThatGoOverASmoothPulseAreDoubted) {
   EXPECT_EQ(doubted("20*max(0, sin(7*t))", "10 ms"), "");
 }
 
+// Of motions the accelerations count, whose peaks are in forces.
+TEST(InputActivity, FixedStepsThatGoOverAPartOfAMotionAreDoubted) {
+  const auto doubted = [](const char* kind, const char* value) {
+    const ModelRun run(
+        replaced(mass(fmt::format("drivers: {{d: {{joint: guide, kind: {}, value: '{}'}}}}", kind, value), 1e-6),
+                 "accuracy: 9.9999999999999995e-07", "step: 1 ms, output: {interval: 1 ms}"));
+    const auto doubt = std::ranges::find(run.outcome().doubts, "unresolved-input", &TrustReason::id);
+    return doubt == run.outcome().doubts.end() ? std::string() : doubt->element;
+  };
+  EXPECT_EQ(doubted("position", "1e-3*exp(-((t - 0.70031)/2e-4)^2)"), "driver 'd'");
+  EXPECT_EQ(doubted("velocity", "0.1*exp(-((t - 0.70031)/2e-4)^2)"), "driver 'd'");
+  EXPECT_EQ(doubted("position", "0.1*sin(3*t) + 1e-4*sin(3000*t)"), "driver 'd'");
+  EXPECT_EQ(doubted("position", "0.1*sin(20*t)"), "");
+  EXPECT_EQ(doubted("velocity", "0.1*exp(-((t - 0.7)/2e-2)^2)"), "");
+}
+
 // Points closer than the steps are no doubt as long as the steps show what they make.
 TEST(InputActivity, TablesAreDoubtedByWhatStepsHideOfThem) {
   const auto doubts = [](const char* points) {

@@ -65,7 +65,7 @@ function startSide() {
 
 // A row per element of a part, a group per run. Columns: heading, field or a function of the element, unit, whether it scatters.
 function figures(part, heading, columns, needed) {
-  return table([heading, ...columns.map(([h, f]) => typeof f === 'string' ? right(h) : h)], ...runs.map(run => {
+  const bodies = runs.map(run => {
     const rows = entries(run.get(part)).filter(([, x]) => x && (!needed || x[needed])).map(([name, x]) => row(name, ...columns.map(([, field, unit, scatters]) => {
       if (typeof field !== 'string') return field(x, name, run);
       const path = at(part.slice(1), name, ''), known = unit || effort(run, name);
@@ -74,7 +74,8 @@ function figures(part, heading, columns, needed) {
       return right((scatters ? scattered : shown)(run, path + field, rough ? v => '~' + (known.call ? known(+v.toPrecision(2)) : quantity(v, known, 2)) : known));
     })));
     return several && rows.length ? [make('tr', {}, make('th', {colspan: columns.length + 1, class: 'group'}, run.title)), ...rows] : rows;
-  }));
+  });
+  return bodies.flat().length ? table([heading, ...columns.map(([h, f]) => typeof f === 'string' ? right(h) : h)], ...bodies) : '';
 }
 
 function startFigures() {
