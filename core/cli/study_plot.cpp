@@ -8,6 +8,7 @@
 #include "cli/output_file.h"
 #include "cli/study_views.h"
 #include "cli/terminal.h"
+#include "results/made_text.h"
 #include "study/picture.h"
 
 namespace freeplay {
@@ -68,7 +69,9 @@ int study_plot(const StudyOptions& options, const CommonOptions& common) {
   for (const PictureRequest& request : requests) {
     const std::filesystem::path file = !options.out.empty() ? std::filesystem::path(options.out)
                                                             : opened.folder.path() / "plots" / (request.name + ".svg");
-    write_output(file.string(), study_picture(*opened.study, opened.folder.path(), request));
+    // Its rows have their record beside them.
+    write_output(file.string(),
+                 picture_with_record(study_picture(*opened.study, opened.folder.path(), request), nullptr));
     files.push_back(file.string());
     if (!common.json && !common.quiet) print(file.string() + "\n");
   }

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "model/channel.h"
-#include "results/result_record.h"
+#include "results/schema.h"
 
 namespace freeplay {
 

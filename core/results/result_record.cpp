@@ -9,6 +9,7 @@
 #include "base/input_text.h"
 #include "base/version.h"
 #include "results/checkpoint.h"
+#include "results/schema.h"
 
 namespace freeplay {
 namespace {

@@ -32,9 +32,6 @@ Json record_of(const std::filesystem::path& path, ResultReader& reader, const Ma
 /// The summary.json of a result directory; null where there is none, or none that can be read. Throws Error{file}
 /// "unreadable-result" for one whose schema this program does not know.
 Json read_summary(const std::filesystem::path& folder);
-/// Throws Error{file} "unreadable-result" for a file of another schema; `version`: of the program that wrote it, or
-/// null.
-void require_known_schema(const std::string& file, const Json& schema, const Json& version);
 
 /// What stands for the summary of a run that goes on or was killed: `status` "incomplete", `settings`, `provenance` and
 /// the model's name, as the file of rows or the checkpoint beside it has them.

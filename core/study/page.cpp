@@ -21,7 +21,7 @@ constexpr std::size_t most_page_bytes = 2'000'000;  // of points
 constexpr std::size_t listed_rows = 200;
 
 constexpr std::string_view head = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>{}</title>
+<html lang="en"><head><meta charset="utf-8"><meta name="generator" content="freeplay-report"><title>{}</title>
 <style>body{{font:14px sans-serif;margin:2em;max-width:64em}}svg{{display:block;margin:1em 0;max-width:100%;height:auto}}
 [data-point]{{cursor:pointer}}[data-point]:hover{{stroke:#000;stroke-width:2}}table{{border-collapse:collapse}}
 td,th{{border:1px solid #ccc;padding:2px 8px;text-align:right}}pre{{background:#f4f4f4;padding:8px;white-space:pre-wrap}}

@@ -34,7 +34,8 @@ function startFacts() {
     ['Steps of', steps], ['Second run', second], ['Row every', '/settings/interval', 's'],
     ['Status', '/status'], ['Time reached', '/time/reached', instant], ['Counted from', '/statistics/from', 's'], ['Rows', '/counts/rows'], ['Steps', '/counts/steps'], ['Contacts', '/counts/contacts'],
     ['Energy residual', '/residuals/energy_max', 'J'], ['Position residual', '/residuals/position_max', 'm'], ['Warnings', warnings]])));
-  if (several) byId('facts').style.flexBasis = '100%'; else document.querySelector('#facts table').className = 'one';
+  if (runs.length > 2) byId('facts').style.flexBasis = '100%';
+  if (!several) document.querySelector('#facts table').className = 'one';
 }
 
 // Where a field of a part is largest in a run; null where none has it.
