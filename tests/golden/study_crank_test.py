@@ -170,7 +170,7 @@ class StudyOfTheCrank(ProgramTest):
 
     def test_mistakes_are_refused_before_anything_runs(self):
         for words, code, said in (
-                (["run", "crank.yaml", "--shard", "5/4"], 2, ["--shard", "I from 1 to N"]),
+                (["run", "crank.yaml", "--shard", "5/4"], 2, ["--shard", "I from 1 to N, here from 1 to 4"]),
                 (["run", "crank.yaml", "--shard", "a/b"], 2, ["I from 1 to N"]),
                 (["run", "crank.yaml", "--only", "99"], 2, ["--only"]),
                 (["run", "crank.yaml", "--keep", "al"], 2, ["--keep", "'all'"]),
