@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 import xml.etree.ElementTree as xml
@@ -40,8 +41,8 @@ class StudyCommand(ProgramTest):
         super().setUp()
         self.write("ball.yaml", BALL + GRID)
 
-    def study(self, *words, code=0):
-        return self.freeplay("study", *words, code=code)
+    def study(self, *words, code=0, **options):
+        return self.freeplay("study", *words, code=code, **options)
 
     def run_json(self, *words, code=4):
         return json.loads(self.study("run", *words, "--json", code=code)[0])
@@ -131,6 +132,23 @@ class StudyCommand(ProgramTest):
                    "  reducers: {x: {channel: body.ball.x, reduce: final}}\n")
         self.assertIn("  a point    longer than 10 s", self.study("plan", "long.yaml")[0])
         self.assertNotIn("  a point", self.study("plan", "long.yaml", "--probe", "0")[0])
+
+    def test_a_plan_does_not_count_what_others_do_on_a_busy_machine(self):
+        self.write("slow.yaml", BALL.replace("step: 10 ms", "step: 2 us") + "study:\n  axes: {v: [1 m/s, 2 m/s, 3 m/s, 4 m/s]}\n"
+                   "  reducers: {x: {channel: body.ball.x, reduce: final}}\n")
+        self.study("run", "slow.yaml", "--out", "r", "--jobs", "1")
+        with open(self.path("r", "timing.csv"), encoding="utf-8") as file:
+            needed = [float(row["cpu_seconds"]) for row in csv.DictReader(file)]
+        one = min(os.sched_getaffinity(0))
+        pin = lambda: os.sched_setaffinity(0, {one})
+        busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=pin) for _ in range(6)]
+        try:
+            told = json.loads(self.study("plan", "slow.yaml", "--json", preexec_fn=pin)[0])["seconds_per_point"]
+        finally:
+            for process in busy:
+                process.kill()
+                process.wait()
+        self.assertLess(told["mean"], 3.0 * max(needed))
 
     def test_an_extension_that_is_cut_short_loses_no_row(self):
         self.run_json("ball.yaml", "--out", "whole")
