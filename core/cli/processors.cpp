@@ -1,10 +1,13 @@
 #include "cli/processors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <thread>
 
 #include <sched.h>
+
+#include "base/processor_quota.h"
 
 namespace freeplay {
 namespace {
@@ -18,7 +21,8 @@ int processor_count() {
   }
   cpu_set_t mine;
   const int allowed = ::sched_getaffinity(0, sizeof mine, &mine) == 0 ? CPU_COUNT(&mine) : 0;
-  return std::clamp(allowed > 0 ? allowed : static_cast<int>(std::thread::hardware_concurrency()), 1, most);
+  const int there = allowed > 0 ? allowed : static_cast<int>(std::thread::hardware_concurrency());
+  return static_cast<int>(std::clamp(std::min<double>(there, std::ceil(processor_quota())), 1.0, double{most}));
 }
 
 }  // namespace freeplay

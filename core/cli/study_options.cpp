@@ -107,7 +107,8 @@ Shard shard_of(const std::string& text) {
   const auto parts = divided ? std::from_chars(part.ptr + 1, end, shard.parts) : part;
   const bool read = divided && parts.ec == std::errc() && parts.ptr == end;
   if (!read || shard.part < 1 || shard.part > shard.parts) {
-    bad_value("--shard", text, "it must be I/N with I from 1 to N, such as 2/8");
+    const std::string here = read && shard.parts > 0 ? fmt::format("here from 1 to {}", shard.parts) : "such as 2/8";
+    bad_value("--shard", text, "it must be I/N with I from 1 to N, " + here);
   }
   return shard;
 }

@@ -70,7 +70,7 @@ std::string size_text(double bytes) {
   return fmt::format("{:.3g} {}", bytes, units[unit]);
 }
 
-std::string plan_text(const OpenStudy& study, const std::optional<PointSeconds>& seconds) {
+std::string plan_text(const OpenStudy& study, bool probed, const std::optional<PointSeconds>& seconds) {
   const StudyPlan& plan = study.plan();
   const auto points = static_cast<double>(plan.points());
   std::string text = fmt::format("{}: {} points\n", plan.name(), plan.points());
@@ -85,7 +85,10 @@ std::string plan_text(const OpenStudy& study, const std::optional<PointSeconds>&
                         column.unit.empty() || column.unit == "1" ? "" : " [" + column.unit + "]");
   }
   text += fmt::format("  disk       {}\n", size_text(points * static_cast<double>(row_bytes(study)) * 2.0));
-  if (!seconds) return text;
+  if (!seconds) {
+    if (probed) text += fmt::format("  a point    longer than {:g} s: --probe 0 tries none\n", longest_plan_probe);
+    return text;
+  }
   const int here = processor_count();
   return text + fmt::format("  a point    {:.3g} s ({:.3g} to {:.3g})\n  time       {} on one core, {} on {} here\n",
                             seconds->mean, seconds->min, seconds->max, clock_text(seconds->mean * points),
@@ -105,7 +108,7 @@ int study_plan(const StudyOptions& options, const CommonOptions& common) {
   }
   const long probe = options.probe.empty() ? usual : whole_number("--probe", options.probe, 0);
   const auto seconds = probe_points(study, static_cast<std::uint64_t>(probe), longest_plan_probe);
-  common.json ? print_json(plan_json(study, seconds)) : print(plan_text(study, seconds));
+  common.json ? print_json(plan_json(study, seconds)) : print(plan_text(study, probe > 0, seconds));
   return 0;
 }
 

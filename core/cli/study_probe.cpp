@@ -30,9 +30,9 @@ std::optional<PointSeconds> probe_points(OpenStudy& study, std::uint64_t count, 
       },
       [&](std::uint64_t, const StudyOutcome& outcome) {
         ++seen;
-        sum += outcome.wall;
-        seconds.min = std::min(seconds.min, outcome.wall);
-        seconds.max = std::max(seconds.max, outcome.wall);
+        sum += outcome.cpu;
+        seconds.min = std::min(seconds.min, outcome.cpu);
+        seconds.max = std::max(seconds.max, outcome.cpu);
       },
       [&] { return !over(); });
   if (seen == 0) return std::nullopt;

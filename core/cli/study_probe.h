@@ -9,6 +9,7 @@
 
 namespace freeplay {
 
+/// Processor time: what others do on the machine does not count.
 struct PointSeconds {
   double mean = 0.0, min = 0.0, max = 0.0;
 };

@@ -154,6 +154,7 @@ void StudyRun::open_folder() {
   folder_.require_room();
   if (folder_.holds_study()) {
     if (options_.restart) {
+      folder_.forget_extended();
       folder_.set_aside();
     } else if (folder_.record()["study"] != mark_.study || folder_.record()["rows"] != mark_.columns) {
       options_.extend ? extend() : refuse_changed();
@@ -176,8 +177,11 @@ void StudyRun::refuse_changed() {
                           plan_.points()));
 }
 
+// The rows that stay are whole on the disk before anything is moved, so that a kill loses none; those of a call that
+// was cut short count as well.
 void StudyRun::extend() {
-  const bool same_columns = folder_.record()["rows"] == mark_.columns;
+  std::vector<fs::path> segments;
+  if (folder_.record()["rows"] == mark_.columns) segments = folder_.segments();
   for (const fs::path& segment : folder_.segments()) {
     SegmentReader reader(segment, warn_of_damage(common_));
     if (!reader.header()) continue;
@@ -185,13 +189,19 @@ void StudyRun::extend() {
     old.study = reader.header()->study;
     require_same(*reader.header(), segment, old);
   }
-  const OldRows rows(same_columns ? folder_.segments() : std::vector<fs::path>{}, study_.layout(),
-                     warn_of_damage(common_));
-  folder_.set_aside();
-  folder_.begin(plan_, mark_, study_record(plan_, mark_, study_.column_names()));
-  SegmentWriter segment(folder_.rows(),
+  for (const fs::path& segment : folder_.extending_segments()) {
+    const SegmentReader reader(segment, warn_of_damage(common_));
+    if (!reader.header() || reader.header()->study != mark_.study) continue;
+    require_same(*reader.header(), segment, mark_);
+    segments.push_back(segment);
+  }
+  const OldRows rows(segments, study_.layout(), warn_of_damage(common_));
+  std::error_code exists;
+  fs::create_directories(folder_.extended(), exists);
+  SegmentWriter segment(folder_.extended(),
                         {mark_.study, mark_.program(), mark_.arithmetic, Shard{}, host_name(), utc_now()}, sync_);
   rows.write(plan_, segment);
+  folder_.set_aside();
 }
 
 // Each is made by the command of its point, beside the run that the row is of.

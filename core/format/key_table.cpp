@@ -269,7 +269,7 @@ constexpr FormatKey study_axis[] = {
     {"normal", "list of quantity", "", "", "Mean and standard deviation.", "[10 mm, 0.1 mm]"},
     {"uniform", "list of quantity", "", "", "Low and high end.", "[9 mm, 11 mm]"},
     {"triangular", "list of quantity", "", "", "Low end, mode and high end.", "[9 mm, 10 mm, 12 mm]"},
-    {"fit", "text", "", "", "Radial clearance of an ISO 286 fit.", "H7/g6"},
+    {"fit", "text | list of text", "", "", "Radial clearance of an ISO 286 fit, or of each of several.", "H7/g6"},
     {"diameter", "quantity", "m", "required with fit", "Nominal size, at most 500 mm.", "10 mm"},
     {"law", "'normal' | 'uniform'", "", "normal", "Over the zones of hole and shaft.", "uniform"},
     {"truncate", "list of quantity", "", "", "Ends of random values.", "[9.8 mm, 10.2 mm]"}};

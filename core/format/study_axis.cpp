@@ -125,7 +125,7 @@ class AxisReader {
   bool read_cases(const CheckedValue& section) {
     bool good = true;
     for (const CheckedValue& entry : entries_of(section)) {
-      Draft::check_name(entry);
+      check_table_word(entry);
       StudyCase made{entry.key(), {}};
       for (const CheckedValue& value : entries_of(entry)) {
         if (value.node().is_null()) value.wrong_type("a value");
@@ -146,39 +146,59 @@ class AxisReader {
   }
 
   bool read_fit(MapReader& map) {
-    const auto code = map.find("fit"), diameter = map.require("diameter"), law = map.find("law"),
+    const auto codes = map.find("fit"), diameter = map.require("diameter"), law = map.find("law"),
                cut = map.find("truncate");
     axis_.dimension = dimension::length;
-    const auto text = code->string();
+    const auto items = codes->one_or_list();
     const std::optional<double> size = diameter ? diameter->quantity(dimension::length, positive) : std::nullopt;
     const std::optional<int> word = law ? law->word({"normal", "uniform"}) : std::optional<int>(0);
     const auto ends = cut ? read_ends(*cut, axis_.dimension) : std::nullopt;
-    if (!text || !size || !word || (cut && !ends)) return false;
-    const std::optional<IsoFit> limits = iso_fit(*text, *size);
-    if (!limits) {
-      code->fail("bad-fit", fmt::format("'{}' on {:.6g} mm is no fit that is known", *text, *size * 1e3), {},
-                 "holes D to H and JS, shafts d to h and js, grades 5 to 11, up to 500 mm, such as H7/g6");
+    if (!items || !size || !word || (cut && !ends)) return false;
+    if (items->empty()) codes->fail("wrong-length", fmt::format("'{}' must have at least 1 item", codes->path()));
+    for (const CheckedValue& code : *items) {
+      auto fit = limits_of(code, *size);
+      if (!fit) continue;
+      fit->normal = *word == 0;
+      if (!(cut ? cut_fit(*fit, *cut, *ends) : true) || !has_clearance(*fit, *size, code)) continue;
+      if (std::ranges::find(axis_.fits, fit->code, &StudyFit::code) != axis_.fits.end())
+        code.fail("duplicate-name", fmt::format("'{}' stands there twice", fit->code));
+      axis_.fits.push_back(std::move(*fit));
+    }
+    return !items->empty() && axis_.fits.size() == items->size();
+  }
+
+  static std::optional<StudyFit> limits_of(const CheckedValue& code, double size) {
+    const auto text = code.string();
+    if (!text) return std::nullopt;
+    const std::optional<IsoFit> limits = iso_fit(*text, size);
+    if (limits) return StudyFit{*limits, true, limits->smallest_clearance(), limits->largest_clearance(), *text};
+    code.fail("bad-fit", fmt::format("'{}' on {:.6g} mm is no fit that is known", *text, size * 1e3), {},
+              "holes D to H and JS, shafts d to h and js, grades 5 to 11, up to 500 mm, such as H7/g6");
+    return std::nullopt;
+  }
+
+  static std::string range_of(const StudyFit& fit) {
+    return fmt::format("{:.6g} to {:.6g} um", fit.low * 1e6, fit.high * 1e6);
+  }
+
+  static bool cut_fit(StudyFit& fit, const CheckedValue& cut, const std::pair<double, double>& ends) {
+    if (ends.first >= fit.high || ends.second <= fit.low) {
+      cut.fail("out-of-range",
+               fmt::format("the radial clearance of {} is {}: nothing is left", fit.code, range_of(fit)));
       return false;
     }
-    StudyFit fit{*limits, *word == 0, limits->smallest_clearance(), limits->largest_clearance()};
-    const std::string range = fmt::format("{:.6g} to {:.6g} um", fit.low * 1e6, fit.high * 1e6);
-    if (ends && (ends->first >= fit.high || ends->second <= fit.low)) {
-      cut->fail("out-of-range", fmt::format("the radial clearance of {} is {}: nothing is left", *text, range));
-      return false;
-    }
-    if (ends) {
-      fit.low = std::max(fit.low, ends->first);
-      fit.high = std::min(fit.high, ends->second);
-    }
-    if (!(fit.low > 0.0)) {
-      code->fail(
-          "out-of-range",
-          fmt::format("the radial clearance of {} on {:.6g} mm is {}; it must be > 0", *text, *size * 1e3, range), {},
-          "another fit, or `truncate: [low, high]`");
-      return false;
-    }
-    axis_.fit = fit;
+    fit.low = std::max(fit.low, ends.first);
+    fit.high = std::min(fit.high, ends.second);
     return true;
+  }
+
+  static bool has_clearance(const StudyFit& fit, double size, const CheckedValue& code) {
+    if (fit.low > 0.0) return true;
+    code.fail("out-of-range",
+              fmt::format("the radial clearance of {} on {:.6g} mm is {}; it must be > 0", fit.code, size * 1e3,
+                          range_of(fit)),
+              {}, "another fit, or `truncate: [low, high]`");
+    return false;
   }
 
   StudyAxis axis_;
@@ -193,6 +213,14 @@ std::optional<Quantity> constant_quantity(const std::string& text) {
   } catch (const ExpressionError&) {
     return std::nullopt;
   }
+}
+
+void check_table_word(const CheckedValue& entry) {
+  const std::string name = entry.key();
+  const auto strange = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f' || c == ',' || c == '"'; };
+  if (!name.empty() && name.front() != ' ' && name.back() != ' ' && std::ranges::none_of(name, strange)) return;
+  entry.fail_at_key("bad-name", "'" + name + "' cannot stand in a table", {},
+                    "a name without commas, quotes and line feeds, and no blank at its ends");
 }
 
 std::optional<StudyAxis> read_study_axis(const CheckedValue& entry, const TargetDimension& dimension_of) {

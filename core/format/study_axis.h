@@ -31,6 +31,7 @@ struct StudyFit {
   IsoFit limits;
   bool normal = true;            ///< else uniform over the zones
   double low = 0.0, high = 0.0;  ///< of the clearance, as it is cut [m]
+  std::string code{};            ///< such as H7/g6
 };
 
 struct StudyAxis {
@@ -45,16 +46,19 @@ struct StudyAxis {
   std::vector<StudyCase> cases{};
   std::optional<CheckedValue> table{};  ///< name of a file
   std::optional<Distribution> distribution{};
-  std::optional<StudyFit> fit{};
+  std::vector<StudyFit> fits{};          ///< several: a grid of distributions, for which all targets have the same
   std::optional<Dimension> dimension{};  ///< of its quantities; nothing: they have none
 
-  bool random() const { return distribution || fit; }
+  bool random() const { return distribution || !fits.empty(); }
   /// Numbers that are drawn for a value.
-  std::size_t draws() const { return fit ? 2 : distribution ? 1 : 0; }
+  std::size_t draws() const { return !fits.empty() ? 2 : distribution ? 1 : 0; }
 };
 
 /// Dimension of the values that a target takes, where it is known.
 using TargetDimension = std::function<std::optional<Dimension>(const std::string& target)>;
+
+/// Reports a key that cannot stand in a table without quotes: models and cases have names of any other kind.
+void check_table_word(const CheckedValue& entry);
 
 /// Nothing after an error.
 std::optional<StudyAxis> read_study_axis(const CheckedValue& entry, const TargetDimension& dimension_of);

@@ -70,7 +70,7 @@ class StudyReader {
     }
     if (models->node().is_map()) {
       for (const CheckedValue& entry : entries_of(*models)) {
-        Draft::check_name(entry);
+        check_table_word(entry);
         if (entry.string()) study_.models.push_back({entry.key(), entry});
       }
     } else if (const auto items = models->list()) {

@@ -246,6 +246,7 @@ void StudyFile::plan_axis(const StudyAxis& axis) {
     table = DesignTable::read(place.string(), *axis.table);
     if (!table) return;
   }
+  if (axis.fits.size() > 1 && !targets.empty()) axes_.emplace_back(axis, axis.name + ".fit", "", table, draws_);
   for (const std::string& target : targets) {
     axes_.emplace_back(axis, axis.each ? target : axis.name, target, table, draws_);
     draws_ += axis.draws();
@@ -280,7 +281,18 @@ void StudyFile::find_targets(PlannedAxis& axis, const LoadOptions& options) cons
 }
 
 void StudyFile::check_targets(const LoadOptions& options) {
-  for (PlannedAxis& axis : axes_) find_targets(axis, options);
+  PlannedAxis* choice = nullptr;  // of the axes after it; where none of them is there is nothing to choose
+  for (PlannedAxis& axis : axes_) {
+    find_targets(axis, options);
+    if (axis.chooses_fit()) {
+      choice = &axis;
+      axis.present.assign(models_.size(), false);
+    } else if (axis.source().fits.size() > 1) {
+      for (std::size_t i = 0; i < models_.size(); ++i) {
+        if (axis.present[i]) choice->present[i] = true;
+      }
+    }
+  }
   std::unordered_map<std::string, std::string> seen;  // and where they are set
   for (const PlannedSetting& setting : set_) seen.emplace(setting.target, "`set`");
   for (const PlannedAxis& axis : axes_) {

@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "base/whole_file.h"
+#include "study/segment_reader.h"
 
 namespace freeplay {
 namespace {
@@ -54,7 +55,7 @@ bool StudyFolder::holds_study() const {
 }
 
 void StudyFolder::require_room() const {
-  static const std::set<std::string> own = {"study.yaml", "inputs", "rows", "old"};
+  static const std::set<std::string> own = {"study.yaml", "inputs", "rows", "extended", "old"};
   std::error_code error;
   if (holds_study() || !fs::exists(path_, error)) return;
   if (!fs::is_directory(path_, error)) {
@@ -83,7 +84,12 @@ void StudyFolder::begin(const StudyPlan& plan, const StudyMark& mark, const Json
   std::error_code error;
   fs::create_directories(rows(), error);
   if (error) fail_to("make", rows(), error.message());
-  if (holds_study()) return;
+  if (!holds_study()) make_record(plan, mark, record);
+  take_extended(mark.study);
+}
+
+void StudyFolder::make_record(const StudyPlan& plan, const StudyMark& mark, const Json& record) const {
+  std::error_code error;
   for (const KeptFile& file : plan.kept_files()) write_whole_file(path_ / file.path, file.bytes, true);
   const fs::path own = path_ / fmt::format(".study.json.{}.{}", host_name(), ::getpid());
   write_whole_file(own, json_text(record), true);
@@ -99,10 +105,24 @@ void StudyFolder::begin(const StudyPlan& plan, const StudyMark& mark, const Json
   sync_folder_of(place);
 }
 
-std::vector<fs::path> StudyFolder::segments() const {
+// Of several that do so at once one moves a segment. An incomplete one is of a run that was cut short: what it has is
+// right, and what it lacks was in rows() until a complete one was there.
+void StudyFolder::take_extended(const std::string& study) const {
+  for (const fs::path& segment : extending_segments()) {
+    const SegmentReader reader(segment, [](const fs::path&, std::size_t) {});
+    if (!reader.header() || reader.header()->study != study) continue;
+    std::error_code error;
+    fs::rename(segment, rows() / segment.filename(), error);
+    if (error && error != std::errc::no_such_file_or_directory) fail_to("move", segment, error.message());
+  }
+  std::error_code not_empty;
+  fs::remove(extended(), not_empty);
+}
+
+std::vector<fs::path> StudyFolder::segments_in(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(rows(), error)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".rows") found.push_back(entry.path());
   }
   std::ranges::sort(found, {}, [](const fs::path& path) { return std::pair(begun(path), path.filename().string()); });
@@ -119,7 +139,12 @@ bool StudyFolder::is_merged() const {
   });
 }
 
-fs::path StudyFolder::set_aside() const {
+void StudyFolder::forget_extended() const {
+  std::error_code ignored;
+  fs::remove_all(extended(), ignored);
+}
+
+void StudyFolder::set_aside() const {
   std::error_code error;
   fs::path place;
   for (int number = 1; place.empty() || fs::exists(place, error); ++number) {
@@ -131,7 +156,6 @@ fs::path StudyFolder::set_aside() const {
   for (const std::string& name : tables) move(path_ / name, place / name);
   for (const char* name : {"rows", "plots", "kept"}) move(path_ / name, place / name);
   for (const char* name : {"study.yaml", "inputs", record_name}) move(path_ / name, place / name);
-  return place;
 }
 
 Json study_record(const StudyPlan& plan, const StudyMark& mark, const std::vector<std::string>& columns) {

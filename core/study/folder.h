@@ -29,6 +29,8 @@ class StudyFolder {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file() const { return path_ / "study.yaml"; }
   std::filesystem::path rows() const { return path_ / "rows"; }
+  /// Rows of an older study that are those of the next one, until that has begun.
+  std::filesystem::path extended() const { return path_ / "extended"; }
   std::filesystem::path table() const { return path_ / "study.csv"; }
 
   bool holds_study() const;
@@ -37,16 +39,24 @@ class StudyFolder {
   /// study.json. Throws Error{input} "file-not-found" where there is none.
   Json record() const;
 
-  /// Makes study.json, with copies of all that was read; of several that do so at once one wins. Throws Error{file}.
+  /// Makes study.json, with copies of all that was read; of several that do so at once one wins. Takes the rows of
+  /// extended() that are of this study. Throws Error{file}.
   void begin(const StudyPlan& plan, const StudyMark& mark, const Json& record) const;
   /// Segments in the order of their making.
-  std::vector<std::filesystem::path> segments() const;
+  std::vector<std::filesystem::path> segments() const { return segments_in(rows()); }
+  std::vector<std::filesystem::path> extending_segments() const { return segments_in(extended()); }
   /// Is the table newer than all rows?
   bool is_merged() const;
-  /// Everything that a run has made goes to a new folder in old/. Returns it.
-  std::filesystem::path set_aside() const;
+  /// Everything that a run has made goes to a new folder in old/, but for extended().
+  void set_aside() const;
+  /// Nothing of it is of use any more.
+  void forget_extended() const;
 
  private:
+  static std::vector<std::filesystem::path> segments_in(const std::filesystem::path& folder);
+  void make_record(const StudyPlan& plan, const StudyMark& mark, const Json& record) const;
+  void take_extended(const std::string& study) const;
+
   std::filesystem::path path_;
 };
 

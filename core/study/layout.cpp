@@ -30,7 +30,7 @@ StudyLayout::StudyLayout(const StudySection& section, const std::vector<PlannedA
   count(models, many);
 }
 
-// Those that go side by side stand in the place of the first.
+// Those that go side by side stand in the place of the first. Axes with several fits go beside their choice.
 std::vector<std::vector<std::size_t>> StudyLayout::groups() const {
   std::vector<std::vector<std::size_t>> groups;
   std::vector<std::optional<std::size_t>> of_list(section_.side_by_side.size());
@@ -40,7 +40,9 @@ std::vector<std::vector<std::size_t>> StudyLayout::groups() const {
       return std::ranges::find(one, source) != one.end();
     });
     if (list == section_.side_by_side.end()) {
-      groups.push_back({i});
+      const bool chosen = axes_[i].source().fits.size() > 1 && !axes_[i].chooses_fit();
+      if (chosen) groups.back().push_back(i);
+      if (!chosen) groups.push_back({i});
       continue;
     }
     std::optional<std::size_t>& group = of_list[static_cast<std::size_t>(list - section_.side_by_side.begin())];

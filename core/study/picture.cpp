@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "base/number_text.h"
 #include "study/normal_quantile.h"
 #include "study/picture_page.h"
+#include "study/rank_correlation.h"
 #include "study/table_columns.h"
 
 namespace freeplay {
@@ -49,33 +49,6 @@ std::vector<std::size_t> thinned(const std::vector<std::size_t>& rows, const std
     if (i % step == 0 || rows[i] == *low || rows[i] == *high) kept.push_back(rows[i]);
   }
   return kept;
-}
-
-std::vector<double> ranks(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return values[i]; });
-  std::vector<double> rank(values.size());
-  for (std::size_t begin = 0; begin < order.size();) {
-    std::size_t end = begin;
-    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
-    for (std::size_t i = begin; i < end; ++i) rank[order[i]] = 0.5 * static_cast<double>(begin + end - 1);
-    begin = end;
-  }
-  return rank;
-}
-
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto count = static_cast<double>(a.size());
-  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / count;
-  const double mean_b = std::accumulate(b.begin(), b.end(), 0.0) / count;
-  double ab = 0.0, aa = 0.0, bb = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-  }
-  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
 class Drawing {
@@ -334,6 +307,7 @@ class Drawing {
     const std::string& value = needed(request_.value.empty() ? request_.y : request_.value, "value");
     std::vector<std::string> names{value};
     for (const AxisColumn& column : study_.plan().axis_columns()) names.push_back(column.name);
+    if (study_.plan().has_model_column()) names.emplace_back("model");
     const TableColumns columns = table(names);
     const std::vector<double> values = columns.numbers(value);
     const bool random = study_.plan().has_sample_column();
@@ -342,16 +316,16 @@ class Drawing {
       double from, until;
     };
     std::vector<Bar> bars;
+    std::vector<std::string> combinations(values.size());  // of words: correlations are within them
+    for (const std::string& name : names) {
+      for (std::size_t i = 0; has_words(name) && i < values.size(); ++i) {
+        combinations[i] += columns.words(name)[i] + ",";
+      }
+    }
     for (const AxisColumn& column : study_.plan().axis_columns()) {
-      if (random && !column.words) {
-        std::vector<double> a, b;
-        const std::vector<double> axis = columns.numbers(column.name);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          if (!std::isfinite(values[i]) || !std::isfinite(axis[i])) continue;
-          a.push_back(axis[i]);
-          b.push_back(values[i]);
-        }
-        const double rank = a.size() > 1 ? correlation(ranks(a), ranks(b)) : 0.0;
+      if (random && column.words) continue;
+      if (random) {
+        const double rank = rank_correlation(columns.numbers(column.name), values, combinations);
         bars.push_back({column.name, std::min(0.0, rank), std::max(0.0, rank)});
       } else {
         std::map<std::string, std::pair<double, double>> means;

@@ -14,7 +14,7 @@ std::uint64_t size_of(const StudyAxis& axis, const std::optional<DesignTable>& t
   if (axis.grid) return static_cast<std::uint64_t>(axis.grid->count);
   if (!axis.list.empty()) return axis.list.size();
   if (!axis.cases.empty()) return axis.cases.size();
-  return table ? table->rows() : 1;
+  return table ? table->rows() : std::max<std::size_t>(1, axis.fits.size());
 }
 
 }  // namespace
@@ -33,12 +33,13 @@ PlannedAxis::PlannedAxis(const StudyAxis& source, std::string name, std::string 
     }
     return;
   }
-  const bool words = !source.list.empty() || !source.cases.empty();
+  const bool words = !source.list.empty() || !source.cases.empty() || chooses_fit();
   columns_.push_back({name_, source.dimension && !words ? si_unit(*source.dimension) : "", words});
 }
 
 std::vector<std::string> PlannedAxis::targets() const {
   if (table_) return table_->targets();
+  if (chooses_fit()) return {};
   if (source_->cases.empty()) return {target_};
   std::vector<std::string> all;
   for (const StudyCase& one : source_->cases) {
@@ -55,7 +56,8 @@ AxisValue PlannedAxis::value(std::uint64_t place, std::span<const double> draws)
   if (source_->distribution) {
     return AxisValue::of(quantile(*source_->distribution, draws[first_draw_]), source_->dimension);
   }
-  return AxisValue::of(clearance_of(*source_->fit, draws[first_draw_], draws[first_draw_ + 1]), source_->dimension);
+  return AxisValue::of(clearance_of(source_->fits[place], draws[first_draw_], draws[first_draw_ + 1]),
+                       source_->dimension);
 }
 
 void PlannedAxis::add(std::uint64_t place, std::span<const double> draws, std::vector<PlannedSetting>& settings,
@@ -69,6 +71,8 @@ void PlannedAxis::add(std::uint64_t place, std::span<const double> draws, std::v
     const StudyCase& one = source_->cases[place];
     for (const TargetValue& value : one.values) settings.push_back({value.target, AxisValue::of(value.value.node())});
     cells.push_back(one.name);
+  } else if (chooses_fit()) {
+    cells.push_back(source_->fits[place].code);
   } else {
     settings.push_back({target_, value(place, draws)});
     cells.push_back(settings.back().value.cell());

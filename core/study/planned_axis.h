@@ -28,16 +28,16 @@ struct AxisColumn {
 
 class PlannedAxis {
  public:
-  /// `source` outlives it; `target` and `name` are its own, or those of one of several that it stands for. `table` is
-  /// there for an axis with one; `first_draw`: number of the first random number that it takes.
+  /// `source` outlives it; `target` and `name` are its own, or those of one of several that it stands for, or of the
+  /// choice among several fits, which has no target. `table` is there for an axis with one; `first_draw`: number of the
+  /// first random number that it takes.
   PlannedAxis(const StudyAxis& source, std::string name, std::string target, std::optional<DesignTable> table,
               std::size_t first_draw);
 
   const StudyAxis& source() const { return *source_; }
   const std::string& name() const { return name_; }
-  /// Values; random axes have one, which the sample gives.
+  /// Values; random axes have one, which the sample gives, or one for each of several fits.
   std::uint64_t size() const { return size_; }
-  bool random() const { return source_->random(); }
   const std::vector<AxisColumn>& columns() const { return columns_; }
   std::vector<std::string> targets() const;
 
@@ -52,6 +52,9 @@ class PlannedAxis {
 
   /// Does the model have it? By number of the model; filled by who knows the models.
   std::vector<bool> present{};
+
+  /// Whether it only says which of several fits the axes beside it have.
+  bool chooses_fit() const { return target_.empty() && !source_->fits.empty(); }
 
  private:
   AxisValue value(std::uint64_t place, std::span<const double> draws) const;

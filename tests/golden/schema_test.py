@@ -67,6 +67,7 @@ study:
     b: {target: law, list: [flores, {law: hertz, K: 1}]}
     c: {cases: {slow: {v: 1}, fast: {v: 2, w: [1, 2]}}}
     d: 3 m
+    e: {fit: [H7/g6, H8/e8], diameter: 10 mm}
   do: {analyze: error, pose: [0, 0, 0]}
   warm_start: {along: a}
   stop: {reducer: y, of: p95, relative: 0.01}

@@ -4,13 +4,15 @@ import glob
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import PROGRAM, ProgramTest
+from program import BUILD, PROGRAM, ProgramTest
 
 BALL = """freeplay: 1
 name: ball
@@ -40,8 +42,8 @@ class StudyCommand(ProgramTest):
         super().setUp()
         self.write("ball.yaml", BALL + GRID)
 
-    def study(self, *words, code=0):
-        return self.freeplay("study", *words, code=code)
+    def study(self, *words, code=0, **options):
+        return self.freeplay("study", *words, code=code, **options)
 
     def run_json(self, *words, code=4):
         return json.loads(self.study("run", *words, "--json", code=code)[0])
@@ -125,6 +127,44 @@ class StudyCommand(ProgramTest):
         self.assertEqual(40, self.run_json("ball.yaml", "--out", "r", "--extend", code=0)["ran"])
         self.assertEqual(80, self.run_json("ball.yaml", "--out", "r", "--restart", code=0)["ran"])
         self.assertEqual(["0001", "0002"], sorted(os.listdir(self.path("r", "old"))))
+
+    def test_a_plan_says_that_no_point_ended_while_it_tried(self):
+        self.write("long.yaml", BALL.replace("end: 0.1 s, step: 10 ms", "end: 1e5 s, step: 1 us") + "study:\n  axes: {v: [1 m/s, 2 m/s]}\n"
+                   "  reducers: {x: {channel: body.ball.x, reduce: final}}\n")
+        self.assertIn("  a point    longer than 10 s", self.study("plan", "long.yaml")[0])
+        self.assertNotIn("  a point", self.study("plan", "long.yaml", "--probe", "0")[0])
+
+    def test_a_plan_does_not_count_what_others_do_on_a_busy_machine(self):
+        self.write("slow.yaml", BALL.replace("step: 10 ms", "step: 2 us") + "study:\n  axes: {v: [1 m/s, 2 m/s, 3 m/s, 4 m/s]}\n"
+                   "  reducers: {x: {channel: body.ball.x, reduce: final}}\n")
+        self.study("run", "slow.yaml", "--out", "r", "--jobs", "1")
+        with open(self.path("r", "timing.csv"), encoding="utf-8") as file:
+            needed = [float(row["cpu_seconds"]) for row in csv.DictReader(file)]
+        one = min(os.sched_getaffinity(0))
+        pin = lambda: os.sched_setaffinity(0, {one})
+        busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=pin) for _ in range(6)]
+        try:
+            told = json.loads(self.study("plan", "slow.yaml", "--json", preexec_fn=pin)[0])["seconds_per_point"]
+        finally:
+            for process in busy:
+                process.kill()
+                process.wait()
+        self.assertLess(told["mean"], 3.0 * max(needed))
+
+    def test_an_extension_that_is_cut_short_loses_no_row(self):
+        self.run_json("ball.yaml", "--out", "whole")
+        self.write("ball.yaml", BALL + GRID.replace("[-2 m/s, 1 m/s]", "[1 m/s]"))  # fewer points: nothing is to be computed
+        library = {"LD_PRELOAD": os.path.join(BUILD, "tests", "failing_calls.so"), "FAILING_FOLDER": self.path("r"), "FAILING_WITH": "EIO"}
+        words = [PROGRAM, "study", "run", "ball.yaml", "--out", self.path("r"), "--extend", "--json"]
+        for call in range(1, 100):
+            shutil.rmtree(self.path("r"), ignore_errors=True)
+            shutil.copytree(self.path("whole"), self.path("r"))
+            cut = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, env={**os.environ, **library, "FAILING_CALL": str(call)})
+            if cut.returncode == 0:
+                break
+            told = json.loads(self.study(*words[2:], code=0)[0])
+            self.assertEqual([0, 40], [told["ran"], told["done"]], "after call %d: %s" % (call, cut.stderr))
+        self.assertGreater(call, 10, cut.stderr)
 
     def test_gaps_and_other_studies_are_not_merged(self):
         self.run_json("ball.yaml", "--out", "half", "--shard", "1/2", "--allow-failed", code=0)

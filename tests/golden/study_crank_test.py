@@ -152,18 +152,25 @@ class StudyOfTheCrank(ProgramTest):
         self.assertEqual(self.read("whole", "study.csv"), self.read("cut", "study.csv"))
 
     def test_shipped_studies_plan_without_a_message(self):
-        for name, points in (("clearance-bifurcation", 800), ("speed-bifurcation", 800), ("tolerance-bound", 120000),
+        for name, points in (("clearance-bifurcation", 800), ("speed-bifurcation", 800), ("tolerance-bound", 160000),
                              ("tolerance-motion", 2000), ("3-rrr-vs-4-rrr/series", 22), ("3-rrr-vs-4-rrr/ideal", 8)):
             with self.subTest(study=name):
                 out, err = self.study("plan", mechanism(os.path.join("studies", name)), "--probe", "0", "--json")
                 self.assertEqual("", err)
                 self.assertEqual(points, json.loads(out)["points"])
-        told = self.run_study("bound", "--only", "0-3", file=mechanism("studies/tolerance-bound"), code=0)
+        told = self.run_study("bound", "--only", "0,20000,60000,159999", file=mechanism("studies/tolerance-bound"), code=0)
         self.assertEqual([4, 0], [told["done"], told["failed"]])
+        self.study("merge", "bound", "--partial")
+        rows = list(csv.DictReader(self.read("bound", "study.csv").splitlines()))
+        self.assertEqual(["H7/g6", "H7/f7", "H8/e8", "H8/e8"], [row["loose.fit"] for row in rows])
+        for row, (low, high) in zip(rows, ((2.5, 14.5), (6.5, 21.5), (12.5, 34.5), (12.5, 34.5))):  # ISO 286 on 10 mm [um]
+            plays = [float(row[name]) for name in row if name.endswith("radial_clearance") and row[name]]
+            self.assertEqual(8 if row["model"] == "four" else 6, len(plays))
+            self.assertTrue(all(1e-6 * low <= play <= 1e-6 * high for play in plays), row)
 
     def test_mistakes_are_refused_before_anything_runs(self):
         for words, code, said in (
-                (["run", "crank.yaml", "--shard", "5/4"], 2, ["--shard", "I from 1 to N"]),
+                (["run", "crank.yaml", "--shard", "5/4"], 2, ["--shard", "I from 1 to N, here from 1 to 4"]),
                 (["run", "crank.yaml", "--shard", "a/b"], 2, ["I from 1 to N"]),
                 (["run", "crank.yaml", "--only", "99"], 2, ["--only"]),
                 (["run", "crank.yaml", "--keep", "al"], 2, ["--keep", "'all'"]),
@@ -179,6 +186,10 @@ class StudyOfTheCrank(ProgramTest):
                     self.assertIn(word, err)
         for old, new, said in (
                 ("c: [0.1 mm, 0.2 mm, -1 mm, 0.4 mm]", "c: []", ["wrong-length"]),
+                ("c: [0.1 mm, 0.2 mm, -1 mm, 0.4 mm]", "c: {fit: [H7/g6, H7/h6], diameter: 10 mm}",
+                 ["out-of-range", "the radial clearance of H7/h6 on 10 mm is 0 to 12 um"]),
+                ("c: [0.1 mm, 0.2 mm, -1 mm, 0.4 mm]", "c: {fit: [H7/g6, H7/q6], diameter: 10 mm}", ["bad-fit", "'H7/q6'"]),
+                ("c: [0.1 mm, 0.2 mm, -1 mm, 0.4 mm]", "c: {fit: [H7/g6, H7/g6], diameter: 10 mm}", ["duplicate-name", "twice"]),
                 ("    c:", "    cc:", ["unknown-name", "cc"]),
                 ("joints.wrist.clearance", "joints.wirst.clearance", ["unknown-name", "'joints.wrist.clearance.contact.restitution'"]),
                 ("0.9, 3]", "0.9, 100000000]", ["too-large", "--yes"]),

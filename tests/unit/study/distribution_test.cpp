@@ -61,6 +61,10 @@ TEST(IsoFit, HasTheLimitsOfTheStandard) {
   EXPECT_DOUBLE_EQ(close->smallest_clearance(), 2.5e-6);
   EXPECT_DOUBLE_EQ(close->largest_clearance(), 14.5e-6);
   EXPECT_DOUBLE_EQ(iso_fit("H8/e8", 0.010)->smallest_clearance(), 12.5e-6);
+  EXPECT_DOUBLE_EQ(iso_fit("H8/e8", 0.010)->largest_clearance(), 34.5e-6);
+  for (const char* loose : {"H7/f7", "H8/f7"}) EXPECT_DOUBLE_EQ(iso_fit(loose, 0.010)->smallest_clearance(), 6.5e-6);
+  EXPECT_DOUBLE_EQ(iso_fit("H7/f7", 0.010)->largest_clearance(), 21.5e-6);
+  EXPECT_DOUBLE_EQ(iso_fit("H8/f7", 0.010)->largest_clearance(), 25e-6);
   EXPECT_DOUBLE_EQ(iso_fit("G6/h5", 0.010)->largest_clearance(), 10e-6);
   EXPECT_DOUBLE_EQ(iso_fit("JS7/d9", 0.0101)->hole_low, -9e-6);
   EXPECT_DOUBLE_EQ(iso_fit("D11/js5", 0.5)->hole_high, 630e-6);

@@ -169,6 +169,36 @@ TEST_F(StudyPlanning, EachIsAnAxisForEveryPathThatFits) {
   EXPECT_EQ(last.settings.size(), 2u);
 }
 
+TEST_F(StudyPlanning, SeveralFitsAreAChoiceForAllThatTheAxisSets) {
+  write("crank.yaml", loose_crank);
+  write("ball.yaml", plain_ball);
+  write("s.yaml",
+        "freeplay: 1\nstudy:\n  models: {1-ball: ball.yaml, crank: crank.yaml}\n  axes:\n    play: {each: "
+        "'joints.*.radial_clearance', fit: [H7/g6, H7/f7], diameter: 10 mm, where_present: true}\n"
+        "  sample: {method: random, points: 3, seed: 1}\n");
+  const auto plan = read("s.yaml");
+  ASSERT_TRUE(plan) << messages_;
+  ASSERT_EQ(plan->axis_columns().size(), 3u);
+  EXPECT_EQ(plan->axis_columns()[0].name, "play.fit");
+  EXPECT_TRUE(plan->axis_columns()[0].words);
+  EXPECT_EQ(plan->models()[0].name, "1-ball");
+  ASSERT_EQ(plan->points(), 3u + 2u * 3u);  // nothing is to be chosen in the ball
+  EXPECT_THAT(plan->point(0).cells, ElementsAre("", "", ""));
+  EXPECT_EQ(plan->point(3).cells[0], "H7/g6");
+  EXPECT_EQ(plan->point(6).cells[0], "H7/f7");
+  EXPECT_EQ(plan->point(6).settings.size(), 2u);
+  EXPECT_EQ(plan->point(6).sample, plan->point(3).sample);
+  const auto value = [&](std::uint64_t point, std::size_t cell) { return std::stod(plan->point(point).cells[cell]); };
+  // The same numbers give the same place in both zones of the hole, and that of a shaft in g6 and f7.
+  for (const std::size_t cell : {1u, 2u}) {
+    EXPECT_GE(value(3, cell), 2.5e-6);
+    EXPECT_LE(value(3, cell), 14.5e-6);
+    EXPECT_GE(value(6, cell), 6.5e-6);
+    EXPECT_LE(value(6, cell), 21.5e-6);
+  }
+  EXPECT_NE(plan->hash(3), plan->hash(6));
+}
+
 // Three standard errors of the mean and of the deviation of 4000 independent numbers.
 TEST_F(StudyPlanning, RandomValuesHaveTheirMoments) {
   const auto plan = of_ball("  axes: {g: {normal: [10, 2]}}\n  sample: {method: random, points: 4000, seed: 3}\n");
