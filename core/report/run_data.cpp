@@ -293,7 +293,7 @@ Json RunData::bearing_json() const {
   }
   for (std::size_t j = 0; j < std::min(joints.size(), shares_.bearings); ++j) {
     Json json = {{"joint", joints[j]}};
-    bool any = false;  // a ball has no bearing angle
+    bool any = false;  // a joint without a bearing angle has no table
     for (const auto& [name, numbers] : tables) {
       const auto sectors = std::span(numbers).subspan(j * bearing_sectors, bearing_sectors);
       json[name] = base64_floats(sectors);

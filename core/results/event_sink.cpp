@@ -6,6 +6,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "component/joint_roles.h"
+
 namespace freeplay {
 namespace {
 
@@ -34,6 +36,27 @@ std::size_t place_among(const std::vector<std::string>& words, std::string_view 
   return static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
 }
 
+/// The kind of the entry for a contact that is on at the end of a run, by the event that would end it.
+std::string open_kind(std::string_view ending) {
+  constexpr std::string_view ends = "contact_end";
+  if (!ending.ends_with(ends)) return "contact_open";
+  return std::string(ending.substr(0, ending.size() - ends.size())) + "contact_open";
+}
+
+void add_kind(RecordLayout& layout, const std::string& name) {
+  if (place_among(layout.kinds, name) == layout.kinds.size()) layout.kinds.push_back(name);
+}
+
+// Behind the kinds of events that happen.
+void add_open_kinds(const Model& model, RecordLayout& layout) {
+  for (const JointElement& joint : model.joints) {
+    for (std::size_t i = 0; i < joint.layout.events.size; ++i) {
+      if (event_role(joint.layout, i) == EventRole::contact_end)
+        add_kind(layout, open_kind(joint.layout.events[i].name));
+    }
+  }
+}
+
 }  // namespace
 
 void add_event_columns(const Model& model, RecordLayout& layout) {
@@ -47,7 +70,7 @@ void add_event_columns(const Model& model, RecordLayout& layout) {
   for (const JointElement& joint : model.joints) {
     layout.joints.push_back(joint.name);
     for (const Event& event : joint.layout.events) {
-      if (place_among(layout.kinds, event.name) == layout.kinds.size()) layout.kinds.emplace_back(event.name);
+      add_kind(layout, std::string(event.name));
       for (const Channel& field : event.fields) {
         if (place_among(layout.events, field.name) < layout.events.size()) continue;
         const std::string type = joint.component != nullptr ? joint.component->description.name : "a joint";
@@ -56,6 +79,7 @@ void add_event_columns(const Model& model, RecordLayout& layout) {
       }
     }
   }
+  add_open_kinds(model, layout);
 }
 
 EventSink::EventSink(const Model& model, const RecordLayout& layout, Take take)
@@ -65,19 +89,24 @@ EventSink::EventSink(const Model& model, const RecordLayout& layout, Take take)
     for (const Event& event : joint.layout.events) {
       OfEvent& of = events.emplace_back();
       of.kind = place_among(layout.kinds, event.name);
+      of.open_kind = place_among(layout.kinds, open_kind(event.name));
       for (const Channel& field : event.fields) of.place.push_back(place_among(layout.events, field.name));
     }
   }
 }
 
-void EventSink::event(const EventRecord& record) {
+void EventSink::event(const EventRecord& record) { wait(record, -1.0); }
+
+void EventSink::open_contact(const EventRecord& record) { wait(record, record.time - record.contact->begin); }
+
+void EventSink::wait(const EventRecord& record, double open_for) {
   ContactNumbers contact;
   contact.fill(std::numeric_limits<double>::quiet_NaN());
   if (const ContactRecord* ended = record.contact) {
     contact = {ended->approach_speed, ended->impulse, ended->tangential_impulse, ended->energy_lost, ended->impact};
   }
   waiting_.push_back({record.time, static_cast<std::size_t>(record.joint), static_cast<std::size_t>(record.event),
-                      fields_.size(), waiting_.size(), contact});
+                      fields_.size(), waiting_.size(), contact, open_for});
   fields_.insert(fields_.end(), record.fields.begin(), record.fields.end());
 }
 
@@ -101,7 +130,12 @@ void EventSink::give(const Waiting& event) {
   numbers_[0] = event.time;
   numbers_[1] = static_cast<double>(event.joint);
   numbers_[2] = static_cast<double>(of.kind);
-  for (std::size_t i = 0; i < of.place.size(); ++i) numbers_[of.place[i]] = fields_[event.first_field + i];
+  if (event.open_for < 0.0) {
+    for (std::size_t i = 0; i < of.place.size(); ++i) numbers_[of.place[i]] = fields_[event.first_field + i];
+  } else {
+    numbers_[2] = static_cast<double>(of.open_kind);
+    numbers_[duration] = event.open_for;
+  }
   for (std::size_t i = 0; i < contact_numbers; ++i) {
     if (!std::isnan(event.contact[i])) numbers_[of_contact + i] = event.contact[i];
   }

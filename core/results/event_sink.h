@@ -29,6 +29,8 @@ class EventSink : public Sink {
 
   void row(std::span<const double> values) override;
   void event(const EventRecord& record) override;
+  /// An event of the kind contact_open, with the prefix that the contact's other events have.
+  void open_contact(const EventRecord& record) override;
   bool ok() const override { return true; }
   /// Gives what still waits.
   void finish();
@@ -41,12 +43,13 @@ class EventSink : public Sink {
 
  private:
   /// What the run itself says of a contact that ended: the columns from `of_contact` on, whatever the joint tells.
-  static constexpr std::size_t of_contact = 10, contact_numbers = 5;
+  static constexpr std::size_t duration = 6, of_contact = 10, contact_numbers = 5;
   using ContactNumbers = std::array<double, contact_numbers>;
   struct Waiting {
     double time;
     std::size_t joint, event, first_field, order;
     ContactNumbers contact;
+    double open_for = -1.0;  // [s]; below zero: the contact is over. None waits in a checkpoint
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.time, self.joint, self.event, self.first_field, self.order, self.contact);
@@ -54,9 +57,11 @@ class EventSink : public Sink {
   };
   struct OfEvent {
     std::size_t kind;
+    std::size_t open_kind;           // of a contact that it would end
     std::vector<std::size_t> place;  // field: its column
   };
 
+  void wait(const EventRecord& record, double open_for);
   void give_until(double time);
   void give(const Waiting& event);
 

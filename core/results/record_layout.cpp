@@ -109,7 +109,7 @@ RecordLayout record_layout(const Model& model, const Channels& channels, std::sp
          i < sources.size() && channels.all()[i].name.starts_with(prefix); ++i) {
       sources[i] = source;
     }
-    if (joint.has_play) layout.bearings.push_back(joint.name);
+    if (joint.has_play || columns.normal_force >= 0) layout.bearings.push_back(joint.name);
   }
   for (const std::size_t index : picked) {
     const ChannelInfo& channel = channels.all()[index];

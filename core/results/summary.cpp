@@ -150,10 +150,13 @@ Json play_part(const RunRecord& record, int joint) {
           {"mean_fn", json_number(seen.mean_normal_force)},
           {"load_angle", json_number(seen.load_angle)},
           {"load_concentration", json_number(seen.load_concentration)},
+          {"load_elevation", json_number(seen.load_elevation)},
           {"sliding", json_number(seen.sliding)},
           {"work", json_number(seen.work)},
           {"pv_mean", json_number(seen.pv_mean)},
-          {"pv_max", json_number(seen.pv_max)}};
+          {"pv_max", json_number(seen.pv_max)},
+          {"carried_in", json_number(seen.carried_in)},
+          {"carried_out", json_number(seen.carried_out)}};
 }
 
 /// Null for a joint without play; what the file leaves open is null, too.

@@ -22,15 +22,17 @@ ClearanceStatistics::ClearanceStatistics(const Model& model, const Joints& joint
     const JointColumns& columns = channels.joints[at(j)];
     if (columns.normal_force < 0) continue;
     const JointLayout& layout = joints.layout(j);
-    // In space a bearing has an axis, about which the joint turns; a socket has none.
+    // In space a bearing has an axis, about which the joint turns. A socket has none: its angle is that about z of its
+    // own axes, and its load may rise from their plane.
     const bool planar = model.space == Space::planar;
-    const bool is_bearing = columns.eccentricity_x >= 0 && columns.eccentricity_y >= 0 &&
-                            (planar || (columns.eccentricity_z >= 0 && layout.coordinate == Coordinate::angle));
+    const bool is_bearing =
+        columns.eccentricity_x >= 0 && columns.eccentricity_y >= 0 && (planar || columns.eccentricity_z >= 0);
     index_[at(j)] = static_cast<int>(joints_.size());
     OfJoint& joint = joints_.emplace_back();
     joint.joint = j;
     joint.marker = model.joints[at(j)].marker_a;
     joint.is_bearing = is_bearing;
+    joint.is_socket = is_bearing && !planar && layout.coordinate != Coordinate::angle;
     joint.area = 2.0 * (layout.smaller_radius + layout.clearance) * layout.contact_length;
   }
 }
@@ -50,13 +52,18 @@ ClearanceStatistics::Rates ClearanceStatistics::rates(const OfJoint& joint, std:
   const double* axes = e.markers[at(joint.marker)].rotation;
   const double ex = value(columns.eccentricity_x), ey = value(columns.eccentricity_y),
                ez = value(columns.eccentricity_z);
-  const double x = axes[0] * ex + axes[3] * ey + axes[6] * ez, y = axes[1] * ex + axes[4] * ey + axes[7] * ez;
+  const double x = axes[0] * ex + axes[3] * ey + axes[6] * ez, y = axes[1] * ex + axes[4] * ey + axes[7] * ez,
+               z = axes[2] * ex + axes[5] * ey + axes[8] * ez;
   const double angle = std::atan2(y, x), turned = angle < 0.0 ? angle + whole_turn : angle;
   const double sectors = static_cast<double>(BearingTable::sectors);
   out.sector = std::min(static_cast<int>(turned / whole_turn * sectors), static_cast<int>(BearingTable::sectors) - 1);
   const double length = std::sqrt(x * x + y * y);
   out.cosine = length > 0.0 ? x / length : 1.0;
   out.sine = length > 0.0 ? y / length : 0.0;
+  if (const double distance = std::hypot(length, z); joint.is_socket && distance > 0.0) {
+    out.flat = length / distance;
+    out.rise = z / distance;
+  }
   return out;
 }
 
@@ -69,6 +76,9 @@ void ClearanceStatistics::add_half(OfJoint& joint, const Rates& rates, double ha
   if (rates.sector < 0) return;
   joint.load_x += half * rates.normal * rates.cosine;
   joint.load_y += half * rates.normal * rates.sine;
+  joint.across_x += half * rates.normal * rates.flat * rates.cosine;
+  joint.across_y += half * rates.normal * rates.flat * rates.sine;
+  joint.along_z += half * rates.normal * rates.rise;
   const std::size_t k = at(rates.sector);
   joint.table.contact_time[k] += half * rates.contact;
   joint.table.impulse[k] += half * rates.normal;
@@ -76,9 +86,11 @@ void ClearanceStatistics::add_half(OfJoint& joint, const Rates& rates, double ha
   joint.table.work[k] += half * rates.rub;
 }
 
-void ClearanceStatistics::add(std::span<const double> row, const Evaluation& e) {
+// What was lost before the first instant, less what contacts lost that had ended: the rest is of those that were on.
+void ClearanceStatistics::add(std::span<const double> row, const Evaluation& e, std::span<const double> joint_loss) {
   const double t = row[at(channels_.time)], half = seen_ ? 0.5 * (t - time_) : 0.0;
   for (OfJoint& joint : joints_) {
+    if (!seen_) joint.carried_in += joint_loss[at(joint.joint)];
     const Rates now = rates(joint, row, e);
     add_half(joint, joint.last, half);
     add_half(joint, now, half);
@@ -101,6 +113,14 @@ void ClearanceStatistics::add_contact(int joint, double end, const ContactRecord
   sums.impact_time += end - std::max(from_, contact.begin);
 }
 
+void ClearanceStatistics::add_contact_before(int joint, const ContactRecord& contact) {
+  if (has(joint)) joints_[at(index_[at(joint)])].carried_in -= contact.energy_lost;
+}
+
+void ClearanceStatistics::add_open_contact(int joint, const ContactRecord& contact) {
+  if (has(joint)) joints_[at(index_[at(joint)])].carried_out += contact.energy_lost;
+}
+
 PlayFigures ClearanceStatistics::figures(int joint) const {
   const OfJoint& sums = of(joint);
   const bool any = duration_ > 0.0, slides = channels_.joints[at(joint)].slip >= 0;
@@ -118,10 +138,14 @@ PlayFigures ClearanceStatistics::figures(int joint) const {
           .mean_normal_force = sums.impulse / time,
           .load_angle = loaded ? std::atan2(sums.load_y, sums.load_x) : not_known,
           .load_concentration = loaded ? load / sums.impulse : not_known,
+          .load_elevation =
+              loaded && sums.is_socket ? std::atan2(sums.along_z, std::hypot(sums.across_x, sums.across_y)) : not_known,
           .sliding = slides && any ? sums.sliding : not_known,
           .work = slides && any ? sums.work : not_known,
           .pv_mean = slides ? sums.work / sums.area / time : not_known,
-          .pv_max = slides && any ? sums.largest_rub / sums.area : not_known};
+          .pv_max = slides && any ? sums.largest_rub / sums.area : not_known,
+          .carried_in = any ? sums.carried_in : not_known,
+          .carried_out = any ? sums.carried_out : not_known};
 }
 
 BearingTable ClearanceStatistics::table(int joint) const {

@@ -210,6 +210,27 @@ bool ContactLedger::take_step(std::span<const double> row, std::span<const doubl
   return true;
 }
 
+std::vector<ContactLedger::Open> ContactLedger::open() const {
+  std::vector<Open> all;
+  for (const OfJoint& joint : joints_) {
+    for (std::size_t c = 0; c < joint.contacts.size(); ++c) {
+      const Contact& contact = joint.contacts[c];
+      if (!contact.on) continue;
+      const auto end = std::ranges::find_if(
+          joint.kinds, [&](const EventKind& kind) { return kind.role == EventRole::contact_end && kind.contact == c; });
+      all.push_back({.joint = joint.joint,
+                     .event = end == joint.kinds.end() ? -1 : static_cast<int>(end - joint.kinds.begin()),
+                     .record = {.approach_speed = contact.approach_speed,
+                                .impulse = contact.normal.value(),
+                                .tangential_impulse = contact.tangential.value(),
+                                .energy_lost = contact.lost,
+                                .impact = 0.0,
+                                .begin = contact.begin}});
+    }
+  }
+  return all;
+}
+
 const ContactRecord* ContactLedger::ended(std::size_t happening) const {
   const auto found = std::ranges::find(ended_, happening, &Ended::happening);
   return found == ended_.end() ? nullptr : &found->record;

@@ -28,6 +28,14 @@ class ContactLedger {
   /// The contact that an event of the last step ended, by its place among them; null for other events.
   const ContactRecord* ended(std::size_t happening) const;
 
+  /// A contact that is on, and the event that would end it, or -1.
+  struct Open {
+    int joint, event;
+    ContactRecord record;
+  };
+  /// Those at the last state, by joint in declaration order. At the end of a run: they are made anew.
+  std::vector<Open> open() const;
+
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
     archive(self.time_, self.started_, self.joints_);

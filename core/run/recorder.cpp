@@ -88,7 +88,7 @@ bool Recorder::record_step() {
   }
   statistics_.add(row_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), position,
                   velocity);
-  clearances_.add(row_, run_.e_accepted);
+  clearances_.add(row_, run_.e_accepted, run_.energy.joint_loss());
   if (run_.adaptive && run_.ended_abruptly) statistics_.begin_stretch();
   if (run_.adaptive) look_back();
   give_step();
@@ -154,8 +154,10 @@ bool Recorder::write_events() {
     const EventRole role = event_role(run_.system.joints().layout(happening.joint), at(happening.event));
     const ContactRecord* ended = ledger_.ended(i);
     if (role == EventRole::contact_begin) statistics_.add_contact(happening.joint, happening.time);
-    if (ended != nullptr && statistics_.counts(happening.time))
-      clearances_.add_contact(happening.joint, happening.time, *ended);
+    if (ended != nullptr) {
+      statistics_.counts(happening.time) ? clearances_.add_contact(happening.joint, happening.time, *ended)
+                                         : clearances_.add_contact_before(happening.joint, *ended);
+    }
     statistics_.note_event(happening.joint, happening.event, run_.events.fields(happening));
     contact_rows_.pass(happening.joint, happening.event, happening.time, run_.events.fields(happening));
     for (Sink* sink : sinks_) {
@@ -182,6 +184,16 @@ bool Recorder::write_contact_rows() {
 
 void Recorder::write_held_rows() {
   if (contact_rows_.active() && run_.outcome.exit_code != exit_cannot_write) contact_rows_.give_all(giving());
+}
+
+void Recorder::write_open_contacts() {
+  const bool goes_on = run_.outcome.status == RunStatus::interrupted || run_.outcome.exit_code == exit_cannot_write;
+  for (const ContactLedger::Open& open : ledger_.open()) {
+    clearances_.add_open_contact(open.joint, open.record);
+    if (goes_on || open.event < 0) continue;
+    ++run_.outcome.events;
+    for (Sink* sink : sinks_) sink->open_contact({run_.accepted.t(), open.joint, open.event, {}, &open.record});
+  }
 }
 
 ContactRows::Give Recorder::giving() {
@@ -313,7 +325,7 @@ bool Recorder::note_abrupt_end() {
   Fault fault;
   if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
-  if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial);
+  if (statistics_.end_stretch(row_between_)) clearances_.add(row_between_, run_.e_trial, {});
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
   if (contact_rows_.active() || feed_.active()) run_.energy.fill(run_.e_trial, run_.channels, row_between_);
   feed_.see_inside(row_between_);
@@ -333,7 +345,7 @@ bool Recorder::begin_statistics_inside() {
                           run_.between.lambda(), run_.channels, row_between_);
   statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,
                   0.0);
-  clearances_.add(row_between_, run_.e_between);
+  clearances_.add(row_between_, run_.e_between, run_.energy.joint_loss());
   if (contact_rows_.active()) contact_rows_.see_inside(row_between_, false);
   return true;
 }

@@ -52,6 +52,8 @@ class Recorder {
   bool write_rows_inside();
   /// Rows that are held back, of a run that ends where it has no row.
   void write_held_rows();
+  /// What contacts have taken that are on at the end: into the figures and, unless the run may go on, the list.
+  void write_open_contacts();
 
   const Statistics& statistics() const { return statistics_; }
   const ClearanceStatistics& clearances() const { return clearances_; }

@@ -52,6 +52,7 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   if (goes_on || (acceptance.begin() && recorder.write_row())) {
     context.adaptive ? adaptive.run(hooks) : fixed.run(hooks);
   }
+  recorder.write_open_contacts();
   outcome.wall_seconds = end.seconds();
   context.watch.note_exchanged(context.energy.exchanged());
   failure.explain_dead_point();

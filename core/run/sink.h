@@ -9,7 +9,7 @@
 
 namespace freeplay {
 
-/// A contact that ended; NaN: not known.
+/// A contact that ended, or what one has taken that is still on; NaN: not known.
 struct ContactRecord {
   double approach_speed;      ///< at which it began [m/s]
   double impulse;             ///< of the normal force [N s]
@@ -38,6 +38,8 @@ class Sink {
   /// A row inside a contact, between those of the output grid.
   virtual void row_in_contact(std::span<const double> values) { row(values); }
   virtual void event(const EventRecord& record) = 0;
+  /// A contact that is on at the end of the run: `event` is the one that would end it, and has not happened.
+  virtual void open_contact(const EventRecord&) {}
   virtual bool ok() const = 0;
 };
 

@@ -196,6 +196,21 @@ class Results(ProgramTest):
             self.assertEqual(self.read("r", "events.csv"),
                              self.freeplay("export", source, "--to", "csv", "--table", "events")[0])
 
+    @needs("h5py")
+    def test_every_dataset_says_its_unit_what_it_is_and_from_where(self):
+        import h5py
+        self.run_model()
+        seen = []
+
+        def look(name, thing):
+            if isinstance(thing, h5py.Dataset):
+                seen.append(name)
+                self.assertEqual({"units", "long_name", "source"}, {"units", "long_name", "source"} & set(thing.attrs), name)
+        with h5py.File(self.path("r", "results.h5"), "r") as file:
+            file.visititems(look)
+        self.assertGreater(len(seen), 30)
+        self.assertIn("summary_length", seen)
+
     def test_export_picks_channels_and_rows(self):
         self.run_model()
         whole = table(self.read("r", "results.csv"))

@@ -286,6 +286,7 @@ simulation: {end: 10 ms, step: 1 ms}
         times = [float(row[0]) for row in rows[1:]]
         self.assertTrue(times)
         self.assertEqual(sorted(times), times)
+        self.assertEqual("contact_open", rows.pop()[2])  # the run ends in contact
         for row in rows[1:]:
             cells = dict(zip(rows[0], row))
             ended = cells["kind"] == "contact_end"

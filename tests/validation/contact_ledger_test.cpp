@@ -90,6 +90,41 @@ TEST(ContactLedger, ContactsLoseTogetherWhatTheAccountSays) {
   }
 }
 
+// Of what contacts lost that end in the time that counts, or are on at its end, some is from before it.
+TEST(ContactLedger, ContactsThatAreOnAtEitherEndOfTheTimeAreInItsBalance) {
+  for (const char* step : {"step: 2 us", "step: 20 us", "accuracy: 1e-9"}) {
+    const auto bounces = contacts(ModelRun(bouncing(step)));
+    ASSERT_GE(bounces.size(), 6u);
+    const auto inside = [&](std::size_t i) { return 0.6 * bounces[i].begin.time + 0.4 * bounces[i].end.time; };
+    for (const bool discards : {false, true}) {
+      std::string text = bouncing(step, inside(4));
+      if (discards) text = replaced(text, "output: {", "output: {discard: " + number(inside(1)) + ", ");
+      const ModelRun run(text);
+      double ended = 0.0, open = 0.0, listed = 0.0;
+      int open_contacts = 0;
+      for (const Event& event : run.events()) {
+        if (!event.contact) continue;
+        listed += event.contact->energy_lost;
+        if (event.time < (discards ? inside(1) : 0.0)) continue;
+        (event.kind == "contact_open" ? open : ended) += event.contact->energy_lost;
+        if (event.kind != "contact_open") continue;
+        ++open_contacts;
+        EXPECT_EQ(event.contact->impact, 0.0);
+        EXPECT_GT(event.contact->impulse, 0.0);
+        EXPECT_NEAR(event.contact->begin, bounces[4].begin.time, 1e-12);
+      }
+      const double account = run.last("energy.dissipated"), counted = run.statistics().joint(0).dissipated;
+      const PlayFigures play = run.clearances().figures(0);
+      EXPECT_EQ(open_contacts, 1) << step;
+      EXPECT_GT(open, 0.0);
+      EXPECT_NEAR(listed, account, 1e-12 * account) << step;
+      EXPECT_EQ(play.carried_out, open);
+      EXPECT_EQ(play.carried_in > 0.0, discards);
+      EXPECT_NEAR(ended + play.carried_out - play.carried_in, counted, 1e-12 * account) << step;
+    }
+  }
+}
+
 TEST(ContactLedger, LastingContactIsNoImpact) {
   const ModelRun run(bouncing("step: 2 us"));
   const auto all = contacts(run);
@@ -144,6 +179,29 @@ TEST(ClearanceStatistics, JournalThatTurnsAtRestHasTheFiguresOfItsLoad) {
   const BearingTable table = run.clearances().table(0);
   EXPECT_NEAR(table.work[47] + table.work[48], play.work, 1e-12 * play.work);  // 240 degrees is their border
   EXPECT_NEAR(run.last("joint.pin.vt"), slip, 1e-9 * slip);
+}
+
+// A ball of 0.2 kg lies where gravity presses it: in the axes of its socket, which is turned by 90 degrees about z, at
+// (-4, 3, -12)/13. It turns with 10 rad/s about z without friction: slip is R_J w 5/13.
+TEST(ClearanceStatistics, BallThatTurnsAtRestHasTheFiguresOfItsLoad) {
+  const ModelRun run(
+      "freeplay: 1\nspace: spatial\ngravity: [-3, -4, -12]\n"
+      "bodies: {ground: {frames: {cup: {position: [0, 0, 0], rpy: [0, 0, 90 deg]}}}, ball: {mass: 0.2, inertia: [1e-4, "
+      "1e-4, 1e-4], velocity: {angular: [0, 0, 10]}}}\n"
+      "joints: {eye: {type: spherical, between: [ground/cup, ball], clearance: {bearing_radius: 5 mm, "
+      "radial_clearance: 0.1 mm, contact: {law: hertz, K: 1e9}, initial: loaded}}}\n"
+      "simulation: {end: 10 ms, step: 10 us, integrator: bathe, output: {interval: 1 ms, discard: 2 ms}}\n");
+  const double load = 0.2 * 13.0, slip = 4.9e-3 * 10.0 * 5.0 / 13.0, time = 8e-3;
+  const PlayFigures play = run.clearances().figures(0);
+  EXPECT_NEAR(play.mean_normal_force, load, 1e-6 * load);
+  EXPECT_NEAR(play.load_angle, std::atan2(3.0, -4.0), 1e-6);
+  EXPECT_NEAR(play.load_concentration, 1.0, 1e-12);
+  EXPECT_NEAR(play.load_elevation, std::atan2(-12.0, 5.0), 1e-6);
+  EXPECT_NEAR(play.work, load * slip * time, 1e-5 * load * slip * time);
+  ASSERT_TRUE(run.clearances().has_table(0));
+  const BearingTable table = run.clearances().table(0);
+  EXPECT_NEAR(table.work[28], play.work, 1e-12 * play.work);  // 140 to 145 degrees
+  EXPECT_EQ(sum_of(table.work), table.work[28]);
 }
 
 }  // namespace

@@ -87,9 +87,15 @@ class RowKeeper final : public Sink {
   }
   void event(const EventRecord& record) override {
     const JointElement& joint = model_.joints[static_cast<std::size_t>(record.joint)];
+    keep(record, joint, joint.layout.events[static_cast<std::size_t>(record.event)].name);
+  }
+  void open_contact(const EventRecord& record) override {
+    keep(record, model_.joints[static_cast<std::size_t>(record.joint)], "contact_open");
+  }
+  void keep(const EventRecord& record, const JointElement& joint, std::string_view kind) {
     events_.push_back({record.time,
                        joint.name,
-                       joint.layout.events[static_cast<std::size_t>(record.event)].name,
+                       std::string(kind),
                        {record.fields.begin(), record.fields.end()},
                        record.contact != nullptr ? std::optional(*record.contact) : std::nullopt});
   }
