@@ -95,18 +95,18 @@ EventSink::EventSink(const Model& model, const RecordLayout& layout, Take take)
   }
 }
 
-void EventSink::event(const EventRecord& record) { wait(record, -1.0); }
+void EventSink::event(const EventRecord& record) { wait(record, false); }
 
-void EventSink::open_contact(const EventRecord& record) { wait(record, record.time - record.contact->begin); }
+void EventSink::open_contact(const EventRecord& record) { wait(record, true); }
 
-void EventSink::wait(const EventRecord& record, double open_for) {
+void EventSink::wait(const EventRecord& record, bool open) {
   ContactNumbers contact;
   contact.fill(std::numeric_limits<double>::quiet_NaN());
   if (const ContactRecord* ended = record.contact) {
     contact = {ended->approach_speed, ended->impulse, ended->tangential_impulse, ended->energy_lost, ended->impact};
   }
   waiting_.push_back({record.time, static_cast<std::size_t>(record.joint), static_cast<std::size_t>(record.event),
-                      fields_.size(), waiting_.size(), contact, open_for});
+                      fields_.size(), waiting_.size(), contact, open});
   fields_.insert(fields_.end(), record.fields.begin(), record.fields.end());
 }
 
@@ -130,11 +130,9 @@ void EventSink::give(const Waiting& event) {
   numbers_[0] = event.time;
   numbers_[1] = static_cast<double>(event.joint);
   numbers_[2] = static_cast<double>(of.kind);
-  if (event.open_for < 0.0) {
-    for (std::size_t i = 0; i < of.place.size(); ++i) numbers_[of.place[i]] = fields_[event.first_field + i];
-  } else {
-    numbers_[2] = static_cast<double>(of.open_kind);
-    numbers_[duration] = event.open_for;
+  if (event.open) numbers_[2] = static_cast<double>(of.open_kind);
+  for (std::size_t i = 0; i < of.place.size() && !event.open; ++i) {
+    numbers_[of.place[i]] = fields_[event.first_field + i];
   }
   for (std::size_t i = 0; i < contact_numbers; ++i) {
     if (!std::isnan(event.contact[i])) numbers_[of_contact + i] = event.contact[i];

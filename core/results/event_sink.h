@@ -43,13 +43,13 @@ class EventSink : public Sink {
 
  private:
   /// What the run itself says of a contact that ended: the columns from `of_contact` on, whatever the joint tells.
-  static constexpr std::size_t duration = 6, of_contact = 10, contact_numbers = 5;
+  static constexpr std::size_t of_contact = 10, contact_numbers = 5;
   using ContactNumbers = std::array<double, contact_numbers>;
   struct Waiting {
     double time;
     std::size_t joint, event, first_field, order;
     ContactNumbers contact;
-    double open_for = -1.0;  // [s]; below zero: the contact is over. None waits in a checkpoint
+    bool open = false;  // a contact that is on at the end: none waits in a checkpoint
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.time, self.joint, self.event, self.first_field, self.order, self.contact);
@@ -61,7 +61,7 @@ class EventSink : public Sink {
     std::vector<std::size_t> place;  // field: its column
   };
 
-  void wait(const EventRecord& record, double open_for);
+  void wait(const EventRecord& record, bool open);
   void give_until(double time);
   void give(const Waiting& event);
 

@@ -79,17 +79,21 @@ std::unique_ptr<ResultReader> ResultReader::open(const fs::path& path) {
                                : open_csv(path);
   }
   const bool text = fs::exists(path / "results.csv", ignored);
+  std::string passed_over;
   if (fs::exists(path / "results.h5", ignored)) {
     try {
       auto reader = open_known_hdf5(path / "results.h5");
       // Of a run that was killed early the text may hold rows when the other file has none yet.
       if (!text || reader->sealed() || !reader->open_rows(first_column)->next().empty()) return reader;
-    } catch (const Error&) {
+    } catch (const Error& error) {
       if (!text) throw;
+      passed_over = error.message();
     }
   }
   if (!text) unreadable_result(path.string(), "it holds neither results.h5 nor results.csv");
-  return open_csv(path / "results.csv");
+  auto reader = open_csv(path / "results.csv");
+  reader->passed_over_ = passed_over;
+  return reader;
 }
 
 void ResultReader::rows(std::span<const std::size_t> columns, const RowWindow& window, const Take& take) {

@@ -41,6 +41,8 @@ class ResultReader {
 
   /// What is read, for messages.
   const std::string& file() const { return file_; }
+  /// Why a results.h5 beside it is not read, as a message; empty where none is passed over.
+  const std::string& passed_over() const { return passed_over_; }
   /// Names of the columns, the first is time; units and sources where the file has them.
   const RecordLayout& layout() const { return layout_; }
   /// False for an HDF5 file that is still written, or whose writer was killed: not every program opens it.
@@ -65,7 +67,7 @@ class ResultReader {
  protected:
   explicit ResultReader(std::string file) : file_(std::move(file)) {}
 
-  std::string file_;
+  std::string file_, passed_over_;
   RecordLayout layout_;
 };
 

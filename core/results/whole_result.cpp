@@ -147,6 +147,8 @@ std::string part_of_a_line(const fs::path& directory) {
 
 std::string missing_part(ResultReader& reader, const std::string& table) {
   const fs::path file = reader.file();
+  if (!reader.passed_over().empty())
+    return fmt::format("{}; rows are those of '{}'", reader.passed_over(), file.string());
   if (!is_text(file)) return {};  // others are read as a whole or not at all
   if (table == "events" || table == "impacts") return missing_events(file.parent_path());
   Sha256 hash;

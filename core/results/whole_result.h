@@ -28,9 +28,9 @@ std::string misfit_of(const std::filesystem::path& directory, const Json& summar
 /// Empty where nothing does.
 std::string part_of_a_line(const std::filesystem::path& directory);
 
-/// What is missing of that table of a file of rows, as far as a count shows: lines of a results.csv that its summary
-/// counts, events that it has the fingerprint of, the end of a last line, text that the record beside a table has the
-/// fingerprint of. Empty where nothing is known to be.
+/// What is missing of that table of a file of rows, as far as a count shows: the results.h5 that it stands for, lines
+/// of a results.csv that its summary counts, events that it has the fingerprint of, the end of a last line, text that
+/// the record beside a table has the fingerprint of. Empty where nothing is known to be.
 std::string missing_part(ResultReader& reader, const std::string& table = "results");
 
 }  // namespace freeplay

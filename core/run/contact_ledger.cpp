@@ -224,7 +224,7 @@ std::vector<ContactLedger::Open> ContactLedger::open() const {
                                 .impulse = contact.normal.value(),
                                 .tangential_impulse = contact.tangential.value(),
                                 .energy_lost = contact.lost,
-                                .impact = 0.0,
+                                .impact = not_seen,
                                 .begin = contact.begin}});
     }
   }

@@ -133,6 +133,14 @@ class Changed(ProgramTest):
         self.assertIn("nothing to do", self.freeplay("run", "--resume", "r")[0])
         self.assertIn("nothing to do", self.freeplay("seal", "r")[0])
 
+    def test_a_damaged_hdf5_file_that_text_stands_for_is_named(self):
+        self.freeplay("run", CRANK, "--quiet", "--end", "4 ms", "--out", "r")
+        self.cut(0.5, "r", "results.h5")
+        for command in (("compare", "r", "r"), ("export", "r", "--to", "csv")):
+            _, err = self.freeplay(*command)
+            with self.subTest(command[0]):
+                self.assertRegex(err, "warning: result 'r/results.h5' cannot be read: .*; rows are those of 'r/results.csv'")
+
     def test_an_export_of_a_part_says_so(self):
         self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--format", "csv", "--out", "r")
         _, err = self.freeplay("export", "r", "--to", "csv", "--out", "whole.csv")
