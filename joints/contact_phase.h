@@ -39,6 +39,13 @@ inline constexpr Channel event_fields[] = {
     {"speed", "m/s"}, {"tangential_speed", "m/s"}, {"direction", "rad"}, {"duration", "s"},
     {"max_fn", "N"},  {"max_delta", "m"},          {"steps", "1"},       {"impact", "1"}};
 inline constexpr EventRole begin_and_end[] = {EventRole::contact_begin, EventRole::contact_end};
+/// Input and history of one of the contacts of a joint.
+inline JointInput contact_input(const JointInput& in, std::size_t index) {
+  JointInput one = in;
+  one.history = in.history.part(index * slots, slots);
+  return one;
+}
+
 /// Where steps end at events a flight lasts until its event: an attempt that passes it stays smooth.
 inline bool flies(const JointInput& in) { return in.per_contact != 0.0 && in.history[phase] == flight; }
 inline bool touches(const JointInput& in, const Approach& gap) { return gap.penetration > 0.0 && !flies(in); }
@@ -78,6 +85,17 @@ inline double time_to_contact(const Approach& gap, double second) {
   if (gap.rate >= 0.0) s = -2.0 * gap.penetration / (gap.rate + root);
   if (gap.rate < 0.0 && second > 0.0) s = (root - gap.rate) / second;
   return s;
+}
+
+/// v_0 of a contact that begins within dt, from delta'' and the size that the speed of approach has at most after a
+/// time s. 0: none does.
+template <class MostSpeed>
+double predicted_speed(const Approach& gap, double second, double dt, const MostSpeed& most_speed) {
+  if (gap.penetration >= 0.0) return gap.rate > 0.0 ? std::max(gap.rate, smallest_approach_speed) : 0.0;
+  const double s = time_to_contact(gap, second);
+  if (!(s <= dt)) return 0.0;
+  // The parabola may be poor; the speed of approach never exceeds the speed.
+  return std::max(std::min(gap.rate + second * s, most_speed(s)), smallest_approach_speed);
 }
 
 /// A contact begins at time t with the rate `rate`. What is on from the start keeps v_0 = 0 and its time.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "freeplay/plugin.h"
 
@@ -12,28 +13,40 @@ namespace freeplay::play {
 
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Radii [m] of the journal and of its bearing. Those that the file leaves open are NaN; the clearance is known.
+/// Radii [m] of the journal and of its bearing, or half the widths of a slider and of its guide. Those that the file
+/// leaves open are NaN; the clearance is known.
 struct Radii {
   double bearing, journal, clearance;
   bool known() const { return !std::isnan(bearing); }
 };
 
+/// Paths of the keys that give the sizes of both surfaces: outer - inner = parts times play.
+struct SizeKeys {
+  const char *outer, *inner, *play;
+  double parts = 1.0;
+
+  static std::string quoted(const char* path) { return "'" + std::string(path).substr(path_start) + "'"; }
+  /// The outer size as the play counts it.
+  std::string share_of_outer() const { return (parts == 1.0 ? "" : "half of ") + quoted(outer); }
+  static constexpr std::size_t path_start = sizeof("clearance.") - 1;
+};
+inline constexpr SizeKeys radius_keys{"clearance.bearing_radius", "clearance.journal_radius",
+                                      "clearance.radial_clearance"};
+
 /// Reads two of three, all three that agree to 1e-9 of the clearance, or the clearance alone. Throws BadParameter.
-inline Radii read_radii(const Parameters& p) {
-  Radii r{p.number("clearance.bearing_radius"), p.number("clearance.journal_radius"),
-          p.number("clearance.radial_clearance")};
+inline Radii read_radii(const Parameters& p, const SizeKeys& keys = radius_keys) {
+  const std::string outer = SizeKeys::quoted(keys.outer), inner = SizeKeys::quoted(keys.inner),
+                    play = SizeKeys::quoted(keys.play);
+  Radii r{p.number(keys.outer) / keys.parts, p.number(keys.inner) / keys.parts, p.number(keys.play)};
   const bool bearing = !std::isnan(r.bearing), journal = !std::isnan(r.journal), gap = !std::isnan(r.clearance);
   if (!gap && !(bearing && journal))
-    throw BadParameter("clearance", "missing-key",
-                       "give two of 'bearing_radius', 'journal_radius' and 'radial_clearance'");
+    throw BadParameter("clearance", "missing-key", "give two of " + outer + ", " + inner + " and " + play);
   if (bearing && journal && !(r.journal < r.bearing))
-    throw BadParameter("clearance.journal_radius", "out-of-range", "'journal_radius' must be below 'bearing_radius'");
+    throw BadParameter(keys.inner, "out-of-range", inner + " must be below " + outer);
   if (bearing && journal && gap && !(std::abs(r.bearing - r.journal - r.clearance) <= 1e-9 * r.clearance))
-    throw BadParameter("clearance.radial_clearance", "conflicting-keys",
-                       "'radial_clearance' is not 'bearing_radius' minus 'journal_radius'");
+    throw BadParameter(keys.play, "conflicting-keys", play + " is not " + keys.share_of_outer() + " minus " + inner);
   if (bearing && gap && !(r.clearance < r.bearing))
-    throw BadParameter("clearance.radial_clearance", "out-of-range",
-                       "'radial_clearance' must be below 'bearing_radius'");
+    throw BadParameter(keys.play, "out-of-range", play + " must be below " + keys.share_of_outer());
   // All three come from the two that keep the difference exact.
   if (!gap) r.clearance = r.bearing - r.journal;
   if (gap && bearing) r.journal = r.bearing - r.clearance;
@@ -135,7 +148,7 @@ inline constexpr Parameter radius_rows[] = {
     length("clearance.journal_radius", "Radius of the pin on the second body."),
     length("clearance.radial_clearance", "Bearing minus journal radius."),
 };
-inline constexpr Parameter contact_rows[] = {
+inline constexpr Parameter law_rows[] = {
     modulus("clearance.material.E", "Young's modulus of both sides."),
     poisson("clearance.material.nu", "Poisson's ratio of both sides."),
     modulus("clearance.material.bearing.E", "Young's modulus of the bearing."),
@@ -150,6 +163,8 @@ inline constexpr Parameter contact_rows[] = {
      .kind = ParameterKind::friction_law,
      .default_value = optional,
      .summary = "Law of the tangential force."},
+};
+inline constexpr Parameter start_rows[] = {
     {.name = "clearance.initial",
      .kind = ParameterKind::choice,
      .default_value = 0,
@@ -167,13 +182,13 @@ inline constexpr Parameter contact_rows[] = {
      .summary = "Velocity of the journal centre relative to the bearing centre at the start, global axes."},
 };
 
-template <std::size_t N>
-constexpr auto table_with(const std::array<Parameter, N>& own) {
-  std::array<Parameter, std::size(radius_rows) + N + std::size(contact_rows)> table{};
-  auto next = std::copy(std::begin(radius_rows), std::end(radius_rows), table.begin());
-  next = std::copy(own.begin(), own.end(), next);
-  std::copy(std::begin(contact_rows), std::end(contact_rows), next);
-  return table;
+/// Tables one after the other.
+template <std::size_t... N>
+constexpr auto joined(const Parameter (&... tables)[N]) {
+  std::array<Parameter, (N + ...)> all{};
+  auto next = all.begin();
+  ((next = std::copy(std::begin(tables), std::end(tables), next)), ...);
+  return all;
 }
 
 }  // namespace freeplay::play

@@ -9,6 +9,7 @@ Component point_on_line();
 Component distance();
 Component spring_damper();
 Component revolute_clearance();
+Component prismatic_clearance();
 Component spherical();
 Component universal();
 Component cylindrical();
@@ -21,9 +22,21 @@ Component joint_stop();
 
 FREEPLAY_PLUGIN(joints) {
   using namespace freeplay;
-  static const Component components[] = {
-      revolute(),      prismatic(),           fixed(),     point_on_line(),  distance(),
-      spring_damper(), revolute_clearance(),  spherical(), universal(),      cylindrical(),
-      planar_joint(),  spherical_clearance(), bushing(),   joint_friction(), joint_stop()};
+  static const Component components[] = {revolute(),
+                                         prismatic(),
+                                         fixed(),
+                                         point_on_line(),
+                                         distance(),
+                                         spring_damper(),
+                                         revolute_clearance(),
+                                         prismatic_clearance(),
+                                         spherical(),
+                                         universal(),
+                                         cylindrical(),
+                                         planar_joint(),
+                                         spherical_clearance(),
+                                         bushing(),
+                                         joint_friction(),
+                                         joint_stop()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

@@ -3,6 +3,7 @@
 
 #include "contact_phase.h"
 #include "freeplay/plugin.h"
+#include "friction_slopes.h"
 #include "planar_marker.h"
 #include "revolute_clearance_in_space.h"
 
@@ -34,9 +35,6 @@ struct Gap : Approach {
   double slip;                // v_T [m/s]
   Eigen::Vector2d n{1.0, 0.0}, t;
 };
-
-/// Internal variables that a friction law may have here: derivatives are made on the stack.
-constexpr std::size_t most_internal_variables = 8;
 
 constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
                                     {"contact_end", Crossing::falling, 1, event_fields}};
@@ -236,14 +234,9 @@ class RevoluteClearance final : public Joint {
   /// delta'' = n.e'' + (e'.e' - delta'^2)/|e|; returns v_0 = delta' + delta'' s, 0 without a root.
   double predict(const Gap& gap, const MarkerAccelerations& acc, double dt) const {
     if (gap.distance < 1e-12 * radii_.clearance) return 0.0;
-    if (gap.penetration >= 0.0) return gap.rate > 0.0 ? std::max(gap.rate, smallest_approach_speed) : 0.0;
     const Eigen::Vector2d e_second(acc.b[0] - acc.a[0], acc.b[1] - acc.a[1]);
     const double second = gap.n.dot(e_second) + (gap.e_rate.squaredNorm() - gap.rate * gap.rate) / gap.distance;
-    const double s = time_to_contact(gap, second);
-    if (!(s <= dt)) return 0.0;
-    // Near the centre the parabola is poor; the speed of approach never exceeds the speed.
-    const double speed = (gap.e_rate + s * e_second).norm();
-    return std::max(std::min(gap.rate + second * s, speed), smallest_approach_speed);
+    return predicted_speed(gap, second, dt, [&](double s) { return (gap.e_rate + s * e_second).norm(); });
   }
 
   /// 1/m = n^T W n with the mobility W.
@@ -298,32 +291,18 @@ class RevoluteClearance final : public Joint {
     row[23] = g[5];
   }
 
-  /// Friction laws give no derivatives of z' nor by z: those are central differences.
   void differentiate_internal(const JointInput& in, const Gap& gap, const Forces& f, const Gradient& normal_force,
                               const Gradient& slip, Span<double> derivatives) const {
     const std::size_t n = static_cast<std::size_t>(internal_variables_), size = 24 + n;
-    double z[most_internal_variables], high[most_internal_variables], low[most_internal_variables];
-    std::copy(in.internal.begin(), in.internal.end(), z);
-    FrictionState state{f.normal.normal, gap.slip, {z, n}};
-    const auto step_of = [](double x, double scale) { return 1e-5 * std::max(std::abs(x), scale); };
-
-    const auto by = [&](double& x, double scale) {
-      const double middle = x, step = step_of(x, scale);
-      x = middle + step;
-      const double above = friction_law_.evaluate(state, {high, n}).tangential;
-      x = middle - step;
-      const double below = friction_law_.evaluate(state, {low, n}).tangential;
-      x = middle;
-      for (std::size_t i = 0; i < n; ++i) high[i] = (high[i] - low[i]) / (2.0 * step);
-      return (above - below) / (2.0 * step);
-    };
-    by(state.normal_force, 1.0);
+    FrictionSlopes slopes(friction_law_, f.normal.normal, gap.slip, in.internal);
+    const double* const rate_by = slopes.rates();
+    slopes.by_normal_force();
     Gradient rows[most_internal_variables];
-    for (std::size_t i = 0; i < n; ++i) rows[i] = high[i] * normal_force;
-    by(state.slip_speed, 1e-3);
-    for (std::size_t i = 0; i < n; ++i) scatter(rows[i] + high[i] * slip, derivatives.data + (12 + i) * size);
+    for (std::size_t i = 0; i < n; ++i) rows[i] = rate_by[i] * normal_force;
+    slopes.by_slip();
+    for (std::size_t i = 0; i < n; ++i) scatter(rows[i] + rate_by[i] * slip, derivatives.data + (12 + i) * size);
     for (std::size_t k = 0; k < n; ++k) {
-      const double tangential = by(z[k], 1e-6);
+      const double tangential = slopes.by_variable(k);
       const std::size_t column = 24 + k;
       for (std::size_t i = 0; i < 2; ++i) {
         derivatives[i * size + column] = -tangential * gap.t[static_cast<int>(i)];
@@ -331,7 +310,7 @@ class RevoluteClearance final : public Joint {
       }
       derivatives[5 * size + column] = -arm_a(gap) * tangential;
       derivatives[11 * size + column] = arm_b(gap) * tangential;
-      for (std::size_t i = 0; i < n; ++i) derivatives[(12 + i) * size + column] = high[i];
+      for (std::size_t i = 0; i < n; ++i) derivatives[(12 + i) * size + column] = rate_by[i];
     }
   }
 
@@ -343,14 +322,15 @@ class RevoluteClearance final : public Joint {
   Start start_;
 };
 
-constexpr auto revolute_clearance_parameters = table_with<2>(
-    {length("clearance.length", "Axial length of the contact, for laws that need it; in space that of the bearing."),
-     Parameter{.name = "clearance.axial_clearance",
-               .unit = "m",
-               .default_value = optional,
-               .minimum = 0.0,
-               .summary = "Spatial models: play of the journal's shoulders along the axis, to each side; the radial "
-                          "clearance unless given."}});
+constexpr Parameter bearing_rows[] = {
+    length("clearance.length", "Axial length of the contact, for laws that need it; in space that of the bearing."),
+    {.name = "clearance.axial_clearance",
+     .unit = "m",
+     .default_value = optional,
+     .minimum = 0.0,
+     .summary = "Spatial models: play of the journal's shoulders along the axis, to each side; the radial clearance "
+                "unless given."}};
+constexpr auto revolute_clearance_parameters = joined(radius_rows, bearing_rows, law_rows, start_rows);
 
 }  // namespace
 

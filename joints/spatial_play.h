@@ -163,16 +163,10 @@ Vec<T> SpatialPlay::friction_force(const T& normal, const Vec<T>& slip, const Ve
   return force * u + sideways * p;
 }
 
-/// v_0 of a contact that begins within dt, from delta'' and the vectors of which delta is made: x' and x''. 0: none
-/// does.
+/// The same with the vectors of which delta is made: x' and x''.
 inline double predicted_speed(const Approach& gap, double second, const Eigen::Vector3d& rate,
                               const Eigen::Vector3d& rate_of_rate, double dt) {
-  if (gap.penetration >= 0.0) return gap.rate > 0.0 ? std::max(gap.rate, smallest_approach_speed) : 0.0;
-  const double s = time_to_contact(gap, second);
-  if (!(s <= dt)) return 0.0;
-  // Near the centre the parabola is poor; the speed of approach never exceeds the speed.
-  const double speed = (rate + s * rate_of_rate).norm();
-  return std::max(std::min(gap.rate + second * s, speed), smallest_approach_speed);
+  return predicted_speed(gap, second, dt, [&](double s) { return (rate + s * rate_of_rate).norm(); });
 }
 
 /// What a contact remembers: its internal variables less what they were when the last contact ended, since not every
@@ -209,13 +203,6 @@ void differentiate_by_memory(const SpatialPlay& play, double normal, const Vec<d
     for (std::size_t i = 0; i < size; ++i) high[i] = (high[i] - low[i]) / (2.0 * step);
     use(j, (0.5 / step) * (above - below), Span<const double>{high, size});
   }
-}
-
-/// Input and history of one of the contacts of a joint.
-inline JointInput contact_input(const JointInput& in, std::size_t index) {
-  JointInput one = in;
-  one.history = in.history.part(index * slots, slots);
-  return one;
 }
 
 }  // namespace freeplay::play

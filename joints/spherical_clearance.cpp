@@ -245,7 +245,7 @@ class SphericalClearance final : public Joint {
   SpatialPlay play_;
 };
 
-constexpr auto spherical_clearance_parameters = table_with<0>({});
+constexpr auto spherical_clearance_parameters = joined(radius_rows, law_rows, start_rows);
 
 }  // namespace
 

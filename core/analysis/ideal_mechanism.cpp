@@ -116,7 +116,13 @@ void IdealMechanism::add_play(int joint, double radius) {
     if (size > 0.0) plays_.push_back(play);
   };
   const double length = parameter(model_->joints[at(joint)], "clearance.length");
-  if (model_->space == Space::planar) {
+  const bool slide = model_->joints[at(joint)].ideal_layout.coordinate == Coordinate::position;
+  if (model_->space == Space::planar && slide && length > 0.0) {
+    // Both ends of the slider are free across the guide, each by itself.
+    const double tilt = 1.0 / length;
+    add(radius, {{0.0, 0.5, 0.0, 0.0, 0.0, tilt}}, ".front");
+    add(radius, {{0.0, 0.5, 0.0, 0.0, 0.0, -tilt}}, ".rear");
+  } else if (model_->space == Space::planar) {
     add(radius, {{1.0}, {0.0, 1.0}}, "");
   } else if (!(length > 0.0)) {
     add(radius, {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}}, "");

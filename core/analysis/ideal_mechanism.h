@@ -37,8 +37,8 @@ struct Play {
   int size = 2;           ///< numbers of delta: 1, 2 or 3
   bool own_axes = false;  ///< twists are along the axes of the first marker, else along those of the world
   std::array<std::array<double, 6>, 3> twist{};  ///< by number: shift [m/m], rotation vector [rad/m]
-  const char* part = "";                         ///< of several of one joint: ".upper", ".lower" (ends), ".axial"
-  int place = 0;                                 ///< of its first number among those of all plays
+  const char* part = "";  ///< of several of one joint: ".upper", ".lower" (ends), ".axial", ".front"
+  int place = 0;          ///< of its first number among those of all plays
 };
 
 class IdealMechanism {

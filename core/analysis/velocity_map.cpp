@@ -137,6 +137,9 @@ void VelocityMapper::put_play(Group& group, std::size_t p, const Evaluation& e) 
   const int marker = second ? joint.marker_b : joint.marker_a;
   const Index first = kept_ + static_cast<Index>(group.inputs.size()) + group.play_columns[p];
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(e.markers[at(joint.marker_a)].rotation);
+  const bool slide = joint.ideal_layout.coordinate == Coordinate::position;
+  const Eigen::Vector3d lever = Eigen::Map<const Eigen::Vector3d>(e.markers[at(joint.marker_a)].position) -
+                                Eigen::Map<const Eigen::Vector3d>(e.markers[at(joint.marker_b)].position);
   for (const JacobianBlock& block : system_.jacobian().blocks()) {
     if (block.row != rows.offset || block.body != model.markers[at(marker)].body || block.rows != rows.size) continue;
     for (int r = 0; r < rows.size; ++r) {
@@ -144,7 +147,10 @@ void VelocityMapper::put_play(Group& group, std::size_t p, const Evaluation& e) 
       system_.markers().twist_row(marker, &e.jacobian[at(block.offset + system_.layout().body_velocities() * r)], e,
                                   row);
       for (int k = 0; k < play.size; ++k) {
-        Eigen::Map<const Eigen::Vector3d> shift(play.twist[at(k)].data()), turn(play.twist[at(k)].data() + 3);
+        const Eigen::Map<const Eigen::Vector3d> turn(play.twist[at(k)].data() + 3);
+        Eigen::Vector3d shift = Eigen::Map<const Eigen::Vector3d>(play.twist[at(k)].data());
+        // The turn is about the second marker, which stands elsewhere than the first on a slide.
+        if (slide && !second) shift += turn.cross(axes.transpose() * lever);
         const Eigen::Map<const Eigen::Vector3d> force(row), moment(row + 3);
         const double felt =
             play.own_axes ? force.dot(axes * shift) + moment.dot(axes * turn) : force.dot(shift) + moment.dot(turn);

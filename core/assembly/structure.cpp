@@ -114,18 +114,20 @@ class Examination {
       const MarkerKinematics &a = open_.markers[at(joint.marker_a)], &b = open_.markers[at(joint.marker_b)];
       double apart[3], along = 0.0;
       for (std::size_t i = 0; i < 3; ++i) apart[i] = b.position[i] - a.position[i];
-      // Of a pin in space its axis, z of the first marker, does not count.
+      // The axis of a pin in space, z of the first marker, does not count, nor does that of a slide, x.
+      const bool slide = joint.ideal_layout.coordinate == Coordinate::position;
       const bool pin = model_.space == Space::spatial && joint.ideal_layout.coordinate == Coordinate::angle;
-      for (std::size_t i = 0; i < 3 && pin; ++i) along += apart[i] * a.rotation[3 * i + 2];
-      for (std::size_t i = 0; i < 3 && pin; ++i) apart[i] -= along * a.rotation[3 * i + 2];
+      const std::size_t axis = slide ? 0 : 2;
+      for (std::size_t i = 0; i < 3 && (pin || slide); ++i) along += apart[i] * a.rotation[3 * i + axis];
+      for (std::size_t i = 0; i < 3 && (pin || slide); ++i) apart[i] -= along * a.rotation[3 * i + axis];
       const double eccentricity = std::hypot(apart[0], apart[1], apart[2]);
       if (eccentricity <= deep_start * play) continue;
-      doubt(
-          "doubtful-clearance",
-          fmt::format("the journal of joint '{}' starts {:.3g} m from the centre of its bearing, {:.3g} m deep in its "
-                      "wall, as the clearance is {:.3g} m: check 'initial' and the clearance",
-                      joint.name, eccentricity, eccentricity - play, play),
-          joint.name, joint.location);
+      doubt("doubtful-clearance",
+            fmt::format("the {} of joint '{}' starts {:.3g} m from the {}, {:.3g} m deep in its wall, as the clearance "
+                        "is {:.3g} m: check 'initial' and the clearance",
+                        slide ? "slider" : "journal", joint.name, eccentricity,
+                        slide ? "middle of its guide" : "centre of its bearing", eccentricity - play, play),
+            joint.name, joint.location);
     }
   }
 

@@ -220,11 +220,15 @@ class WarmStart {
     evaluate(term_position);
   }
 
-  /// Where the second marker of a joint stands from its first [m].
+  /// Where the second marker of a joint stands from its first, of a slide across it [m].
   Eigen::Vector3d gap(int joint) const {
     const JointElement& one = model_.joints[at(joint)];
-    return Eigen::Map<const Eigen::Vector3d>(e_.markers[at(one.marker_b)].position) -
-           Eigen::Map<const Eigen::Vector3d>(e_.markers[at(one.marker_a)].position);
+    const MarkerKinematics &a = e_.markers[at(one.marker_a)], &b = e_.markers[at(one.marker_b)];
+    const Eigen::Vector3d apart =
+        Eigen::Map<const Eigen::Vector3d>(b.position) - Eigen::Map<const Eigen::Vector3d>(a.position);
+    if (one.ideal_layout.coordinate != Coordinate::position) return apart;
+    const Eigen::Vector3d axis(a.rotation[0], a.rotation[3], a.rotation[6]);
+    return apart - axis.dot(apart) * axis;
   }
 
   void close() {

@@ -115,8 +115,13 @@ class JointEntry {
       const Description& twin = other.component->description;
       if (other.component->kind != ComponentKind::joint || !same_text(twin.ideal, named.description.name)) continue;
       if (twin.block == nullptr) continue;
-      if (map_.has(twin.block)) component_ = other.component;
-      map_.find(twin.block);
+      const std::optional<CheckedValue> block = map_.find(twin.block);
+      if (!block) continue;
+      if (serves(twin.space, draft_.model.space)) {
+        component_ = other.component;
+      } else {
+        refuse_block(named, *block);
+      }
     }
     const char* ideal = component_->description.ideal;
     if (ideal == nullptr) return;
@@ -126,6 +131,12 @@ class JointEntry {
                   std::string("the ideal type '") + ideal + "' of '" + component_->description.name + "' is missing",
                   entry_.key_location());
     }
+  }
+
+  void refuse_block(const Component& named, const CheckedValue& block) const {
+    const bool planar = draft_.model.space == Space::planar;
+    block.fail_at_key("type-space", fmt::format("'{}' of the type '{}' works in {} models only", block.key(),
+                                                named.description.name, planar ? "spatial" : "planar"));
   }
 
   // --- ends ------------------------------------------------------------------------------------------------------

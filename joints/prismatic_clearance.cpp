@@ -1,0 +1,228 @@
+#include <cmath>
+#include <string>
+
+#include "freeplay/plugin.h"
+#include "planar_contacts.h"
+#include "planar_slide.h"
+
+namespace freeplay {
+namespace {
+
+using namespace play;
+
+constexpr SizeKeys width_keys{"clearance.guide_width", "clearance.width", "clearance.gap", 2.0};
+
+/// The four corners of a block of length l and width 2 B, centred on b, between walls at +-(B + g) along the x axis of
+/// a. In the order front and rear upper, front and rear lower; front is +x of b.
+struct BlockInGuide {
+  static constexpr std::size_t contacts = 4;
+  static double side(std::size_t i) { return i < 2 ? 1.0 : -1.0; }
+  static double end(std::size_t i) { return i % 2 == 0 ? 1.0 : -1.0; }
+
+  template <class T>
+  ContactPlace<T> place(const PlanarMotion<T>& m, std::size_t i) const {
+    const double along = end(i) * half_length, across = side(i) * half_width;
+    const T rise = T(along) * m.s;
+    return {T(side(i)) * (m.d.y + rise) - T(half_width) * sag(m) - T(play),
+            {T(0.0), T(side(i))},
+            {T(along) * m.c - T(across) * m.s, rise + T(across) * m.c},
+            -side(i)};
+  }
+  /// 1 - cos without the loss of digits of a difference; past a quarter turn the block is none.
+  template <class T>
+  static T sag(const PlanarMotion<T>& m) {
+    return space::value_of(m.c) > 0.0 ? (m.s * m.s) / (T(1.0) + m.c) : T(1.0) - m.c;
+  }
+
+  double half_length, half_width;  ///< [m]
+  double play;                     ///< g, to each side [m]
+};
+
+constexpr const char* corner_events[] = {
+    "front_upper_contact_begin", "front_upper_contact_end", "rear_upper_contact_begin", "rear_upper_contact_end",
+    "front_lower_contact_begin", "front_lower_contact_end", "rear_lower_contact_begin", "rear_lower_contact_end"};
+constexpr auto events_of_corners() {
+  std::array<Event, 2 * BlockInGuide::contacts> all{};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = {corner_events[i], i % 2 == 0 ? Crossing::rising : Crossing::falling, 1, event_fields};
+  return all;
+}
+constexpr auto all_events = events_of_corners();
+constexpr EventRole event_roles[] = {EventRole::contact_begin, EventRole::contact_end,   EventRole::contact_begin,
+                                     EventRole::contact_end,   EventRole::contact_begin, EventRole::contact_end,
+                                     EventRole::contact_begin, EventRole::contact_end};
+
+constexpr Channel slide_channels[] = {{"shift", "m"},
+                                      {"tilt", "rad"},
+                                      {"delta", "m"},
+                                      {"fn", "N"},
+                                      {"ft", "N"},
+                                      {"power", "W"},
+                                      {"contact", "1"},
+                                      {"vt", "m/s"},
+                                      {"front_upper_delta", "m"},
+                                      {"front_upper_fn", "N"},
+                                      {"front_upper_ft", "N"},
+                                      {"rear_upper_delta", "m"},
+                                      {"rear_upper_fn", "N"},
+                                      {"rear_upper_ft", "N"},
+                                      {"front_lower_delta", "m"},
+                                      {"front_lower_fn", "N"},
+                                      {"front_lower_ft", "N"},
+                                      {"rear_lower_delta", "m"},
+                                      {"rear_lower_fn", "N"},
+                                      {"rear_lower_ft", "N"}};
+constexpr ChannelRole slide_roles[] = {
+    ChannelRole::none,           ChannelRole::none, ChannelRole::penetration, ChannelRole::normal_force,
+    ChannelRole::friction_force, ChannelRole::none, ChannelRole::in_contact,  ChannelRole::slip_speed,
+    ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none,
+    ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none,
+    ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none};
+
+/// Where the block starts in its guide: across it, untilted.
+struct SlideStart {
+  explicit SlideStart(const Parameters& p) {
+    const int word = p.word("clearance.initial");
+    loaded = word == 1;
+    if (word >= 0) return;
+    shift = across(p, "clearance.initial.eccentricity");
+    shift_rate = across(p, "clearance.initial.velocity");
+  }
+  static double across(const Parameters& p, const char* path) {
+    const auto value = p.vector(path);
+    if (value[0] != 0.0)
+      throw BadParameter(path, "out-of-range",
+                         "its first number, along the guide, must be 0: the slider is free there; `initial: {joints: "
+                         "...}` of the model sets it");
+    return value[1];
+  }
+  bool loaded = false;
+  double shift = 0.0, shift_rate = 0.0;  // [m], [m/s]
+};
+
+/// Slider with play in its guide, in the plane: a block of length l and width 2 B (marker b in its middle) between two
+/// walls at +-(B + g) along the x axis h of marker a, n normal to it. No constraint rows. Its four corners touch by a
+/// contact law and a friction law, each by itself; corner i has s_i = (+-l/2, sigma B) in the axes of b, sigma = +1 for
+/// the upper two, and meets its own wall only. With the angle Theta of b against a and d = P_b - P_a
+///
+///   delta_i = sigma (n.d + s_x sin(Theta)) - B (1 - cos(Theta)) - g
+///
+/// `planar_contacts.h` has what follows from it. One corner, two on a side or two opposite ones are not told apart; as
+/// the block lays itself flat, its two corners tend to the same force. Where only g is known, B counts as zero:
+/// friction is then inert. Flores, Ambrosio, Claro and Lankarani 2008, J Comput Nonlinear Dyn 3, 011007; Flores, Leine
+/// and Glocker 2010, Multibody Syst Dyn 23.
+class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
+ public:
+  explicit PrismaticClearance(const Parameters& p) : PrismaticClearance(p, read_radii(p, width_keys)) {}
+
+  void declare(JointLayout& layout) const override {
+    declare_contacts(layout);
+    layout.coordinate = Coordinate::position;
+    layout.planar_coordinate = 1;
+    layout.events = {all_events.data(), all_events.size()};
+    layout.event_roles = event_roles;
+    layout.channels = slide_channels;
+    layout.channel_roles = slide_roles;
+  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { planar::Slide(in).write_along(row); }
+  /// Loaded, both ends of the block rest where static contact carries half of the force across; the moment of the ideal
+  /// joint is not carried.
+  void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
+    const double* rotation = out.rotation;
+    out = InitialOffset{};
+    out.rotation = rotation;
+    const Eigen::Vector2d n =
+        rotation == nullptr ? Eigen::Vector2d(0.0, 1.0) : Eigen::Vector2d(rotation[1], rotation[4]);
+    const double shift = start_.loaded ? rest(0.5 * n.dot(Eigen::Vector2d(reaction[0], reaction[1]))) : start_.shift;
+    for (int i = 0; i < 2; ++i) {
+      out.position[i] = shift * n[i];
+      out.velocity[i] = start_.shift_rate * n[i];
+    }
+  }
+
+ private:
+  PrismaticClearance(const Parameters& p, const Radii& widths)
+      : PlanarContacts({0.5 * p.number("clearance.length"), widths.known() ? widths.journal : 0.0, widths.clearance},
+                       read_laws(p, widths)),
+        start_(p) {
+    const BlockInGuide& block = geometry();
+    if (widths.known() && !(block.play < 2.0 * widths.journal))
+      throw BadParameter("clearance.gap", "out-of-range",
+                         "'gap' must be below 'width': the play is wider than the slider");
+    if (!(block.play < block.half_length))
+      throw BadParameter("clearance.gap", "out-of-range",
+                         "'gap' must be below half of 'length', or the slider turns over in its guide");
+    if (!widths.known() && !is_inert(laws().friction))
+      throw BadParameter("clearance", "missing-key", "friction needs 'guide_width' or 'width'");
+    // The sizes are rounded numbers: a corner at the wall is none in it.
+    if (std::abs(start_.shift) > (1.0 + 1e-9) * block.play)
+      throw BadParameter("clearance.initial.eccentricity", "out-of-range",
+                         "two corners would start in the wall: the shift must stay within 'gap'");
+  }
+  static PlanarLaws read_laws(const Parameters& p, const Radii& widths) {
+    ContactPair pair{not_a_number, not_a_number, widths.clearance, not_a_number, {}, {}};
+    read_materials(p, pair);
+    return {p, pair};
+  }
+  /// How far one end stands from the middle of the guide where static contact carries `force` [N] along n.
+  double rest(double force) const {
+    const double size = std::abs(force);
+    if (size < 1e-12) return 0.0;
+    const double away = geometry().play + resting_penetration(laws().normal, geometry().play, size);
+    return -std::copysign(away, force);
+  }
+
+  SlideStart start_;
+};
+
+constexpr Parameter width_rows[] = {
+    length("clearance.guide_width", "Distance of the walls of the guide on the first body."),
+    length("clearance.width", "Width of the slider across the guide."),
+    length("clearance.gap", "Play to each side: half of the guide's width minus the slider's."),
+    {.name = "clearance.length",
+     .unit = "m",
+     .default_value = required,
+     .minimum = 0.0,
+     .open = Open::minimum,
+     .summary = "Length of the slider along the guide; its middle is the second frame."},
+};
+constexpr Parameter slide_start_rows[] = {
+    {.name = "clearance.initial",
+     .kind = ParameterKind::choice,
+     .default_value = 0,
+     .choices = "centered|loaded",
+     .summary = "Start of the slider: in the middle, resting where static contact carries the load, or a map."},
+    {.name = "clearance.initial.eccentricity",
+     .kind = ParameterKind::vector,
+     .unit = "m",
+     .default_value = optional,
+     .summary = "Place of the slider's middle at the start in the axes of the guide: 0 along it, then across."},
+    {.name = "clearance.initial.velocity",
+     .kind = ParameterKind::vector,
+     .unit = "m/s",
+     .default_value = optional,
+     .summary = "Velocity of the slider's middle across the guide at the start, in the same axes."},
+};
+constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, slide_start_rows);
+
+}  // namespace
+
+Component prismatic_clearance() {
+  return joint<PrismaticClearance>(
+      {.name = "prismatic-clearance",
+       .space = Space::planar,
+       .summary = "Slider with play: a block between two walls, which its four corners touch by a contact law.",
+       .formula =
+           "corner i at (+-length/2, sigma width/2) of the slider, sigma = +1 above and -1 below: delta = sigma (n.d + "
+           "s_x sin(Theta)) - width/2 (1 - cos(Theta)) - gap, d = P_b - P_a, n normal to the guide, Theta the angle "
+           "between both; force on the slider -sigma F_N n + F_T h at the corner for delta > 0, each corner by itself.",
+       .validity = "Gap small against the length; a guide without ends; rigid faces apart from the corners.",
+       .references = "Flores, Ambrosio, Claro and Lankarani 2008, J Comput Nonlinear Dyn 3, 011007; Flores, Leine and "
+                     "Glocker 2010, Multibody Syst Dyn 23, 165-190",
+       .parameters = {prismatic_clearance_parameters.data(), prismatic_clearance_parameters.size()},
+       .ideal = "prismatic",
+       .block = "clearance",
+       .axis = MarkerAxis::x});
+}
+
+}  // namespace freeplay
