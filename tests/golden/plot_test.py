@@ -85,6 +85,8 @@ class Plot(ProgramTest):
         self.assertAlmostEqual(max(inside), max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
         _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--from", "1 s", code=2)
         self.assertIn("has no rows in this window", err)
+        self.write("empty.csv", "time,a\n")
+        self.assertIn("'empty.csv' has no rows [no-rows]", self.freeplay("plot", "empty.csv", "a", code=2)[1])
 
     def test_an_orbit_lies_in_the_circle_of_its_clearance(self):
         panel = self.plot("--orbit", "wrist")[0]
