@@ -228,10 +228,11 @@ class Plot(ProgramTest):
         _, err = self.freeplay("plot", "ideal", "joint.wrist.*", "--against", "r", code=2)
         self.assertIn("'ideal/results.h5' has no channel 'joint.wrist.", err)
 
-    def test_a_result_is_not_drawn_against_itself(self):
+    def test_a_result_against_itself_is_named(self):
         for again in ("r", "r/", "./r/results.h5", self.made):
-            _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", again, code=2)
-            self.assertIn("'%s' is given twice" % again, err)
+            out, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", again)
+            self.assertIn("warning: '%s' is given twice" % again, err)
+            self.assertEqual(2, len(panels(out)[0].lines))
 
     def test_files_that_are_no_pictures_are_kept(self):
         kept = {"rows.csv": "time,a\n0,1\n1,2\n", "drawn.svg": "<svg xmlns='http://www.w3.org/2000/svg'><metadata id='m'/></svg>\n", "model.yaml": "freeplay: 1\n"}
