@@ -257,7 +257,9 @@ class Plot {
     paths_.insert(paths_.end(), options_.against.begin(), options_.against.end());
     for (const std::string& path : paths_) {
       readers_.push_back(ResultReader::open(path));
-      if (!seen.insert(whole_result(path)).second) refuse(fmt::format("'{}' is given twice", path));
+      if (!seen.insert(whole_result(path)).second) {
+        print_messages(fmt::format("freeplay: warning: '{}' is given twice\n", path), common_.no_color);
+      }
       // A file of text has no units.
       const auto has_no_unit = [](const RecordColumn& column) { return column.unit.empty(); };
       if (!std::ranges::any_of(readers_.back()->layout().columns, has_no_unit)) continue;

@@ -151,8 +151,9 @@ class ChannelFigure {
       });
     }
     if (ranges.rows > 0) return ranges;
+    const bool all = std::isinf(request_.window.from) && std::isinf(request_.window.until);
     throw Error(Error::Category::usage, "no-rows",
-                fmt::format("'{}' has no rows in this window", sources_[source].reader->file()));
+                fmt::format("'{}' has no rows{}", sources_[source].reader->file(), all ? "" : " in this window"));
   }
 
   template <class Of>

@@ -85,6 +85,8 @@ class Plot(ProgramTest):
         self.assertAlmostEqual(max(inside), max(y for _, y in panel.lines[0]), delta=panel.pixel[1])
         _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--from", "1 s", code=2)
         self.assertIn("has no rows in this window", err)
+        self.write("empty.csv", "time,a\n")
+        self.assertIn("'empty.csv' has no rows [no-rows]", self.freeplay("plot", "empty.csv", "a", code=2)[1])
 
     def test_an_orbit_lies_in_the_circle_of_its_clearance(self):
         panel = self.plot("--orbit", "wrist")[0]
@@ -226,10 +228,11 @@ class Plot(ProgramTest):
         _, err = self.freeplay("plot", "ideal", "joint.wrist.*", "--against", "r", code=2)
         self.assertIn("'ideal/results.h5' has no channel 'joint.wrist.", err)
 
-    def test_a_result_is_not_drawn_against_itself(self):
+    def test_a_result_against_itself_is_named(self):
         for again in ("r", "r/", "./r/results.h5", self.made):
-            _, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", again, code=2)
-            self.assertIn("'%s' is given twice" % again, err)
+            out, err = self.freeplay("plot", "r", "joint.wrist.fn", "--against", again)
+            self.assertIn("warning: '%s' is given twice" % again, err)
+            self.assertEqual(2, len(panels(out)[0].lines))
 
     def test_files_that_are_no_pictures_are_kept(self):
         kept = {"rows.csv": "time,a\n0,1\n1,2\n", "drawn.svg": "<svg xmlns='http://www.w3.org/2000/svg'><metadata id='m'/></svg>\n", "model.yaml": "freeplay: 1\n"}
