@@ -22,8 +22,9 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double coarse_accuracy = 0.5;  // by a clearance
-constexpr double deep_start = 1.5;       // eccentricity of a journal, by its clearance
+constexpr double coarse_accuracy = 0.5;     // by a clearance
+constexpr double coarse_for_a_model = 0.1;  // by its size
+constexpr double deep_start = 1.5;          // eccentricity of a journal, by its clearance
 
 class Examination {
  public:
@@ -41,6 +42,7 @@ class Examination {
     doubt_forces(released_, open_, [&](const char* id, const std::string& message, const JointElement& element) {
       doubt(id, message, element.name, element.location);
     });
+    judge_accuracy();
     judge_journals();
     judge_pairs();
     judge_gears();
@@ -58,7 +60,7 @@ class Examination {
   bool doubt(const char* id, const std::string& message, const std::string& name, const Location& location) {
     if (structure_.doubts.size() >= Structure::most_doubts) return false;
     const std::string own = name.substr(name.rfind('.') + 1);  // instances declare it without their name
-    structure_.doubts.push_back({id, message, location, character_count(own)});
+    structure_.doubts.push_back({id, message, location, std::max(character_count(own), 1)});
     return true;
   }
 
@@ -98,13 +100,27 @@ class Examination {
     }
   }
 
+  bool accuracy_says_nothing() const { return model_.settings.accuracy > coarse_for_a_model * released_.size(); }
+
+  /// An accuracy that a whole mechanism goes into.
+  void judge_accuracy() {
+    if (!accuracy_says_nothing()) return;
+    Location place = model_.settings.accuracy_location;
+    if (place.file.empty()) place.file = model_.file;  // of an option
+    doubt("doubtful-value",
+          fmt::format("the accuracy of {:.3g} m says nothing of a mechanism of {:.2g} m: ask for a thousandth of it or "
+                      "less, and write its unit, as in '1 um'",
+                      model_.settings.accuracy, released_.size()),
+          "", place);
+  }
+
   /// Journals that start in the wall of their bearings, and an accuracy that does not see them move.
   void judge_journals() {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& joint = model_.joints[at(j)];
       const double play = joint.layout.clearance;
       if (!joint.has_play || !(play > 0.0)) continue;
-      if (model_.settings.accuracy > coarse_accuracy * play) {
+      if (model_.settings.accuracy > coarse_accuracy * play && !accuracy_says_nothing()) {
         doubt("doubtful-value",
               fmt::format("the accuracy of {:.3g} m is coarse against the clearance of joint '{}', {:.3g} m: ask for a "
                           "tenth of it or less",

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -212,6 +213,65 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
   copy_hdf5(file, part, layout, *kept.hdf5, *row_hash);
   kept.row_hash = std::move(row_hash);
   return kept;
+}
+
+namespace {
+
+/// How many there are of the first so many, and their fingerprint.
+struct First {
+  std::int64_t count = 0;
+  std::string digits;
+};
+
+First rows_of(const fs::path& file, std::int64_t count) {
+  RowHash hash;
+  First first;
+  if (file.extension() != ".csv" || whole_lines(file, 1).lines > 0) {
+    const auto reader = ResultReader::open(file);
+    first.count =
+        first_rows(*reader, count, [&](std::span<const double> some) { hash.write({.rows = some, .events = {}}); });
+  }
+  first.digits = hash.digits();
+  return first;
+}
+
+First events_of(const fs::path& file, std::int64_t count) {
+  if (file.extension() == ".csv") {
+    Sha256 text;
+    const std::int64_t lines = whole_lines(file, count + 1, &text).lines;
+    return {std::max<std::int64_t>(lines - 1, 0), text.digits()};
+  }
+  const auto reader = ResultReader::open(file);
+  EventHash hash(reader->layout());
+  const std::int64_t there = first_events(*reader, count, [&](std::span<const double> some) { hash.add(some); });
+  return {there, hash.digits()};
+}
+
+/// What is foreign of a text file and of results.h5, either of which may be missing.
+std::string foreign(const char* things, const fs::path& text, const fs::path& hdf5, const First& kept,
+                    First (*first_of)(const fs::path&, std::int64_t)) {
+  const auto words = [&](const fs::path& file, const char* whose) {
+    return fmt::format("'{}' was changed: its {} are not those {}", file.string(), things, whose);
+  };
+  std::error_code ignored;
+  const bool has_text = fs::exists(text, ignored), has_hdf5 = fs::exists(hdf5, ignored);
+  if (!kept.digits.empty()) {
+    const char* const whose = "that the checkpoint counts";
+    if (has_text && first_of(text, kept.count).digits != kept.digits) return words(text, whose);
+    if (has_hdf5 && first_of(hdf5, kept.count).digits != kept.digits) return words(hdf5, whose);
+  }
+  if (!has_text || !has_hdf5) return {};
+  const First both = first_of(hdf5, whole_lines(text, std::numeric_limits<std::int64_t>::max()).lines - 1);
+  return both.count <= 0 || first_of(text, both.count).digits == both.digits ? "" : words(text, "of results.h5");
+}
+
+}  // namespace
+
+std::string foreign_part(const fs::path& directory, const KeptPart& part) {
+  const fs::path hdf5 = directory / "results.h5";
+  const std::string rows = foreign("rows", directory / "results.csv", hdf5, {part.rows, part.row_digits}, rows_of);
+  if (!rows.empty()) return rows;
+  return foreign("events", directory / "events.csv", hdf5, {part.events, part.event_digits}, events_of);
 }
 
 void cut_back(const fs::path& directory, const KeptFiles& kept, ResultFormat format) {

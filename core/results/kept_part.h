@@ -34,6 +34,10 @@ struct KeptFiles {
 KeptFiles read_kept(const std::filesystem::path& directory, const KeptPart& part, ResultFormat format,
                     const RecordLayout& layout, const Hdf5Writer::Options& options);
 
+/// Which file of a killed run holds what it did not write, as far as the fingerprints of `part` show, and rows and
+/// events that two files have. Empty where none does.
+std::string foreign_part(const std::filesystem::path& directory, const KeptPart& part);
+
 /// Cuts the text files to what was kept and puts the new results.h5 in its place. Throws Error{file} "cannot-write".
 void cut_back(const std::filesystem::path& directory, const KeptFiles& kept, ResultFormat format);
 

@@ -17,6 +17,7 @@
 #include "base/whole_file.h"
 #include "component/json_schema.h"
 #include "results/checkpoint.h"
+#include "results/checkpoints.h"
 #include "results/hdf5_writer.h"
 #include "results/kept_part.h"
 #include "results/owner.h"
@@ -61,7 +62,11 @@ class Sealing {
 
   Sealed execute() {
     const bool has_summary = there_is(directory_ / "summary.json");
-    if (has_summary) require_whole();
+    if (has_summary) {
+      require_whole();
+    } else {
+      require_own();
+    }
     const std::vector<fs::path> cut = unfinished();
     Sealed out{.changed = !has_summary || !cut.empty() || !reader_->sealed()};
     copy();
@@ -107,6 +112,21 @@ class Sealing {
     }
     if (!misfit.empty())
       throw Error(Error::Category::file, "changed-result", misfit, {}, "take it from a copy, or run the model again");
+  }
+
+  /// No summary speaks of its rows: those of its checkpoint, and those that both files hold, are what its run wrote.
+  void require_own() const {
+    KeptPart kept;
+    try {
+      kept = kept_part_of(read_checkpoint(directory_));
+    } catch (const Error&) {  // a result without one is sealed, too
+    }
+    const std::string foreign = foreign_part(directory_, kept);
+    if (foreign.empty()) return;
+    throw Error(Error::Category::file, "changed-result", foreign, {},
+                there_is(directory_ / "results.csv") && there_is(directory_ / "results.h5")
+                    ? "take it from a copy, or move away which of results.csv and results.h5 was changed, then seal"
+                    : "take it from a copy, or run the model again");
   }
 
   /// Where results.csv stood in for it nothing would be said of it.

@@ -18,7 +18,7 @@ double cut_normal(double low, double high, double u) {
   const double from = std::isfinite(low) ? normal_share(low) : 0.0;
   const double to = std::isfinite(high) ? normal_share(high) : 1.0;
   const double share = from + u * (to - from);
-  if (!(share > 0.0)) return low;
+  if (!(share > 0.0)) return std::max(low, -std::sqrt(high * high - 2.0 * std::log(u)));  // as far tails fall off
   return share < 1.0 ? normal_quantile(share) : high;
 }
 

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
-#include "study/normal_quantile.h"
+#include "study/percentile_ranks.h"
 #include "study/picture_page.h"
 #include "study/rank_correlation.h"
 #include "study/table_columns.h"
@@ -291,14 +291,11 @@ class Drawing {
   /// With the interval of order statistics, where there are points enough for one.
   void mark_percentiles(PicturePage& page, const std::vector<double>& sorted) const {
     if (sorted.empty()) return;
-    const double z = normal_quantile(0.5 + 0.5 * interval_confidence);
-    const auto count = static_cast<double>(sorted.size());
     for (const double percent : request_.percentiles) {
-      const double part = 0.01 * percent, middle = part * count, spread = z * std::sqrt(count * part * (1.0 - part));
-      const auto at = [&](double place) {
-        return sorted[static_cast<std::size_t>(std::clamp(place, 0.0, count - 1.0))];
-      };
-      if (middle - spread >= 0.0 && middle + spread <= count) page.shade(at(middle - spread), at(middle + spread));
+      const double part = 0.01 * percent;
+      const bool inside = part > 0.0 && part < 1.0;
+      const auto ranks = inside ? percentile_ranks(sorted.size(), part, interval_confidence) : std::nullopt;
+      if (ranks) page.shade(sorted[ranks->first - 1], sorted[ranks->second - 1]);
       page.upright(quantile(sorted, part), fmt::format("{:g} %", percent));
     }
   }

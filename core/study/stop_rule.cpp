@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "study/normal_quantile.h"
+#include "study/percentile_ranks.h"
 
 namespace freeplay {
 
@@ -60,20 +61,19 @@ StopInterval StopRule::interval(std::vector<double> values) const {
   const auto n = static_cast<double>(values.size());
   constexpr double none = std::numeric_limits<double>::infinity();
   if (values.size() < 2) return {std::numeric_limits<double>::quiet_NaN(), none};
-  const double z = normal_quantile(0.5 + 0.5 * options_.confidence);
   if (options_.percentile < 0.0) {
+    const double z = normal_quantile(0.5 + 0.5 * options_.confidence);
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
     double square = 0.0;
     for (const double value : values) square += (value - mean) * (value - mean);
     return {mean, z * std::sqrt(square / (n - 1.0)) / std::sqrt(n)};
   }
   std::ranges::sort(values);
-  const double p = options_.percentile / 100.0, spread = z * std::sqrt(n * p * (1.0 - p));
-  const double low = std::floor(n * p - spread), high = std::ceil(n * p + spread) + 1.0;
-  const auto at = [&](double rank) { return values[static_cast<std::size_t>(rank) - 1]; };
-  const double estimate = at(std::clamp(std::ceil(n * p), 1.0, n));
-  if (low < 1.0 || high > n) return {estimate, none};
-  return {estimate, 0.5 * (at(high) - at(low))};
+  const double p = options_.percentile / 100.0;
+  const double estimate = values[static_cast<std::size_t>(std::clamp(std::ceil(n * p), 1.0, n)) - 1];
+  const auto ranks = percentile_ranks(values.size(), p, options_.confidence);
+  if (!ranks) return {estimate, none};
+  return {estimate, 0.5 * (values[ranks->second - 1] - values[ranks->first - 1])};
 }
 
 }  // namespace freeplay

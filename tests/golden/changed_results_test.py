@@ -96,6 +96,36 @@ class Changed(ProgramTest):
                 _, err = self.freeplay("seal", folder, code=6)
                 self.assertIn(word, err)
 
+    def change_digit(self, *names):
+        """The first that is no 9 in the middle line."""
+        lines = self.read(*names).splitlines(True)
+        line = lines[len(lines) // 2]
+        place = next(i for i in range(line.index(",") + 1, len(line)) if line[i] in "12345678")
+        lines[len(lines) // 2] = line[:place] + str(int(line[place]) + 1) + line[place + 1:]
+        self.write(os.path.join(*names), "".join(lines))
+
+    def test_rows_and_events_that_were_changed_are_not_sealed(self):
+        process = self.begun("killed", "--end", "100 s", "--checkpoint", "0.2 s", until="checkpoint.bin", size=9000)
+        time.sleep(0.5)
+        process.kill()
+        process.wait()
+        self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--out", "done")
+        os.remove(self.path("done", "summary.json"))
+        for folder in ("killed", "done"):
+            for name in ("results.csv", "events.csv"):
+                shutil.copytree(self.path(folder), self.path("r"))
+                self.change_digit("r", name)
+                _, err = self.freeplay("seal", "r", code=6)
+                self.assertIn("'r/%s' was changed: its %s are not those" % (name, "rows" if name == "results.csv" else "events"), err)
+                self.assertNotIn("summary.json", os.listdir(self.path("r")))
+                shutil.rmtree(self.path("r"))
+            shutil.copytree(self.path(folder), self.path("r"))
+            self.change_digit("r", "results.csv")
+            os.remove(self.path("r", "results.csv"))  # as the message says
+            self.freeplay("seal", "r")
+            shutil.rmtree(self.path("r"))
+            self.freeplay("seal", folder)
+
     def test_part_of_a_line_after_the_last_one_is_named_and_cut_off(self):
         self.freeplay("run", CRANK, "--quiet", "--end", "10 ms", "--format", "csv", "--out", "whole")
         for name in ("results.csv", "events.csv"):

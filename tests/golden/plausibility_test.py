@@ -98,6 +98,8 @@ MISTAKES = [
     (CART, "drivers: {motor: {joint: rail, kind: position, value: 0.1*sin(3*t)}}\n", "", "doubtful-speed", "70", "mm/s",
      {"hinge: -1.2}": "hinge: -1.2}, speeds: {rail: 70}"}),
     (CRANK, "between: [ground, crank]", "between: [ground, crank/tip]", "same-frame", "crankpin", "'crank/tip'"),
+    (CRANK, "step: 1e-5", "accuracy: 1", VALUE, "1", "accuracy of 1 m says nothing of a mechanism of 0."),
+    (ROD, "step: 1e-3", "accuracy: 200 mm", VALUE, "200 mm", "ask for a thousandth"),
     (CRANK, "step: 1e-5", "accuracy: 0.4 mm", VALUE, "wrist", "coarse against the clearance"),
     (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 50 ms}", "doubtful-time", "50 ms", "start and its end"),
     (CRANK, "step: 1e-5", "step: 1e-5, output: {interval: 1 ns}", "doubtful-time", "1 ns", "rows would be written"),
@@ -270,6 +272,12 @@ class Plausibility(ProgramTest):
             _, err = self.freeplay("run", "m.yaml", "--dry-run")
             self.assertIn("warning:", err)
             self.assertIn("[%s]" % wanted, err)
+
+    def test_an_option_is_doubted_as_the_key_is(self):
+        self.write("m.yaml", text_of(CRANK, "step: 1e-5", "accuracy: 1 um"))
+        for options in (("--accuracy", "1"), ("--set", "simulation.accuracy=1")):
+            _, err = self.freeplay("run", "m.yaml", *options, "--dry-run")
+            self.assertRegex(err, "m.yaml: warning: the accuracy of 1 m says nothing of .*[doubtful-value]")
 
     def test_instances_of_a_template_share_a_doubt(self):
         text = """freeplay: 1

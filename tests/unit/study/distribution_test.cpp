@@ -53,6 +53,18 @@ TEST(Quantile, OfAFarTailIsAsGoodAsThatOfTheOther) {
   EXPECT_GT(quantile(high, 0.999), 9.5);
 }
 
+// So far out that no share is left between the ends: the tail falls off as exp(-x^2/2) from the near end.
+TEST(Quantile, OfATailWithoutAShareIsAtItsNearEnd) {
+  Distribution far{Shape::normal, 1.0, 0.01};
+  far.low = 3.0;
+  far.high = 4.0;
+  EXPECT_NEAR(quantile(far, 0.5), 3.0 + 0.01 * std::log(2.0) / 200.0, 1e-9);
+  EXPECT_GT(quantile(far, 0.75), quantile(far, 0.5));
+  far.low = -2.0;
+  far.high = -1.0;
+  EXPECT_NEAR(quantile(far, 0.5), -1.0 - 0.01 * std::log(2.0) / 200.0, 1e-9);
+}
+
 TEST(IsoFit, HasTheLimitsOfTheStandard) {
   const auto close = iso_fit("H7/g6", 0.010);
   ASSERT_TRUE(close);

@@ -5,11 +5,13 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "study/normal_quantile.h"
+#include "study/percentile_ranks.h"
 
 namespace freeplay {
 namespace {
@@ -75,13 +77,51 @@ TEST(StopRule, EndsWithTheSamplesAtTheLatest) {
   EXPECT_EQ(11u, rule.end());
 }
 
+/// How often a share lies between values of these ranks, by factorials.
+double coverage(int n, double share, int low, int high) {
+  double sum = 0.0;
+  for (int k = low; k < high; ++k) {
+    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + k * std::log(share) +
+                    (n - k) * std::log1p(-share));
+  }
+  return sum;
+}
+
+TEST(StopRule, RanksOfPercentilesAreTheNarrowestOfTwoEqualTails) {
+  const auto ranks = [](std::uint64_t n, double share, double confidence) {
+    return percentile_ranks(n, share, confidence).value_or(std::pair<std::uint64_t, std::uint64_t>(0, 0));
+  };
+  EXPECT_EQ(std::pair(std::uint64_t{40}, std::uint64_t{61}), ranks(100, 0.5, 0.95));  // David and Nagaraja, 7.1
+  EXPECT_EQ(std::pair(std::uint64_t{2}, std::uint64_t{9}), ranks(10, 0.5, 0.95));
+  EXPECT_FALSE(percentile_ranks(367, 0.99, 0.95));  // 0.99^n <= 0.025 from 368 on
+  EXPECT_TRUE(percentile_ranks(368, 0.99, 0.95));
+  EXPECT_FALSE(percentile_ranks(5, 0.5, 0.95));
+  for (const int n : {40, 76, 200, 1000, 20000}) {
+    for (const double share : {0.05, 0.5, 0.9, 0.99}) {
+      for (const double confidence : {0.5, 0.9, 0.95}) {
+        const double tail = 0.5 * (1.0 - confidence);
+        const auto found = percentile_ranks(static_cast<std::uint64_t>(n), share, confidence);
+        if (!found) {
+          EXPECT_TRUE(std::pow(share, n) > tail || std::pow(1.0 - share, n) > tail) << n << ' ' << share;
+          continue;
+        }
+        const int low = static_cast<int>(found->first), high = static_cast<int>(found->second);
+        EXPECT_LE(coverage(n, share, 0, low), tail);
+        EXPECT_GT(coverage(n, share, 0, low + 1), tail) << n << ' ' << share << ' ' << confidence;
+        EXPECT_LE(coverage(n, share, high, n + 1), tail);
+        EXPECT_GT(coverage(n, share, high - 1, n + 1), tail) << n << ' ' << share << ' ' << confidence;
+      }
+    }
+  }
+}
+
 TEST(StopRule, PercentileIsBoundedByRanks) {
   StopOptions of_median = options(std::numeric_limits<double>::infinity());
   of_median.percentile = 50.0;
   of_median.min_points = 100;
   StopRule rule(of_median, 1, 100);
   for (std::uint64_t k = 0; k < 100; ++k) rule.note(0, 99 - k, static_cast<double>(k + 1));
-  // 50 -+ 1.96 sqrt(100/4) = 40.2 and 59.8: ranks 40 and 61.
+  // Ranks 40 and 61.
   EXPECT_EQ(100u, rule.end());
   EXPECT_EQ(50.0, rule.intervals().at(0).estimate);
   EXPECT_EQ(10.5, rule.intervals()[0].half_width);
