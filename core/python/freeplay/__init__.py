@@ -26,7 +26,7 @@ def resume(path: str | os.PathLike[str], *, end: Quantity | None = None) -> NoRe
     not_in_this_release("resume()")
 
 
-def map(source: Source | Model, points: Any = None, **options: Any) -> NoReturn:
+def map(source: Source | Model, points: Any = None, **options: Any) -> Table:
     """Many runs of one model. Not in this release: `freeplay study run` does."""
     not_in_this_release("map()")
 
@@ -37,7 +37,15 @@ class Function:
     def __init__(self, source: Source | Model, inputs: Iterable[str], outputs: Any, **options: Any) -> None:
         not_in_this_release("Function")
 
+    def __call__(self, x: Any) -> Any:
+        """The numbers at one point. Not in this release."""
+        not_in_this_release("Function")
+
+    def sample(self, x: Any) -> Any:
+        """The numbers at many points. Not in this release."""
+        not_in_this_release("Function")
+
 
 __all__ = ["Channel", "Error", "Function", "InternalError", "Interrupted", "Message", "Model", "ModelError", "ModelWarning", "NumericalError",
-           "PluginError", "Quantity", "Result", "ResultError", "Simulation", "Source", "Table", "UnknownName", "UsageError", "check", "compare",
+           "PluginError", "Result", "ResultError", "Simulation", "Table", "UnknownName", "UsageError", "check", "compare",
            "describe", "info", "load", "map", "open", "resume", "run", "schema", "types"]
