@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "cli/component_entry.h"
 #include "cli/plugin_examination.h"
 #include "cli/terminal.h"
 #include "component/library.h"
+#include "contract/component_entry.h"
 #include "contract/rules.h"
 
 namespace freeplay {

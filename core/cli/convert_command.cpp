@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/whole_file.h"
-#include "cli/facts.h"
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/terminal.h"
@@ -16,6 +15,7 @@
 #include "convert/flat_model.h"
 #include "convert/moved_model.h"
 #include "format/readout.h"
+#include "load/facts.h"
 #include "load/load.h"
 #include "load/model_file.h"
 #include "urdf/writer.h"

@@ -1,38 +1,19 @@
 #include "cli/describe_command.h"
 
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/suggestion.h"
-#include "cli/component_entry.h"
 #include "cli/loading.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "contract/sample_layout.h"
+#include "contract/component_entry.h"
+#include "contract/type_list.h"
 #include "load/plugins.h"
-#include "model/channel.h"
-#include "model/model.h"
 
 namespace freeplay {
 namespace {
-
-[[noreturn]] void unknown(const std::vector<Json>& entries, const std::string& name, const Registry& registry) {
-  for (const ComponentKind kind :
-       {ComponentKind::joint, ComponentKind::contact_law, ComponentKind::friction_law, ComponentKind::integrator}) {
-    const char* remedy = registry.remedy(kind, name);
-    if (remedy == nullptr) continue;
-    throw Error(Error::Category::usage, "unknown-name", fmt::format("the type '{}' is not in this build", name), {},
-                remedy);
-  }
-  std::vector<std::string> names;
-  for (const Json& entry : entries) names.push_back(entry["name"]);
-  const auto nearest = suggestion(name, names);
-  throw Error(Error::Category::usage, "unknown-name", fmt::format("there is no type '{}'", name), {},
-              nearest ? fmt::format("did you mean '{}'?", *nearest) : "`freeplay list` shows all");
-}
 
 /// A heading and its text; nothing if there is no text.
 std::string section(const char* heading, const std::string& text) {
@@ -48,34 +29,6 @@ std::string parameters_text(const Json& parameters) {
         {parameter["name"], parameter["unit"], default_text(parameter), range_text(parameter), parameter["summary"]});
   }
   return "\nparameters\n" + table.text("  ");
-}
-
-/// The result columns of a joint called NAME in models of `space`; none of other types.
-Json channels_json(const Json& entry, const Registry& registry, Space space) {
-  Json channels = Json::array();
-  const Component* type = registry.find(ComponentKind::joint, entry["name"].get<std::string>());
-  if (entry["kind"] != "joint" || type == nullptr) return channels;
-  const std::optional<SampleJoint> sample = sample_joint(*type, registry, space);
-  if (!sample) return channels;
-  Model model;
-  model.space = space;
-  JointElement& joint = model.joints.emplace_back();
-  joint.name = "NAME";
-  joint.layout = sample->layout;
-  const Channels all(model);
-  for (const ChannelInfo& channel : all.all()) {
-    if (!channel.name.starts_with("joint.NAME.")) continue;
-    channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
-  }
-  return channels;
-}
-
-/// Adds the columns of a joint: those in the plane, or in space where it works there only, and for a type of both the
-/// others apart.
-void add_channels(Json& entry, const Registry& registry) {
-  const bool spatial = entry["space"] == "spatial", both = entry["space"] == "both" && entry["kind"] == "joint";
-  entry["channels"] = channels_json(entry, registry, spatial ? Space::spatial : Space::planar);
-  if (both) entry["channels_in_space"] = channels_json(entry, registry, Space::spatial);
 }
 
 std::string channels_text(const char* heading, const Json& channels) {
@@ -97,15 +50,7 @@ std::string entry_text(const Json& entry) {
 
 int describe(const std::string& name, const CommonOptions& common) {
   if (name.empty()) throw Error(Error::Category::usage, "missing-argument", "describe needs the name of a type");
-  const Registry registry = load_registry(loading(common), nullptr);
-  const std::vector<Json> entries = all_entries(registry);
-  Json found = Json::array();  // names are unique within a kind only
-  for (const Json& entry : entries) {
-    if (entry["name"] != name) continue;
-    found.push_back(entry);
-    add_channels(found.back(), registry);
-  }
-  if (found.empty()) unknown(entries, name, registry);
+  const Json found = described_types(load_registry(loading(common), nullptr), name);
   if (common.json) {
     print_json(found.size() == 1 ? found.front() : found);
     return 0;

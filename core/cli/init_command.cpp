@@ -14,11 +14,11 @@
 
 #include "base/error.h"
 #include "base/shell_word.h"
-#include "cli/component_entry.h"
 #include "cli/loading.h"
 #include "cli/starter_files.h"
 #include "cli/terminal.h"
 #include "component/library.h"
+#include "contract/component_entry.h"
 #include "load/plugins.h"
 
 namespace freeplay {

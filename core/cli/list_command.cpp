@@ -5,12 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "cli/component_entry.h"
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "contract/sample_layout.h"
+#include "contract/type_list.h"
 #include "load/load.h"
 #include "load/plugins.h"
 #include "model/channel.h"
@@ -22,54 +21,8 @@ struct ListOptions {
   std::string kind, model;
 };
 
-const std::vector<std::string> kinds{"joints", "laws", "forces", "integrators", "plugins", "channels"};
-
-/// Does an entry stand in the list of this kind?
-bool belongs(const Json& entry, const std::string& kind, const std::vector<std::string>& force_types) {
-  const std::string word = entry["kind"];
-  if (kind.empty()) return true;
-  if (kind == "laws") return word == "contact" || word == "friction";
-  if (kind == "integrators") return word == "integrator";
-  if (kind == "joints") return word == "joint";
-  const std::string name = entry["name"];
-  return kind == "forces" && (word == "force" || std::ranges::find(force_types, name) != force_types.end());
-}
-
-/// One object per library, with the number of its types.
-Json plugins_json(const Registry& registry) {
-  Json list = Json::array();
-  for (const RegisteredComponent& entry : registry.components()) {
-    const auto same = [&](const RegisteredComponent& other) { return other.library == entry.library; };
-    const bool seen = std::ranges::any_of(list, [&](const Json& row) { return row["name"] == entry.library; });
-    if (seen) continue;
-    const auto count = std::ranges::count_if(registry.components(), same);
-    list.push_back({{"name", entry.library},
-                    {"kind", "plugin"},
-                    {"space", "both"},
-                    {"source", entry.library},
-                    {"summary", fmt::format("{} types", count)},
-                    {"parameters", Json::array()},
-                    {"formula", ""},
-                    {"validity", ""},
-                    {"references", ""}});
-  }
-  return list;
-}
-
-Json entries_json(const Registry& registry, const std::string& kind) {
-  const std::vector<std::string> forces = kind == "forces" ? force_types(registry) : std::vector<std::string>();
-  Json list = Json::array();
-  for (const Json& entry : all_entries(registry)) {
-    if (belongs(entry, kind, forces)) list.push_back(entry);
-  }
-  if (kind.empty() || kind == "plugins") {
-    for (const Json& plugin : plugins_json(registry)) list.push_back(plugin);
-  }
-  return list;
-}
-
 int list_components(const ListOptions& options, const CommonOptions& common) {
-  const Json list = entries_json(load_registry(loading(common), nullptr), options.kind);
+  const Json list = type_entries(load_registry(loading(common), nullptr), options.kind);
   if (common.json) {
     print_json(list);
     return 0;
@@ -109,7 +62,7 @@ int list_channels(const ListOptions& options, const CommonOptions& common) {
 }
 
 int list(const ListOptions& options, const CommonOptions& common) {
-  if (!options.kind.empty()) require_word("kind to list", options.kind, kinds);
+  if (options.kind != "channels") require_listed(options.kind);
   if (options.kind == "channels") return list_channels(options, common);
   if (!options.model.empty()) {
     throw Error(Error::Category::usage, "unexpected-argument", fmt::format("unexpected argument '{}'", options.model));

@@ -11,6 +11,7 @@
 #include <malloc.h>
 #include <sys/resource.h>
 
+#include "base/caught_error.h"
 #include "base/version.h"
 #include "cli/commands.h"
 #include "cli/failure.h"

@@ -105,18 +105,6 @@ void add_model_options_without_ideal(CLI::App& app, ModelOptions& options) {
   app.get_option("--ideal")->group(hidden_group);
 }
 
-BuildOptions build_options(const ModelOptions& options) {
-  BuildOptions build;
-  for (const std::string& text : options.set) {
-    const std::size_t sign = text.find('=');
-    if (sign == std::string::npos || sign == 0)
-      bad_value("--set", text, "NAME=VALUE is needed: a parameter, or a path such as joints.tip.clearance.contact.law");
-    build.set.emplace_back(text.substr(0, sign), text.substr(sign + 1));
-  }
-  build.ideal = options.ideal;
-  return build;
-}
-
 void not_in_this_release(const std::string& what) {
   throw Error(Error::Category::usage, "not-in-this-release", fmt::format("{}: not in this release", what));
 }

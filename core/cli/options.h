@@ -9,7 +9,7 @@
 
 #include "base/option_value.h"
 #include "base/unit.h"
-#include "format/build_options.h"
+#include "load/run_words.h"
 
 // The library's header is of options.cpp and of those who parse: it takes longer to compile than a command.
 namespace CLI {
@@ -25,11 +25,6 @@ struct CommonOptions {
   std::vector<std::string> plugins;
   std::vector<std::string> recorded_plugins;  ///< files that a result which goes on was made with
   std::string command;                        ///< the command line as typed
-};
-
-/// Options of every command that reads a model.
-struct ModelOptions {
-  std::vector<std::string> set, ideal;
 };
 
 /// A command that was added to the program, and what to do when it was chosen. Returns the exit code.
@@ -64,9 +59,6 @@ void add_arguments(CLI::App& app, const std::string& name, std::vector<std::stri
 /// A flag of a later release, which is refused and which the help does not show.
 void add_later_flag(CLI::App& app, const std::string& name, bool& value);
 void add_flag(CLI::App& app, const std::string& name, bool& value, const std::string& help);
-
-/// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
-BuildOptions build_options(const ModelOptions& options);
 
 [[noreturn]] void not_in_this_release(const std::string& what);
 

@@ -13,9 +13,9 @@
 #include "base/version.h"
 #include "cli/allocation_watch.h"
 #include "cli/child_process.h"
-#include "cli/component_entry.h"
 #include "component/library.h"
 #include "contract/component_contract.h"
+#include "contract/component_entry.h"
 
 namespace freeplay {
 namespace {

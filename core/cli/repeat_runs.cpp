@@ -20,9 +20,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/caught_error.h"
 #include "base/error.h"
 #include "base/whole_text.h"
-#include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
 #include "results/summary.h"

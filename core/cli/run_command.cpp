@@ -7,15 +7,14 @@
 
 #include <fmt/format.h>
 
+#include "base/message_json.h"
 #include "base/number_text.h"
+#include "base/processors.h"
 #include "base/text.h"
 #include "base/version.h"
-#include "cli/facts.h"
 #include "cli/failure.h"
-#include "cli/input_doubts.h"
 #include "cli/interrupt.h"
 #include "cli/loading.h"
-#include "cli/processors.h"
 #include "cli/profile_table.h"
 #include "cli/progress_line.h"
 #include "cli/repeat_runs.h"
@@ -28,9 +27,11 @@
 #include "cli/twin_run.h"
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
+#include "load/facts.h"
 #include "load/load.h"
 #include "results/checkpoints.h"
 #include "results/directory.h"
+#include "results/input_doubts.h"
 #include "results/judgement.h"
 #include "results/owner.h"
 #include "results/record_thread.h"
@@ -47,13 +48,6 @@ constexpr int runs_disagree = 7;  // exit code of --verify
 std::filesystem::path result_path(const RunOptions& options, const Model& model) {
   if (!options.out.empty()) return options.out;
   return std::filesystem::path("results") / result_name(model.name, !options.model_options.ideal.empty());
-}
-
-std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<const std::string> more) {
-  std::vector<std::string> warnings;
-  for (const Diagnostic& d : diagnostics.sorted()) warnings.push_back(fmt::format("{} [{}]", d.message, d.id));
-  warnings.insert(warnings.end(), more.begin(), more.end());
-  return warnings;
 }
 
 /// What the run is made from and with, for its checkpoints.

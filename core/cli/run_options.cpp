@@ -1,8 +1,5 @@
 #include "cli/run_options.h"
 
-#include <algorithm>
-#include <optional>
-
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -11,13 +8,6 @@
 
 namespace freeplay {
 namespace {
-
-std::optional<ResultFormat> result_format(const std::string& word) {
-  if (word.empty()) return std::nullopt;
-  const auto found = std::ranges::find(result_formats, word, [](const char* format) { return std::string(format); });
-  if (found != std::end(result_formats)) return static_cast<ResultFormat>(found - std::begin(result_formats));
-  bad_value("--format", word, "it must be csv, hdf5 or both");
-}
 
 /// Every option that the numbers or the files of a run depend on.
 template <class Options, class Common, class Visit>
@@ -85,21 +75,6 @@ void refuse_idle_options(const RunOptions& options) {
     throw Error(Error::Category::usage, "usage",
                 "--twin and --repeat exclude each other: a twin without play has one start only");
   }
-}
-
-BuildOptions build_options(const RunOptions& options) {
-  BuildOptions build = build_options(options.model_options);
-  if (!options.end.empty()) build.end = positive_quantity("--end", options.end, dimension::time);
-  if (!options.step.empty()) build.step = positive_quantity("--step", options.step, dimension::time);
-  if (!options.accuracy.empty()) build.accuracy = positive_quantity("--accuracy", options.accuracy, dimension::length);
-  if (build.step && build.accuracy) {
-    throw Error(Error::Category::usage, "usage", "--step and --accuracy exclude each other");
-  }
-  if (!options.integrator.empty()) build.integrator = options.integrator;
-  build.format = result_format(options.format);
-  if (!options.interval.empty()) build.interval = positive_quantity("--interval", options.interval, dimension::time);
-  build.channels = options.channels;
-  return build;
 }
 
 double checkpoint_period(const RunOptions& options) {

@@ -12,13 +12,11 @@
 
 namespace freeplay {
 
-struct RunOptions {
-  std::string model, end, step, accuracy, interval, integrator, out, format, repeat, seed, checkpoint, resume;
-  std::vector<std::string> channels;
+struct RunOptions : RunWords {
+  std::string model, out, repeat, seed, checkpoint, resume;
   // Of a run that goes on: the name of its model, whose copy has none where it was that of the file.
   std::string model_name;
   std::vector<std::string> plugins;  ///< words of --plugin, of the run that goes on where one does
-  ModelOptions model_options;
   bool force = false, yes = false, dry_run = false, verify = false, profile = false, twin = false, report = false;
   int twin_pipe = -1;  ///< this run is the twin of another, which compares
 };
@@ -27,9 +25,6 @@ void add_run_options(CLI::App& app, RunOptions& options);
 
 /// Throws Error{usage} for options of which one leaves another nothing to do.
 void refuse_idle_options(const RunOptions& options);
-
-/// Throws Error{usage} "bad-value".
-BuildOptions build_options(const RunOptions& options);
 
 /// Seconds of wall time between two checkpoints; 0: only those that are always made. Throws Error{usage} "bad-value".
 double checkpoint_period(const RunOptions& options);

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/processors.h"
 #include "base/text.h"
-#include "cli/processors.h"
 #include "cli/progress_line.h"
 #include "cli/study_probe.h"
 #include "cli/study_views.h"

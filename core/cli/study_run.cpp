@@ -15,11 +15,11 @@
 #include <sys/resource.h>
 
 #include "base/error.h"
+#include "base/processors.h"
 #include "base/text.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/own_program.h"
-#include "cli/processors.h"
 #include "cli/study_progress.h"
 #include "cli/study_table.h"
 #include "cli/terminal.h"

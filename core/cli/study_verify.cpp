@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
-#include "cli/processors.h"
+#include "base/processors.h"
 #include "cli/study_table.h"
 #include "cli/study_views.h"
 #include "cli/terminal.h"

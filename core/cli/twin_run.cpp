@@ -16,9 +16,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/caught_error.h"
 #include "base/error.h"
 #include "base/whole_text.h"
-#include "cli/failure.h"
 #include "cli/interrupt.h"
 
 namespace freeplay {

@@ -5,11 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "base/message_json.h"
 #include "base/text.h"
-#include "cli/facts.h"
 #include "cli/failure.h"
 #include "cli/loading.h"
 #include "cli/terminal.h"
+#include "load/facts.h"
 #include "load/load.h"
 #include "study/open_study.h"
 

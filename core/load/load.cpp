@@ -16,19 +16,21 @@
 namespace freeplay {
 namespace {
 
-/// Takes what was thrown while `loaded` was made into its messages.
-void keep(const Error& error, LoadedModel& loaded, bool strict) {
+/// Takes what was thrown while a model was made of `document`, which may be null, into the messages.
+void keep(const Error& error, const Document* document, bool strict, Diagnostics& diagnostics, int& exit_code) {
   if (error.category() != Error::Category::input && error.category() != Error::Category::plugin) throw error;
   Diagnostic diagnostic = as_diagnostic(error);
-  if (error.location().file.empty() && loaded.document) diagnostic.location = {loaded.document->file_name(), 0, 0};
-  loaded.exit_code = error.exit_code();
+  if (error.location().file.empty() && document != nullptr) diagnostic.location = {document->file_name(), 0, 0};
+  exit_code = error.exit_code();
   if (error.category() == Error::Category::plugin) {
     // Reported alone: without the plugin the rest of the file cannot be judged.
-    loaded.diagnostics = Diagnostics(strict);
-    if (loaded.document) loaded.diagnostics.add_source(loaded.document->file_name(), loaded.document->text());
+    diagnostics = Diagnostics(strict);
+    if (document != nullptr) diagnostics.add_source(document->file_name(), document->text());
   }
-  loaded.diagnostics.add(std::move(diagnostic));
+  diagnostics.add(std::move(diagnostic));
 }
+
+const Document* document_of(const LoadedModel& loaded) { return loaded.document ? &*loaded.document : nullptr; }
 
 using Types = std::function<Registry(const Document&)>;
 using Read = std::function<std::optional<Document>(Diagnostics&)>;
@@ -58,7 +60,7 @@ LoadedModel load(const Read& read, const BuildOptions& build, const LoadOptions&
       loaded.model = build_checked(*loaded.document, registry, build, loaded.diagnostics);
     }
   } catch (const Error& error) {
-    keep(error, loaded, options.strict);
+    keep(error, document_of(loaded), options.strict, loaded.diagnostics, loaded.exit_code);
   }
   settle(loaded);
   if (options.note && loaded.model && loaded.model->ideal.empty() && !build.largest_step &&
@@ -92,7 +94,7 @@ LoadedModel load_document(const Document& document, const BuildOptions& build, c
   try {
     loaded.model = build_checked(document, registry, build, loaded.diagnostics);
   } catch (const Error& error) {
-    keep(error, loaded, false);
+    keep(error, nullptr, false, loaded.diagnostics, loaded.exit_code);
   }
   settle(loaded);
   return loaded;
@@ -116,23 +118,28 @@ void judge_start(const StartReport& report, Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
+std::unique_ptr<AssembledModel> assemble_model(const Model& model, const Document* document, Diagnostics& diagnostics,
+                                               int& exit_code) {
   try {
-    auto assembled = std::make_unique<AssembledModel>(*loaded.model);
+    auto assembled = std::make_unique<AssembledModel>(model);
     require_attainable_accuracy(assembled->system);
     for (const StructureDoubt& doubt : assembled->start.structure.doubts) {
-      loaded.diagnostics.warning(doubt.location, doubt.length, doubt.id, doubt.message);
+      diagnostics.warning(doubt.location, doubt.length, doubt.id, doubt.message);
     }
-    judge_start(assembled->start.report, loaded.diagnostics);
-    if (loaded.diagnostics.has_errors()) {  // with --strict
-      loaded.exit_code = 3;
+    judge_start(assembled->start.report, diagnostics);
+    if (diagnostics.has_errors()) {  // with --strict
+      exit_code = 3;
       return nullptr;
     }
     return assembled;
   } catch (const Error& error) {
-    keep(error, loaded, false);
+    keep(error, document, false, diagnostics, exit_code);
     return nullptr;
   }
+}
+
+std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded) {
+  return assemble_model(*loaded.model, document_of(loaded), loaded.diagnostics, loaded.exit_code);
 }
 
 }  // namespace freeplay

@@ -49,7 +49,11 @@ struct AssembledModel {
   Start start;
 };
 
-/// Assembles the model of `loaded`; null with a message there if it cannot be put together.
+/// Assembles a model that was loaded from `document`, which may be null; null with a message and an exit code if it
+/// cannot be put together.
+std::unique_ptr<AssembledModel> assemble_model(const Model& model, const Document* document, Diagnostics& diagnostics,
+                                               int& exit_code);
+/// The same of `loaded`, which keeps the messages.
 std::unique_ptr<AssembledModel> assemble_model(LoadedModel& loaded);
 
 }  // namespace freeplay

@@ -20,18 +20,7 @@ std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::e
 RecordLayout layout_of(const Model& model, const Channels& channels, std::span<const std::size_t> picked,
                        const Json& provenance) {
   RecordLayout layout = record_layout(model, channels, picked);
-  Json inputs = Json::array();
-  for (const InputFile& input : model.inputs) {
-    inputs.push_back({{"name", input.name}, {"sha256", sha256(input.text)}, {"text", input.text}});
-  }
-  layout.attributes = {{"Conventions", "Freeplay-1"},
-                       {"title", model.name},
-                       {"freeplay_version", program_version},
-                       {"model", model.text},
-                       {"model_sha256", sha256(model.text)},
-                       {"inputs", compact(inputs)},
-                       {"settings", compact(settings_json(model))},
-                       {"provenance", compact(provenance)}};
+  layout.attributes = attributes_of(model, provenance);
   return layout;
 }
 
@@ -42,6 +31,21 @@ std::size_t expected_rows(const Settings& settings) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> attributes_of(const Model& model, const Json& provenance) {
+  Json inputs = Json::array();
+  for (const InputFile& input : model.inputs) {
+    inputs.push_back({{"name", input.name}, {"sha256", sha256(input.text)}, {"text", input.text}});
+  }
+  return {{"Conventions", "Freeplay-1"},
+          {"title", model.name},
+          {"freeplay_version", program_version},
+          {"model", model.text},
+          {"model_sha256", sha256(model.text)},
+          {"inputs", compact(inputs)},
+          {"settings", compact(settings_json(model))},
+          {"provenance", compact(provenance)}};
+}
 
 Recording::Recording(const std::filesystem::path& path, bool force, const Model& model, const Channels& channels,
                      const Making& making)
@@ -136,24 +140,28 @@ std::string Recording::close() {
   return failure;
 }
 
-void Recording::bearing(const ClearanceStatistics& clearances) {
+BearingTables bearing_tables(const RecordLayout& layout, const ClearanceStatistics& clearances) {
   constexpr std::pair<const char*, BearingTable::Column BearingTable::*> all[] = {
       {"contact_time", &BearingTable::contact_time}, {"impulse", &BearingTable::impulse},
       {"sliding", &BearingTable::sliding},           {"work", &BearingTable::work},
       {"pv_mean", &BearingTable::pv_mean},           {"pv_max", &BearingTable::pv_max}};
   BearingTable::Column unknown;
   unknown.fill(std::numeric_limits<double>::quiet_NaN());
-  for (const std::string& name : layout_.bearings) {
-    const int joint = static_cast<int>(std::ranges::find(layout_.joints, name) - layout_.joints.begin());
+  BearingTables tables;
+  for (const std::string& name : layout.bearings) {
+    const int joint = static_cast<int>(std::ranges::find(layout.joints, name) - layout.joints.begin());
     const bool has_table = clearances.has_table(joint);
     const BearingTable table = has_table ? clearances.table(joint) : BearingTable{};
     for (const auto& [quantity, column] : all) {
       const BearingTable::Column& numbers = has_table ? table.*column : unknown;
-      std::vector<double>& out = tables_[quantity];
+      std::vector<double>& out = tables[quantity];
       out.insert(out.end(), numbers.begin(), numbers.end());
     }
   }
+  return tables;
 }
+
+void Recording::bearing(const ClearanceStatistics& clearances) { tables_ = bearing_tables(layout_, clearances); }
 
 Json Recording::hashes() const {
   // Of all that was given to the files; where one of them failed they hold less.

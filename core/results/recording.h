@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/archive.h"
@@ -25,6 +26,12 @@
 #include "run/clearance_statistics.h"
 
 namespace freeplay {
+
+/// Tables by bearing sector of a run that has ended.
+BearingTables bearing_tables(const RecordLayout& layout, const ClearanceStatistics& clearances);
+
+/// What results.h5 says of itself as a whole: what made it, and from what.
+std::vector<std::pair<std::string, std::string>> attributes_of(const Model& model, const Json& provenance);
 
 /// The files of one run, from the open directory to the sealed summary.
 class Recording {

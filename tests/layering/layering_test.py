@@ -33,6 +33,7 @@ STANDS_ON = {
     "report": ["results", "load"],
     "study": ["results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
+    "python": ["load", "results", "convert", "drawing", "analysis", "contract"],
     "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "study"],
 }
 WITHOUT_SDK = {"base", "linear", "svg"}
@@ -62,13 +63,14 @@ LIBRARIES = {
     "hdf5.h": {"results"},
     "matio.h": {"results"},
     "zlib.h": {"study"},
-    "dlfcn.h": {"component"},
+    "dlfcn.h": {"component", "python"},
     "elf.h": {"component"},
     "nlohmann": {"base"},
     "boost": {"study"},
     "CLI": {"cli"},
+    "pybind11": {"python"},
     "fmt": EVERY_ROOM,
-    "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "cli"},
+    "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "cli", "python"},
 }
 # Libraries that may be missing: the files that are built only where they are.
 OPTIONAL_LIBRARIES = {"solvers/sundials_": {"arkode", "nvector"}}
@@ -183,7 +185,9 @@ class Layering(unittest.TestCase):
             "core/results/csv_sink.cpp": ['#include "load/load.h"', '#include "cli/options.h"'],
             "core/format/a.cpp": ["#include <yaml-cpp/yaml.h>", '#include "yaml/document.h"'],
             "core/stage/a.cpp": ['#include "run/energy_account.h"', '#include "assembly/assembly.h"'],
-            "core/load/a.cpp": ['#include "cli/options.h"'],
+            "core/load/a.cpp": ['#include "cli/options.h"', '#include "python/refusal.h"', "#include <pybind11/numpy.h>"],
+            "core/python/a.cpp": ['#include "cli/options.h"', "#include <CLI/CLI.hpp>"],
+            "core/cli/a.cpp": ['#include "python/refusal.h"', "#include <pybind11/numpy.h>"],
             "core/run/a.cpp": ["#include <CLI/CLI.hpp>", "  #  include <gtest/gtest.h>", "#include <boost/any.hpp>"],
             "core/unheard/a.cpp": ['#include "base/error.h"'],
             "core/include/freeplay/a.h": ['#include "base/error.h"', "#include <fmt/format.h>"],

@@ -1,4 +1,4 @@
-#include "cli/processors.h"
+#include "base/processors.h"
 
 #include <algorithm>
 #include <cmath>

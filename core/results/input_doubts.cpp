@@ -1,16 +1,15 @@
-// What the warnings before a run say of its numbers.
-#pragma once
+#include "results/input_doubts.h"
 
 #include <algorithm>
 #include <string_view>
 
-#include "base/diagnostics.h"
-#include "run/trust.h"
+#include <fmt/format.h>
 
 namespace freeplay {
+namespace {
 
 /// The reason of the verdict for a warning of this id; null: it says nothing of the numbers.
-inline const char* reason_of_warning(std::string_view id) {
+const char* reason_of_warning(std::string_view id) {
   constexpr std::string_view structure[] = {"left-free",       "same-frame",    "not-connected", "duplicate-joint",
                                             "duplicate-force", "play-bypassed", "locked"};
   if (id == "unstable-start" || id == "dead-point") return "unstable-start";
@@ -18,8 +17,16 @@ inline const char* reason_of_warning(std::string_view id) {
   return id.starts_with("doubtful") ? "doubtful-input" : nullptr;
 }
 
-/// What the model is doubted for.
-inline void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
+}  // namespace
+
+std::vector<std::string> warnings_of(const Diagnostics& diagnostics, std::span<const std::string> more) {
+  std::vector<std::string> warnings;
+  for (const Diagnostic& d : diagnostics.sorted()) warnings.push_back(fmt::format("{} [{}]", d.message, d.id));
+  warnings.insert(warnings.end(), more.begin(), more.end());
+  return warnings;
+}
+
+void doubt_input(const Diagnostics& diagnostics, Verdict& verdict) {
   for (const Diagnostic& diagnostic : diagnostics.sorted()) {
     const char* const id = reason_of_warning(diagnostic.id);
     if (id != nullptr) verdict.add({.id = id, .level = Trust::doubtful, .message = diagnostic.message});

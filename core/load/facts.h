@@ -1,4 +1,4 @@
-// Facts: what `freeplay validate` says of a model.
+// Facts: what is said of a model that was assembled.
 #pragma once
 
 #include <string>

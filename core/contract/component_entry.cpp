@@ -1,4 +1,4 @@
-#include "cli/component_entry.h"
+#include "contract/component_entry.h"
 
 #include <algorithm>
 #include <cmath>

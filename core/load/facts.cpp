@@ -1,4 +1,4 @@
-#include "cli/facts.h"
+#include "load/facts.h"
 
 #include <algorithm>
 #include <array>

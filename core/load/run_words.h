@@ -1,0 +1,28 @@
+// RunWords: what a caller wants of a model or of its run, in words of the command line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "format/build_options.h"
+
+namespace freeplay {
+
+/// Of everything that reads a model.
+struct ModelOptions {
+  std::vector<std::string> set, ideal;
+};
+
+/// Of everything that runs one; empty: what the file says.
+struct RunWords {
+  std::string end, step, accuracy, interval, integrator, format;
+  std::vector<std::string> channels;
+  ModelOptions model_options;
+};
+
+/// NAME=VALUE pairs and ideal joints, for the model's builder. Throws Error{usage} "bad-value".
+BuildOptions build_options(const ModelOptions& options);
+/// The same with the settings of a run. Throws Error{usage} "bad-value", "usage".
+BuildOptions build_options(const RunWords& words);
+
+}  // namespace freeplay

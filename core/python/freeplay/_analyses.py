@@ -1,0 +1,118 @@
+"""Analyses of a mechanism, in the words of `freeplay analyze`."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._errors import Interrupted
+from ._source import quantity
+from ._table import Table
+
+if TYPE_CHECKING:
+    from ._model import Model
+
+BY_WORD = {"time": "s", "x": "m", "y": "m", "z": "m", "angle": "rad", "roll": "rad", "pitch": "rad", "yaw": "rad", "dx": "m", "dy": "m",
+           "dz": "m", "drx": "rad", "dry": "rad", "drz": "rad", "dangle": "rad", "position": "m", "fx": "N", "fy": "N", "fz": "N",
+           "force": "N", "torque": "N*m", "tx": "N*m", "ty": "N*m", "tz": "N*m", "value": "1"}
+
+
+def unit_of(column: str, channels: Mapping[str, str]) -> str:
+    """The unit of a column: that of the channel of this name, or by its last word."""
+    if column in channels:
+        return channels[column]
+    if column.endswith(".acceleration"):
+        speed = channels.get(column[: -len("acceleration")] + "speed", "rad/s")
+        return speed + "^2"
+    word = column.rsplit(".", 1)[-1]
+    for mark in ("ls_", "sample_rms_", "sample_max_"):
+        word = word[len(mark):] if word.startswith(mark) else word
+    return BY_WORD.get(word, "1")
+
+
+def span(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    try:
+        begin, end, count = value
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: (from, to, count) is needed") from None
+    return f"{quantity(name, begin)}:{quantity(name, end)}:{int(count)}"
+
+
+def pairs(name: str, value: Mapping[str, Any]) -> str:
+    return ",".join(f"{key}={quantity(f'{name}: {key}', one)}" for key, one in value.items())
+
+
+def pose_words(value: Any) -> list[str]:
+    if isinstance(value, str):
+        return [value]
+    if isinstance(value, Mapping):
+        return [pairs("pose", value)]
+    poses = list(value)
+    if poses and not isinstance(poses[0], (Mapping, str)) and np.ndim(poses[0]) == 0:
+        return [",".join(quantity("pose", number) for number in poses)]
+    words = []
+    for pose in poses:
+        words += pose_words(pose)
+    return words
+
+
+def input_words(value: Any) -> list[str]:
+    if isinstance(value, str):
+        return [value]
+    if isinstance(value, Mapping):
+        return [pairs("input", value)]
+    return [word for one in value for word in input_words(one)]
+
+
+def analysis_words(kind: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    words: dict[str, Any] = {"kind": kind}
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        if name in ("sensitivity", "branches"):
+            words[name] = bool(value)
+        elif name == "grid":
+            words[name] = [f"{axis}={span('grid: ' + axis, one)}" for axis, one in value.items()]
+        elif name == "time":
+            words[name] = span(name, value)
+        elif name == "pose":
+            words[name] = pose_words(value)
+        elif name == "input":
+            words[name] = input_words(value)
+        elif name == "elbow":
+            words[name] = ",".join(quantity(name, one) for one in value) if not isinstance(value, str) and isinstance(value, Iterable) else quantity(name, value)
+        elif name == "preload":
+            words[name] = quantity(name, value)
+        else:
+            words[name] = quantity(name, value) if not isinstance(value, str) else value
+    return words
+
+
+def axes_of(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The axes of more than one value of a table whose rows stand on a grid; else none."""
+    axes = {}
+    for name, cells in zip(table["names"], table["columns"]):
+        if name not in ("x", "y", "z", "angle", "roll", "pitch", "yaw"):
+            continue
+        values = list(dict.fromkeys(cells))
+        if len(values) > 1:
+            axes[name] = np.array(values)
+    return axes if axes and int(np.prod([len(axis) for axis in axes.values()])) == table["rows"] else {}
+
+
+def analyse(model: Model, kind: str, options: Mapping[str, Any]) -> Table:
+    table, raised = _core.analyse(model._core, analysis_words(kind, options))
+    if raised is not None:
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted() from None
+        raise raised
+    assert table is not None
+    channels = {channel.name: channel.unit for channel in model.channels}
+    columns = dict(zip(table["names"], table["columns"]))
+    axes = axes_of(table) if options.get("pose") is None and options.get("time") is None and options.get("input") is None else {}
+    return Table(kind, columns, {name: unit_of(name, channels) for name in columns}, table["summary"], table["warnings"], axes, table["csv"])
+

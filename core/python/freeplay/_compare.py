@@ -1,0 +1,41 @@
+"""How far two results agree."""
+from __future__ import annotations
+
+import math
+import os
+import tempfile
+from typing import Iterable, Union
+
+from . import _core
+from ._result import Result
+from ._source import names as names_of
+from ._table import Table
+
+COLUMNS = ("channel", "max_abs", "max_rel", "rms", "at_time", "ok")
+Compared = Union[Result, str, "os.PathLike[str]"]
+
+
+def compare(a: Compared, b: Compared, *, tolerance: float = 1e-6, absolute: float = 1e-12, channels: str | Iterable[str] = "*",
+            start: float | None = None, until: float | None = None) -> Table:
+    """The rows of `freeplay compare`, worst first; `summary["agree"]` says whether both agree.
+
+    a, b: results or paths of some. tolerance: part of the largest |a| that may differ. absolute: what may differ besides.
+    channels: patterns of what is compared. start, until: first and last time [s].
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [path_of(one, os.path.join(folder, name)) for one, name in ((a, "a"), (b, "b"))]
+        found = _core.compare(paths[0], paths[1], float(tolerance), float(absolute), names_of(channels),
+                              -math.inf if start is None else float(start), math.inf if until is None else float(until))
+    rows = found["rows"]
+    columns = {name: [row[i] for row in rows] for i, name in enumerate(COLUMNS)}
+    units = {name: "s" if name == "at_time" else "1" for name in COLUMNS}
+    return Table("compare", columns, units, {"agree": found["agree"], "rows": found["compared"]}, found["notes"])
+
+
+def path_of(result: Compared, folder: str) -> str:
+    """Where the files of a result stand; one that was kept alone is written into `folder`."""
+    if not isinstance(result, Result):
+        return os.fspath(result)
+    if result._directory is not None:
+        return result._directory
+    return os.fspath(result.save(folder, format="hdf5"))

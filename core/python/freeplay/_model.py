@@ -1,0 +1,284 @@
+"""Models: a text that was read and checked."""
+from __future__ import annotations
+
+import os
+import warnings
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, TypeVar, Union
+
+from . import _core
+from ._analyses import analyse
+from ._errors import Error, Message, ModelWarning, message_of, not_in_this_release, usage
+from ._result import Result, raise_failure, result_of
+from ._source import Quantity, Source, build_options, of_text, place_of, remark, renamed
+from ._simulation import Simulation
+from ._table import Table
+
+Progress = Union[bool, Callable[[float, float, int], None], None]
+OF_LOAD = ("set", "ideal", "end", "step", "accuracy", "integrator", "plugins", "strict", "folder", "allow_plugins")
+OF_RUN = ("interval", "channels", "format")
+OF_CALL = ("out", "force", "yes", "profile", "progress")
+LATER = ("colours", "verify", "repeat", "seed", "twin", "report", "checkpoint")
+
+
+Answer = TypeVar("Answer")
+
+
+class Channel(NamedTuple):
+    """A column of results: its name and its SI unit."""
+
+    name: str
+    unit: str
+
+
+class Model:
+    """A model that was read and checked. Nothing of it changes: any thread may use it.
+
+    name, file, text: of the model. space: planar or spatial. bodies, joints, drivers, inputs: names in the order of the file.
+    parameters: values in SI, after `set`. channels: what a run records. warnings: messages of the file.
+    """
+
+    def __init__(self, place: Mapping[str, Any], options: Mapping[str, Any]) -> None:
+        self._place = dict(place)
+        self._options = {name: value for name, value in options.items() if value is not None}
+        try:
+            self._core = _core.open_model({**self._place, **build_options(self._options)})
+        except Error as error:
+            raise renamed(error, self._options.get("folder")) from None
+        known = self._known = self._core.known()
+        self.name: str = known["name"]
+        self.file: str = of_text(known["file"], self._options.get("folder")) or ""
+        self.text: str = known["text"].decode("utf-8", "replace")
+        self.space: str = known["space"]
+        self.bodies: tuple[str, ...] = known["bodies"]
+        self.joints: tuple[str, ...] = known["joints"]
+        self.drivers: tuple[str, ...] = known["drivers"]
+        self.inputs: tuple[str, ...] = ()
+        self.parameters: dict[str, float] = dict(known["parameters"])
+        self.channels: tuple[Channel, ...] = tuple(Channel(*one) for one in known["channels"])
+        folder = self._options.get("folder")
+        messages = [message_of(fields) for fields in known["messages"]]
+        self.warnings: tuple[Message, ...] = tuple(
+            [one._replace(file=of_text(one.file, folder)) for one in messages] + [remark(text) for text in known["remarks"]])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Model, (self._place, self._options)
+
+    def __repr__(self) -> str:
+        return f"<freeplay.Model '{self.name}', {self.space}, {len(self.bodies)} bodies>"
+
+    def replace(self, **options_of_load: Any) -> Model:
+        """The same text with these options of load() changed; None takes one back."""
+        require_known(options_of_load, (*OF_LOAD, *OF_RUN))
+        options = {**self._options, **options_of_load}
+        for one, other in (("step", "accuracy"), ("accuracy", "step")):
+            if options_of_load.get(one) is not None and other not in options_of_load:
+                options[other] = None  # each takes the place of the other
+        return Model(self._place, options)
+
+    def facts(self) -> dict[str, Any]:
+        """Counts, rank and freedoms, as `facts` of `freeplay validate --json`. Raises ModelError where it cannot be assembled."""
+        return self._told(self._core.facts)
+
+    def start(self) -> dict[str, dict[str, float]]:
+        """The assembled pose of every body [m, rad], as `start` of `freeplay validate --json`."""
+        return self._told(self._core.start)
+
+    def tree(self) -> dict[str, Any]:
+        """The model after everything in it is expanded, in SI: `freeplay show --format json`."""
+        return self._told(self._core.tree)
+
+    def svg(self) -> str:
+        """A drawing of the start: `freeplay show --format svg`."""
+        return self._told(self._core.svg)
+
+    def _told(self, question: Callable[[], Answer]) -> Answer:
+        try:
+            return question()
+        except Error as error:
+            raise renamed(error, self._options.get("folder")) from None
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes `text` to `path`. Options such as `set` are not in it."""
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            file.write(self.text)
+
+    def run(self, **options_of_run: Any) -> Result:
+        """Runs to the end: see freeplay.run() for the options and what it raises."""
+        return run_model(self, options_of_run)
+
+    def simulation(self, **options_of_run: Any) -> Simulation:
+        """Step by step. Not in this release."""
+        return Simulation(self, **options_of_run)
+
+    def ik(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None, elbow: Any = None,
+           branches: bool = False) -> Table:
+        """Drive coordinates for poses of the platform.
+
+        frame: the platform. pose [m, rad], grid {axis: (from, to, count)}, time (from, to, count) [s] or input {joint: value}: where.
+        elbow: working modes of the legs, 1 or -1. branches: all working modes of a pose.
+        """
+        return self._analysed("ik", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, branches=branches)
+
+    def workspace(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, elbow: Any = None,
+                  colours: bool = False) -> Table:
+        """What is reachable, and how well conditioned.
+
+        frame: the platform. pose [m, rad], grid {axis: (from, to, count)} or time (from, to, count) [s]: where. elbow: working modes.
+        colours: of a map, which is not in this release.
+        """
+        require_release({"colours": colours})
+        return self._analysed("workspace", frame=frame, pose=pose, grid=grid, time=time, elbow=elbow)
+
+    def singularity(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None,
+                    elbow: Any = None) -> Table:
+        """How near poses are to singular ones. The arguments are those of ik()."""
+        return self._analysed("singularity", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow)
+
+    def error(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None, elbow: Any = None,
+              sensitivity: bool = False, samples: int | None = None, seed: int | None = None, distribution: str | None = None) -> Table:
+        """Largest position errors by clearance [m, rad]. Where: as in ik().
+
+        sensitivity: a column for each joint. samples, seed, distribution: columns of random play.
+        """
+        return self._analysed("error", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, sensitivity=sensitivity,
+                              samples=samples, seed=seed, distribution=distribution)
+
+    def inverse_dynamics(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None,
+                         elbow: Any = None, preload: Quantity | None = None) -> Table:
+        """Efforts of the drivers [N, N m] and forces of the joints along the path. Where: as in ik(). preload: inner tension of redundant drivers."""
+        return self._analysed("inverse-dynamics", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, preload=preload)
+
+    def _analysed(self, kind: str, **options: Any) -> Table:
+        try:
+            return analyse(self, kind, options)
+        except Error as error:
+            raise renamed(error, self._options.get("folder")) from None
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+
+def require_known(options: Mapping[str, Any], known: Iterable[str]) -> None:
+    for name in options:
+        if name not in known:
+            raise TypeError(f"there is no option '{name}'")
+
+
+def warn(texts: Iterable[str], level: int) -> None:
+    for text in texts:
+        warnings.warn(text, ModelWarning, stacklevel=level)
+
+
+def load(source: Source, *, set: Mapping[str, Quantity] | None = None, ideal: str | Iterable[str] = (), end: Quantity | None = None,
+         step: Quantity | None = None, accuracy: Quantity | None = None, integrator: str | None = None, plugins: Iterable[str] = (),
+         strict: bool = False, folder: str | os.PathLike[str] | None = None, allow_plugins: bool = False) -> Model:
+    """Reads and checks a model.
+
+    source: a path (.yaml, .yml, .urdf), a YAML text with a line feed, or the YAML tree as a mapping.
+    set: values by parameter or path, numbers in SI or texts such as "0.2 mm". ideal: joints whose clearance is closed, a name, pattern or "all".
+    end: end time [s]. step: step [s]. accuracy: of positions instead of a step [m per s]. integrator: its name.
+    plugins: libraries to load besides. strict: warnings are errors. folder: where paths of a text or mapping count from (the present one).
+    allow_plugins: run the code of libraries that the model names, wherever they lie.
+
+    Raises ModelError with all messages of the file, UsageError, PluginError; gives warnings as ModelWarning.
+    """
+    model = Model(place_of(source, folder), {"set": set, "ideal": ideal, "end": end, "step": step, "accuracy": accuracy, "integrator": integrator,
+                                             "plugins": plugins, "strict": strict, "folder": folder, "allow_plugins": allow_plugins})
+    warn([one.message for one in model.warnings], 3)
+    return model
+
+
+def check(source: Source, *, set: Mapping[str, Quantity] | None = None, ideal: str | Iterable[str] = (), end: Quantity | None = None,
+          step: Quantity | None = None, accuracy: Quantity | None = None, integrator: str | None = None, plugins: Iterable[str] = (),
+          strict: bool = False, folder: str | os.PathLike[str] | None = None, allow_plugins: bool = False) -> list[Message]:
+    """All messages of a model, an empty list for a good one. The arguments are those of load(); raises UsageError alone."""
+    options = {"set": set, "ideal": ideal, "end": end, "step": step, "accuracy": accuracy, "integrator": integrator, "plugins": plugins,
+               "strict": strict, "allow_plugins": allow_plugins}
+    messages = [message_of(fields) for fields in _core.check_model({**place_of(source, folder), **build_options(options)})]
+    return [one._replace(file=of_text(one.file, folder)) for one in messages]
+
+
+def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, force: bool = False, format: str | None = None,
+        verify: bool = False, profile: bool = False, channels: str | Iterable[str] | None = None, progress: Progress = None,
+        interval: Quantity | None = None, checkpoint: Quantity | None = None, twin: bool = False, report: bool = False,
+        repeat: int | None = None, seed: int | None = None, yes: bool = False, set: Mapping[str, Quantity] | None = None,
+        ideal: str | Iterable[str] | None = None, end: Quantity | None = None, step: Quantity | None = None, accuracy: Quantity | None = None,
+        integrator: str | None = None, plugins: Iterable[str] | None = None, strict: bool | None = None,
+        folder: str | os.PathLike[str] | None = None, allow_plugins: bool | None = None) -> Result:
+    """Simulates a model; the numbers are those of `freeplay run`, bit for bit.
+
+    source: as in load(), or a Model. out: result directory; without it nothing is written. force: write beside other files.
+    format: of the files, csv, hdf5 or both. profile: count where the time goes. channels: patterns of what is kept and written.
+    progress: True prints how far it is; a function gets time [s], end [s] and steps, and what it raises ends the run.
+    interval: between rows [s]. yes: no question is put in any case, as `out` is as large as it is.
+    set, ideal, end [s], step [s], accuracy [m per s], integrator, plugins, strict, folder, allow_plugins: as in load().
+    verify, twin, report, repeat, seed, checkpoint: not in this release.
+
+    Raises what load() raises; NumericalError and Interrupted with .result, all rows up to the last accepted step; ResultError.
+    """
+    given: dict[str, Any] = {"set": set, "ideal": ideal, "end": end, "step": step, "accuracy": accuracy, "integrator": integrator,
+                             "plugins": plugins, "strict": strict, "folder": folder, "allow_plugins": allow_plugins, "interval": interval,
+                             "channels": channels, "format": format}
+    called: dict[str, Any] = {"out": out, "force": force, "profile": profile, "progress": progress, "verify": verify, "twin": twin,
+                              "report": report, "repeat": repeat, "seed": seed, "checkpoint": checkpoint}
+    options = {name: value for name, value in {**given, **called}.items() if value is not None}
+    if isinstance(source, Model):
+        return run_model(source, options)
+    require_release(options)
+    load_options = {name: value for name, value in options.items() if name in (*OF_LOAD, *OF_RUN)}
+    model = Model(place_of(source, folder), load_options)
+    return run_model(model, {name: value for name, value in options.items() if name in OF_CALL})
+
+
+def require_release(options: Mapping[str, Any]) -> None:
+    for name in LATER:
+        if options.get(name) not in (None, False):
+            not_in_this_release(f"--{name}")
+
+
+def run_model(model: Model, options: Mapping[str, Any]) -> Result:
+    require_known(options, (*OF_LOAD, *OF_RUN, *OF_CALL, *LATER))
+    require_release(options)
+    changes = {name: value for name, value in options.items() if name in (*OF_LOAD, *OF_RUN) and value is not None}
+    if changes:
+        model = model.replace(**changes)
+    out = options.get("out")
+    profiled = bool(options.get("profile", False))
+    directory = None if out is None else os.fspath(out)
+    if directory == "":
+        raise usage("bad value '' of --out: it must not be empty", message_id="bad-value")
+    progress = progress_of(options.get("progress"), float(model._known["end"]))
+    try:
+        kept, raised = _core.run(model._core, directory, bool(options.get("force", False)), profiled, "freeplay.run()", progress)
+    except Error as error:
+        raise renamed(error, model._options.get("folder")) from None
+    result = result_of(kept, model, profiled, None if directory is None else os.path.abspath(directory))
+    warn(result.warnings, 4)
+    raise_failure(kept, result, raised)
+    return result
+
+
+def progress_of(progress: Progress, end: float) -> Callable[[float, int], None] | None:
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        return lambda time, steps: print(f"{time:g} s of {end:g} s, {steps} steps", flush=True)
+    called = progress
+
+    def tick(time: float, steps: int) -> None:
+        called(time, end, steps)
+    return tick
+
+
+def model_of_result(directory: str, summary: Mapping[str, Any]) -> Model | None:
+    """The model that stands in a result, as it ran; None where it has none that can be read."""
+    settings = summary.get("settings") or {}
+    for name in ("model.yaml", "model.urdf"):
+        path = os.path.join(directory, name)
+        if not os.path.exists(path):
+            continue
+        try:
+            return Model({"file": path}, {"set": dict(settings.get("set") or {}), "ideal": list(settings.get("ideal") or ())})
+        except Error:
+            return None
+    return None

@@ -1,0 +1,173 @@
+"""Results: rows and events of a run as arrays that are read only."""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import re
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, NoReturn
+
+import numpy as np
+
+from . import _core
+from ._errors import Interrupted, NumericalError, Message, PluginError, ResultError, not_in_this_release, unknown_name
+from ._source import names as names_of
+
+if TYPE_CHECKING:
+    from ._model import Model
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+Records = np.ndarray[Any, np.dtype[Any]]
+
+
+def fits(pattern: str, name: str) -> bool:
+    """Whether a name fits a pattern, in which `*` stands for any run of characters."""
+    return re.fullmatch(".*".join(re.escape(part) for part in pattern.split("*")), name) is not None
+
+
+def events_of(layout: Mapping[str, Any], numbers: Array) -> Records:
+    """The fields of events.csv."""
+    joints, kinds, fields = layout["joints"], layout["kinds"], layout["events"]
+
+    def words(known: list[str], places: Array) -> Any:
+        return np.array(known or [""], dtype=str)[places.astype(int)]
+
+    columns = [words(joints, numbers[:, i]) if name == "joint" else words(kinds, numbers[:, i]) if name == "kind" else numbers[:, i]
+               for i, name in enumerate(fields)]
+    events = np.empty(len(numbers), dtype=[(name, column.dtype) for name, column in zip(fields, columns)])
+    for name, column in zip(fields, columns):
+        events[name] = column
+    events.setflags(write=False)
+    return events
+
+
+class Result:
+    """What a run came to. Nothing of it changes; arrays are views of one block of memory that they keep alive.
+
+    names, units: of the columns, the first is time [s]. data: (rows, columns). events: the fields of events.csv.
+    status: completed, stopped, failed or interrupted, and reason why. summary: that of summary.json.
+    profile: {phase: (seconds [s], count)} of a run with profile=True. model: what ran, or None.
+    """
+
+    def __init__(self, layout: Mapping[str, Any], data: Array, numbers: Array, summary: dict[str, Any], model: Model | None,
+                 kept: _core.KeptRun | None = None, directory: str | None = None) -> None:
+        self.names: tuple[str, ...] = tuple(layout["names"])
+        self.units: Mapping[str, str] = MappingProxyType(dict(zip(self.names, layout["units"])))
+        self.data: Array = data
+        self._places = {name: i for i, name in enumerate(self.names)}
+        self.time: Array = data[:, 0]
+        self.events: Records = events_of(layout, numbers)
+        self.summary: dict[str, Any] = summary
+        self.status: str = summary.get("status", "unfinished")
+        self.reason: str | None = summary.get("stop_reason") or None
+        self.profile: dict[str, tuple[float, int]] | None = None
+        self.warnings: tuple[str, ...] = tuple(summary.get("warnings") or ())
+        self.model: Model | None = model
+        self._kept = kept
+        self._directory = directory
+
+    def __getitem__(self, name: str) -> Array:
+        """The numbers of one column, (rows,): a view. Raises UnknownName."""
+        place = self._places.get(name)
+        if place is None:
+            raise unknown_name("channel", name, self.names)
+        return self.data[:, place]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._places
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __repr__(self) -> str:
+        return f"<freeplay.Result {self.status}, {len(self.time)} rows of {len(self.names)} channels>"
+
+    def _chosen(self, patterns: Iterable[str]) -> list[str]:
+        chosen: dict[str, None] = {}
+        for pattern in patterns:
+            found = [name for name in self.names if fits(pattern, name)]
+            if not found:
+                raise unknown_name("channel", pattern, self.names)
+            chosen.update(dict.fromkeys(found))
+        return list(chosen)
+
+    def select(self, *patterns: str) -> dict[str, Array]:
+        """Columns by name that fit one of the patterns, in which `*` stands for any run of characters: views."""
+        return {name: self[name] for name in self._chosen(patterns)}
+
+    def to_pandas(self, channels: str | Iterable[str] = "*") -> Any:
+        """A pandas DataFrame of the channels that fit, index `time` [s]; attrs["units"] has their units."""
+        try:
+            pandas: Any = import_module("pandas")
+        except ImportError as error:
+            raise ImportError("to_pandas needs pandas: Debian has it as python3-pandas") from error
+        chosen = [name for name in self._chosen(names_of(channels)) if name != "time"]
+        frame = pandas.DataFrame({name: self[name] for name in chosen}, index=pandas.Index(self.time, name="time"))
+        frame.attrs["units"] = {name: self.units[name] for name in ["time", *chosen]}
+        return frame
+
+    def to_xarray(self, channels: str | Iterable[str] = "*") -> Any:
+        """An xarray Dataset of the channels that fit over `time` [s]: variables have attrs["units"], the set the summary."""
+        try:
+            xarray: Any = import_module("xarray")
+        except ImportError as error:
+            raise ImportError("to_xarray needs xarray: Debian has it as python3-xarray") from error
+        chosen = [name for name in self._chosen(names_of(channels)) if name != "time"]
+        variables = {name: ("time", self[name], {"units": self.units[name]}) for name in chosen}
+        time = ("time", self.time, {"units": self.units["time"]})
+        return xarray.Dataset(variables, coords={"time": time}, attrs={"summary": json.dumps(self.summary)})
+
+    def save(self, out: str | os.PathLike[str], *, force: bool = False, format: str | None = None) -> pathlib.Path:
+        """Writes a result directory with the bytes that the command line writes, and returns its path.
+
+        out: the directory. force: write beside other files. format: csv, hdf5 or both (what the model says).
+        """
+        if self._kept is None or self.model is None:
+            not_in_this_release("save() of a result that was opened")
+        path = os.fspath(out)
+        _core.save(self._kept, path, force, self.model._known["format"] if format is None else format)
+        return pathlib.Path(path)
+
+    def report(self, path: str | os.PathLike[str] | None = None) -> NoReturn:
+        """The page of `freeplay report` at `path`. Not in this release: the command writes it."""
+        not_in_this_release("report()")
+
+
+def result_of(kept: _core.KeptRun, model: Model, profiled: bool, directory: str | None) -> Result:
+    result = Result(kept.layout(), kept.data(), kept.event_numbers(), kept.summary(), model, kept, directory)
+    if profiled:
+        result.profile = kept.profile()
+    return result
+
+
+def raise_failure(kept: _core.KeptRun, result: Result, raised: BaseException | None) -> None:
+    """What ended the run before its end, as an exception with the rows up to there."""
+    if raised is not None:
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(f"interrupted at {result.time[-1] if len(result.time) else 0.0:g} s", result) from None
+        raise raised
+    if kept.exit_code == 0:
+        return
+    kinds: dict[int, tuple[type[NumericalError] | type[PluginError] | type[ResultError], str]] = {
+        4: (NumericalError, "run-failed"), 5: (PluginError, "plugin-failed"), 6: (ResultError, "cannot-write")}
+    kind, message_id = kinds.get(kept.exit_code, (NumericalError, "run-failed"))
+    text = kept.reason + (" [cannot-write]" if kept.exit_code == 6 else "")
+    error = kind(text, [Message(None, None, None, "error", message_id, kept.reason, None)], kept.exit_code)
+    error.result = result
+    raise error
+
+
+def open(path: str | os.PathLike[str], *, channels: str | Iterable[str] = "*") -> Result:
+    """The result of any run: its directory, CSV or HDF5 file, also one that goes on or was killed.
+
+    path: of the result. channels: patterns of what is read; `time` [s] always is. Raises ResultError.
+    """
+    from ._model import model_of_result
+
+    stored = _core.read(os.fspath(path), names_of(channels))
+    summary = stored["summary"] if isinstance(stored["summary"], dict) else {}
+    directory = stored["directory"] or None
+    model = model_of_result(directory, summary) if directory else None
+    return Result(stored, stored["data"], stored["event_numbers"], summary, model, directory=os.path.abspath(directory or os.fspath(path)))

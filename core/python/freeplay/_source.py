@@ -1,0 +1,133 @@
+"""Models, options and quantities of a caller, as the texts that the core reads."""
+from __future__ import annotations
+
+import json
+import os
+from numbers import Integral, Real
+from typing import Any, Iterable, Mapping, Union
+
+from ._errors import Error, Message, usage
+
+Quantity = Union[float, str]
+Source = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+OF_TEXT = "<model>"
+
+
+def quantity(name: str, value: Any) -> str:
+    """A number in SI, or a text with a unit, as the command line takes it. Raises TypeError for anything else."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name}: a number in SI or a text such as '0.2 mm' is needed, not {type(value).__name__}")
+    return repr(int(value)) if isinstance(value, Integral) else repr(float(value))
+
+
+def words(name: str, value: Any) -> list[str]:
+    """One word or several."""
+    if isinstance(value, str):
+        return [value]
+    try:
+        found = list(value)
+    except TypeError:
+        raise TypeError(f"{name}: a text or a list of texts is needed, not {type(value).__name__}") from None
+    for word in found:
+        if not isinstance(word, str):
+            raise TypeError(f"{name}: texts are needed, not {type(word).__name__}")
+    return found
+
+
+def plain(value: Any, place: str) -> Any:
+    """A tree of what JSON has. `place` is its path, for messages."""
+    if value is None or isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, float):
+        return float(value)
+    if isinstance(value, Mapping):
+        for key in value:
+            if not isinstance(key, str):
+                raise TypeError(f"{place or 'the model'}: keys are texts, not {type(key).__name__}")
+        return {key: plain(one, f"{place}.{key}" if place else key) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(one, f"{place}[{i}]") for i, one in enumerate(value)]
+    if type(value).__module__ == "numpy" and hasattr(value, "tolist"):
+        return plain(value.tolist(), place)
+    raise TypeError(f"{place or 'the model'}: a model has no {type(value).__name__}")
+
+
+def tree_text(tree: Mapping[str, Any]) -> str:
+    """A model as its file: JSON is YAML."""
+    return json.dumps(plain(tree, ""), indent=2, ensure_ascii=False) + "\n"
+
+
+def place_of(source: Any, folder: Any) -> dict[str, Any]:
+    """`file`, and `text` where it is at hand."""
+    if isinstance(source, Mapping):
+        return {"text": tree_text(source), "file": file_of_text(folder)}
+    if isinstance(source, str) and "\n" in source:
+        return {"text": source, "file": file_of_text(folder)}
+    if isinstance(source, (str, os.PathLike)):
+        path = os.fspath(source)
+        if isinstance(path, str):
+            return {"file": path}
+    raise TypeError(f"a model is a path, a text with a line feed or a mapping, not {type(source).__name__}")
+
+
+def file_of_text(folder: Any) -> str:
+    return OF_TEXT if folder is None else os.path.join(os.fspath(folder), OF_TEXT)
+
+
+def build_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Keywords of a call as the core takes them."""
+    built: dict[str, Any] = {}
+    changed = options.get("set")
+    if changed is not None:
+        if not isinstance(changed, Mapping):
+            raise TypeError(f"set: a mapping of names to values is needed, not {type(changed).__name__}")
+        for name in changed:
+            if not isinstance(name, str):
+                raise TypeError(f"set: names are texts, not {type(name).__name__}")
+        built["set"] = [f"{name}={quantity('set: ' + name, value)}" for name, value in changed.items()]
+    for name in ("end", "step", "accuracy", "interval"):
+        if options.get(name) is not None:
+            built[name] = filled(name, quantity(name, options[name]))
+    for name in ("integrator", "format"):
+        value = options.get(name)
+        if value is not None:
+            if not isinstance(value, str):
+                raise TypeError(f"{name}: a text is needed, not {type(value).__name__}")
+            built[name] = filled(name, value)
+    for name in ("ideal", "plugins", "channels"):
+        if options.get(name) is not None:
+            built[name] = words(name, options[name])
+    for name in ("strict", "allow_plugins"):
+        built[name] = bool(options.get(name, False))
+    return built
+
+
+def filled(name: str, text: str) -> str:
+    if not text:
+        raise usage(f"bad value '' of --{name}: it must not be empty", message_id="bad-value")
+    return text
+
+
+def of_text(file: str | None, folder: Any) -> str | None:
+    """How messages name a model that is at hand as a text, wherever its paths count from."""
+    return OF_TEXT if file == file_of_text(folder) else file
+
+
+def renamed(error: Error, folder: Any) -> Error:
+    """The same error with the name of a text that stands in `folder`."""
+    if folder is None:
+        return error
+    text = str(error).replace(file_of_text(folder), OF_TEXT)
+    error.args = (text,)
+    error.messages = tuple(message._replace(file=of_text(message.file, folder)) for message in error.messages)
+    return error
+
+
+def remark(text: str) -> Message:
+    return Message(None, None, None, "warning", "", text, None)
+
+
+def names(value: str | Iterable[str]) -> list[str]:
+    return words("channels", value)

@@ -1,0 +1,50 @@
+// KeptRows: rows and events of a run kept in memory, as its files would hold them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/json_text.h"
+#include "base/sha256.h"
+#include "python/column_block.h"
+#include "results/event_sink.h"
+#include "results/record.h"
+#include "results/row_hash.h"
+#include "run/sink.h"
+
+namespace freeplay {
+
+class KeptRows : public Sink {
+ public:
+  /// Throws std::bad_alloc where there is no room for all rows. `model` outlives the run.
+  KeptRows(const Model& model, const Channels& channels);
+  KeptRows(const KeptRows&) = delete;
+  KeptRows& operator=(const KeptRows&) = delete;
+
+  void row(std::span<const double> values) override;
+  void event(const EventRecord& record) override { sink_.event(record); }
+  bool ok() const override { return true; }
+  /// Takes what still waits, when the run has ended.
+  void finish() { sink_.finish(); }
+
+  const RecordLayout& layout() const { return layout_; }
+  const ColumnBlock& block() const { return block_; }
+  /// Numbers of all events, as the layout says.
+  const std::vector<double>& events() const { return events_; }
+  /// `hashes` of a summary.
+  Json hashes() const;
+
+ private:
+  void take_event(std::span<const double> numbers);
+
+  std::vector<std::size_t> picked_;
+  RecordLayout layout_;
+  ColumnBlock block_;
+  std::vector<double> row_, events_;
+  RowHash row_hash_;
+  Sha256 event_hash_;
+  std::string line_;
+  EventSink sink_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,111 @@
+#include "python/opened_model.h"
+
+#include <utility>
+
+#include "base/message_json.h"
+#include "convert/model_json.h"
+#include "drawing/mechanism_drawing.h"
+#include "load/facts.h"
+#include "load/model_file.h"
+#include "python/refusal.h"
+#include "results/made_text.h"
+#include "results/provenance.h"
+
+namespace freeplay {
+namespace {
+
+/// One at a time: the log handler of the library that reads URDF is global.
+std::mutex reading;
+
+LoadedModel read(const OpenRequest& request, std::vector<std::string>& remarks) {
+  LoadOptions options;
+  options.strict = request.strict;
+  options.plugins = request.plugins;
+  options.allow_plugins = request.allow_plugins;
+  options.warn = options.note = [&](const std::string& text) { remarks.push_back(text); };
+  const BuildOptions build = build_options(request.words);
+  const std::lock_guard lock(reading);
+  return request.text ? load_text(*request.text, request.file, build, options)
+                      : load_model(request.file, build, options);
+}
+
+LoadedModel read_whole(const OpenRequest& request, std::vector<std::string>& remarks) {
+  LoadedModel loaded = read(request, remarks);
+  if (!loaded.model) throw Refusal(loaded.diagnostics, loaded.exit_code);
+  return loaded;
+}
+
+}  // namespace
+
+OpenedModel::OpenedModel(OpenRequest request)
+    : request_(std::move(request)), loaded_(read_whole(request_, remarks_)), channels_(*loaded_.model) {}
+
+Json OpenedModel::check(OpenRequest request) {
+  std::vector<std::string> remarks;
+  LoadedModel loaded = read(request, remarks);
+  if (loaded.model) assemble_model(loaded);
+  return messages_json(loaded.diagnostics, 0);
+}
+
+Json OpenedModel::messages() const { return messages_json(loaded_.diagnostics, 0); }
+
+std::unique_ptr<AssembledModel> OpenedModel::assemble(Diagnostics& diagnostics) const {
+  diagnostics = loaded_.diagnostics;
+  int exit_code = 0;
+  auto assembled = assemble_model(model(), &*loaded_.document, diagnostics, exit_code);
+  if (!assembled) throw Refusal(diagnostics, exit_code);
+  return assembled;
+}
+
+LoadedModel OpenedModel::read_again() const {
+  OpenRequest request = request_;
+  if (!is_urdf(request.file)) request.text = model().text;  // whatever the file has become
+  std::vector<std::string> remarks;
+  return read_whole(request, remarks);
+}
+
+void OpenedModel::refuse(const Error& error) const {
+  if (error.category() != Error::Category::input && error.category() != Error::Category::plugin &&
+      error.category() != Error::Category::numerical) {
+    throw error;
+  }
+  Diagnostic diagnostic = as_diagnostic(error);
+  if (error.location().file.empty()) diagnostic.location = {loaded_.document->file_name(), 0, 0};
+  Diagnostics diagnostics = loaded_.diagnostics;
+  diagnostics.add(std::move(diagnostic));
+  throw Refusal(diagnostics, error.exit_code());
+}
+
+const AssembledModel& OpenedModel::assembled() const {
+  const std::lock_guard lock(assembling_);
+  if (!assembled_) {
+    Diagnostics diagnostics;
+    assembled_ = assemble(diagnostics);
+  }
+  return *assembled_;
+}
+
+Json OpenedModel::facts() const {
+  const Start& start = assembled().start;
+  return facts_json(model(), start.facts, start.structure);
+}
+
+Json OpenedModel::start() const { return start_json(model(), assembled().start); }
+
+Json OpenedModel::tree() const { return model_json(model()); }
+
+std::string OpenedModel::svg() const {
+  const AssembledModel& assembled = this->assembled();
+  std::vector<std::string> arguments{"--format", "svg"};
+  const auto add = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) arguments.insert(arguments.end(), {option, value});
+  };
+  add("--set", request_.words.model_options.set);
+  add("--ideal", request_.words.model_options.ideal);
+  add("--plugin", request_.plugins);
+  const Json record =
+      provenance_with_texts(model(), {"show", "freeplay show", std::move(arguments), FREEPLAY_BUILD, nullptr});
+  return picture_with_record(mechanism_svg(assembled.system, {assembled.start.state.q()}), record);
+}
+
+}  // namespace freeplay

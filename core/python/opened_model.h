@@ -1,0 +1,67 @@
+// OpenedModel: a model that a script holds. Nothing of it changes, so that any thread may use it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json_text.h"
+#include "load/load.h"
+#include "load/run_words.h"
+#include "model/channel.h"
+
+namespace freeplay {
+
+/// What is to be opened, and how.
+struct OpenRequest {
+  std::optional<std::string> text;  ///< of a YAML model; without it `file` is read
+  std::string file;
+  RunWords words;
+  std::vector<std::string> plugins;
+  bool strict = false, allow_plugins = false;
+};
+
+class OpenedModel {
+ public:
+  /// Throws Refusal with the messages of the file, Error{usage} for what is asked for.
+  explicit OpenedModel(OpenRequest request);
+  /// All messages of a file, of its assembly too where there is a model.
+  static Json check(OpenRequest request);
+
+  const OpenRequest& request() const { return request_; }
+  const Model& model() const { return *loaded_.model; }
+  const Channels& channels() const { return channels_; }
+  /// Warnings of the file.
+  Json messages() const;
+  /// Remarks that are about no place of the file.
+  const std::vector<std::string>& remarks() const { return remarks_; }
+
+  /// A system of its own for each caller; `diagnostics` gets the warnings of the file and those of the assembly. Throws
+  /// Refusal.
+  std::unique_ptr<AssembledModel> assemble(Diagnostics& diagnostics) const;
+  /// The same model once more, for what changes it.
+  LoadedModel read_again() const;
+  /// Throws Error as a message of this file, Refusal where it is one of the file.
+  [[noreturn]] void refuse(const Error& error) const;
+
+  // What `validate`, `show` and `list channels` say of it. Throws Refusal.
+  Json facts() const;
+  Json start() const;
+  Json tree() const;
+  std::string svg() const;
+
+ private:
+  /// Assembled when it is first asked for.
+  const AssembledModel& assembled() const;
+
+  OpenRequest request_;
+  std::vector<std::string> remarks_;
+  LoadedModel loaded_;
+  Channels channels_;
+  mutable std::mutex assembling_;
+  mutable std::unique_ptr<AssembledModel> assembled_;
+};
+
+}  // namespace freeplay

@@ -1,0 +1,38 @@
+# The package `freeplay` in the folder python of the build: _core from here, the rest as it stands in core/python/freeplay.
+find_program(FREEPLAY_INTERPRETER python3 PATHS /usr/bin NO_DEFAULT_PATH)  # that of the packages first
+find_program(FREEPLAY_INTERPRETER python3 REQUIRED)
+execute_process(COMMAND ${FREEPLAY_INTERPRETER} -c "import sysconfig; print(sysconfig.get_path('include'), sysconfig.get_config_var('EXT_SUFFIX'), sep=';', end='')"
+                OUTPUT_VARIABLE interpreter COMMAND_ERROR_IS_FATAL ANY)
+list(GET interpreter 0 interpreter_include)
+list(GET interpreter 1 extension_suffix)
+find_path(PYTHON_INCLUDE Python.h PATHS ${interpreter_include} NO_DEFAULT_PATH REQUIRED)
+find_path(PYBIND11_INCLUDE pybind11/pybind11.h REQUIRED)
+set(python_package ${CMAKE_BINARY_DIR}/python/freeplay)
+
+file(GLOB sources CONFIGURE_DEPENDS core/python/*.cpp)
+add_library(freeplay_python MODULE ${sources})
+freeplay_compile_together(freeplay_python)
+# Headers of the interpreter take long to compile, and what is there for others must be seen by no other file.
+set_source_files_properties(core/python/module.cpp core/python/outside_data.cpp core/python/outside_format.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+set_target_properties(freeplay_python PROPERTIES PREFIX "" SUFFIX ${extension_suffix} OUTPUT_NAME _core
+                                                 LIBRARY_OUTPUT_DIRECTORY ${python_package}
+                                                 LINK_DEPENDS ${PROJECT_SOURCE_DIR}/core/python/exported.map)
+target_include_directories(freeplay_python SYSTEM PRIVATE ${PYBIND11_INCLUDE} ${PYTHON_INCLUDE})
+target_compile_definitions(freeplay_python PRIVATE FREEPLAY_BUILD="${CMAKE_BUILD_TYPE}")
+target_compile_options(freeplay_python PRIVATE $<$<CONFIG:Release>:-O1>)
+target_link_libraries(freeplay_python PRIVATE freeplay_load freeplay_results freeplay_convert freeplay_drawing freeplay_analysis
+                                              freeplay_contract)
+freeplay_builtins(freeplay_python OFF)
+# It shows nothing but its entry, and binds what it is made of to itself: no other library of the interpreter gets between.
+# The rooms are compiled for programs, to which data of other libraries is as near as their own: that of the C++ library
+# comes with them.
+target_link_options(freeplay_python PRIVATE -Wl,--exclude-libs,ALL -Wl,-Bsymbolic -Wl,--gc-sections -static-libstdc++
+                                            -Wl,--version-script=${PROJECT_SOURCE_DIR}/core/python/exported.map)
+
+# The files of the package are used where they stand: what is changed there is so at once.
+file(GLOB python_files CONFIGURE_DEPENDS core/python/freeplay/*.py core/python/freeplay/py.typed core/python/freeplay/*.pyi)
+file(MAKE_DIRECTORY ${python_package})
+foreach(file IN LISTS python_files)
+  get_filename_component(name ${file} NAME)
+  file(CREATE_LINK ${file} ${python_package}/${name} SYMBOLIC)
+endforeach()
