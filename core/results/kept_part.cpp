@@ -223,7 +223,7 @@ struct First {
   std::string digits;
 };
 
-First rows_of(const fs::path& file, std::int64_t count) {
+First first_rows(const fs::path& file, std::int64_t count) {
   RowHash hash;
   First first;
   if (file.extension() != ".csv" || whole_lines(file, 1).lines > 0) {
@@ -269,7 +269,7 @@ std::string foreign(const char* things, const fs::path& text, const fs::path& hd
 
 std::string foreign_part(const fs::path& directory, const KeptPart& part) {
   const fs::path hdf5 = directory / "results.h5";
-  const std::string rows = foreign("rows", directory / "results.csv", hdf5, {part.rows, part.row_digits}, rows_of);
+  const std::string rows = foreign("rows", directory / "results.csv", hdf5, {part.rows, part.row_digits}, first_rows);
   if (!rows.empty()) return rows;
   return foreign("events", directory / "events.csv", hdf5, {part.events, part.event_digits}, events_of);
 }
