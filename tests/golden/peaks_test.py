@@ -52,7 +52,8 @@ def peaks_of_rows(rows, model):
                 note("joints", name, "max_fn", value=float(row[prefix + "fn"]))
                 note("joints", name, "max_delta", value=float(row[prefix + "delta"]))
                 axes = [axis for axis in space if prefix + "e" + axis in row]
-                note("joints", name, "max_eccentricity", value=length(row, prefix + "e", axes))
+                if axes:  # a slide has none
+                    note("joints", name, "max_eccentricity", value=length(row, prefix + "e", axes))
         for name in model["forces"]:
             note("forces", name, "max_force", value=length(row, "force.%s.f" % name, space))
             note("forces", name, "max_torque", value=moment(row, "force.%s." % name))
