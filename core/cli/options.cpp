@@ -40,6 +40,13 @@ void add_option(CLI::App& app, const std::string& name, std::string& value, cons
   app.add_option(name, value, help)->type_name(value_name);
 }
 
+void add_option(CLI::App& app, const std::string& name, std::optional<std::string>& value, const std::string& help,
+                const std::string& value_name) {
+  app.add_option_function<std::string>(
+         name, [&value](const std::string& text) { value = text; }, help)
+      ->type_name(value_name);
+}
+
 void add_option(CLI::App& app, const std::string& name, std::uint64_t& value, const std::string& help,
                 const std::string& value_name) {
   app.add_option(name, value, help)->type_name(value_name);

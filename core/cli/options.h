@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ void add_model_options_without_ideal(CLI::App& app, ModelOptions& options);
 /// An option ("--end") or an argument ("MODEL"); `value_name` stands for its value in the help.
 void add_option(CLI::App& app, const std::string& name, std::string& value, const std::string& help,
                 const std::string& value_name = "");
+/// Where an empty text is not the same as none.
+void add_option(CLI::App& app, const std::string& name, std::optional<std::string>& value, const std::string& help,
+                const std::string& value_name);
 void add_option(CLI::App& app, const std::string& name, std::uint64_t& value, const std::string& help,
                 const std::string& value_name);
 /// A file or directory to write, which has a name.

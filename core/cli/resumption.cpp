@@ -117,13 +117,12 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
   const Json summary = summary_of(directory);
   const std::string status = summary.value("status", "");
   const double reached = status.empty() ? 0.0 : number_at(summary, "/time/reached");
+  checkpoint_period(asked);
   const double later = asked.end.empty() ? end : positive_quantity("--end", asked.end, dimension::time);
   if (!asked.end.empty() && later < end) {
     const double at = std::max(reached, out.checkpoint.state ? out.checkpoint.state->time : 0.0);
-    if (later <= at || later < end) {
-      bad_value("--end", asked.end,
-                fmt::format("the run went to {:g} s of {:g} s: a later end than that is needed", at, end));
-    }
+    bad_value("--end", asked.end,
+              fmt::format("the run went to {0:g} s and is to end at {1:g} s: it can end later, not before", at, end));
   }
   const bool no_twin =
       out.options.twin && summary.value("twin", Json()).is_null() && !has_no_comparison(directory, summary);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct StudyOptions {
   std::string out, index;
   ModelOptions model;
   std::string end, step, accuracy, integrator;
-  std::string jobs, shard, only, keep, point_timeout, sync;
+  std::optional<std::string> only;
+  std::string jobs, shard, keep, point_timeout, sync;
   bool retry_failed = false, allow_failed = false, isolate = false, extend = false, restart = false, yes = false;
   bool partial = false, list_points = false, watch = false, run_point = false, force = false;
   std::string probe, points, seed;

@@ -31,7 +31,7 @@ void print_points(const OpenStudy& study, const StudyOptions& options) {
   if (plan.has_sample_column()) text += ",sample";
   text += "\n";
   PointRanges ranges{{0, plan.points() - 1}};
-  if (!options.only.empty()) ranges = point_ranges("--only", options.only, plan.points());
+  if (options.only) ranges = point_ranges("--only", *options.only, plan.points());
   constexpr std::size_t piece = 1 << 16;
   for (const auto& range : ranges) {
     for (std::uint64_t index = range.first; index <= range.second; ++index) {

@@ -143,7 +143,7 @@ void StudyRun::read_options() {
   }
   keep_ = keep_of(options_.keep);
   if (!options_.shard.empty()) schedule_.shard = shard_of(options_.shard);
-  if (!options_.only.empty()) schedule_.only = point_ranges("--only", options_.only, plan_.points());
+  if (options_.only) schedule_.only = point_ranges("--only", *options_.only, plan_.points());
   schedule_.retry_failed = options_.retry_failed;
   if (options_.extend && options_.restart) {
     throw Error(Error::Category::usage, "usage", "--extend and --restart exclude each other");

@@ -157,6 +157,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   }
   VerificationRules rules;
   rules.limit = std::max(least_agreement, both_errors * settings.accuracy);
+  rules.size = run.system.size();
   rules.fixed = settings.accuracy == 0.0;
   for (const Body& body : model.bodies) {
     for (const char* quantity : {"x", "y", "z"}) {

@@ -13,6 +13,7 @@ namespace freeplay {
 namespace {
 
 constexpr long most_samples = 1'000'000'000'000;
+constexpr long most_seed = 9'223'372'036'854'775'807;
 
 /// Number of the axis of this name, or nothing after a message.
 std::optional<std::size_t> axis_of(const CheckedValue& value, const std::vector<StudyAxis>& axes) {
@@ -171,6 +172,10 @@ class StudyReader {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
     const bool whole = value.node().is_scalar() && error == std::errc() && end == text.data() + text.size();
     if (whole && seed >> 63 == 0) return seed;
+    if (value.node().is_scalar() && !text.empty() && text.find_first_not_of("0123456789") == std::string::npos) {
+      value.fail("out-of-range", fmt::format("'{}' must be <= {}, not {}", value.path(), most_seed, text));
+      return std::nullopt;
+    }
     const auto number = value.integer(0, 1L << 53);
     return number ? std::optional(static_cast<std::uint64_t>(*number)) : std::nullopt;
   }
@@ -318,8 +323,9 @@ class StudyReader {
       Draft::check_name(entry);
       MapReader map(entry, "study plot");
       const auto kind = map.require("kind");
-      if (kind) kind->word({"line", "heat", "bifurcation", "histogram", "tornado"});
+      const auto word = kind ? kind->word({"line", "heat", "bifurcation", "histogram", "tornado"}) : std::nullopt;
       check_plot_columns(map);
+      if (word) require_plot_keys(map, static_cast<PlotKind>(*word));
       if (const auto percentiles = map.find("percentiles")) {
         for (const CheckedValue& item : percentiles->list().value_or(std::vector<CheckedValue>{})) {
           item.quantity(dimension::none, Range{.minimum = 0.0, .maximum = 100.0});
@@ -328,6 +334,27 @@ class StudyReader {
       map.finish();
     }
     study_.plots = &section.node();
+  }
+
+  enum class PlotKind { line, heat, bifurcation, histogram, tornado };
+
+  /// What a picture of that kind shows; where one number is shown, `y` and `value` are the same.
+  void require_plot_keys(MapReader& map, PlotKind kind) const {
+    const bool over_x = kind == PlotKind::line || kind == PlotKind::heat || kind == PlotKind::bifurcation;
+    const bool heat = kind == PlotKind::heat, samples = kind == PlotKind::bifurcation;
+    const char* const shown = kind == PlotKind::line ? "y" : "value";
+    if (over_x && !map.has("x")) map.report_missing("x");
+    if (heat && !map.has("y")) map.report_missing("y");
+    if (!map.has("value") && (heat || samples || !map.has("y"))) map.report_missing(shown);
+    const auto value = map.find("value");
+    if (!samples || !value || study_.reducers == nullptr) return;
+    for (const Node::Entry& entry : study_.reducers->entries) {
+      const std::string &name = entry.key->text, &text = value->node().text;
+      const Node* reduce = entry.value->find("reduce");
+      if ((text != name && !text.starts_with(name + ".")) || (reduce != nullptr && reduce->text == "poincare"))
+        continue;
+      value->fail("wrong-type", fmt::format("a bifurcation shows a reducer of `reduce: poincare`; '{}' is none", name));
+    }
   }
 
   void check_plot_columns(MapReader& map) const {

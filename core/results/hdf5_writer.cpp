@@ -386,6 +386,8 @@ void Hdf5Writer::fail(const char* reason) {
   }
 }
 
+bool Hdf5Writer::placed() const { return file_ != nullptr && file_->inode != 0; }
+
 template <class Act>
 void Hdf5Writer::attempt(Act&& act) {
   look_after();  // more rows would hide what another program cut

@@ -46,6 +46,8 @@ class Hdf5Writer : public RecordWriter {
   bool disturbed() const override { return disturbed_; }
   const HeldRows* held() const override { return &held_; }
   const std::string& failure() const override { return failure_; }
+  /// Whether the file had its name once; another program took it away where it is not there then.
+  bool placed() const;
   /// Gives the file its name, with what was written so far.
   void put_in_place();
 

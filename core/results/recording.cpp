@@ -121,7 +121,7 @@ bool Recording::in_place() const {
   std::error_code error;
   const auto is_there = [&](const char* name) { return std::filesystem::exists(directory_.file(name), error); };
   return directory_.there() && is_there("events.csv") && (format_ == ResultFormat::hdf5 || is_there("results.csv")) &&
-         (format_ == ResultFormat::csv || is_there("results.h5"));
+         (hdf5_ == nullptr || !hdf5_->placed() || is_there("results.h5"));
 }
 
 std::string Recording::close() {

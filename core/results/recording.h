@@ -67,7 +67,7 @@ class Recording {
   void when_safe(std::function<void()> then);
   /// False where nothing keeps other processes out of the directory.
   bool guarded() const { return directory_.guarded(); }
-  /// False once the directory or a file that grows was removed, or another took its place.
+  /// False once the directory or a file that grows was removed, or another took its place. After close().
   bool in_place() const;
   /// Throws Error{file} unless the directory is there.
   void require_directory() const { directory_.require_there(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string_view>
 
 namespace freeplay {
 namespace {
@@ -13,7 +14,8 @@ constexpr double loud = 10.0;      // limits
 constexpr double loud_way = 0.01;  // of the farthest way, with fixed steps
 constexpr double chaotic = 30.0;   // limits, by which runs of one method part
 constexpr double same_peak = 0.1;  // of the larger one
-constexpr double negligible_peak = 1e-6;  // of the largest of the same kind
+constexpr double negligible_peak = 1e-6;   // of the largest of the same kind
+constexpr double negligible_lever = 1e-5;  // of the model's size: a torque that its forces have by it is none
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 struct Moments {
@@ -69,25 +71,29 @@ double farthest_way(const ResultTable& table, const VerificationRules& rules) {
   return way;
 }
 
-/// What peaks are compared with: the largest of their kind, which the last word of the name says.
-double largest_of_kind(std::span<const PeakPair> peaks, const std::string& name) {
-  const auto kind = [](const std::string& text) { return text.substr(text.rfind(' ') + 1); };
-  double largest = 0.0;
+/// The last word of a name.
+std::string_view kind_of(const PeakPair& peak) { return std::string_view(peak.name).substr(peak.name.rfind(' ') + 1); }
+
+/// Below, a peak is none: in terms of the largest of its kind, and a torque of that of all forces, too.
+double negligible(std::span<const PeakPair> peaks, const PeakPair& of, double size) {
+  double alike = 0.0, force = 0.0;
   for (const PeakPair& peak : peaks) {
-    if (kind(peak.name) == kind(name))
-      largest = std::fmax(largest, std::fmax(std::abs(peak.run), std::abs(peak.second)));
+    const double larger = std::fmax(std::abs(peak.run), std::abs(peak.second));
+    if (kind_of(peak) == kind_of(of)) alike = std::fmax(alike, larger);
+    if (kind_of(peak) == "|F|" || kind_of(peak) == "|force|") force = std::fmax(force, larger);
   }
-  return largest;
+  const double limit = negligible_peak * alike;
+  return kind_of(of) == "|torque|" ? std::fmax(limit, negligible_lever * size * force) : limit;
 }
 
-void compare_peaks(const RunResult& run, const RunResult& second, Verification& out) {
+void compare_peaks(const RunResult& run, const RunResult& second, double size, Verification& out) {
   for (std::size_t i = 0; i < std::min(run.peaks.size(), second.peaks.size()); ++i) {
     out.peaks.push_back({run.peaks[i].name, run.peaks[i].value, second.peaks[i].value});
   }
   for (PeakPair& peak : out.peaks) {
     const double larger = std::fmax(std::abs(peak.run), std::abs(peak.second));
     const double off = std::abs(peak.run - peak.second);
-    peak.differs = off > same_peak * larger && off > negligible_peak * largest_of_kind(out.peaks, peak.name);
+    peak.differs = off > same_peak * larger && off > negligible(out.peaks, peak, size);
   }
 }
 
@@ -124,7 +130,7 @@ Verification compare_runs(const RunResult& run, const RunResult& second, const V
     channel.second_largest = other.maximum();
     out.channels.push_back(std::move(channel));
   }
-  compare_peaks(run, second, out);
+  compare_peaks(run, second, rules.size, out);
   const bool good = agreeing == off.size() && std::ranges::none_of(out.peaks, &PeakPair::differs);
   out.agreement = good ? Agreement::agree : Agreement::err;
   return out;

@@ -48,6 +48,7 @@ struct VerificationRules {
   /// Difference of positions that counts as agreement in the first second, and in each second after it [m].
   double limit = 1e-6;
   bool fixed = false;  ///< the first run takes fixed steps: nothing is promised of its error
+  double size = 0.0;   ///< of the model [m]; torques are compared with forces by it
 };
 
 struct Verification {

@@ -125,6 +125,17 @@ class Resume(ProgramTest):
             if format_ == "both":
                 self.assert_same(name, "whole")
 
+    def test_a_result_that_had_no_room_for_its_tables_is_gone_on_from(self):
+        self.whole("--end", "10 ms", "--interval", "1 ms", "--format", "both")
+        limit = 20 * 1024  # results.h5 cannot be made
+        done = subprocess.run([PROGRAM, "run", CRANK, "--quiet", "--out", "full", "--end", "10 ms", "--interval", "1 ms", "--format", "both"],
+                              cwd=self.folder, capture_output=True, text=True, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual(6, done.returncode, done.stderr)
+        self.assertIn("no rows are safe; free some space and go on with freeplay run --resume full", done.stderr)
+        self.freeplay("run", "--resume", "full", "--quiet")
+        self.assert_same("full", "whole")
+
     def test_a_later_end_gives_the_run_to_that_end(self):
         self.run_model("whole", "--end", "24 ms", "--interval", "0.1 ms")
         for first in ("10.00037 ms", "12 ms"):
@@ -155,7 +166,8 @@ class Resume(ProgramTest):
             (0, "nothing to do", (), None),
             (2, "--set does not go with --resume", ("--set", "c=1mm"), None),
             (2, "MODEL does not go with --resume", (CRANK,), None),
-            (2, "bad-value", ("--end", "1 ms"), None),
+            (2, "is to end at 0.005 s: it can end later, not before", ("--end", "1 ms"), None),
+            (2, "it must not be negative", ("--checkpoint", "-1"), None),
             (3, "resume-mismatch", ("--end", "9 ms"), ("model.yaml", lambda d: d + b"# another\n")),
             (3, "the program's arithmetic is not that of the run", ("--end", "9 ms"), ("checkpoint.bin", other_arithmetic)),
             (6, "bad-checkpoint", ("--end", "9 ms"), ("checkpoint.bin", lambda d: d[:-70] + b"x" + d[-69:])),

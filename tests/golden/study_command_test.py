@@ -176,6 +176,12 @@ class StudyCommand(ProgramTest):
         self.study("run", "other.yaml", "--out", "other", "--only", "0")
         self.assertIn("[study-mixed]", self.study("merge", "half", "other", code=3)[1])
 
+    def test_an_empty_list_of_points_is_no_list_of_all(self):
+        for words in (("plan", "ball.yaml", "--points"), ("run", "ball.yaml", "--out", "r")):
+            _, err = self.study(*words, "--only", "", code=2)
+            self.assertIn("[bad-value]", err)
+        self.assertFalse(os.path.exists(self.path("r", "study.csv")))
+
     def test_a_point_is_a_command_and_is_verified(self):
         self.run_json("ball.yaml", "--out", "r")
         told = json.loads(self.study("point", "r", "3", "--json")[0])

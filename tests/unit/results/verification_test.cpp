@@ -97,5 +97,21 @@ TEST(Verification, PeaksDecideWherePositionsDoNot) {
   EXPECT_EQ(judged_peaks(32.9, 5017.0, 3000.0), Agreement::err);
 }
 
+// A parallelogram at constant speed: its driver holds the difference of torques that cancel.
+TEST(Verification, ATorqueThatForcesHaveByNoLeverIsNone) {
+  const ResultTable rows = moving(smooth_motion);
+  const auto agree = [&](double force, double torque) {
+    const auto run = [&](double value) {
+      return RunResult{&rows, {{"joint A max |F|", force}, {"driver m max |torque|", value}}};
+    };
+    VerificationRules of_model = rules(1e-6);
+    of_model.size = 0.2;
+    return compare_runs(run(0.03 * torque), run(torque), of_model).agreement == Agreement::agree;
+  };
+  EXPECT_TRUE(agree(0.12, 2.7e-8));
+  EXPECT_FALSE(agree(0.12, 2.7e-6));
+  EXPECT_FALSE(agree(0.0, 2.7e-8));
+}
+
 }  // namespace
 }  // namespace freeplay

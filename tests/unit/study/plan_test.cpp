@@ -409,12 +409,31 @@ TEST_F(StudyPlanning, PlacesOfMistakesAreThoseOfTheStudy) {
   EXPECT_THAT(messages_, HasSubstr("line 8"));
   EXPECT_THAT(refused("  set: {g: 2}\n  axes: {g: [1]}\n"), HasSubstr("9:10 duplicate-name"));
   EXPECT_THAT(refused("  axes: {d: {table: none.csv}}\n"), HasSubstr("8:21 file-not-found"));
+  EXPECT_THAT(
+      refused("  axes: {g: {uniform: [1, 2]}}\n  sample: {method: random, points: 3, seed: 9223372036854775808}\n"),
+      HasSubstr("must be <= 9223372036854775807, not 9223372036854775808"));
+  EXPECT_TRUE(
+      of_ball("  axes: {g: {uniform: [1, 2]}}\n  sample: {method: random, points: 3, seed: 9223372036854775807}\n"));
   EXPECT_THAT(refused("  models: [ball.yaml]\n"), HasSubstr("8:3 conflicting-keys"));
   EXPECT_THAT(refused("  axes: {sample: {target: g, list: [1]}}\n"), HasSubstr("reserved-name"));
   const std::string reducer = "  axes: {g: [1]}\n  reducers: {force: {channel: body.ball.y, reduce: max}}\n  plots: ";
   EXPECT_THAT(refused(reducer + "{p: {kind: line, x: h, y: force}}\n"), HasSubstr("10:30 unknown-name"));
   EXPECT_THAT(refused(reducer + "{p: {kind: line, x: g, value: forse}}\n"), HasSubstr("'forse' force"));
   EXPECT_TRUE(of_ball(reducer + "{p: {kind: line, x: g, y: force.a, by: model}}\n"));
+  for (const auto& [plot, key] : {std::pair("line", "x"),
+                                  {"line, x: g", "y"},
+                                  {"heat, x: g, value: force", "y"},
+                                  {"heat, x: g, y: g", "value"},
+                                  {"bifurcation, value: force", "x"},
+                                  {"bifurcation, x: g, y: force", "value"},
+                                  {"histogram", "value"},
+                                  {"tornado", "value"}}) {
+    EXPECT_THAT(refused(reducer + "{p: {kind: " + plot + "}}\n"),
+                HasSubstr(std::string("10:11 missing-key missing key '") + key + "' in 'study.plots.p'"));
+  }
+  EXPECT_THAT(refused(reducer + "{p: {kind: bifurcation, x: g, value: force}}\n"),
+              HasSubstr("wrong-type a bifurcation shows a reducer of `reduce: poincare`; 'force' is none"));
+  EXPECT_TRUE(of_ball(reducer + "{p: {kind: histogram, y: force}, q: {kind: tornado, y: force}}\n"));
   EXPECT_THAT(refused("  axes: {g: {linspace: [1, 2, 100000]}, v: {linspace: [1, 2, 1001]}}\n"),
               HasSubstr("7:1 too-large"));
   EXPECT_THAT(messages_, HasSubstr("100100000 points: 100000 (g) x 1001 (v)"));
