@@ -197,7 +197,7 @@ class Changed(ProgramTest):
             folder = "r%d" % number
             process = self.begun(folder, "--end", "1000 s", "--yes", until=name, size=1_000_000)
             change(self.path(folder, name))
-            _, err = process.communicate(timeout=20)
+            _, err = process.communicate(timeout=200)
             with self.subTest(name, words=words):
                 self.assertEqual(6, process.returncode, err)
                 self.assertIn("cannot write '%s/%s': %s" % (folder, name, words), err)

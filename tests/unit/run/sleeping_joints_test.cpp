@@ -1,6 +1,7 @@
 #include "run/sleeping_joints.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,7 @@ class Cage final : public Joint {
   void declare(JointLayout& layout) const override {
     layout.forces = 1;
     layout.history = 3;
+    layout.time_scale = std::numeric_limits<double>::infinity();  // nothing of it comes with time alone
     layout.channels = channels;
     layout.events = events_;
   }
