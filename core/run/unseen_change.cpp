@@ -18,7 +18,7 @@ constexpr double shortest = 1e-12;        // of a step: spans that are not halve
 constexpr double same_time = 1e-15;       // of times: those closer are one
 constexpr int parts = 64;                 // of a step, to see how far a change goes
 constexpr double fewest_looks = 8.0;      // at a step
-constexpr double enough_looks = 2e5;
+constexpr double enough_looks = 1e6;
 constexpr double unchanged = 1e-9;  // of the largest value
 
 const Interval& signal(const IntervalJet& range, int derivative) {
