@@ -4,11 +4,13 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/formula_course.h"
 #include "run/step_resolution.h"
+#include "run/unseen_change.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -147,6 +149,9 @@ class InputActivity {
   double resolved_formula(Formula& formula, double t, double dt);
   double resolved_table(Table& table, double t, double dt);
   bool signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault);
+  /// Of the forces of a joint, between the ends of steps.
+  std::optional<UnseenChange::Found> unseen_force(const TimedJoint& timed, double step, const Point& here,
+                                                  const Evaluation& e);
 
   const System& system_;
   double start_, end_, shortest_;

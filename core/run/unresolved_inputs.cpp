@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "run/input_activity.h"
-#include "run/unseen_change.h"
 
 namespace freeplay {
 namespace {
@@ -56,6 +55,25 @@ std::vector<InputActivity::Unresolved> InputActivity::look_closer(double least) 
   return left;
 }
 
+std::optional<UnseenChange::Found> InputActivity::unseen_force(const TimedJoint& timed, double step, const Point& here,
+                                                               const Evaluation& e) {
+  const JointInput in = system_.joints().input(timed.joint, here, e);
+  // What promises no force as long as it stays where it is has none that comes with time.
+  double distance = 0.0;
+  Fault ignored;
+  if (!system_.joints().handle(timed.joint).free_distance(in, distance, ignored.message) || distance > 0.0) return {};
+  std::vector<double> all(timed.signals);
+  const std::size_t forces =
+      timed.signals - static_cast<std::size_t>(system_.joints().layout(timed.joint).constraint_rows);
+  const auto look = [&](double t, std::span<double> values) {
+    Fault fault;
+    if (!signals_of(timed, in, t, all.data(), fault)) return false;
+    std::ranges::copy(std::span(all).first(forces), values.begin());
+    return true;
+  };
+  return UnseenChange::of(look, forces, start_, end_, step, timed.shortest / samples_per_change);
+}
+
 std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step, const Point& here,
                                                                     const Evaluation& e) {
   std::vector<Unresolved> found;
@@ -97,22 +115,8 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step,
   }
   for (const TimedJoint& timed : joints_) {
     const std::string* name = &system_.model().joints[static_cast<std::size_t>(timed.joint)].name;
-    const JointLayout& layout = system_.joints().layout(timed.joint);
-    if (known(name) || layout.forces == 0) continue;
-    const JointInput in = system_.joints().input(timed.joint, here, e);
-    // What promises no force as long as it stays where it is has none that comes with time.
-    double distance = 0.0;
-    Fault ignored;
-    if (!system_.joints().handle(timed.joint).free_distance(in, distance, ignored.message) || distance > 0.0) continue;
-    std::vector<double> all(timed.signals);
-    const std::size_t forces = timed.signals - static_cast<std::size_t>(layout.constraint_rows);
-    const auto look = [&](double t, std::span<double> values) {
-      Fault fault;
-      if (!signals_of(timed, in, t, all.data(), fault)) return false;
-      std::ranges::copy(std::span(all).first(forces), values.begin());
-      return true;
-    };
-    const auto change = UnseenChange::of(look, forces, start_, end_, step, timed.shortest / samples_per_change);
+    if (known(name) || system_.joints().layout(timed.joint).forces == 0) continue;
+    const auto change = unseen_force(timed, step, here, e);
     if (change) found.push_back({"joint", name, change->time - change->length, change->time + change->length, false});
   }
   return found;

@@ -9,71 +9,13 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
-#include "unit/scratch_folder.h"
+#include "unit/study/planning_fixture.h"
 
 namespace freeplay {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr const char* plain_ball =
-    "freeplay: 1\nname: ball\nparameters: {g: 9.81 m/s^2, v: 0 m/s}\ngravity: [0, -$g]\n"
-    "bodies: {ball: {mass: 1 kg, inertia: 0.1, velocity: {linear: [$v, 0]}}}\n"
-    "simulation: {end: 0.1 s, step: 10 ms}\n";
-constexpr const char* loose_crank =
-    "freeplay: 1\nname: crank\nparameters: {c: 0.1 mm}\nbodies: {rod: {mass: 1, inertia: 1}, slider: {mass: 1, "
-    "inertia: "
-    "1}}\njoints:\n  a: {type: revolute, between: [ground, rod], clearance: {radial_clearance: $c, bearing_radius: 10 "
-    "mm,"
-    " contact: {law: flores, restitution: 0.9, K: 1e9}}}\n"
-    "  b: {type: revolute, between: [rod, slider], clearance: {radial_clearance: 0.2 mm, bearing_radius: 10 mm, "
-    "contact:"
-    " {law: flores, restitution: 0.9, K: 1e9}}}\n";
-
-class StudyPlanning : public testing::Test {
- protected:
-  void write(const std::string& name, const std::string& text) {
-    std::filesystem::create_directories(folder_.file(name).parent_path());
-    std::ofstream(folder_.file(name), std::ios::binary) << text;
-  }
-
-  std::unique_ptr<StudyPlan> read(const std::string& name, StudyPlanOptions options = {}) {
-    Diagnostics diagnostics;
-    auto plan = StudyPlan::read(folder_.file(name).string(), options, diagnostics);
-    messages_.clear();
-    for (const Diagnostic& one : diagnostics.sorted()) {
-      messages_ += std::to_string(one.location.line) + ":" + std::to_string(one.location.column) + " " + one.id + " " +
-                   one.message + " " + one.suggestion + " " + one.hint + "\n";
-    }
-    EXPECT_EQ(plan == nullptr, diagnostics.has_errors()) << messages_;
-    return plan;
-  }
-
-  /// A study of the ball, whose section has these lines.
-  std::unique_ptr<StudyPlan> of_ball(const std::string& section, const StudyPlanOptions& options = {}) {
-    write("ball.yaml", std::string(plain_ball) + "study:\n" + section);
-    return read("ball.yaml", options);
-  }
-
-  std::string refused(const std::string& section) {
-    EXPECT_EQ(of_ball(section), nullptr) << section;
-    return messages_;
-  }
-
-  static std::vector<std::string> cells(const StudyPlan& plan) {
-    std::vector<std::string> rows;
-    for (std::uint64_t i = 0; i < plan.points(); ++i) {
-      std::string row;
-      for (const std::string& cell : plan.point(i).cells) row += (row.empty() ? "" : ",") + (cell.empty() ? "-" : cell);
-      rows.push_back(row);
-    }
-    return rows;
-  }
-
-  ScratchFolder folder_;
-  std::string messages_;
-};
 
 TEST_F(StudyPlanning, TheLastAxisOfAGridIsTheFastest) {
   const auto plan = of_ball("  axes:\n    g: [1, 2 mm/s^2]\n    v: {linspace: [0 m/s, 1 m/s, 3]}\n");
@@ -377,88 +319,6 @@ TEST_F(StudyPlanning, HugeStudiesTakeNoMemory) {
   EXPECT_EQ(plan->points(), 1'000'000'000'000u);
   EXPECT_THAT(plan->point(999'999'999'999).cells, ElementsAre("2", "1"));
   EXPECT_EQ(of_ball("  axes: {g: {linspace: [1, 2, 10000000]}, v: {linspace: [0, 1, 1000000]}}\n", options), nullptr);
-}
-
-// --- mistakes ------------------------------------------------------------------------------------------------------
-
-TEST_F(StudyPlanning, TargetsExist) {
-  EXPECT_THAT(refused("  axes: {gg: [1]}\n"), HasSubstr("8:10 unknown-name"));
-  EXPECT_THAT(messages_, HasSubstr("'g'"));
-  EXPECT_THAT(refused("  axes: {bodies.bal.mass: [1]}\n"), HasSubstr("bodies.ball.mass"));
-  EXPECT_THAT(refused("  axes: {bodies.ball.mas: [1]}\n"), HasSubstr("unknown-name"));
-  EXPECT_THAT(refused("  axes: {study.name: [1]}\n"), HasSubstr("unknown-name"));
-  EXPECT_THAT(refused("  axes: {x: {each: 'joints.*.mass', list: [1]}}\n"), HasSubstr("unknown-name"));
-  EXPECT_THAT(refused("  axes: {x: {each: '*odies', list: [1]}}\n"), HasSubstr("unknown-name"));  // a whole section
-  EXPECT_THAT(refused("  set: {gg: 1}\n"), HasSubstr("8:9 unknown-name"));
-  EXPECT_THAT(refused("  axes: {x: {cases: {a: {gg: 1}}}}\n"), HasSubstr("unknown-name"));
-}
-
-TEST_F(StudyPlanning, ValuesHaveTheDimensionOfTheirTarget) {
-  EXPECT_THAT(refused("  axes: {g: [1 kg]}\n"), HasSubstr("dimension-mismatch"));
-  EXPECT_THAT(refused("  axes: {v: [1 m/s], bodies.ball.mass: {triangular: [1 m, 2 m, 2 m]}}\n"
-                      "  sample: {method: sobol, points: 2, seed: 1}\n"),
-              HasSubstr("8:40 dimension-mismatch"));
-  EXPECT_THAT(refused("  axes: {simulation.integrator: [bathe, bath]}\n"), HasSubstr("unknown-type"));
-  EXPECT_THAT(refused("  set: {bodies.ball.mass: 1 s}\n"), HasSubstr("8:27 dimension-mismatch"));
-  EXPECT_TRUE(of_ball("  axes: {bodies.ball.mass: [1, -1]}\n"));  // a fact of its point
-}
-
-TEST_F(StudyPlanning, PlacesOfMistakesAreThoseOfTheStudy) {
-  EXPECT_THAT(refused("  combine: zip\n  axes: {g: [1, 2], v: [1]}\n"), HasSubstr("9:21 wrong-length"));
-  EXPECT_THAT(refused("  axes: {g: [1], other: {target: g, list: [2]}}\n"), HasSubstr("8:18 duplicate-name"));
-  EXPECT_THAT(messages_, HasSubstr("line 8"));
-  EXPECT_THAT(refused("  set: {g: 2}\n  axes: {g: [1]}\n"), HasSubstr("9:10 duplicate-name"));
-  EXPECT_THAT(refused("  axes: {d: {table: none.csv}}\n"), HasSubstr("8:21 file-not-found"));
-  EXPECT_THAT(
-      refused("  axes: {g: {uniform: [1, 2]}}\n  sample: {method: random, points: 3, seed: 9223372036854775808}\n"),
-      HasSubstr("must be <= 9223372036854775807, not 9223372036854775808"));
-  EXPECT_TRUE(
-      of_ball("  axes: {g: {uniform: [1, 2]}}\n  sample: {method: random, points: 3, seed: 9223372036854775807}\n"));
-  EXPECT_THAT(refused("  models: [ball.yaml]\n"), HasSubstr("8:3 conflicting-keys"));
-  EXPECT_THAT(refused("  axes: {sample: {target: g, list: [1]}}\n"), HasSubstr("reserved-name"));
-  const std::string reducer = "  axes: {g: [1]}\n  reducers: {force: {channel: body.ball.y, reduce: max}}\n  plots: ";
-  EXPECT_THAT(refused(reducer + "{p: {kind: line, x: h, y: force}}\n"), HasSubstr("10:30 unknown-name"));
-  EXPECT_THAT(refused(reducer + "{p: {kind: line, x: g, value: forse}}\n"), HasSubstr("'forse' force"));
-  EXPECT_TRUE(of_ball(reducer + "{p: {kind: line, x: g, y: force.a, by: model}}\n"));
-  for (const auto& [plot, key] : {std::pair("line", "x"),
-                                  {"line, x: g", "y"},
-                                  {"heat, x: g, value: force", "y"},
-                                  {"heat, x: g, y: g", "value"},
-                                  {"bifurcation, value: force", "x"},
-                                  {"bifurcation, x: g, y: force", "value"},
-                                  {"histogram", "value"},
-                                  {"tornado", "value"}}) {
-    EXPECT_THAT(refused(reducer + "{p: {kind: " + plot + "}}\n"),
-                HasSubstr(std::string("10:11 missing-key missing key '") + key + "' in 'study.plots.p'"));
-  }
-  EXPECT_THAT(refused(reducer + "{p: {kind: bifurcation, x: g, value: force}}\n"),
-              HasSubstr("wrong-type a bifurcation shows a reducer of `reduce: poincare`; 'force' is none"));
-  EXPECT_TRUE(of_ball(reducer + "{p: {kind: histogram, y: force}, q: {kind: tornado, y: force}}\n"));
-  EXPECT_THAT(refused("  axes: {g: {linspace: [1, 2, 100000]}, v: {linspace: [1, 2, 1001]}}\n"),
-              HasSubstr("7:1 too-large"));
-  EXPECT_THAT(messages_, HasSubstr("100100000 points: 100000 (g) x 1001 (v)"));
-  EXPECT_THAT(messages_, HasSubstr("--yes"));
-}
-
-TEST_F(StudyPlanning, AFileWithoutAStudyIsNone) {
-  write("m.yaml", plain_ball);
-  EXPECT_EQ(read("m.yaml"), nullptr);
-  EXPECT_THAT(messages_, HasSubstr("missing-key missing key 'study'"));
-  write("s.yaml", "freeplay: 1\nstudy: {axes: {g: [1]}}\n");
-  EXPECT_EQ(read("s.yaml"), nullptr);
-  EXPECT_THAT(messages_, HasSubstr("missing-key missing key 'models'"));
-  write("s.yaml", "freeplay: 1\nstudy: {models: [none.yaml]}\n");
-  EXPECT_EQ(read("s.yaml"), nullptr);
-  EXPECT_THAT(messages_, HasSubstr("2:18 file-not-found"));
-  EXPECT_EQ(read("nothing.yaml"), nullptr);
-  EXPECT_THAT(messages_, HasSubstr("file-not-found"));
-}
-
-TEST_F(StudyPlanning, WhatTheCommandLineSetsIsItsOwnMistake) {
-  write("ball.yaml", std::string(plain_ball) + "study: {axes: {g: [1]}}\n");
-  StudyPlanOptions options;
-  options.set = {{"gg", "1"}};
-  EXPECT_THROW(read("ball.yaml", options), Error);
 }
 
 }  // namespace
