@@ -1,9 +1,11 @@
 #include "results/owner.h"
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -60,6 +62,16 @@ bool lock(int descriptor, bool& guarded) {
   return result == 0 || errno != EWOULDBLOCK;
 }
 
+/// The same within half a second: a process that was killed, and those that end with it, let go a moment later.
+bool lock_soon(int descriptor, bool& guarded) {
+  constexpr int tries = 50;
+  for (int i = 0; i < tries; ++i) {
+    if (lock(descriptor, guarded)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return lock(descriptor, guarded);
+}
+
 }  // namespace
 
 Owner::Owner(const fs::path& directory) {
@@ -70,7 +82,7 @@ Owner::Owner(const fs::path& directory) {
       throw Error(Error::Category::file, "cannot-write",
                   fmt::format("cannot write '{}': {}", log.string(), std::strerror(errno)));
     }
-    if (!lock(descriptor_, guarded_)) refuse_in_use(directory, std::exchange(descriptor_, -1));
+    if (!lock_soon(descriptor_, guarded_)) refuse_in_use(directory, std::exchange(descriptor_, -1));
     // Between opening and locking the file may have been removed: then the lock is one of a file without a name.
     if (is_open_file(descriptor_, log)) return;
     ::close(std::exchange(descriptor_, -1));
