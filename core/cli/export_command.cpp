@@ -1,5 +1,6 @@
 #include "cli/export_command.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -28,6 +29,28 @@ struct ExportOptions {
   bool force = false;
 };
 
+/// Refuses options that say nothing of the table.
+void require_fitting(const ExportOptions& options, const std::string& table) {
+  struct Fitting {
+    const char* option;
+    bool given;
+    std::vector<std::string> tables;
+  };
+  const std::vector<std::string> timed = {"results", "events", "impacts", "spectra", "poincare", "lyapunov"};
+  const Fitting all[] = {{"--channels", !options.channels.empty(), {"results", "spectra", "poincare", "lyapunov"}},
+                         {"--from", !options.from.empty(), timed},
+                         {"--until", !options.until.empty(), timed},
+                         {"--every", !options.every.empty(), {"results", "events", "impacts"}},
+                         {"--period", !options.period.empty(), {"poincare", "lyapunov"}},
+                         {"--phase", !options.phase.empty(), {"poincare"}}};
+  for (const Fitting& one : all) {
+    if (!one.given || std::ranges::find(one.tables, table) != one.tables.end()) continue;
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("{} says nothing of the table {}: it goes with {}", one.option, table,
+                            fmt::join(one.tables, ", ")));
+  }
+}
+
 TableRequest request_of(const ExportOptions& options) {
   TableRequest request;
   if (!options.table.empty()) {
@@ -35,6 +58,7 @@ TableRequest request_of(const ExportOptions& options) {
     require_word("table", options.table, {words.begin(), words.end()});
     request.table = options.table;
   }
+  require_fitting(options, request.table);
   request.channels = options.channels;
   if (!options.period.empty()) request.period = positive_quantity("--period", options.period, dimension::time);
   if (!options.phase.empty()) request.phase = signed_quantity("--phase", options.phase, dimension::time);

@@ -138,9 +138,25 @@ fs::path Remaking::stage(const Json& run, std::size_t number) const {
   return file;
 }
 
+/// A library with the bytes of one that the run used gets the name by which the model knows it.
+std::string Remaking::known_name(const std::string& library, const Json& run) const {
+  std::error_code ignored;
+  if (!fs::is_regular_file(library, ignored)) return library;
+  const Json digits = sha256_of_file(library);
+  for (const Json& plugin : run.value("plugins", Json::array())) {
+    const fs::path name = fs::path(plugin.value("file", "")).filename();
+    if (plugin.value("sha256", Json()) != digits || name.empty() || name == fs::path(library).filename()) continue;
+    const fs::path link = scratch_ / "plugins" / name;
+    fs::create_directories(link.parent_path(), ignored);
+    fs::create_symlink(fs::absolute(library), link, ignored);
+    return link.string();
+  }
+  return library;
+}
+
 std::vector<std::string> Remaking::plugin_words(const Json& run) const {
   std::vector<std::string> words;
-  for (const std::string& plugin : common_.plugins) words.insert(words.end(), {"--plugin", plugin});
+  for (const std::string& plugin : common_.plugins) words.insert(words.end(), {"--plugin", known_name(plugin, run)});
   if (common_.allow_plugins) words.emplace_back("--allow-plugins");
   const LoadOptions options = loading(common_);
   for (const Json& plugin : run.value("plugins", Json::array())) {

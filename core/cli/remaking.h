@@ -34,6 +34,7 @@ class Remaking {
  private:
   std::filesystem::path stage(const Json& run, std::size_t number) const;
   std::vector<std::string> plugin_words(const Json& run) const;
+  std::string known_name(const std::string& library, const Json& run) const;
   bool execute(std::vector<std::string> words, const Json& run);
   bool run_model(const Json& run, std::size_t number, const std::filesystem::path& out);
   bool analyze(const Json& run);

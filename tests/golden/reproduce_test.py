@@ -387,6 +387,7 @@ class Reproduce(ProgramTest):
         self.assertIn("[plugin-not-allowed]", err)
         os.rename(self.path("spring.so"), self.path("renamed.so"))
         self.assertIn("is another", self.assert_same("r", environment=environment))
+        self.assertNotIn("another", self.assert_same("r", "--plugin", "renamed.so"))  # its bytes say what it is
         # By an option that the record holds, too.
         self.run_model("r", "--plugin", "moved/spring.so", model=self.write("twisted.yaml", TWISTED % ""))
         self.freeplay("reproduce", "r", code=5)

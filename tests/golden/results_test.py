@@ -298,6 +298,17 @@ class Results(ProgramTest):
             with self.subTest(words=words):
                 self.assertIn(message, self.freeplay("export", *words, code=code)[1])
 
+    def test_options_that_say_nothing_of_a_table_are_refused(self):
+        self.run_model(end="1 ms")
+        for words, goes_with in ((("bearing", "--from", "1 us"), "results, events, impacts, spectra, poincare, lyapunov"),
+                                 (("bearing", "--channels", "work"), "results, spectra, poincare, lyapunov"),
+                                 (("events", "--channels", "speed"), "results, spectra, poincare, lyapunov"),
+                                 (("spectra", "--every", "2"), "results, events, impacts"),
+                                 (("results", "--period", "1 ms"), "poincare, lyapunov"), (("lyapunov", "--phase", "0"), "poincare")):
+            with self.subTest(words):
+                _, err = self.freeplay("export", "r", "--to", "csv", "--table", *words, code=2)
+                self.assertIn("%s says nothing of the table %s: it goes with %s [bad-value]" % (words[1], words[0], goes_with), err)
+
     def test_compare_takes_either_file(self):
         self.run_model(end="1 ms")
         self.freeplay("compare", "r/results.csv", "r/results.h5", "--tolerance", "0", "--absolute", "0")
