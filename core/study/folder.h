@@ -37,7 +37,8 @@ class StudyFolder {
   /// study.json. Throws Error{input} "file-not-found" where there is none.
   Json record() const;
 
-  /// Makes study.json, with copies of all that was read; of several that do so at once one wins. Throws Error{file}.
+  /// Makes study.json, with copies of all that was read. Of several that do so at once one wins; the others throw
+  /// Error{input} "study-changed" where theirs is another study. Throws Error{file}.
   void begin(const StudyPlan& plan, const StudyMark& mark, const Json& record) const;
   /// Segments in the order of their making.
   std::vector<std::filesystem::path> segments() const;
@@ -47,6 +48,9 @@ class StudyFolder {
   std::filesystem::path set_aside() const;
 
  private:
+  void make_record(const std::vector<KeptFile>& files, const StudyMark& mark, const Json& record) const;
+  void require_begun(const StudyMark& mark) const;
+
   std::filesystem::path path_;
 };
 

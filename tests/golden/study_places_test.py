@@ -1,0 +1,72 @@
+"""freeplay study: many starters of one directory, scripts, and what is said where a study ends without its interval."""
+import csv
+import os
+import re
+import subprocess
+import unittest
+
+from program import BUILD, PROGRAM, ProgramTest, mechanism
+from study_command_test import BALL, GRID
+
+EXAMPLE = os.path.join(BUILD, "plugins", "example", "torsional_spring_damper.so")
+TWISTED = """freeplay: 1
+name: twisted
+bodies: {disc: {mass: 1 kg, inertia: 0.05}}
+joints:
+  pin: {type: revolute, between: [ground, disc]}
+  spring: {type: torsional-spring-damper, between: [ground, disc], stiffness: 5 N*m, free_angle: 20 deg}
+initial: {joints: {pin: 0.1}}
+simulation: {end: 10 ms, step: 1 ms, output: {interval: 1 ms}}
+study:
+  axes: {bodies.disc.mass: [1 kg, 2 kg]}
+  reducers: {angle: {channel: joint.pin.angle, reduce: final}}
+"""
+
+
+class StudyPlaces(ProgramTest):
+
+    def study(self, *words, code=0):
+        return self.freeplay("study", *words, code=code)
+
+    def together(self, commands):
+        """Starts all at once; returns their exit codes and what they said."""
+        started = [subprocess.Popen([PROGRAM, "study", "run", *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                    text=True) for words in commands]
+        said = [process.communicate(timeout=500)[1] for process in started]
+        return [process.returncode for process in started], said
+
+    def test_of_many_starters_of_one_directory_one_wins_and_all_do_their_part(self):
+        self.write("ball.yaml", BALL + GRID)
+        self.study("run", "ball.yaml", "--out", "calm", "--allow-failed")
+        for turn in range(4):
+            out = "r%d" % turn
+            codes, said = self.together([["ball.yaml", "--out", out, "--jobs", "1", "--shard", "%d/6" % (i + 1), "--allow-failed", "--quiet"]
+                                         for i in range(6)])
+            self.assertEqual([0] * 6, codes, said)
+            self.study("merge", out)
+            for name in ("study.csv", "study.h5", "study.yaml"):
+                with open(self.path(out, name), "rb") as file, open(self.path("calm", name), "rb") as calm:
+                    self.assertEqual(calm.read(), file.read(), name)
+            self.assertEqual([], [name for name in os.listdir(self.path(out)) if name.startswith(".")])
+
+    def test_whole_runs_of_one_directory_at_once_make_one_table(self):
+        self.write("ball.yaml", BALL + GRID)
+        codes, said = self.together([["ball.yaml", "--out", "r", "--jobs", "1", "--allow-failed", "--quiet"]] * 4)
+        self.assertEqual([0] * 4, codes, said)
+        with open(self.path("r", "study.csv"), encoding="utf-8") as file:
+            self.assertEqual(list(range(80)), [int(row["index"]) for row in csv.DictReader(file)])
+
+    def test_copies_that_a_killed_starter_left_out_are_made_by_the_next(self):
+        self.write("ball.yaml", BALL + GRID)
+        self.study("run", "ball.yaml", "--out", "r", "--allow-failed", "--only", "0")
+        os.remove(self.path("r", "study.yaml"))
+        self.study("run", "ball.yaml", "--out", "r", "--allow-failed")
+        self.study("status", "r")
+        self.write("other.yaml", BALL.replace("0.1 s", "0.2 s") + GRID)
+        self.study("run", "other.yaml", "--out", "other", "--allow-failed")
+        _, err = self.study("merge", "other", "--out", "r", code=3)
+        self.assertIn("another study was begun in 'r'", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
