@@ -67,6 +67,25 @@ class StudyPlaces(ProgramTest):
         _, err = self.study("merge", "other", "--out", "r", code=3)
         self.assertIn("another study was begun in 'r'", err)
 
+    def test_scripts_give_their_tasks_what_loads_the_plugins(self):
+        self.write("twisted.yaml", TWISTED.replace("name: twisted\n", "name: twisted\nplugins: ['%s']\n" % EXAMPLE))
+        for engine, file in (("gnu-parallel", "run.sh"), ("slurm", "array.sh"), ("slurm", "merge.sh"), ("snakemake", "Snakefile")):
+            for words in (("--allow-plugins",), ("--plugin", EXAMPLE)):
+                self.study("script", "twisted.yaml", "--out", "s", "--engine", engine, "--probe", "1", *words)
+                text = self.read("s", "jobs", file)
+                for line in text.splitlines():
+                    if "study run" in line or "study merge" in line:
+                        self.assertIn(" ".join(words), line)
+
+    def test_scripts_that_no_engine_takes_are_refused(self):
+        self.write("ball.yaml", BALL + GRID)
+        for words, text in ((("slurm", "--tasks", "5000"), "--tasks 5000 is more than --max-array 1000"),
+                            (("slurm", "--tasks", "200", "--max-array", "100"), "--tasks 200 is more than --max-array 100"),
+                            (("gnu-parallel", "--hosts", "nowhere"), "there is no such file"),
+                            (("slurm", "--minutes", "5"), "from 10 to 60")):
+            self.assertIn(text, self.study("script", "ball.yaml", "--engine", *words, code=2)[1])
+        self.assertFalse(os.path.exists(self.path("results")))
+
 
 if __name__ == "__main__":
     unittest.main()
