@@ -86,6 +86,21 @@ class StudyPlaces(ProgramTest):
             self.assertIn(text, self.study("script", "ball.yaml", "--engine", *words, code=2)[1])
         self.assertFalse(os.path.exists(self.path("results")))
 
+    def test_an_interval_that_was_not_reached_is_said(self):
+        self.write("stop.yaml", BALL + """study:
+  sample: {method: random, points: 40, seed: 4}
+  axes: {g: {uniform: [1 m/s^2, 2 m/s^2]}}
+  reducers: {y: {channel: body.ball.y, reduce: final}}
+  stop: {reducer: y, of: mean, half_width: 1 nm, min_points: 20, block: 10}
+""")
+        for _ in range(2):
+            self.assertIn("`stop` is not reached: after all 40 samples 'y'", self.study("run", "stop.yaml", "--out", "r", "--quiet")[1])
+        self.assertIn("40 samples, not reached", self.study("status", "r")[0])
+        self.write("stop.yaml", self.read("stop.yaml").replace("1 nm", "1 m"))
+        self.assertNotIn("not reached", self.study("run", "stop.yaml", "--out", "wide")[1])
+        self.assertNotIn("not reached", self.study("status", "wide")[0])
+
+
 
 if __name__ == "__main__":
     unittest.main()
