@@ -100,6 +100,17 @@ class StudyPlaces(ProgramTest):
         self.assertNotIn("not reached", self.study("run", "stop.yaml", "--out", "wide")[1])
         self.assertNotIn("not reached", self.study("status", "wide")[0])
 
+    def test_a_page_of_many_points_has_at_most_three_megabytes(self):
+        reducers = "".join("    r%d: {channel: body.ball.x, reduce: final}\n" % i for i in range(200))
+        self.write("wide.yaml", BALL + "study:\n  axes: {g: {linspace: [1, 2, 4000]}}\n  reducers:\n" + reducers +
+                   "  plots: {a: {kind: line, x: g, y: r0}, b: {kind: histogram, value: r1}}\n")
+        self.study("run", "wide.yaml", "--out", "r", "--quiet")
+        self.freeplay("report", "r")
+        page = self.read("r", "report.html")
+        self.assertTrue(2e6 < len(page.encode()) <= 3e6, len(page.encode()))
+        self.assertRegex(page, r"4000 points, of which \d+ are not on this page")
+        shown = [int(index) for index in re.findall(r'"(\d+)":\{"row"', page)]
+        self.assertEqual(list(range(0, 4000, shown[1] - shown[0])), shown)
 
 
 if __name__ == "__main__":
