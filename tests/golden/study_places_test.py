@@ -86,6 +86,25 @@ class StudyPlaces(ProgramTest):
             self.assertIn(text, self.study("script", "ball.yaml", "--engine", *words, code=2)[1])
         self.assertFalse(os.path.exists(self.path("results")))
 
+    def test_a_joint_that_a_point_closes_has_no_values(self):
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            self.write("crank.yaml", file.read() + """study:
+  set: {simulation.end: 2 ms, simulation.output.discard: 0 s}
+  axes: {ideal: [[wrist], none]}
+  reducers:
+    force: {channel: joint.wrist.fn, reduce: max}
+    ratio: {value: "[joint.wrist.fn]/(1 N) + 1", reduce: max}
+    hits: {events: wrist, reduce: count}
+    place: {channel: body.slider.x, reduce: final}
+    turns: {channel: body.slider.x, reduce: poincare, when: {channel: joint.wrist.fn, crosses: 1 N}}
+""")
+        self.study("run", "crank.yaml", "--out", "r")
+        with open(self.path("r", "study.csv"), encoding="utf-8") as file:
+            closed, loose = csv.DictReader(file)
+        self.assertEqual(["", "", ""], [closed[name] for name in ("force", "ratio", "turns")])
+        self.assertNotIn("", [loose[name] for name in ("force", "ratio", "place")])
+        self.assertNotEqual("", closed["place"])
+
     def test_an_interval_that_was_not_reached_is_said(self):
         self.write("stop.yaml", BALL + """study:
   sample: {method: random, points: 40, seed: 4}
