@@ -92,6 +92,7 @@ class StudyRun {
     const bool whole = options_.shard.empty() && !interrupted && table_->done() >= table_->wanted();
     if (whole && (report_.ran > 0 || !folder_.is_merged())) table_->merge();
     tell(whole);
+    warn_of_stop();
     if (interrupted) return 130;
     return failed() > 0 && !options_.allow_failed ? 4 : 0;
   }
@@ -104,6 +105,7 @@ class StudyRun {
   void keep_results();
   void compute();
   void tell(bool whole) const;
+  void warn_of_stop() const;
   Json report_json(bool whole) const;
 
   /// Of this shard.
@@ -270,6 +272,20 @@ void StudyRun::tell(bool whole) const {
   }
   if (whole) text += fmt::format("  table      {}\n", folder_.table().string());
   print(text);
+}
+
+void StudyRun::warn_of_stop() const {
+  const auto& rule = table_->rule();
+  if (!rule || !rule->end() || rule->reached()) return;
+  double widest = 0.0;
+  for (const StopInterval& interval : rule->intervals()) widest = std::max(widest, interval.half_width);
+  const StopOptions& stop = rule->options();
+  print_messages(
+      fmt::format("freeplay: warning: `stop` is not reached: after all {} samples '{}' has intervals of up to "
+                  "+- {:.3g}, not {} {:g}\n      = it takes more `points`, or a wider interval\n",
+                  *rule->end(), stop.reducer, widest, stop.half_width ? "`half_width`" : "`relative`",
+                  stop.half_width ? *stop.half_width : stop.relative.value_or(0.0)),
+      common_.no_color);
 }
 
 }  // namespace

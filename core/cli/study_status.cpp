@@ -81,7 +81,8 @@ bool show(const std::string& given, const CommonOptions& common, int& exit_code)
                         clock_text(seconds));
   }
   if (const auto& rule = table.rule()) {
-    text += fmt::format("  stop       {} samples\n", rule->end().value_or(rule->looked_at()));
+    text += fmt::format("  stop       {} samples{}\n", rule->end().value_or(rule->looked_at()),
+                        rule->end() && !rule->reached() ? ", not reached: it takes more `points`" : "");
     for (const StopInterval& interval : rule->intervals()) {
       text += fmt::format("             {:.6g} +- {:.3g}\n", interval.estimate, interval.half_width);
     }

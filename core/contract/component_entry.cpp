@@ -25,7 +25,7 @@ std::vector<std::string> words(const char* choices) {
   return list;
 }
 
-bool is_required(const Parameter& parameter) { return std::isnan(parameter.default_value); }
+bool must_be_given(const Parameter& parameter) { return std::isnan(parameter.default_value); }
 bool is_law(ParameterKind kind) { return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law; }
 bool is_open(const Parameter& parameter, Open end) {
   return (static_cast<std::uint32_t>(parameter.open) & static_cast<std::uint32_t>(end)) != 0;
@@ -55,7 +55,7 @@ Json default_json(const Parameter& parameter, const std::vector<std::string>& ch
   if (is_law(parameter.kind)) {
     const bool contact = parameter.kind == ParameterKind::contact_law;
     const Component* law = registry.preferred(contact ? ComponentKind::contact_law : ComponentKind::friction_law);
-    return law == nullptr || is_required(parameter) ? Json(nullptr) : Json(law->description.name);
+    return law == nullptr || must_be_given(parameter) ? Json(nullptr) : Json(law->description.name);
   }
   if (parameter.kind != ParameterKind::choice) return json_number(parameter.default_value);
   const auto index = static_cast<std::size_t>(std::max(parameter.default_value, 0.0));
@@ -67,7 +67,7 @@ Json parameter_json(const Parameter& parameter, const Registry& registry) {
   return {{"name", parameter.name},
           {"kind", kind_word(parameter.kind)},
           {"unit", parameter.unit},
-          {"required", is_required(parameter)},
+          {"required", must_be_given(parameter)},
           {"default", default_json(parameter, choices, registry)},
           {"minimum", json_number(parameter.minimum)},
           {"maximum", json_number(parameter.maximum)},

@@ -95,7 +95,7 @@ std::string nearest_channel(const std::string& name, const Channels& channels) {
 }
 
 void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
-                    bool by_option, Diagnostics& diagnostics) {
+                    bool by_option, bool with_study, Diagnostics& diagnostics) {
   const Channels channels(model);
   const std::vector<std::string> names = channel_names(channels), kinds = kinds_of(names);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
@@ -129,6 +129,7 @@ void check_channels(const Model& model, const Document& document, const std::vec
     if (by_option) refuse_pattern(pattern, nearest_channel(pattern, names, kinds));
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
   }
+  if (!with_study) return;
   for (const Node* channel : reduced_channels(document)) {
     if (channels.find(channel->text) >= 0) continue;
     unknown(channel->location(), channel->text, fmt::format("there is no channel '{}'", channel->text));

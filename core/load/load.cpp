@@ -38,10 +38,10 @@ using Read = std::function<std::optional<Document>(Diagnostics&)>;
 std::unique_ptr<Model> build_checked(const Document& document, const Registry& registry, BuildOptions build,
                                      Diagnostics& diagnostics) {
   build.parse_value = parse_yaml;
-  return build_model(document, registry, build, diagnostics,
-                     [&](const Model& model, const std::vector<std::string>& unsure) {
-                       check_channels(model, document, unsure, !build.channels.empty(), diagnostics);
-                     });
+  return build_model(
+      document, registry, build, diagnostics, [&](const Model& model, const std::vector<std::string>& unsure) {
+        check_channels(model, document, unsure, !build.channels.empty(), !build.without_study, diagnostics);
+      });
 }
 
 /// Without a model there is an exit code.

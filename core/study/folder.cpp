@@ -47,6 +47,26 @@ void move(const fs::path& from, const fs::path& to) {
   if (error) fail_to("move", from, error.message());
 }
 
+/// Returns whether there was nothing at `to` before.
+bool link_to(const fs::path& from, const fs::path& to) {
+  const int reason = ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+  if (reason != 0 && reason != EEXIST) fail_to("make", to, std::strerror(reason));
+  return reason == 0;
+}
+
+/// Is gone at the end.
+struct PrivateFolder {
+  explicit PrivateFolder(fs::path place) : path(std::move(place)) {}
+  ~PrivateFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  const fs::path path;
+};
+
 }  // namespace
 
 bool StudyFolder::holds_study() const {
@@ -64,6 +84,7 @@ void StudyFolder::require_room() const {
   for (const fs::directory_entry& entry : fs::directory_iterator(path_, error)) {
     const std::string name = entry.path().filename().string();
     if (own.contains(name) || name.starts_with('.')) continue;
+    if (holds_study()) return;  // begun by another program meanwhile
     throw Error(Error::Category::file, "not-empty",
                 fmt::format("'{}' holds other files, such as '{}'", path_.string(), name), {},
                 "another --out, or an empty directory");
@@ -84,24 +105,39 @@ void StudyFolder::begin(const StudyPlan& plan, const StudyMark& mark, const Json
   std::error_code error;
   fs::create_directories(rows(), error);
   if (error) fail_to("make", rows(), error.message());
-  if (!holds_study()) make_record(plan, mark, record);
+  make_record(plan.kept_files(), mark, record);
   take_extended(mark.study);
 }
 
-void StudyFolder::make_record(const StudyPlan& plan, const StudyMark& mark, const Json& record) const {
-  std::error_code error;
-  for (const KeptFile& file : plan.kept_files()) write_whole_file(path_ / file.path, file.bytes, true);
-  const fs::path own = path_ / fmt::format(".study.json.{}.{}", host_name(), ::getpid());
-  write_whole_file(own, json_text(record), true);
-  const fs::path place = path_ / record_name;
-  const int reason = ::link(own.c_str(), place.c_str()) == 0 ? 0 : errno;
-  fs::remove(own, error);
-  if (reason == EEXIST) {
-    if (this->record()["study"] == mark.study) return;
-    throw Error(Error::Category::input, "study-changed",
-                fmt::format("another study was begun in '{}' at the same time", path_.string()), {}, "another --out");
+// Whose record is the first has begun the study, and its copies count; others that begin it put there what is missing,
+// as after a kill between the two.
+void StudyFolder::make_record(const std::vector<KeptFile>& files, const StudyMark& mark, const Json& record) const {
+  const auto is_there = [&](const KeptFile& file) {
+    std::error_code ignored;
+    return fs::exists(path_ / file.path, ignored);
+  };
+  if (holds_study()) {
+    require_begun(mark);
+    if (std::ranges::all_of(files, is_there)) return;
   }
-  if (reason != 0) fail_to("make", place, std::strerror(reason));
+  const PrivateFolder own(path_ / fmt::format(".begin.{}.{}", host_name(), ::getpid()));
+  for (const KeptFile& file : files) write_whole_file(own.path / file.path, file.bytes, true);
+  write_whole_file(own.path / record_name, json_text(record), true);
+  const fs::path place = path_ / record_name;
+  const bool first = link_to(own.path / record_name, place);
+  if (!first) require_begun(mark);
+  for (const KeptFile& file : files) {
+    const fs::path copy = path_ / file.path;
+    std::error_code error;
+    fs::create_directories(copy.parent_path(), error);
+    if (error) fail_to("make", copy.parent_path(), error.message());
+    if (first) {
+      move(own.path / file.path, copy);
+    } else {
+      link_to(own.path / file.path, copy);
+    }
+    sync_folder_of(copy);
+  }
   sync_folder_of(place);
 }
 
@@ -117,6 +153,13 @@ void StudyFolder::take_extended(const std::string& study) const {
   }
   std::error_code not_empty;
   fs::remove(extended(), not_empty);
+}
+
+void StudyFolder::require_begun(const StudyMark& mark) const {
+  const Json begun = record();
+  if (begun["study"] == mark.study && begun["rows"] == mark.columns) return;
+  throw Error(Error::Category::input, "study-changed", fmt::format("another study was begun in '{}'", path_.string()),
+              {}, "another --out");
 }
 
 std::vector<fs::path> StudyFolder::segments_in(const fs::path& folder) {

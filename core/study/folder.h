@@ -39,8 +39,9 @@ class StudyFolder {
   /// study.json. Throws Error{input} "file-not-found" where there is none.
   Json record() const;
 
-  /// Makes study.json, with copies of all that was read; of several that do so at once one wins. Takes the rows of
-  /// extended() that are of this study. Throws Error{file}.
+  /// Makes study.json, with copies of all that was read. Of several that do so at once one wins; the others throw
+  /// Error{input} "study-changed" where theirs is another study. Takes the rows of extended() that are of this study.
+  /// Throws Error{file}.
   void begin(const StudyPlan& plan, const StudyMark& mark, const Json& record) const;
   /// Segments in the order of their making.
   std::vector<std::filesystem::path> segments() const { return segments_in(rows()); }
@@ -54,8 +55,9 @@ class StudyFolder {
 
  private:
   static std::vector<std::filesystem::path> segments_in(const std::filesystem::path& folder);
-  void make_record(const StudyPlan& plan, const StudyMark& mark, const Json& record) const;
   void take_extended(const std::string& study) const;
+  void make_record(const std::vector<KeptFile>& files, const StudyMark& mark, const Json& record) const;
+  void require_begun(const StudyMark& mark) const;
 
   std::filesystem::path path_;
 };

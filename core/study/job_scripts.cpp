@@ -39,17 +39,20 @@ struct Words {
   explicit Words(const JobRequest& request)
       : program(shell_word(request.program.string())),
         folder(shell_word(request.folder.string())),
-        jobs(request.folder / "jobs") {}
+        jobs(request.folder / "jobs") {
+    for (const std::string& word : request.options) options += " " + shell_word(word);
+  }
 
   std::string in_jobs(const std::string& name) const { return shell_word((jobs / name).string()); }
   /// Runs the shard `part`, a word of the shell.
   std::string shard(const std::string& part, std::uint64_t tasks, const std::string& cores) const {
-    return fmt::format("{} study run {} --shard {}/{} --jobs {} --allow-failed --quiet", program, folder, part, tasks,
-                       cores);
+    return fmt::format("{} study run {} --shard {}/{} --jobs {} --allow-failed --quiet{}", program, folder, part, tasks,
+                       cores, options);
   }
-  std::string merge() const { return fmt::format("{} study merge {}", program, folder); }
+  std::string merge() const { return fmt::format("{} study merge {}{}", program, folder, options); }
+  std::string status() const { return fmt::format("{} study status {}{}", program, folder, options); }
 
-  std::string program, folder;
+  std::string program, folder, options;
   fs::path jobs;
 };
 
@@ -93,11 +96,11 @@ JobScripts slurm(const JobRequest& request, const JobPlan& plan) {
              fmt::format("{}#SBATCH --job-name={}-merge\n#SBATCH --ntasks=1\n#SBATCH --time={}\n"
                          "#SBATCH --open-mode=append\n#SBATCH --output={}\nexec {}\n",
                          shell, name, plan.time, shell_word((words.jobs / "merge.log").string()), words.merge()));
-  writer.put("submit.sh", fmt::format("{}set -eu\narray=$(sbatch --parsable {})\n"
-                                      "sbatch --dependency=afterany:\"${{array%%;*}}\" {}\n"
-                                      "echo \"array ${{array%%;*}} of {} tasks; what is done: {} study status {}\"\n",
-                                      shell, words.in_jobs("array.sh"), words.in_jobs("merge.sh"), plan.tasks,
-                                      words.program, words.folder));
+  writer.put("submit.sh",
+             fmt::format("{}set -eu\narray=$(sbatch --parsable {})\n"
+                         "sbatch --dependency=afterany:\"${{array%%;*}}\" {}\n"
+                         "echo \"array ${{array%%;*}} of {} tasks; what is done: {}\"\n",
+                         shell, words.in_jobs("array.sh"), words.in_jobs("merge.sh"), plan.tasks, words.status()));
   return writer.finish("bash " + words.in_jobs("submit.sh"));
 }
 
@@ -127,8 +130,8 @@ JobScripts snakemake(const JobRequest& request, const JobPlan& plan) {
   };
   const std::string table = (request.folder / "study.csv").string();
   const std::string shard =
-      fmt::format("{} study run {} --shard {{wildcards.part}}/{} --jobs {{threads}} --allow-failed --quiet",
-                  braces(words.program), braces(words.folder), plan.tasks);
+      fmt::format("{} study run {} --shard {{wildcards.part}}/{} --jobs {{threads}} --allow-failed --quiet{}",
+                  braces(words.program), braces(words.folder), plan.tasks, braces(words.options));
   writer.put("Snakefile",
              fmt::format("MARKS = {}\nTABLE = {}\n\nrule merge:\n    input: expand(MARKS, part=range(1, {} + 1))\n"
                          "    output: TABLE\n    shell: {}\n\nrule shard:\n    output: touch(MARKS)\n    threads: {}\n"
@@ -147,6 +150,11 @@ JobPlan plan_jobs(const JobRequest& request) {
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(std::min(work / minutes, 1e15))));
   };
   plan.tasks = request.tasks ? *request.tasks : number(request.minutes);
+  if (request.tasks && request.engine == JobEngine::slurm && plan.tasks > request.max_array) {
+    throw Error(Error::Category::usage, "too-large",
+                fmt::format("--tasks {} is more than --max-array {}", plan.tasks, request.max_array), {},
+                "a larger --max-array where Slurm's MaxArraySize is larger");
+  }
   if (!request.tasks && plan.tasks > request.max_array) {
     if (number(longest_task) > request.max_array) {
       const double cores = std::ceil(work * request.cores / (longest_task * static_cast<double>(request.max_array)));

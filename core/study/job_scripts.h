@@ -23,6 +23,7 @@ struct JobRequest {
   std::string time{};             ///< limit of a task, HH:MM:SS; empty: by what it takes
   std::filesystem::path hosts{};  ///< of GNU parallel, absolute; empty: this machine alone
   std::uint64_t max_array = 1000;
+  std::vector<std::string> options{};  ///< that every command needs to load the models
 };
 
 struct JobPlan {
@@ -32,7 +33,7 @@ struct JobPlan {
 };
 
 /// Tasks by the points that are left and the time of one. A task may take an hour before there are more tasks than
-/// `max_array`. Throws Error{usage} "bad-value" for a time that is none, "too-large" with the cores that would do.
+/// `max_array`. Throws Error{usage} "bad-value" for a time that is none, "too-large" with what would do.
 JobPlan plan_jobs(const JobRequest& request);
 
 struct JobScripts {

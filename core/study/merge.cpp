@@ -1,10 +1,14 @@
 #include "study/merge.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <string_view>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "study/row_sorter.h"
@@ -59,6 +63,24 @@ const SortedRow& row_that_counts(const std::vector<SortedRow>& rows, const RowLa
   return good != nullptr ? *good : rows.back();
 }
 
+/// One program at a time writes the tables of a folder. A file system without locks has none.
+class OnlyWriter {
+ public:
+  explicit OnlyWriter(const std::filesystem::path& folder)
+      : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  ~OnlyWriter() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OnlyWriter(const OnlyWriter&) = delete;
+  OnlyWriter& operator=(const OnlyWriter&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 }  // namespace
 
 MergeCounts merge_rows(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& segments,
@@ -81,6 +103,7 @@ MergeCounts merge_rows(const std::filesystem::path& folder, const std::vector<st
       }
     }
   }
+  const OnlyWriter alone(folder);
   TableWriter table(folder, plan);
   MergeCounts counts;
   sorter.visit([&](const std::vector<SortedRow>& rows) {

@@ -1,6 +1,7 @@
 #include "study/page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <string_view>
 
@@ -17,7 +18,7 @@ namespace freeplay {
 namespace {
 
 constexpr std::uint64_t most_shown = 20'000;
-constexpr std::size_t most_page_bytes = 2'000'000;  // of points
+constexpr std::size_t most_page_bytes = 2'900'000;
 constexpr std::size_t listed_rows = 200;
 
 constexpr std::string_view head = R"(<!DOCTYPE html>
@@ -90,48 +91,87 @@ std::string command_of(const StudyPlan& plan, const std::filesystem::path& folde
   return command;
 }
 
+/// A table as it is read from the top.
+class TableLines {
+ public:
+  explicit TableLines(const std::filesystem::path& folder) : file_(folder / "study.csv") {
+    std::string line;
+    if (!file_ || !std::getline(file_, line)) {
+      throw Error(Error::Category::input, "file-not-found", fmt::format("'{}' has no table yet", folder.string()), {},
+                  "freeplay study run or study merge makes it");
+    }
+    columns = split(line);
+  }
+  bool next() {
+    std::string line;
+    if (!std::getline(file_, line)) return false;
+    cells = split(line);
+    return true;
+  }
+
+  std::vector<std::string> columns, cells;
+
+ private:
+  std::ifstream file_;
+};
+
+/// Of a row: what a click on its mark shows.
+Json point_of(const StudyPlan& plan, const std::filesystem::path& folder, const std::vector<std::string>& cells) {
+  const std::uint64_t index = std::stoull(cells.front());
+  Json point = {{"row", cells}, {"command", command_of(plan, folder, index)}};
+  const UnitPlace at = plan.place_of(index);
+  if (plan.chained() && at.place > 0) point["before"] = plan.unit_point(at.unit, at.place - 1);
+  const std::string kept = fmt::format("kept/{:04}/{}", index / 1000, index);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(folder / kept, ignored)) point["kept"] = kept;
+  return point;
+}
+
+std::size_t bytes_of(const std::string& index, const Json& point) { return index.size() + point.dump().size() + 4; }
+
 }  // namespace
 
-std::string study_page(const OpenStudy& study, const std::filesystem::path& folder) {
+std::string study_page(const OpenStudy& study, const std::filesystem::path& given) {
   const StudyPlan& plan = study.plan();
-  std::ifstream table(folder / "study.csv");
-  std::string line;
-  if (!table || !std::getline(table, line)) {
-    throw Error(Error::Category::input, "file-not-found", fmt::format("'{}' has no table yet", folder.string()), {},
-                "freeplay study run or study merge makes it");
+  const std::filesystem::path folder = std::filesystem::absolute(given).lexically_normal();
+  TableLines first(given);
+  std::string body;
+  for (const PictureRequest& request : picture_requests(plan)) {
+    body += fmt::format("<h2>{}</h2>\n{}", svg::escaped(request.name), study_picture(study, given, request));
   }
-  const std::filesystem::path place = std::filesystem::absolute(folder).lexically_normal();
-  const std::uint64_t every = plan.points() / most_shown + 1;
+  std::string rows = table_row(first.columns, "th");
+  std::size_t listed = 0, listed_bytes = 0;
+  for (; listed < listed_rows && first.next(); ++listed) {
+    rows += table_row(first.cells, "td");
+    listed_bytes += bytes_of(first.cells.front(), point_of(plan, folder, first.cells));
+  }
+  // Points get the room that is left, every k-th one where they need more.
+  const std::size_t used = head.size() + script.size() + body.size() + rows.size() + 2000;
+  const std::size_t room = most_page_bytes - std::min(used, most_page_bytes);
+  const double bytes_of_all = static_cast<double>(listed_bytes) /
+                              static_cast<double>(std::max<std::size_t>(listed, 1)) *
+                              static_cast<double>(plan.points());
+  const double share = 1.05 * bytes_of_all / static_cast<double>(std::max<std::size_t>(room, 1));
+  const std::uint64_t every =
+      std::max((plan.points() - 1) / most_shown + 1, static_cast<std::uint64_t>(std::ceil(std::min(share, 1e15))));
   Json points = Json::object();
-  std::string rows = table_row(split(line), "th");
-  const std::vector<std::string> columns = split(line);
   std::size_t bytes = 0, count = 0, left_out = 0;
-  for (; std::getline(table, line); ++count) {
-    const std::vector<std::string> cells = split(line);
-    if (count < listed_rows) rows += table_row(cells, "td");
-    const std::uint64_t index = std::stoull(cells.front());
-    if (count % every != 0 || bytes > most_page_bytes) {
+  for (TableLines table(given); table.next(); ++count) {
+    Json point = count % every == 0 ? point_of(plan, folder, table.cells) : Json();
+    const std::size_t size = point.is_null() ? 0 : bytes_of(table.cells.front(), point);
+    if (point.is_null() || bytes + size > room) {
       ++left_out;
       continue;
     }
-    Json point = {{"row", cells}, {"command", command_of(plan, place, index)}};
-    const UnitPlace at = plan.place_of(index);
-    if (plan.chained() && at.place > 0) point["before"] = plan.unit_point(at.unit, at.place - 1);
-    const std::string kept = fmt::format("kept/{:04}/{}", index / 1000, index);
-    std::error_code ignored;
-    if (std::filesystem::is_directory(folder / kept, ignored)) point["kept"] = kept;
-    bytes += line.size() + point["command"].get_ref<const std::string&>().size() + 40;
-    append(points, cells.front(), std::move(point));
+    bytes += size;
+    append(points, table.cells.front(), std::move(point));
   }
   const std::string note = left_out == 0 ? "" : fmt::format(", of which {} are not on this page", left_out);
   const std::string name = svg::escaped(plan.name());
-  std::string page = fmt::format(fmt::runtime(head), name, name, count, note);
-  for (const PictureRequest& request : picture_requests(plan)) {
-    page += fmt::format("<h2>{}</h2>\n{}", svg::escaped(request.name), study_picture(study, folder, request));
-  }
-  page += "<div id=\"point\"><p>A click on a mark shows its point.</p></div>\n<h2>Table</h2>\n";
+  std::string page = fmt::format(fmt::runtime(head), name, name, count, note) + body +
+                     "<div id=\"point\"><p>A click on a mark shows its point.</p></div>\n<h2>Table</h2>\n";
   if (count > listed_rows) page += fmt::format("<p>The first {} rows; all are in study.csv.</p>\n", listed_rows);
-  std::string data = Json{{"columns", columns}, {"points", std::move(points)}}.dump();
+  std::string data = Json{{"columns", first.columns}, {"points", std::move(points)}}.dump();
   for (std::size_t at = data.find("</"); at != data.npos; at = data.find("</", at + 3)) data.insert(at + 1, "\\");
   return page + "<div class=\"wide\"><table>" + rows +
          "</table></div>\n<script type=\"application/json\" id=\"freeplay-study\">" + data + "</script>\n" +

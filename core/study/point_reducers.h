@@ -57,9 +57,11 @@ std::span<const ClearanceNumber> clearance_numbers();
 /// diagnostics of their reading, whose scope must hold the parameters of the model while this is made.
 class PointReducers final : public StepSink {
  public:
+  /// A reducer of what the model lacks is a mistake, or has no value: at a point, where a joint may be closed.
+  enum class Lacking { mistake, no_value };
   /// `columns` gets the units. All outlive it.
   PointReducers(std::span<const ReducerEntry> entries, ReducerColumns& columns, const Model& model,
-                const Channels& channels);
+                const Channels& channels, Lacking lacking);
 
   /// Of the run; empty where there is nothing to take.
   std::span<Sink* const> sinks() { return sinks_; }
@@ -142,6 +144,7 @@ class PointReducers final : public StepSink {
   ReducerColumns& columns_;
   const Model& model_;
   const Channels& channels_;
+  Lacking lacking_;
   std::vector<Timed> timed_;
   std::vector<Section> sections_;
   std::vector<std::size_t> passing_;  // by passage: its section

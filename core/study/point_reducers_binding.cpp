@@ -19,9 +19,16 @@ FormulaVariable variable_of(int index, std::string_view unit) {
 /// [NAME] is a channel.
 class ChannelVariables final : public FormulaVariables {
  public:
-  explicit ChannelVariables(const Channels& channels) : channels_(channels) {}
+  /// With `any_name`, one that there is not stands for a channel of any unit.
+  ChannelVariables(const Channels& channels, bool any_name) : channels_(channels), any_name_(any_name) {}
+  /// Has a formula named a channel that there is not?
+  bool lacks_some() const { return lacks_some_; }
   std::optional<FormulaVariable> find(std::string_view name) const override {
     const int index = channels_.find(name);
+    if (index < 0 && any_name_) {
+      lacks_some_ = true;
+      return FormulaVariable{0, DimensionKind::free, dimension::none};
+    }
     if (index < 0) return std::nullopt;
     return variable_of(index, channels_.all()[static_cast<std::size_t>(index)].unit);
   }
@@ -30,6 +37,8 @@ class ChannelVariables final : public FormulaVariables {
 
  private:
   const Channels& channels_;
+  bool any_name_;
+  mutable bool lacks_some_ = false;
 };
 
 /// [NAME] is a column that stands before the one at `end`.
@@ -71,11 +80,12 @@ double quantity_of(const CheckedValue& value, const std::optional<Dimension>& di
 }  // namespace
 
 PointReducers::PointReducers(std::span<const ReducerEntry> entries, ReducerColumns& columns, const Model& model,
-                             const Channels& channels)
+                             const Channels& channels, Lacking lacking)
     : entries_(entries),
       columns_(columns),
       model_(model),
       channels_(channels),
+      lacking_(lacking),
       values_(columns.all().size(), std::numeric_limits<double>::quiet_NaN()),
       samples_(columns.samples().size()) {
   for (std::size_t i = 0; i < entries.size(); ++i) bind(entries[i], i);
@@ -110,7 +120,7 @@ void PointReducers::bind(const ReducerEntry& entry, std::size_t index) {
 int PointReducers::channel_of(const CheckedValue& name) const {
   const std::string& text = name.node().text;
   const int channel = channels_.find(text);
-  if (channel < 0)
+  if (channel < 0 && lacking_ == Lacking::mistake)
     name.fail("unknown-name", fmt::format("there is no channel '{}'", text), nearest_channel(text, channels_));
   return channel;
 }
@@ -123,8 +133,9 @@ std::optional<PointReducers::Course> PointReducers::course_of(const ReducerEntry
     if (unit.empty()) unit = "1";
     return Course{.channel = channel};
   }
-  auto formula = entry.subject.formula(ChannelVariables(channels_));
-  if (!formula) return std::nullopt;
+  const ChannelVariables variables(channels_, lacking_ == Lacking::no_value);
+  auto formula = entry.subject.formula(variables);
+  if (!formula || variables.lacks_some()) return std::nullopt;
   unit = unit_of(*formula);
   return Course{.formula = std::move(formula)};
 }
@@ -188,6 +199,7 @@ void PointReducers::bind_events(const ReducerEntry& entry, std::size_t index) {
     of.joints[j] = matches(pattern, names.back()) ? 1 : 0;
   }
   if (std::ranges::find(of.joints, 1) == of.joints.end()) {
+    if (lacking_ == Lacking::no_value) return;
     entry.subject.fail("unknown-name", fmt::format("no joint with events fits '{}'", pattern), nearest(pattern, names));
   }
   const auto kind = std::ranges::find(event_layout_.kinds, entry.kind);

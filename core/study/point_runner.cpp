@@ -89,11 +89,11 @@ struct PointRunner::Impl {
 
   void check(Diagnostics& diagnostics);
   void check_summaries(const Model& model, const Channels& channels);
-  PointReducers bind(const Model& model, const Channels& channels) {
+  PointReducers bind(const Model& model, const Channels& channels, PointReducers::Lacking lacking) {
     scope.emplace(used);
     for (const auto& [name, value] : model.parameters) scope->add_constant(name, value);
     reading.scope = &*scope;
-    return PointReducers(entries, columns, model, channels);
+    return PointReducers(entries, columns, model, channels, lacking);
   }
   void check_analysis(Model& model, PointReducers& reducers);
   void run_point(const StudyPoint& point, const std::string& state_before, StudyOutcome& outcome);
@@ -123,7 +123,7 @@ void PointRunner::Impl::check(Diagnostics& diagnostics) {
   columns = ReducerColumns(entries, models);
   for (LoadedModel& one : loaded) {
     const Channels channels(*one.model);
-    PointReducers reducers = bind(*one.model, channels);
+    PointReducers reducers = bind(*one.model, channels, PointReducers::Lacking::mistake);
     if (reducers.needs_summary()) check_summaries(*one.model, channels);
     if (analysis && !diagnostics.has_errors()) check_analysis(*one.model, reducers);
   }
@@ -177,7 +177,7 @@ void PointRunner::Impl::run_point(const StudyPoint& point, const std::string& st
   const Channels channels(*loaded.model);
   Diagnostics diagnostics;
   reading.diagnostics = &diagnostics;
-  PointReducers reducers = bind(*loaded.model, channels);
+  PointReducers reducers = bind(*loaded.model, channels, PointReducers::Lacking::no_value);
   if (diagnostics.has_errors()) fail(diagnostics, 3);
   if (analysis) {
     const double before = processor_time();

@@ -50,6 +50,7 @@ void StopRule::look() {
           options_.half_width ? *options_.half_width : options_.relative.value_or(0.0) * std::abs(last.estimate);
       narrow = narrow && last.half_width <= limit;
     }
+    reached_ = narrow;
     if (narrow || looked_at_ == samples_) end_ = looked_at_;
     next_look_ = std::min(next_look_ + options_.block, samples_);
   }

@@ -33,6 +33,8 @@ class StopRule {
   /// Samples after which it ends, once they are there: of so many, all that were planned if no interval is narrow
   /// enough.
   std::optional<std::uint64_t> end() const { return end_; }
+  /// Were all intervals narrow enough at the end or at the last look?
+  bool reached() const { return reached_; }
   /// Of each combination, over the samples up to the end or to the last look.
   const std::vector<StopInterval>& intervals() const { return intervals_; }
   std::uint64_t looked_at() const { return looked_at_; }
@@ -48,6 +50,7 @@ class StopRule {
   std::vector<std::vector<bool>> there_;
   std::vector<std::uint64_t> first_missing_;
   std::optional<std::uint64_t> end_;
+  bool reached_ = false;
   std::vector<StopInterval> intervals_;
 };
 

@@ -44,6 +44,18 @@ TEST(StopRule, EndsAtTheFirstLookThatIsNarrowEnough) {
   EXPECT_EQ(2.0, rule.intervals()[0].estimate);
 }
 
+TEST(StopRule, SaysWhetherItEndedForLackOfSamples) {
+  StopRule narrow(options(1e-9), 1, 6), wide(options(100.0), 1, 6);
+  for (std::uint64_t k = 0; k < 6; ++k) {
+    narrow.note(0, k, static_cast<double>(k));
+    wide.note(0, k, static_cast<double>(k));
+  }
+  EXPECT_EQ(6u, narrow.end());
+  EXPECT_FALSE(narrow.reached());
+  EXPECT_EQ(4u, wide.end());
+  EXPECT_TRUE(wide.reached());
+}
+
 TEST(StopRule, OrderOfArrivalChangesNothing) {
   std::mt19937 random(1);
   std::vector<double> values(200);
