@@ -26,7 +26,7 @@ std::vector<std::string> words(const char* choices) {
 }
 
 bool must_be_given(const Parameter& parameter) { return std::isnan(parameter.default_value); }
-bool is_law(ParameterKind kind) { return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law; }
+bool is_law_itself(ParameterKind kind) { return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law; }
 bool is_open(const Parameter& parameter, Open end) {
   return (static_cast<std::uint32_t>(parameter.open) & static_cast<std::uint32_t>(end)) != 0;
 }
@@ -52,7 +52,7 @@ const char* kind_word(ParameterKind kind) {
 }
 
 Json default_json(const Parameter& parameter, const std::vector<std::string>& choices, const Registry& registry) {
-  if (is_law(parameter.kind)) {
+  if (is_law_itself(parameter.kind)) {
     const bool contact = parameter.kind == ParameterKind::contact_law;
     const Component* law = registry.preferred(contact ? ComponentKind::contact_law : ComponentKind::friction_law);
     return law == nullptr || must_be_given(parameter) ? Json(nullptr) : Json(law->description.name);
