@@ -4,6 +4,7 @@
 #include <cctype>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include "freeplay/plugin.h"
 #include "results/made_file.h"
 #include "results/reproduction.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -88,6 +90,9 @@ class Reproduction {
 
   int execute(const ReproduceOptions& options) {
     faults_ = record_faults(made_);
+    if (made_.kind == MadeKind::result && made_.ended) {
+      if (std::string part = part_of_a_line(made_.path); !part.empty()) faults_.push_back({.what = std::move(part)});
+    }
     const bool changed_model = std::ranges::any_of(faults_, &RecordFault::of_model);
     if (!changed_model) {
       Remaking remaking(made_, common_, options.out, options.yes);

@@ -146,6 +146,16 @@ class Reproduce(ProgramTest):
         self.assertEqual((False, None, ["record"]),
                          (answer["same"], answer["rerun"], [c["what"] for c in answer["checks"]]))
 
+    def test_part_of_a_line_after_the_last_is_found(self):
+        self.run_model("r", "--end", "4 ms", "--interval", "0.1 ms")
+        for name in ("results.csv", "events.csv"):
+            with self.subTest(name):
+                whole = self.bytes_of("r", name)
+                self.edit(lambda data: data + b"0.0041,1,2", "r", name)
+                self.assert_different("r", "%s' was changed: it ends in part of a line" % name)
+                self.edit(lambda _: whole, "r", name)
+        self.assert_same("r")
+
     def test_a_changed_number_of_results_h5_is_found(self):
         try:
             import h5py
