@@ -19,6 +19,7 @@
 #include "plot/channel_figure.h"
 #include "results/made_text.h"
 #include "results/result_record.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -257,6 +258,8 @@ class Plot {
     paths_.insert(paths_.end(), options_.against.begin(), options_.against.end());
     for (const std::string& path : paths_) {
       readers_.push_back(ResultReader::open(path));
+      if (const std::string missing = visibly_missing(*readers_.back()); !missing.empty())
+        print_messages("freeplay: warning: " + missing + "\n", common_.no_color);
       if (!seen.insert(whole_result(path)).second) {
         print_messages(fmt::format("freeplay: warning: '{}' is given twice\n", path), common_.no_color);
       }

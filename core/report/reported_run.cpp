@@ -12,6 +12,7 @@
 #include "load/result_model.h"
 #include "results/directory.h"
 #include "results/result_record.h"
+#include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
@@ -136,6 +137,11 @@ ReportedRun open_reported(const fs::path& path, const LoadOptions& options) {
   know_model(run);
   read_inputs(run, folder);
   know_units(run);
+  // Of a run that has ended its count of rows says more.
+  const std::string missing = visibly_missing(*run.reader);
+  const bool counted = field(run.summary, "counts").contains("rows") && text_in(run.summary, "status") != "incomplete";
+  if (!missing.empty() && (!counted || !run.reader->passed_over().empty()))
+    run.note += (run.note.empty() ? "" : "; ") + missing;
   run.name = text_in(field(run.summary, "model"), "name");
   if (run.name.empty() && run.model) run.name = run.model->name;
   if (run.name.empty()) run.name = attribute(*run.reader, "title");

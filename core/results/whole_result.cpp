@@ -145,10 +145,20 @@ std::string part_of_a_line(const fs::path& directory) {
   return {};
 }
 
-std::string missing_part(ResultReader& reader, const std::string& table) {
+std::string visibly_missing(const ResultReader& reader) {
   const fs::path file = reader.file();
   if (!reader.passed_over().empty())
     return fmt::format("{}; rows are those of '{}'", reader.passed_over(), file.string());
+  if (!is_text(file)) return {};
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  if (stream.tellg() > 0) stream.seekg(-1, std::ios::end);
+  const int last = stream.get();
+  return last == std::char_traits<char>::eof() || last == '\n' ? std::string() : left_out(file);
+}
+
+std::string missing_part(ResultReader& reader, const std::string& table) {
+  const fs::path file = reader.file();
+  if (!reader.passed_over().empty()) return visibly_missing(reader);
   if (!is_text(file)) return {};  // others are read as a whole or not at all
   if (table == "events" || table == "impacts") return missing_events(file.parent_path());
   Sha256 hash;

@@ -33,4 +33,7 @@ std::string part_of_a_line(const std::filesystem::path& directory);
 /// the record beside a table has the fingerprint of. Empty where nothing is known to be.
 std::string missing_part(ResultReader& reader, const std::string& table = "results");
 
+/// The part of it that shows without reading the rows: a results.h5 that they stand for, the end of a last line.
+std::string visibly_missing(const ResultReader& reader);
+
 }  // namespace freeplay

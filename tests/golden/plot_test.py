@@ -332,6 +332,19 @@ class Plot(ProgramTest):
         self.assertIn("how large the clearance is", err)
         self.assertEqual([], panels(out)[0].circles)
 
+    def test_a_file_that_was_cut_is_drawn_with_a_warning(self):
+        text = self.read("r", "results.csv")
+        self.write("rows.csv", text[: len(text) // 2].rpartition(",")[0])
+        self.assertIn("the last line of 'rows.csv' has no end and is left out", self.freeplay("plot", "rows.csv", "joint.wrist.fn")[1])
+        shutil.copytree(self.made, self.path("damaged"))
+        with open(self.path("damaged", "results.h5"), "r+b") as file:
+            file.truncate(1000)
+        out, err = self.freeplay("plot", "damaged", "joint.wrist.fn")
+        self.assertIn("; rows are those of 'damaged/results.csv'", err)
+        self.assertEqual(1, len(panels(out)))
+        page = self.freeplay("report", "damaged")[0]
+        self.assertIn("; rows are those of", self.read("damaged", "report.html"), page)
+
     def test_what_cannot_be_drawn_is_refused(self):
         self.freeplay("run", mechanism("slider-crank"), "--quiet", "--end", "1 ms", "--ideal", "all", "--out", "ideal")
         for arguments, code, words in (
