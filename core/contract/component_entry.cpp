@@ -26,7 +26,9 @@ std::vector<std::string> words(const char* choices) {
 }
 
 bool must_be_given(const Parameter& parameter) { return std::isnan(parameter.default_value); }
-bool is_law_itself(ParameterKind kind) { return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law; }
+bool is_law_itself(ParameterKind kind) {
+  return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law;
+}
 bool is_open(const Parameter& parameter, Open end) {
   return (static_cast<std::uint32_t>(parameter.open) & static_cast<std::uint32_t>(end)) != 0;
 }
