@@ -110,6 +110,10 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
                 "freeplay analyze ik|workspace|singularity|error|inverse-dynamics MODEL");
   }
   require_sense(options);
+  if (!options.out.empty() && options.out == options.svg) {
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("--out and --svg name the same file '{}'", options.out));
+  }
   require_no_other_table(options.out, options.force);
   require_no_other_file(options.svg, own_picture, options.force);
   if (options.coloured && options.svg.empty()) {

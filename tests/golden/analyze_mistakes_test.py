@@ -145,6 +145,11 @@ class AnalyzeMistakes(AnalyzeTest):
                 self.rows(*command, option, "t.csv", *force)
             self.assertNotEqual("time,a\n0,1\n", self.read(name))
 
+    def test_table_and_map_are_two_files(self):
+        command = ("workspace", mechanism("3-rrr"), "--grid", "x=0:1cm:2", "--grid", "y=0:1cm:2")
+        self.assertIn("--out and --svg name the same file 't'", self.message(*command, "--out", "t", "--svg", "t", code=2))
+        self.assertFalse(os.path.exists(self.path("t")))
+
     def test_mistakes_of_the_section_have_a_place(self):
         text = self.text("five-bar")
         for piece, message in (("{frame: coupler1/D", "has no frame 'D'"), ("{joints: [A3]", "unknown joint 'A3'"),
