@@ -8,7 +8,7 @@
 
 namespace freeplay::play {
 
-/// Internal variables that a friction law may have in a planar joint: derivatives are made on the stack.
+/// Internal variables that a friction law may have in a joint: derivatives are made on the stack.
 inline constexpr std::size_t most_internal_variables = 8;
 
 /// Central differences of one law at one state.

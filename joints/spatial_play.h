@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "contact_phase.h"
+#include "friction_slopes.h"
 #include "relative_motion.h"
 
 namespace freeplay::play {
@@ -14,7 +15,7 @@ using space::Dual;
 using space::Vec;
 
 /// Internal variables that a friction law may have here: they are turned on the stack.
-inline constexpr int most_law_variables = 8;
+inline constexpr int most_law_variables = most_internal_variables;
 
 inline constexpr Channel gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"ez", "m"},      {"delta", "m"}, {"fn", "N"},
                                            {"ft", "N"}, {"power", "W"}, {"contact", "1"}, {"vt", "m/s"}};
@@ -102,29 +103,25 @@ Vec<T> across(const Vec<T>& v, const Vec<T>& n) {
   return v - dot(v, n) * n;
 }
 
-/// Laws give no derivatives of their rates nor by their variables: those are central differences.
 inline Dual SpatialPlay::evaluate(const Dual& normal, const Dual& speed, const Dual* state, Dual* rate) const {
   const auto count = static_cast<std::size_t>(law_variables);
-  double z[most_law_variables], high[most_law_variables], low[most_law_variables];
+  double z[most_law_variables], rates[most_law_variables];
   for (std::size_t i = 0; i < count; ++i) z[i] = state[i].value;
-  FrictionState at{normal.value, speed.value, {z, count}};
-  const FrictionForce f = friction.evaluate(at, {high, count});
-  for (std::size_t i = 0; i < count; ++i) rate[i] = high[i];
+  const FrictionForce f = friction.evaluate({normal.value, speed.value, {z, count}}, {rates, count});
+  for (std::size_t i = 0; i < count; ++i) rate[i] = rates[i];
   Dual force(f.tangential, f.d_normal * normal.gradient + f.d_slip * speed.gradient);
-  const auto difference = [&](double& x, double scale, const Dual::Gradient& gradient) {
-    const double middle = x, step = 1e-5 * std::max(std::abs(x), scale);
-    x = middle + step;
-    const double above = friction.evaluate(at, {high, count}).tangential;
-    x = middle - step;
-    const double below = friction.evaluate(at, {low, count}).tangential;
-    x = middle;
-    for (std::size_t i = 0; i < count; ++i) rate[i].gradient += (high[i] - low[i]) / (2.0 * step) * gradient;
-    return (above - below) / (2.0 * step);
+  FrictionSlopes slopes(friction, normal.value, speed.value, {z, count});
+  const auto add_rates = [&](const Dual::Gradient& gradient) {
+    for (std::size_t i = 0; i < count; ++i) rate[i].gradient += slopes.rates()[i] * gradient;
   };
-  difference(at.normal_force, 1.0, normal.gradient);
-  difference(at.slip_speed, 1e-3, speed.gradient);
-  for (std::size_t k = 0; k < count; ++k)
-    force.gradient += difference(z[k], 1e-6, state[k].gradient) * state[k].gradient;
+  slopes.by_normal_force();
+  add_rates(normal.gradient);
+  slopes.by_slip();
+  add_rates(speed.gradient);
+  for (std::size_t k = 0; k < count; ++k) {
+    force.gradient += slopes.by_variable(k) * state[k].gradient;
+    add_rates(state[k].gradient);
+  }
   return force;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/number_text.h"
 #include "cli/repeat_runs.h"
 
 namespace freeplay {
@@ -87,21 +86,13 @@ double checkpoint_period(const RunOptions& options) {
 }
 
 Making making(const RunOptions& options, const CommonOptions& common, const Model& model) {
-  Making making{.made = "run", .command = common.command, .arguments = {}, .build = FREEPLAY_BUILD};
+  Making making{
+      .made = "run", .command = common.command, .arguments = arguments_of(model, options), .build = FREEPLAY_BUILD};
   const auto add = [&](const char* option, const std::string& value) {
     if (value.empty()) return;
     making.arguments.emplace_back(option);
     making.arguments.push_back(value);
   };
-  add("--end", fmt::format("{} s", number_text(model.settings.end)));
-  for (const auto& [name, text] : model.overrides) add("--set", fmt::format("{}={}", name, text));
-  for (const std::string& joint : model.ideal) add("--ideal", joint);
-  add("--step", options.step);
-  add("--accuracy", options.accuracy);
-  add("--integrator", options.integrator);
-  add("--interval", options.interval);
-  for (const std::string& pattern : options.channels) add("--channels", pattern);
-  add("--format", options.format);
   add("--repeat", options.repeat);
   add("--seed", options.seed);
   if (!options.repeat.empty()) making.seed = repeat_plan(options.repeat, options.seed).seed;

@@ -5,7 +5,10 @@
 #include <iterator>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/option_value.h"
 #include "base/unit.h"
 
@@ -46,6 +49,23 @@ BuildOptions build_options(const RunWords& words) {
   if (!words.interval.empty()) build.interval = positive_quantity("--interval", words.interval, dimension::time);
   build.channels = words.channels;
   return build;
+}
+
+std::vector<std::string> arguments_of(const Model& model, const RunWords& words) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+  };
+  add("--end", fmt::format("{} s", number_text(model.settings.end)));
+  for (const auto& [name, text] : model.overrides) add("--set", fmt::format("{}={}", name, text));
+  for (const std::string& joint : model.ideal) add("--ideal", joint);
+  add("--step", words.step);
+  add("--accuracy", words.accuracy);
+  add("--integrator", words.integrator);
+  add("--interval", words.interval);
+  for (const std::string& pattern : words.channels) add("--channels", pattern);
+  add("--format", words.format);
+  return arguments;
 }
 
 }  // namespace freeplay

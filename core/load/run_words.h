@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "format/build_options.h"
+#include "model/model.h"
 
 namespace freeplay {
 
@@ -24,5 +25,8 @@ struct RunWords {
 BuildOptions build_options(const ModelOptions& options);
 /// The same with the settings of a run. Throws Error{usage} "bad-value", "usage".
 BuildOptions build_options(const RunWords& words);
+/// The words of the command line that make the same run of the model's file: what the model was built with, and
+/// `words`.
+std::vector<std::string> arguments_of(const Model& model, const RunWords& words);
 
 }  // namespace freeplay

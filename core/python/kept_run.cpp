@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/number_text.h"
 #include "base/version.h"
 #include "python/refusal.h"
 #include "results/contact_advice.h"
@@ -32,22 +31,12 @@ constexpr std::pair<Phase, const char*> phases[] = {
 
 /// What makes the same run on the command line.
 Making making_of(const OpenedModel& opened, const RunRequest& request) {
-  const Model& model = opened.model();
-  const RunWords& words = opened.request().words;
-  Making making{.made = "run", .command = request.call, .arguments = {}, .build = FREEPLAY_BUILD};
-  const auto add = [&](const char* option, const std::string& value) {
-    if (!value.empty()) making.arguments.insert(making.arguments.end(), {option, value});
-  };
-  add("--end", fmt::format("{} s", number_text(model.settings.end)));
-  for (const auto& pair : model.overrides) add("--set", fmt::format("{}={}", pair.first, pair.second));
-  for (const std::string& joint : model.ideal) add("--ideal", joint);
-  add("--step", words.step);
-  add("--accuracy", words.accuracy);
-  add("--integrator", words.integrator);
-  add("--interval", words.interval);
-  for (const std::string& pattern : words.channels) add("--channels", pattern);
-  add("--format", words.format);
-  for (const std::string& plugin : opened.request().plugins) add("--plugin", plugin);
+  Making making{.made = "run",
+                .command = request.call,
+                .arguments = arguments_of(opened.model(), opened.request().words),
+                .build = FREEPLAY_BUILD};
+  for (const std::string& plugin : opened.request().plugins)
+    making.arguments.insert(making.arguments.end(), {"--plugin", plugin});
   return making;
 }
 
