@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstddef>
 
-#include "cli/address_sanitizer.h"
+#include "base/address_sanitizer.h"
 
 namespace {
 

@@ -18,9 +18,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/address_sanitizer.h"
 #include "base/error.h"
 #include "base/whole_text.h"
-#include "cli/address_sanitizer.h"
 #include "cli/interrupt.h"
 
 namespace freeplay {

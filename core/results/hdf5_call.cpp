@@ -7,9 +7,10 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 
+#include "base/address_sanitizer.h"
 #include "results/formats.h"
 
-#ifdef __SANITIZE_ADDRESS__
+#if FREEPLAY_ADDRESS_SANITIZER
 // A file that could not be written is never closed, see hdf5_writer.h: what the library keeps for it is no leak.
 // NOLINTNEXTLINE(bugprone-reserved-identifier): the name that the sanitizer looks for
 extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions();

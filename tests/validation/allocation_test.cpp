@@ -1,6 +1,8 @@
 // Counts calls of the allocator while a run steps. malloc itself is replaced, so that nothing escapes: operator new and
 // the matrix library end up there. Sanitizers replace it themselves, so this file is empty with them.
-#if !defined(__SANITIZE_ADDRESS__)
+#include "base/address_sanitizer.h"
+
+#if !FREEPLAY_ADDRESS_SANITIZER
 
 #include <atomic>
 #include <cerrno>
