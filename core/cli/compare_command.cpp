@@ -8,9 +8,11 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
+#include "cli/study_options.h"
 #include "cli/terminal.h"
 #include "results/comparison.h"
 #include "results/whole_result.h"
+#include "study/table_comparison.h"
 
 namespace freeplay {
 namespace {
@@ -54,8 +56,15 @@ std::string row_text(const Difference& d) {
 
 std::string place_of(const std::string& distance) { return distance.substr(0, distance.rfind('.')); }
 
-std::string table_text(const Comparison& comparison, bool all) {
-  std::string text = "channel,max_abs,max_rel,rms,at_time,ok\n";
+/// What the rows of two tables are called.
+struct Words {
+  const char *column, *columns, *at, *rows;
+};
+constexpr Words of_results = {"channel", "channels", "at_time", "rows"};
+constexpr Words of_studies = {"column", "columns", "at_point", "points"};
+
+std::string table_text(const Comparison& comparison, bool all, const Words& words) {
+  std::string text = fmt::format("{},max_abs,max_rel,rms,{},ok\n", words.column, words.at);
   const std::span<const Difference> channels = comparison.channels;
   const std::size_t shown = all ? channels.size() : std::min(channels.size(), rows_shown);
   for (const Difference& d : channels.first(shown)) text += row_text(d);
@@ -67,10 +76,11 @@ std::string table_text(const Comparison& comparison, bool all) {
   };
   if (const auto rest = channels.subspan(shown); !rest.empty()) {
     const auto differ = differing(rest);
-    text += fmt::format("# {} more channels, {}; all with --verbose, some with --channels\n", rest.size(),
+    text += fmt::format("# {} more {}, {}; all with --verbose, some with --channels\n", rest.size(), words.columns,
                         differ == 0 ? "which agree" : fmt::format("of which {} differ", differ));
   }
-  text += fmt::format("# {} channels in {} rows: {} differ\n", channels.size(), comparison.rows, differing(channels));
+  text += fmt::format("# {} {} in {} {}: {} differ\n", channels.size(), words.columns, comparison.rows, words.rows,
+                      differing(channels));
   if (comparison.distances.empty() || comparison.rows == 0) return text;
   return text + fmt::format("# distance of bodies and frames, {} in all: {} m rms\n# farthest: {}, {} m at t = {} s\n",
                             comparison.distances.size(), number_text(comparison.distance.rms),
@@ -78,14 +88,14 @@ std::string table_text(const Comparison& comparison, bool all) {
                             number_text(comparison.distance.at_time));
 }
 
-Json table_json(const Comparison& comparison) {
+Json table_json(const Comparison& comparison, const Words& words) {
   Json list = Json::array();
   const auto put = [&](const Difference& d) {
-    list.push_back({{"channel", d.name},
+    list.push_back({{words.column, d.name},
                     {"max_abs", json_number(d.largest)},
                     {"max_rel", json_number(d.relative)},
                     {"rms", json_number(d.rms)},
-                    {"at_time", json_number(d.at_time)},
+                    {words.at, json_number(d.at_time)},
                     {"ok", d.agrees}});
   };
   for (const Difference& d : comparison.channels) put(d);
@@ -94,28 +104,56 @@ Json table_json(const Comparison& comparison) {
   return list;
 }
 
+int tell(const Comparison& comparison, const Words& words, const CompareOptions& options, const CommonOptions& common) {
+  if (common.json) {
+    print_json(table_json(comparison, words));
+  } else {
+    print(table_text(comparison, common.verbose || !options.channels.empty(), words));
+  }
+  for (const std::string& text : comparison.missing) print_messages("freeplay: note: " + text + "\n", common.no_color);
+  return comparison.agree() ? 0 : 7;
+}
+
+/// Of the directories of two studies: their tables, point by point.
+int compare_studies(const CompareOptions& options, const ComparisonRules& rules, const CommonOptions& common) {
+  for (const std::string& one : {options.a, options.b}) {
+    if (StudyFolder(one).holds_study()) continue;
+    throw Error(Error::Category::usage, "bad-value",
+                fmt::format("'{}' is the directory of a study, and '{}' is none",
+                            one == options.a ? options.b : options.a, one),
+                {}, "a study is compared with a study, a result with a result");
+  }
+  if (!options.from.empty() || !options.until.empty()) {
+    throw Error(Error::Category::usage, "bad-value", "the table of a study has no times for --from and --until");
+  }
+  const StudyInFolder a = open_kept(options.a, StudyUse::look, common);
+  if (!a.study) return a.exit_code;
+  const StudyInFolder b = open_kept(options.b, StudyUse::look, common);
+  if (!b.study) return b.exit_code;
+  return tell(compare_tables({*a.study, a.folder.path()}, {*b.study, b.folder.path()}, rules), of_studies, options,
+              common);
+}
+
 int compare_results(const CompareOptions& options, const CommonOptions& common) {
   if (options.a.empty() || options.b.empty()) {
     throw Error(Error::Category::usage, "missing-argument", "compare needs two results");
   }
   const ComparisonRules rules = rules_of(options);
+  if (StudyFolder(options.a).holds_study() || StudyFolder(options.b).holds_study()) {
+    return compare_studies(options, rules, common);
+  }
   const std::unique_ptr<ResultReader> a = ResultReader::open(options.a), b = ResultReader::open(options.b);
   for (ResultReader* const reader : {a.get(), b.get()}) {
     const std::string missing = missing_part(*reader);
     if (!missing.empty()) print_messages("freeplay: warning: " + missing + "\n", common.no_color);
   }
   const Comparison comparison = compare(*a, *b, rules);
-  if (common.json) {
-    print_json(table_json(comparison));
-  } else {
-    print(table_text(comparison, common.verbose || !options.channels.empty()));
-  }
-  for (const std::string& text : comparison.missing) print_messages("freeplay: note: " + text + "\n", common.no_color);
+  const int exit_code = tell(comparison, of_results, options, common);
   if (comparison.interpolated && !common.quiet) {
     print_messages(fmt::format("freeplay: note: times differ: {} is interpolated linearly\n", b->file()),
                    common.no_color);
   }
-  return comparison.agree() ? 0 : 7;
+  return exit_code;
 }
 
 }  // namespace
@@ -123,8 +161,9 @@ int compare_results(const CompareOptions& options, const CommonOptions& common) 
 Command add_compare_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "compare", "Print how far two results agree");
   const auto options = std::make_shared<CompareOptions>();
-  add_option(*app, "A", options->a, "Result directory, CSV or HDF5 file");
-  add_option(*app, "B", options->b, "Another; it is interpolated where its times differ");
+  add_option(*app, "A", options->a, "Result directory, CSV or HDF5 file, or directory of a study");
+  add_option(*app, "B", options->b,
+             "Another; it is interpolated where its times differ. Of studies the points that both have");
   add_option(*app, "--tolerance", options->tolerance, "Part of the largest |a| that may differ (1e-6)", "REL");
   add_option(*app, "--absolute", options->absolute, "What may differ besides (1e-12)", "ABS");
   add_repeatable(*app, "--channels", options->channels, "Channels to compare, a name or pattern with *; repeatable",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,11 +13,13 @@
 #include "base/staged_file.h"
 #include "base/whole_file.h"
 #include "cli/output_file.h"
+#include "cli/study_options.h"
 #include "cli/terminal.h"
 #include "results/reader.h"
 #include "results/result_record.h"
 #include "results/table_files.h"
 #include "results/whole_result.h"
+#include "study/table_export.h"
 
 namespace freeplay {
 namespace {
@@ -145,11 +148,78 @@ class Export {
   Sha256 hash_;
 };
 
+/// Refuses what is of results of runs.
+void require_study_options(const ExportOptions& options) {
+  const std::pair<const char*, bool> of_runs[] = {
+      {"--table", !options.table.empty()}, {"--from", !options.from.empty()},     {"--until", !options.until.empty()},
+      {"--every", !options.every.empty()}, {"--period", !options.period.empty()}, {"--phase", !options.phase.empty()}};
+  for (const auto& [option, given] : of_runs) {
+    if (given)
+      throw Error(Error::Category::usage, "bad-value",
+                  fmt::format("a study has one table: {} says nothing of it", option));
+  }
+  if (options.to == "mat") {
+    throw Error(Error::Category::usage, "bad-value", "a table of a study is no MAT-file", {},
+                "--to hdf5 is read by MATLAB (h5read), --to csv by readtable");
+  }
+  if (options.to == "hdf5" && !options.channels.empty()) {
+    throw Error(Error::Category::usage, "bad-value", "--to hdf5 takes all columns of a study", {}, "--to csv or json");
+  }
+}
+
+/// The table of a study's directory.
+int export_study(const ExportOptions& options, const CommonOptions& common) {
+  require_study_options(options);
+  const StudyInFolder opened = open_kept(options.path, StudyUse::look, common);
+  if (!opened.study) return opened.exit_code;
+  const TableExport of{*opened.study, opened.folder.path(), options.channels};
+  Json provenance = {{"made", "export"}, {"command", common.command}, {"arguments", arguments_of(options)}};
+  provenance.update(study_provenance(*opened.study, opened.folder));
+  const auto give = [&](const TakeText& take) {
+    options.to == "csv" ? give_study_csv(of, take) : give_study_json(of, provenance, take);
+  };
+  if (options.out.empty()) {
+    give(print_data);
+    return 0;
+  }
+  StagedFile file(options.out, options.force);
+  if (options.to == "hdf5") {
+    std::error_code error;
+    fs::copy_file(of.folder / "study.h5", file.temporary(), fs::copy_options::overwrite_existing, error);
+    if (error) {
+      throw Error(Error::Category::file, "cannot-write",
+                  fmt::format("cannot copy '{}': {}", (of.folder / "study.h5").string(), error.message()));
+    }
+    file.commit();
+    return 0;
+  }
+  if (options.to == "csv") require_no_other_file(record_file(options.out), own_record, options.force);
+  Sha256 hash;
+  GrowingFile growing(file.temporary());
+  give([&](std::string_view some) {
+    hash.add(some.data(), some.size());
+    growing.line() += some;
+    growing.flush();
+  });
+  growing.close();
+  file.commit();
+  if (options.to != "csv") return 0;
+  provenance["data_sha256"] = hash.digits();
+  write_whole_file(record_file(options.out), json_text(provenance));
+  return 0;
+}
+
 int export_result(const ExportOptions& options, const CommonOptions& common) {
   if (options.path.empty()) throw Error(Error::Category::usage, "missing-argument", "export needs a result");
   if (options.to.empty())
     throw Error(Error::Category::usage, "missing-argument", "export needs --to csv, hdf5, mat or json");
   require_word("format", options.to, {"csv", "hdf5", "mat", "json"});
+  if (StudyFolder(options.path).holds_study()) {
+    if (options.to == "hdf5" && options.out.empty()) {
+      throw Error(Error::Category::usage, "missing-argument", "--to hdf5 needs --out FILE");
+    }
+    return export_study(options, common);
+  }
   const TableRequest request = request_of(options);
   const bool binary = options.to == "hdf5" || options.to == "mat";
   if (binary && options.out.empty()) {
@@ -169,7 +239,7 @@ int export_result(const ExportOptions& options, const CommonOptions& common) {
 Command add_export_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "export", "Write rows or events of a result as another file");
   const auto options = std::make_shared<ExportOptions>();
-  add_option(*app, "RESULT", options->path, "Result directory, results.csv or results.h5");
+  add_option(*app, "RESULT", options->path, "Result directory, results.csv or results.h5, or directory of a study");
   add_option(*app, "--to", options->to, "csv, hdf5, mat or json", "FORMAT");
   add_option(*app, "--table", options->table,
              "results, events, impacts, bearing, spectra, poincare or lyapunov (results)", "NAME");

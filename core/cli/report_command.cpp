@@ -38,7 +38,7 @@ std::vector<std::string> arguments_of(const ReportOptions& options) {
 
 /// Of a study's directory: its pictures and its table.
 int report_study(const std::string& folder, const ReportOptions& options, const CommonOptions& common) {
-  const StudyInFolder opened = open_kept(folder, common);
+  const StudyInFolder opened = open_kept(folder, StudyUse::look, common);
   if (!opened.study) return opened.exit_code;
   const std::string file = options.out.empty() ? (opened.folder.path() / "report.html").string() : options.out;
   require_no_other_file(file, own_page, options.force);

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/remaking.h"
+#include "cli/study_reproduction.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "freeplay/plugin.h"
@@ -170,8 +171,10 @@ int reproduce(const ReproduceOptions& options, const CommonOptions& common) {
   if (options.path.empty()) {
     throw Error(Error::Category::usage, "missing-argument", "reproduce needs a result, table, picture or page");
   }
+  if (study_of(options.path)) return reproduce_study(options.path, options.out, common);
   try {
     const MadeFile made = read_made_file(options.path);
+    if (made.record.contains("study")) return reproduce_study_table(made, options.out, common);
     return Reproduction(made, common).execute(options);
   } catch (const Json::exception&) {
     throw Error(Error::Category::file, "no-provenance",
@@ -184,7 +187,8 @@ int reproduce(const ReproduceOptions& options, const CommonOptions& common) {
 Command add_reproduce_command(CLI::App& program, CommonOptions& common) {
   CLI::App* app = add_command(program, "reproduce", "Make a result, table, picture or page again, and compare");
   const auto options = std::make_shared<ReproduceOptions>();
-  add_option(*app, "RESULT", options->path, "Result directory, or a file that this program has made");
+  add_option(*app, "RESULT", options->path,
+             "Result directory, directory of a study, or a file that this program has made");
   add_file_option(*app, "--out", options->out, "Keep what was made again (a temporary folder)", "DIR");
   add_flag(*app, "--yes", options->yes, "Run again even what takes more than half of the room that is free");
   add_common_options(*app, common);

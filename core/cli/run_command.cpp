@@ -190,6 +190,7 @@ class RunJob {
     hooks.interrupt = &stop;
     hooks.stepped = [&] {
       const bool interrupted = interrupt != 0;
+      if (repeats_ != nullptr) repeats_->look_after();
       if (interrupted || checkpoints_.due()) checkpoints_.add(simulation_->save());
       if (interrupted) stop = 1;
     };

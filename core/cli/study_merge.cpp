@@ -57,14 +57,13 @@ int study_merge(const StudyOptions& options, const CommonOptions& common) {
     throw Error(Error::Category::usage, "missing-argument", "study merge needs a DIR");
   }
   require_one_study(options.studies);
-  StudyInFolder opened = open_kept(options.studies.front(), common);
+  StudyInFolder opened = open_kept(options.studies.front(), StudyUse::look, common);
   if (!opened.study) return opened.exit_code;
   const StudyMark mark = kept_mark(opened.folder);
   if (!options.out.empty()) {
     opened.folder = StudyFolder(options.out);
     opened.folder.require_room();
-    opened.folder.begin(opened.study->plan(), mark,
-                        study_record(opened.study->plan(), mark, opened.study->column_names()));
+    opened.folder.begin(opened.study->plan(), mark, study_record(opened.study->plan(), mark, opened.study->columns()));
   }
   for (const std::string& folder : options.studies) {
     for (const fs::path& segment : StudyFolder(folder).segments()) {

@@ -80,11 +80,12 @@ StudyInFolder open_in_folder(const std::string& given, const StudyOptions& optio
   return open_study(folder.file().string(), plan, folder, "", common);
 }
 
-StudyInFolder open_kept(const std::string& given, const CommonOptions& common) {
+StudyInFolder open_kept(const std::string& given, StudyUse use, const CommonOptions& common) {
   const StudyFolder folder(given);
   folder.record();
   StudyPlanOptions plan;
   plan.kept = plan.many_points = true;
+  plan.look = use == StudyUse::look;
   return open_study(folder.file().string(), plan, folder, "", common);
 }
 

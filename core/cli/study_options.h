@@ -37,8 +37,10 @@ struct StudyInFolder {
 
 /// Opens FILE or DIR. Reports its mistakes.
 StudyInFolder open_in_folder(const std::string& given, const StudyOptions& options, const CommonOptions& common);
-/// The same for a command that takes a DIR alone.
-StudyInFolder open_kept(const std::string& given, const CommonOptions& common);
+/// What a command does with the directory of a study.
+enum class StudyUse { look, run_points };
+/// The same for a command that takes a DIR alone. Who only looks at it needs no plugins of its models.
+StudyInFolder open_kept(const std::string& given, StudyUse use, const CommonOptions& common);
 
 /// The only one that is named. Throws Error{usage} "missing-argument".
 const std::string& only_study(const StudyOptions& options, const char* command, const char* kind);

@@ -55,11 +55,13 @@ Json plan_json(const OpenStudy& study, const std::optional<PointSeconds>& second
   for (const AxisColumn& column : study.plan().axis_columns()) {
     axes.push_back({{"name", column.name}, {"unit", column.unit}});
   }
+  Json columns = Json::array();
+  for (const StudyColumn& column : study.columns().table) columns.push_back(column.name);
   const Json times =
       seconds ? Json{{"mean", seconds->mean}, {"min", seconds->min}, {"max", seconds->max}} : Json(nullptr);
   return {{"name", study.plan().name()},     {"study", study.plan().identity()},
           {"points", study.plan().points()}, {"axes", axes},
-          {"columns", study.column_names()}, {"seconds_per_point", times},
+          {"columns", std::move(columns)},   {"seconds_per_point", times},
           {"row_bytes", row_bytes(study)}};
 }
 

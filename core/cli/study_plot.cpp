@@ -51,7 +51,7 @@ std::vector<PictureRequest> chosen(std::vector<PictureRequest> all, const std::v
 
 int study_plot(const StudyOptions& options, const CommonOptions& common) {
   if (options.studies.empty()) throw Error(Error::Category::usage, "missing-argument", "study plot needs a DIR");
-  const StudyInFolder opened = open_kept(options.studies.front(), common);
+  const StudyInFolder opened = open_kept(options.studies.front(), StudyUse::look, common);
   if (!opened.study) return opened.exit_code;
   const std::vector<std::string> names(options.studies.begin() + 1, options.studies.end());
   const std::vector<PictureRequest> requests = options.kind.empty()

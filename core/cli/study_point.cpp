@@ -16,7 +16,7 @@ int study_point(const StudyOptions& options, const CommonOptions& common) {
     throw Error(Error::Category::usage, options.studies.size() < 2 ? "missing-argument" : "unexpected-argument",
                 "study point needs a DIR and the number of a point");
   }
-  const StudyInFolder opened = open_kept(options.studies[0], common);
+  const StudyInFolder opened = open_kept(options.studies[0], StudyUse::look, common);
   if (!opened.study) return opened.exit_code;
   const StudyPlan& plan = opened.study->plan();
   const PointRanges ranges = point_ranges("INDEX", options.studies[1], plan.points());

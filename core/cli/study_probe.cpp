@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "cli/interrupt.h"
-#include "study/worker_pool.h"
+#include "workers/worker_pool.h"
 
 namespace freeplay {
 

@@ -38,7 +38,7 @@ enum class Keep { nothing, failed, all };
 
 Keep keep_of(const std::string& text) {
   if (text.empty() || text == "none") return Keep::nothing;
-  require_word("--keep", text, {"failed", "all"});
+  require_word("--keep", text, {"none", "failed", "all"});
   return text == "all" ? Keep::all : Keep::failed;
 }
 
@@ -164,7 +164,7 @@ void StudyRun::open_folder() {
       folder_.set_aside();  // no rows of another program
     }
   }
-  folder_.begin(plan_, mark_, study_record(plan_, mark_, study_.column_names()));
+  folder_.begin(plan_, mark_, study_record(plan_, mark_, study_.columns()));
 }
 
 // Rows of other columns say nothing of these.

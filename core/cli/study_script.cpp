@@ -83,7 +83,7 @@ int study_script(const StudyOptions& options, const CommonOptions& common) {
                 fmt::format("the study is not the one of '{}'", opened.folder.path().string()), {},
                 "freeplay study run FILE --extend or --restart, or another --out");
   }
-  opened.folder.begin(study.plan(), mark, study_record(study.plan(), mark, study.column_names()));
+  opened.folder.begin(study.plan(), mark, study_record(study.plan(), mark, study.columns()));
   StudyTable table(study, opened.folder);
   table.look(mark, {}, warn_of_damage(common));
   request.folder = whole_path(opened.folder.path().string());

@@ -54,7 +54,7 @@ Json stop_json(const StudyTable& table) {
 
 /// Returns whether something is left.
 bool show(const std::string& given, const CommonOptions& common, int& exit_code) {
-  StudyInFolder opened = open_kept(given, common);
+  StudyInFolder opened = open_kept(given, StudyUse::look, common);
   exit_code = opened.exit_code;
   if (!opened.study) return false;
   StudyTable table(*opened.study, opened.folder);

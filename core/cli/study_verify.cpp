@@ -13,7 +13,7 @@
 #include "cli/study_views.h"
 #include "cli/terminal.h"
 #include "study/row_outcome.h"
-#include "study/worker_pool.h"
+#include "workers/worker_pool.h"
 
 namespace freeplay {
 namespace {
@@ -79,7 +79,7 @@ std::map<std::uint64_t, StudyOutcome> rows_of(const std::vector<std::uint64_t>& 
 
 int study_verify(const StudyOptions& options, const CommonOptions& common) {
   constexpr long usual = 20;
-  StudyInFolder opened = open_kept(only_study(options, "verify", "DIR"), common);
+  StudyInFolder opened = open_kept(only_study(options, "verify", "DIR"), StudyUse::run_points, common);
   if (!opened.study) return opened.exit_code;
   OpenStudy& study = *opened.study;
   const long count = options.points.empty() ? usual : whole_number("--points", options.points, 1);

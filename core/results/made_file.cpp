@@ -124,6 +124,7 @@ void require_record(const MadeFile& made) {
                   table ? fmt::format("a table has it beside it: '{}.provenance.json'", made.path.string())
                         : "give a result directory, or a file that this program has made");
   }
+  if (made.record.contains("study")) return;  // its files are those of the study
   for (const Json& run : runs_of(made)) {
     const Json model = run.value("model", Json());
     if (!model.is_object() || !model.value("text", Json()).is_string() || !model.value("sha256", Json()).is_string()) {

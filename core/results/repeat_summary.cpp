@@ -1,6 +1,8 @@
 #include "results/repeat_summary.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace freeplay {
@@ -8,18 +10,32 @@ namespace {
 
 constexpr const char* parts[] = {"joints", "drivers", "forces", "paths"};
 
-/// Median, range and all of what runs found; null where none did.
-Json spread(std::vector<Json> values, std::size_t runs) {
-  values.resize(runs);
-  std::vector<double> known;
-  for (const Json& value : values) {
-    if (value.is_number()) known.push_back(value.get<double>());
+/// Calls `take` with the places and values of the numbers in the parts of a summary that are kept, in order.
+template <class Take>
+void each_figure(const Json& summary, const Take& take) {
+  for (const char* part : parts) {
+    if (!summary.contains(part)) continue;
+    for (const auto& [element, quantities] : summary[part].items()) {
+      for (const auto& [quantity, value] : quantities.items()) {
+        if (value.is_number() || value.is_null()) take(part, element, quantity, value);
+      }
+    }
   }
-  if (known.empty()) return {{"median", nullptr}, {"min", nullptr}, {"max", nullptr}, {"values", values}};
+}
+
+/// Median, range and all of what runs found; null where none did.
+Json spread(const std::vector<double>& found, bool whole) {
+  Json values = Json::array();
+  std::vector<double> known;
+  for (const double value : found) {
+    values.push_back(whole && std::isfinite(value) ? Json(static_cast<std::int64_t>(value)) : json_number(value));
+    if (std::isfinite(value)) known.push_back(value);
+  }
+  if (known.empty()) return {{"median", nullptr}, {"min", nullptr}, {"max", nullptr}, {"values", std::move(values)}};
   std::ranges::sort(known);
   const std::size_t middle = known.size() / 2;
   const double median = known.size() % 2 == 1 ? known[middle] : 0.5 * (known[middle - 1] + known[middle]);
-  return {{"median", median}, {"min", known.front()}, {"max", known.back()}, {"values", values}};
+  return {{"median", median}, {"min", known.front()}, {"max", known.back()}, {"values", std::move(values)}};
 }
 
 }  // namespace
@@ -27,30 +43,18 @@ Json spread(std::vector<Json> values, std::size_t runs) {
 RepeatSummary::RepeatSummary(std::size_t runs, std::uint64_t seed, double moved)
     : runs_(runs), seed_(seed), moved_(moved) {}
 
-Json RepeatSummary::figures_of(const Json& summary) {
-  Json figures = Json::object();
-  for (const char* part : parts) {
-    if (summary.contains(part)) figures[part] = summary[part];
-  }
-  return figures;
+std::vector<double> RepeatSummary::values_of(const Json& summary) {
+  std::vector<double> values;
+  each_figure(summary, [&](const char*, const std::string&, const std::string&, const Json& value) {
+    values.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+  });
+  return values;
 }
 
-void RepeatSummary::add(std::size_t run, const Json& figures) {
+void RepeatSummary::add(std::size_t run, std::vector<double> values) {
   ++completed_;
-  known_runs_ = std::max(known_runs_, run + 1);
-  // Summaries of one model have the same numbers in the same order.
-  std::size_t next = 0;
-  for (const auto& [part, elements] : figures.items()) {
-    for (const auto& [element, quantities] : elements.items()) {
-      for (const auto& [quantity, value] : quantities.items()) {
-        if (!value.is_number() && !value.is_null()) continue;
-        if (next == figures_.size()) figures_.push_back({part, element, quantity, {}});
-        std::vector<Json>& values = figures_[next++].values;
-        if (values.size() <= run) values.resize(run + 1);
-        values[run] = value;
-      }
-    }
-  }
+  if (values_.size() <= run) values_.resize(run + 1);
+  values_[run] = std::move(values);
 }
 
 void RepeatSummary::fail(std::size_t run, int exit_code, const std::string& reason) {
@@ -63,7 +67,7 @@ std::vector<RepeatSummary::Failure> RepeatSummary::sorted_failures() const {
   return sorted;
 }
 
-Json RepeatSummary::json() const {
+Json RepeatSummary::json(const Json& first) const {
   Json failed = Json::array();
   for (const Failure& failure : sorted_failures()) {
     failed.push_back({{"run", failure.run + 1}, {"exit_code", failure.exit_code}, {"reason", failure.reason}});
@@ -71,15 +75,22 @@ Json RepeatSummary::json() const {
   Json out = {
       {"runs", runs_}, {"seed", seed_}, {"moved", moved_}, {"completed", completed_}, {"failed", std::move(failed)}};
   for (const char* part : parts) out[part] = Json::object();
-  Json* element = nullptr;
-  const Figure* last = nullptr;
-  for (const Figure& figure : figures_) {
-    if (last == nullptr || last->part != figure.part || last->element != figure.element) {
-      element = &append(out[figure.part], figure.element, Json::object());
+  if (completed_ == 0) return out;
+  Json* place = nullptr;
+  const char* last_part = nullptr;
+  std::string last_element;
+  std::size_t number = 0;
+  each_figure(first, [&](const char* part, const std::string& element, const std::string& quantity, const Json& value) {
+    if (part != last_part || element != last_element) place = &append(out[part], element, Json::object());
+    last_part = part;
+    last_element = element;
+    std::vector<double> found(values_.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t run = 0; run < found.size(); ++run) {
+      if (number < values_[run].size()) found[run] = values_[run][number];
     }
-    append(*element, figure.quantity, spread(figure.values, known_runs_));
-    last = &figure;
-  }
+    append(*place, quantity, spread(found, value.is_number_integer()));
+    ++number;
+  });
   return out;
 }
 

@@ -16,14 +16,14 @@ class RepeatSummary {
  public:
   RepeatSummary(std::size_t runs, std::uint64_t seed, double moved);
 
-  /// The parts of a summary that add() looks at.
-  static Json figures_of(const Json& summary);
-  void add(std::size_t run, const Json& figures);
+  /// What is kept of a summary, in its order; NaN: none. Summaries of one model have the same numbers.
+  static std::vector<double> values_of(const Json& summary);
+  void add(std::size_t run, std::vector<double> values);
   void fail(std::size_t run, int exit_code, const std::string& reason);
 
-  /// `repeat` of summary.json. Runs count from 1 there; values end with the last run that
-  /// is known, and those of runs that are missing before it are null.
-  Json json() const;
+  /// `repeat` of summary.json; `first`, the summary of any of the runs, has the names. Runs count from 1 there; values
+  /// end with the last run that is known, and those of runs that are missing before it are null.
+  Json json(const Json& first) const;
 
  private:
   struct Failure {
@@ -31,16 +31,12 @@ class RepeatSummary {
     int exit_code;
     std::string reason;
   };
-  struct Figure {
-    std::string part, element, quantity;
-    std::vector<Json> values;  // by run
-  };
   std::vector<Failure> sorted_failures() const;
 
-  std::size_t runs_, completed_ = 0, known_runs_ = 0;
+  std::size_t runs_, completed_ = 0;
   std::uint64_t seed_;
   double moved_;
-  std::vector<Figure> figures_;  // in the order of the summary
+  std::vector<std::vector<double>> values_;  // by run, as far as they are known
   std::vector<Failure> failures_;
 };
 

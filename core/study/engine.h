@@ -9,8 +9,8 @@
 #include "study/schedule.h"
 #include "study/segment_writer.h"
 #include "study/stop_rule.h"
-#include "study/work.h"
-#include "study/worker_pool.h"
+#include "workers/work.h"
+#include "workers/worker_pool.h"
 
 namespace freeplay {
 

@@ -54,6 +54,13 @@ bool is_record(const Json& record, std::size_t models) {
          record["models"].size() == models;
 }
 
+/// Can the points be known without building the model?
+bool has_addresses(const Json& model) {
+  const Json addresses = model.value("addresses", Json());
+  return addresses.is_array() && std::ranges::all_of(addresses, [](const Json& one) { return one.is_string(); }) &&
+         model.value("play", Json()).is_boolean();
+}
+
 Json record_beside(const std::string& file, std::size_t models) {
   std::ifstream stream(fs::path(file).parent_path() / record_file);
   const Json record = stream ? Json::parse(stream, nullptr, false) : Json();
@@ -74,7 +81,7 @@ bool has_study_alone(const Node& root) {
 StudyFile::StudyFile(Document document, Diagnostics& diagnostics)
     : document_(std::move(document)), no_parameters_(none_used_), reading_{&diagnostics, &no_parameters_} {}
 
-std::unique_ptr<StudyFile> StudyFile::read(const std::string& file, bool kept, const TargetTexts& set,
+std::unique_ptr<StudyFile> StudyFile::read(const std::string& file, const KeptStudy& kept, const TargetTexts& set,
                                            const LoadOptions& options, Diagnostics& diagnostics) {
   std::string text;
   if (const std::string why = read_input(file, text); !why.empty()) {
@@ -84,7 +91,8 @@ std::unique_ptr<StudyFile> StudyFile::read(const std::string& file, bool kept, c
   std::optional<Document> document = parse_yaml(std::move(text), file, diagnostics);
   if (!document || diagnostics.has_errors()) return nullptr;
   std::unique_ptr<StudyFile> study(new StudyFile(std::move(*document), diagnostics));
-  study->kept_ = kept;
+  study->kept_ = kept.kept;
+  study->look_ = kept.look;
   if (!study->read_section(diagnostics)) return nullptr;
   study->combine_set(set);
   if (!study->read_models(options, diagnostics)) return nullptr;
@@ -114,6 +122,7 @@ bool StudyFile::read_section(Diagnostics& diagnostics) {
   name_ = section_->name.empty() ? stem : section_->name;
   if (kept_) {
     record_ = record_beside(document_.file_name(), in_model_ ? 1 : section_->models.size());
+    look_ = look_ && std::ranges::all_of(record_["models"], has_addresses);
     name_ = record_["name"].get<std::string>();
   }
   return true;
@@ -146,9 +155,21 @@ TargetTexts StudyFile::set_texts() const {
   return texts;
 }
 
+std::optional<StudyModel> StudyFile::read_one_model(std::size_t number, const std::string& place,
+                                                    const std::string& written, const LoadOptions& options,
+                                                    Diagnostics& diagnostics,
+                                                    std::vector<Diagnostic>& about_set) const {
+  if (!look_) return read_study_model(place, written, set_texts(), options, diagnostics, about_set);
+  const Json& record = record_["models"][number];
+  auto model = read_kept_model(place, written, diagnostics);
+  if (!model) return model;
+  model->addresses = record["addresses"].get<std::vector<std::string>>();
+  model->has_play = record.value("play", false);
+  return model;
+}
+
 bool StudyFile::read_models(const LoadOptions& options, Diagnostics& diagnostics) {
   const fs::path folder = fs::path(document_.file_name()).parent_path();
-  const TargetTexts set = set_texts();
   std::vector<Diagnostic> about_set;
   const std::size_t count = in_model_ ? 1 : section_->models.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -160,7 +181,7 @@ bool StudyFile::read_models(const LoadOptions& options, Diagnostics& diagnostics
       section_->models[i].path.fail("file-not-found", fmt::format("there is no file '{}'", place));
       continue;
     }
-    auto model = read_study_model(place, written, set, options, diagnostics, about_set);
+    auto model = read_one_model(i, place, written, options, diagnostics, about_set);
     if (!model) continue;
     if (kept_) {
       model->file = record_["models"][i]["file"].get<std::string>();
@@ -270,6 +291,7 @@ void StudyFile::find_targets(PlannedAxis& axis, const LoadOptions& options) cons
     const ModelProbe probe(*models_[lacking].document, options);
     const ModelProbe::Result tried = probe.build({{target, "1"}}, nullptr);
     std::string message = fmt::format("there is no '{}'", target), hint;
+    if (target == "repeat") message = "no joint has play, in which `repeat` moves bodies";
     if (tried.refused) {
       message = tried.errors.front().message;
       hint = tried.errors.front().hint;
@@ -328,13 +350,29 @@ void StudyFile::check_columns() const {
 
 std::string StudyFile::copy_of(std::size_t model) const { return model_copy(model, models_[model].file); }
 
+/// Those that axes speak of; with these the points are known.
+std::vector<std::string> StudyFile::named_addresses(const StudyModel& model) const {
+  std::vector<std::string> named;
+  for (const std::string& address : model.addresses) {
+    const bool fits =
+        std::ranges::any_of(section_->axes, [&](const StudyAxis& axis) { return matches(axis.target, address); }) ||
+        std::ranges::any_of(axes_, [&](const PlannedAxis& axis) {
+          return std::ranges::any_of(axis.targets(),
+                                     [&](const std::string& target) { return matches(target, address); });
+        });
+    if (fits) named.push_back(address);
+  }
+  return named;
+}
+
 std::vector<KeptFile> StudyFile::kept_files() const {
   std::vector<KeptFile> files = {{"study.yaml", document_.text()}};
   Json record = {{"name", name_}, {"set", Json::array()}, {"models", Json::array()}};
   for (const auto& [target, text] : command_set_) record["set"].push_back({target, text});
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const StudyModel& model = models_[i];
-    record["models"].push_back({{"name", model.name}, {"file", model.file}});
+    record["models"].push_back(
+        {{"name", model.name}, {"file", model.file}, {"play", model.has_play}, {"addresses", named_addresses(model)}});
     const std::string copy = model_copy(i, model.file), folder = copy.substr(0, copy.rfind('/') + 1);
     files.push_back({copy, model.document->text()});
     if (!model.inputs.empty()) files.push_back({folder + only_copies, ""});

@@ -26,15 +26,23 @@ struct KeptFile {
 /// Has the file nothing but a study, of models that it names?
 bool has_study_alone(const Node& root);
 
+/// Whether a study is read from study.yaml in its folder, and if so whether only to be looked at: then its models are
+/// not built and no plugin is loaded.
+struct KeptStudy {
+  bool kept = false, look = false;
+};
+
 class StudyFile {
  public:
-  /// `file`: a study file or a model with a section `study`; or, `kept`, study.yaml in the folder of a study, whose
+  /// `file`: a study file or a model with a section `study`; or, kept, study.yaml in the folder of a study, whose
   /// models are read from the copies there. `set`: of the command line; it wins over the file's. Null after errors.
   /// Throws Error{usage} for what `set` asks for and a model does not have, and what loading plugins throws.
-  static std::unique_ptr<StudyFile> read(const std::string& file, bool kept, const TargetTexts& set,
+  static std::unique_ptr<StudyFile> read(const std::string& file, const KeptStudy& kept, const TargetTexts& set,
                                          const LoadOptions& options, Diagnostics& diagnostics);
 
   const std::string& name() const { return name_; }
+  /// Were its models not built?
+  bool only_looked_at() const { return look_; }
   const StudySection& section() const { return *section_; }
   const std::vector<StudyModel>& models() const { return models_; }
   const std::vector<PlannedAxis>& axes() const { return axes_; }
@@ -54,6 +62,10 @@ class StudyFile {
   StudyFile(Document document, Diagnostics& diagnostics);
   bool read_section(Diagnostics& diagnostics);
   void combine_set(const TargetTexts& set);
+  std::optional<StudyModel> read_one_model(std::size_t number, const std::string& place, const std::string& written,
+                                           const LoadOptions& options, Diagnostics& diagnostics,
+                                           std::vector<Diagnostic>& about_set) const;
+  std::vector<std::string> named_addresses(const StudyModel& model) const;
   bool read_models(const LoadOptions& options, Diagnostics& diagnostics);
   void report_about_set(std::vector<Diagnostic> errors, Diagnostics& diagnostics) const;
   void name_models();
@@ -65,7 +77,7 @@ class StudyFile {
   void check_columns() const;
 
   Document document_;
-  bool kept_ = false, in_model_ = false;
+  bool kept_ = false, look_ = false, in_model_ = false;
   Json record_ = nullptr;  ///< of a kept study: what its files do not say
   UsedKeys none_used_;
   ParameterScope no_parameters_;

@@ -40,6 +40,12 @@ long begun(const fs::path& segment) {
   throw Error(Error::Category::file, "cannot-write", fmt::format("cannot {} '{}': {}", what, path.string(), why));
 }
 
+[[noreturn]] void no_record(const fs::path& folder) {
+  throw Error(Error::Category::input, "file-not-found",
+              fmt::format("'{}' is no directory of a study: there is no {} of one", folder.string(), record_name), {},
+              "freeplay study run FILE --out DIR makes one");
+}
+
 void move(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::exists(from, error)) return;
@@ -96,9 +102,7 @@ Json StudyFolder::record() const {
   const Json record = stream ? Json::parse(stream, nullptr, false) : Json();
   const auto text = [&](const char* key) { return record.is_object() && record.value(key, Json()).is_string(); };
   if (text("study") && text("arithmetic") && text("rows") && record.value("program", Json()).is_object()) return record;
-  throw Error(Error::Category::input, "file-not-found",
-              fmt::format("'{}' is no directory of a study: there is no {} of one", path_.string(), record_name), {},
-              "freeplay study run FILE --out DIR makes one");
+  no_record(path_);
 }
 
 void StudyFolder::begin(const StudyPlan& plan, const StudyMark& mark, const Json& record) const {
@@ -201,8 +205,30 @@ void StudyFolder::set_aside() const {
   for (const char* name : {"study.yaml", "inputs", record_name}) move(path_ / name, place / name);
 }
 
-Json study_record(const StudyPlan& plan, const StudyMark& mark, const std::vector<std::string>& columns) {
-  Json axes = Json::array(), models = Json::array();
+StudyColumns StudyFolder::columns() const {
+  const Json all = record();
+  StudyColumns columns;
+  try {
+    for (std::size_t i = 0; i < all.at("columns").size(); ++i) {
+      columns.table.push_back({all["columns"][i].get<std::string>(), all.at("units").at(i).get<std::string>()});
+    }
+    for (const Json& one : all.at("samples")) {
+      columns.samples.push_back({one.at("name").get<std::string>(), one.at("unit").get<std::string>()});
+    }
+  } catch (const Json::exception&) {
+    no_record(path_);
+  }
+  return columns;
+}
+
+Json study_record(const StudyPlan& plan, const StudyMark& mark, const StudyColumns& columns) {
+  Json axes = Json::array(), models = Json::array(), names = Json::array(), units = Json::array(),
+       samples = Json::array();
+  for (const StudyColumn& column : columns.table) {
+    names.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  for (const StudyColumn& column : columns.samples) samples.push_back({{"name", column.name}, {"unit", column.unit}});
   for (const AxisColumn& column : plan.axis_columns()) axes.push_back({{"name", column.name}, {"unit", column.unit}});
   for (const StudyModel& model : plan.models()) {
     models.push_back({{"name", model.name}, {"file", model.file}, {"sha256", model.sha256}});
@@ -215,7 +241,9 @@ Json study_record(const StudyPlan& plan, const StudyMark& mark, const std::vecto
           {"arithmetic", mark.arithmetic},
           {"points", plan.points()},
           {"axes", axes},
-          {"columns", columns},
+          {"columns", std::move(names)},
+          {"units", std::move(units)},
+          {"samples", std::move(samples)},
           {"models", models}};
 }
 

@@ -8,6 +8,7 @@
 #include "base/json_text.h"
 #include "study/plan.h"
 #include "study/segment_header.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 
@@ -38,6 +39,8 @@ class StudyFolder {
   void require_room() const;
   /// study.json. Throws Error{input} "file-not-found" where there is none.
   Json record() const;
+  /// That study.json names. Throws Error{input} "file-not-found" where it names none.
+  StudyColumns columns() const;
 
   /// Makes study.json, with copies of all that was read. Of several that do so at once one wins; the others throw
   /// Error{input} "study-changed" where theirs is another study. Takes the rows of extended() that are of this study.
@@ -63,7 +66,7 @@ class StudyFolder {
 };
 
 /// The record of a study: what study.json says.
-Json study_record(const StudyPlan& plan, const StudyMark& mark, const std::vector<std::string>& columns);
+Json study_record(const StudyPlan& plan, const StudyMark& mark, const StudyColumns& columns);
 
 /// Throws Error{input} where a segment is of another study, program or arithmetic than `mark`: "study-mixed",
 /// "program-changed", "arithmetic-differs".

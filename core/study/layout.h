@@ -9,7 +9,7 @@
 
 #include "format/study_section.h"
 #include "study/planned_axis.h"
-#include "study/work.h"
+#include "workers/work.h"
 
 namespace freeplay {
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/input_text.h"
 #include "base/name_pattern.h"
 #include "base/sha256.h"
 #include "format/model_builder.h"
@@ -41,6 +42,14 @@ ModelProbe::Result refused(const Error& error, const TargetTexts& set) {
   return result;
 }
 
+std::set<std::string> parameters_of(const Document& document) {
+  std::set<std::string> names;
+  const Node* parameters = document.root().find("parameters");
+  if (parameters == nullptr) return names;
+  for (const Node::Entry& entry : parameters->entries) names.insert(entry.key->text);
+  return names;
+}
+
 std::string fingerprint(const Document& document, std::vector<InputFile> inputs) {
   constexpr std::array<std::string_view, 1> without = {"study"};
   std::ranges::sort(inputs, {}, &InputFile::name);
@@ -54,7 +63,8 @@ std::string fingerprint(const Document& document, std::vector<InputFile> inputs)
 }  // namespace
 
 bool StudyModel::has(const std::string& target) const {
-  if (is_run_override(target) || parameters.contains(target)) return true;
+  if (parameters.contains(target)) return true;
+  if (is_run_override(target)) return target != "repeat" || has_play;
   if (!PathOverrides::is_path(target)) return false;
   if (!is_pattern(target)) return std::ranges::binary_search(addresses, target);
   return std::ranges::any_of(addresses, [&](const std::string& address) { return matches(target, address); });
@@ -105,11 +115,29 @@ std::optional<StudyModel> read_study_model(const std::string& place, const std::
   if (!built.model) return std::nullopt;
   std::ranges::sort(made.addresses);
   made.addresses.erase(std::unique(made.addresses.begin(), made.addresses.end()), made.addresses.end());
-  if (const Node* parameters = made.document->root().find("parameters"); parameters != nullptr) {
-    for (const Node::Entry& entry : parameters->entries) made.parameters.insert(entry.key->text);
-  }
+  made.parameters = parameters_of(*made.document);
+  made.has_play = built.model->clearance_joints() > 0 || !built.model->ideal.empty();
   made.inputs = built.model->inputs;
   made.name = built.model->name;
+  made.sha256 = fingerprint(*made.document, made.inputs);
+  return made;
+}
+
+std::optional<StudyModel> read_kept_model(const std::string& place, const std::string& file, Diagnostics& diagnostics) {
+  std::optional<Document> document = read_model(place, diagnostics);
+  if (!document || diagnostics.has_errors()) return std::nullopt;
+  StudyModel made;
+  made.file = file;
+  made.document = std::make_unique<const Document>(std::move(*document));
+  made.parameters = parameters_of(*made.document);
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(place).parent_path() / "inputs", none)) {
+    InputFile input{entry.path().filename().string(), {}};
+    if (!input.name.starts_with('.') && read_input(entry.path().string(), input.text).empty()) {
+      made.inputs.push_back(std::move(input));
+    }
+  }
   made.sha256 = fingerprint(*made.document, made.inputs);
   return made;
 }

@@ -25,6 +25,7 @@ struct StudyModel {
   std::unique_ptr<const Document> document;
   std::vector<InputFile> inputs;  ///< files that it reads
   std::set<std::string> parameters;
+  bool has_play = false;               ///< a joint of it can have play
   std::vector<std::string> addresses;  ///< paths of the expanded model, sorted, each once
 
   /// Is there something that a value of this target takes the place of?
@@ -55,5 +56,9 @@ class ModelProbe {
 std::optional<StudyModel> read_study_model(const std::string& place, const std::string& file, const TargetTexts& set,
                                            const LoadOptions& options, Diagnostics& diagnostics,
                                            std::vector<Diagnostic>& about_set);
+
+/// Reads the copy of a model in the folder of a study without building it, so without its plugins; what only building
+/// it shows is left open: addresses and play.
+std::optional<StudyModel> read_kept_model(const std::string& place, const std::string& file, Diagnostics& diagnostics);
 
 }  // namespace freeplay

@@ -1,6 +1,7 @@
 #include "study/open_study.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <span>
 
 #include <fmt/format.h>
@@ -45,10 +46,15 @@ std::unique_ptr<OpenStudy> OpenStudy::open(const std::string& file, const StudyP
   std::unique_ptr<OpenStudy> study(new OpenStudy);
   study->plan_ = StudyPlan::read(file, options, diagnostics);
   if (!study->plan_) return nullptr;
-  study->runner_ = std::make_unique<PointRunner>(point_source(*study->plan_), options.load, diagnostics);
+  if (study->plan_->has_models()) {
+    study->runner_ = std::make_unique<PointRunner>(point_source(*study->plan_), options.load, diagnostics);
+    study->columns_ = {study->runner_->columns(), study->runner_->sample_columns()};
+  } else {
+    study->columns_ = StudyFolder(std::filesystem::path(file).parent_path()).columns();
+  }
   if (diagnostics.has_errors()) return nullptr;
-  study->work_ = std::make_unique<PlannedWork>(*study->plan_, *study->runner_);
-  study->layout_ = row_layout(*study->plan_, *study->runner_);
+  study->work_ = std::make_unique<PlannedWork>(*study->plan_, study->runner_.get());
+  study->layout_ = row_layout(*study->plan_, study->columns_);
   const auto& stop = study->plan_->section().stop;
   if (stop && study->stop_column() == study->layout_.columns.size()) {
     study->plan_->section().section.fail("unknown-name",
@@ -68,12 +74,6 @@ StudyMark OpenStudy::mark() const {
   std::string columns = text_of(plan_->section().reducers) + "\n" + text_of(plan_->section().analysis);
   for (const StudyColumn& column : layout_.columns) columns += "\n" + column.name;
   return {plan_->identity(), program_version, sha256(program), arithmetic_fingerprint(), sha256(columns)};
-}
-
-std::vector<std::string> OpenStudy::column_names() const {
-  std::vector<std::string> names;
-  for (const StudyColumn& column : layout_.columns) names.push_back(column.name);
-  return names;
 }
 
 std::size_t OpenStudy::stop_column() const {

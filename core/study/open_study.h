@@ -15,7 +15,8 @@
 
 namespace freeplay {
 
-/// A plan with what runs its points. Rows of a study that reads its own `mark` fit one table.
+/// A plan with what runs its points; nothing where they are only to be looked at (StudyPlanOptions::look). Rows of a
+/// study that reads its own `mark` fit one table.
 class OpenStudy {
  public:
   /// Null after errors in the study, its models or its reducers. Throws as StudyPlan::read() does.
@@ -23,14 +24,12 @@ class OpenStudy {
                                          Diagnostics& diagnostics);
 
   const StudyPlan& plan() const { return *plan_; }
-  const PointRunner& runner() const { return *runner_; }
   PlannedWork& work() { return *work_; }
   const RowLayout& layout() const { return layout_; }
-  MergePlan merge_plan() const { return freeplay::merge_plan(*plan_, *runner_); }
+  MergePlan merge_plan() const { return freeplay::merge_plan(*plan_, columns_); }
+  const StudyColumns& columns() const { return columns_; }
   /// Reads the program and its plugins.
   StudyMark mark() const;
-  /// Names of the columns of reducers.
-  std::vector<std::string> column_names() const;
 
   /// The rule for the end of sampling, if there is one, with the column that it looks at.
   std::optional<StopRule> stop_rule() const;
@@ -41,6 +40,7 @@ class OpenStudy {
 
   std::unique_ptr<StudyPlan> plan_;
   std::unique_ptr<PointRunner> runner_;
+  StudyColumns columns_;
   std::unique_ptr<PlannedWork> work_;
   RowLayout layout_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "base/shell_word.h"
 #include "study/picture.h"
 #include "study/point_words.h"
+#include "study/table_rows.h"
 #include "svg/page.h"
 
 namespace freeplay {
@@ -67,21 +67,10 @@ document.addEventListener('click', event => {
 </body></html>
 )";
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
-std::string table_row(const std::vector<std::string>& cells, const char* tag) {
+template <class Cells>
+std::string table_row(const Cells& cells, const char* tag) {
   std::string row = "<tr>";
-  for (const std::string& cell : cells) row += fmt::format("<{0}>{1}</{0}>", tag, svg::escaped(cell));
+  for (const auto& cell : cells) row += fmt::format("<{0}>{1}</{0}>", tag, svg::escaped(std::string(cell)));
   return row + "</tr>\n";
 }
 
@@ -91,34 +80,11 @@ std::string command_of(const StudyPlan& plan, const std::filesystem::path& folde
   return command;
 }
 
-/// A table as it is read from the top.
-class TableLines {
- public:
-  explicit TableLines(const std::filesystem::path& folder) : file_(folder / "study.csv") {
-    std::string line;
-    if (!file_ || !std::getline(file_, line)) {
-      throw Error(Error::Category::input, "file-not-found", fmt::format("'{}' has no table yet", folder.string()), {},
-                  "freeplay study run or study merge makes it");
-    }
-    columns = split(line);
-  }
-  bool next() {
-    std::string line;
-    if (!std::getline(file_, line)) return false;
-    cells = split(line);
-    return true;
-  }
-
-  std::vector<std::string> columns, cells;
-
- private:
-  std::ifstream file_;
-};
-
 /// Of a row: what a click on its mark shows.
-Json point_of(const StudyPlan& plan, const std::filesystem::path& folder, const std::vector<std::string>& cells) {
-  const std::uint64_t index = std::stoull(cells.front());
-  Json point = {{"row", cells}, {"command", command_of(plan, folder, index)}};
+Json point_of(const StudyPlan& plan, const std::filesystem::path& folder, const TableRows& row) {
+  const std::uint64_t index = row.index();
+  Json point = {{"row", std::vector<std::string>(row.cells().begin(), row.cells().end())},
+                {"command", command_of(plan, folder, index)}};
   const UnitPlace at = plan.place_of(index);
   if (plan.chained() && at.place > 0) point["before"] = plan.unit_point(at.unit, at.place - 1);
   const std::string kept = fmt::format("kept/{:04}/{}", index / 1000, index);
@@ -134,16 +100,16 @@ std::size_t bytes_of(const std::string& index, const Json& point) { return index
 std::string study_page(const OpenStudy& study, const std::filesystem::path& given) {
   const StudyPlan& plan = study.plan();
   const std::filesystem::path folder = std::filesystem::absolute(given).lexically_normal();
-  TableLines first(given);
+  TableRows first(given);
   std::string body;
   for (const PictureRequest& request : picture_requests(plan)) {
     body += fmt::format("<h2>{}</h2>\n{}", svg::escaped(request.name), study_picture(study, given, request));
   }
-  std::string rows = table_row(first.columns, "th");
+  std::string rows = table_row(first.columns(), "th");
   std::size_t listed = 0, listed_bytes = 0;
   for (; listed < listed_rows && first.next(); ++listed) {
-    rows += table_row(first.cells, "td");
-    listed_bytes += bytes_of(first.cells.front(), point_of(plan, folder, first.cells));
+    rows += table_row(first.cells(), "td");
+    listed_bytes += bytes_of(std::string(first.cells().front()), point_of(plan, folder, first));
   }
   // Points get the room that is left, every k-th one where they need more.
   const std::size_t used = head.size() + script.size() + body.size() + rows.size() + 2000;
@@ -156,22 +122,22 @@ std::string study_page(const OpenStudy& study, const std::filesystem::path& give
       std::max((plan.points() - 1) / most_shown + 1, static_cast<std::uint64_t>(std::ceil(std::min(share, 1e15))));
   Json points = Json::object();
   std::size_t bytes = 0, count = 0, left_out = 0;
-  for (TableLines table(given); table.next(); ++count) {
-    Json point = count % every == 0 ? point_of(plan, folder, table.cells) : Json();
-    const std::size_t size = point.is_null() ? 0 : bytes_of(table.cells.front(), point);
+  for (TableRows table(given); table.next(); ++count) {
+    Json point = count % every == 0 ? point_of(plan, folder, table) : Json();
+    const std::size_t size = point.is_null() ? 0 : bytes_of(std::string(table.cells().front()), point);
     if (point.is_null() || bytes + size > room) {
       ++left_out;
       continue;
     }
     bytes += size;
-    append(points, table.cells.front(), std::move(point));
+    append(points, std::string(table.cells().front()), std::move(point));
   }
   const std::string note = left_out == 0 ? "" : fmt::format(", of which {} are not on this page", left_out);
   const std::string name = svg::escaped(plan.name());
   std::string page = fmt::format(fmt::runtime(head), name, name, count, note) + body +
                      "<div id=\"point\"><p>A click on a mark shows its point.</p></div>\n<h2>Table</h2>\n";
   if (count > listed_rows) page += fmt::format("<p>The first {} rows; all are in study.csv.</p>\n", listed_rows);
-  std::string data = Json{{"columns", first.columns}, {"points", std::move(points)}}.dump();
+  std::string data = Json{{"columns", first.columns()}, {"points", std::move(points)}}.dump();
   for (std::size_t at = data.find("</"); at != data.npos; at = data.find("</", at + 3)) data.insert(at + 1, "\\");
   return page + "<div class=\"wide\"><table>" + rows +
          "</table></div>\n<script type=\"application/json\" id=\"freeplay-study\">" + data + "</script>\n" +

@@ -239,7 +239,7 @@ class Drawing {
   }
 
   std::string unit_of_samples(const std::string& name) const {
-    for (const StudyColumn& column : study_.runner().sample_columns()) {
+    for (const StudyColumn& column : study_.columns().samples) {
       if (column.name == name) return column.unit;
     }
     return "";

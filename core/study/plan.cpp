@@ -31,13 +31,14 @@ bool within_sobol(const StudyFile& file) {
 
 std::unique_ptr<StudyPlan> StudyPlan::read(const std::string& file, const StudyPlanOptions& options,
                                            Diagnostics& diagnostics) {
-  std::unique_ptr<StudyFile> read = StudyFile::read(file, options.kept, options.set, options.load, diagnostics);
+  std::unique_ptr<StudyFile> read =
+      StudyFile::read(file, {options.kept, options.look}, options.set, options.load, diagnostics);
   if (!read || !within_sobol(*read)) return nullptr;
   std::unique_ptr<StudyPlan> plan(new StudyPlan(std::move(read)));
   plan->layout_ = std::make_unique<const StudyLayout>(plan->section(), plan->file_->axes(), plan->models().size(),
                                                       options.many_points);
   if (diagnostics.has_errors()) return nullptr;
-  check_values(*plan->file_, options.load);
+  if (plan->has_models()) check_values(*plan->file_, options.load);
   if (diagnostics.has_errors()) return nullptr;
   return plan;
 }

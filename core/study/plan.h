@@ -21,6 +21,8 @@ struct StudyPlanOptions {
   TargetTexts set{};         ///< of the command line: lines of `set` that win over the file's
   bool many_points = false;  ///< more than many_points are allowed
   bool kept = false;         ///< the file is study.yaml in the folder of a study
+  /// Of a kept study: no point is to be run, so no model is built and no plugin loaded.
+  bool look = false;
 };
 
 /// Everything is checked that follows from the file and its models, but for reducers and `do`. One thread at a time.
@@ -34,6 +36,8 @@ class StudyPlan {
   const std::string& name() const { return file_->name(); }
   const StudySection& section() const { return file_->section(); }
   const std::vector<StudyModel>& models() const { return file_->models(); }
+  /// Have the models been built, so that points can be run?
+  bool has_models() const { return !file_->only_looked_at(); }
   /// What holds at every point.
   std::vector<StudySetting> set() const;
   /// SHA-256 of the section without name, description and plots, of what the command line sets, and of all files.

@@ -16,16 +16,16 @@ PointSource point_source(const StudyPlan& plan) {
   return source;
 }
 
-RowLayout row_layout(const StudyPlan& plan, const PointRunner& runner) {
-  RowLayout layout{runner.columns(), {}, plan.chained()};
-  for (const StudyColumn& column : runner.sample_columns()) layout.samples.push_back(column.name);
+RowLayout row_layout(const StudyPlan& plan, const StudyColumns& columns) {
+  RowLayout layout{columns.table, {}, plan.chained()};
+  for (const StudyColumn& column : columns.samples) layout.samples.push_back(column.name);
   return layout;
 }
 
-MergePlan merge_plan(const StudyPlan& plan, const PointRunner& runner) {
+MergePlan merge_plan(const StudyPlan& plan, const StudyColumns& columns) {
   MergePlan merge;
   merge.points = plan.points();
-  merge.layout = row_layout(plan, runner);
+  merge.layout = row_layout(plan, columns);
   merge.title = plan.name();
   if (plan.has_model_column()) merge.keys.push_back({"model", "", true});
   for (const AxisColumn& column : plan.axis_columns()) merge.keys.push_back({column.name, column.unit, column.words});

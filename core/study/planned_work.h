@@ -10,14 +10,14 @@
 #include "study/plan.h"
 #include "study/point_runner.h"
 #include "study/row_text.h"
-#include "study/work.h"
+#include "workers/work.h"
 
 namespace freeplay {
 
 class PlannedWork final : public StudyWork {
  public:
-  /// Both outlive it.
-  PlannedWork(const StudyPlan& plan, PointRunner& runner) : plan_(plan), runner_(runner) {}
+  /// Both outlive it. Without a runner no point can be run.
+  PlannedWork(const StudyPlan& plan, PointRunner* runner) : plan_(plan), runner_(runner) {}
 
   std::uint64_t points() const override { return plan_.points(); }
   std::uint64_t units() const override { return plan_.units(); }
@@ -30,7 +30,7 @@ class PlannedWork final : public StudyWork {
   std::string hash(std::uint64_t point) const override { return plan_.hash(point); }
   StudyOutcome run(std::uint64_t index, const std::string& state_before) override {
     const StudyPoint point = plan_.point(index);
-    StudyOutcome outcome = runner_.run(point, state_before);
+    StudyOutcome outcome = runner_->run(point, state_before);
     if (after_) after_(point, outcome);
     return outcome;
   }
@@ -39,14 +39,14 @@ class PlannedWork final : public StudyWork {
 
  private:
   const StudyPlan& plan_;
-  PointRunner& runner_;
+  PointRunner* runner_;
   std::function<void(const StudyPoint&, const StudyOutcome&)> after_;
 };
 
 /// What a runner needs of a plan, which outlives it.
 PointSource point_source(const StudyPlan& plan);
-RowLayout row_layout(const StudyPlan& plan, const PointRunner& runner);
-/// The table of a plan's rows: what merge_rows() wants. Both outlive it.
-MergePlan merge_plan(const StudyPlan& plan, const PointRunner& runner);
+RowLayout row_layout(const StudyPlan& plan, const StudyColumns& columns);
+/// The table of a plan's rows: what merge_rows() wants. The plan outlives it.
+MergePlan merge_plan(const StudyPlan& plan, const StudyColumns& columns);
 
 }  // namespace freeplay

@@ -18,8 +18,8 @@
 #include "results/event_sink.h"
 #include "run/simulation.h"
 #include "run/step_sink.h"
-#include "study/outcome.h"
 #include "study/reducer_entry.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 

@@ -11,6 +11,8 @@
 namespace freeplay {
 namespace {
 
+constexpr double most_samples = 1e7;  // of one section
+
 FormulaVariable variable_of(int index, std::string_view unit) {
   const Dimension dimension = unit.empty() ? dimension::none : parse_unit(unit).dimension;
   return {index, dimension.dimensionless() ? DimensionKind::free : DimensionKind::dimensioned, dimension};
@@ -172,6 +174,12 @@ void PointReducers::bind_section(const ReducerEntry& entry, std::size_t index, C
     const double phase = entry.phase ? quantity_of(*entry.phase, dimension::time) : 0.0;
     const double every = quantity_of(*entry.every, dimension::time, positive);
     if (!(every > 0.0)) return;
+    if (model_.settings.end - model_.settings.start > most_samples * every) {
+      entry.every->fail("too-large",
+                        fmt::format("a section has at most 10^7 values, and from {:g} s to {:g} s there are more",
+                                    model_.settings.start, model_.settings.end));
+      return;
+    }
     const double begin = model_.settings.start + phase, from = std::max(section.window.from, model_.settings.start);
     section.begin = begin;
     section.every = every;
@@ -248,6 +256,13 @@ PointReducers::Window PointReducers::window_of(const ReducerEntry& entry) const 
   Window window{.from = settings.start + settings.discard};
   if (entry.from) window.from = quantity_of(*entry.from, dimension::time);
   if (entry.until) window.until = quantity_of(*entry.until, dimension::time);
+  const auto fixed = [](const std::optional<CheckedValue>& time) {
+    return time && time->node().text.find('$') == std::string::npos;
+  };
+  if (fixed(entry.from) && fixed(entry.until) && window.until < window.from && lacking_ == Lacking::mistake) {
+    entry.until->fail("out-of-range",
+                      fmt::format("the time ends at {:g} s, before it begins at {:g} s", window.until, window.from));
+  }
   return window;
 }
 

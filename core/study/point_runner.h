@@ -8,8 +8,8 @@
 #include "base/diagnostics.h"
 #include "format/document.h"
 #include "load/options.h"
-#include "study/outcome.h"
 #include "study/point.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 

@@ -1,8 +1,8 @@
 // outcome_of: what a row of a segment says, as numbers.
 #pragma once
 
-#include "study/outcome.h"
 #include "study/segment_reader.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 

@@ -13,7 +13,7 @@
 #include "study/point_set.h"
 #include "study/row_text.h"
 #include "study/segment_reader.h"
-#include "study/work.h"
+#include "workers/work.h"
 
 namespace freeplay {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "study/outcome.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 

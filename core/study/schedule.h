@@ -10,8 +10,8 @@
 
 #include "study/row_scan.h"
 #include "study/segment_header.h"
-#include "study/work.h"
-#include "study/worker_pool.h"
+#include "workers/work.h"
+#include "workers/worker_pool.h"
 
 namespace freeplay {
 

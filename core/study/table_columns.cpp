@@ -1,31 +1,16 @@
 #include "study/table_columns.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
-#include <limits>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/suggestion.h"
+#include "study/table_rows.h"
 
 namespace freeplay {
-namespace {
-
-std::vector<std::string_view> cells_of_line(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(line.substr(0, comma));
-    if (comma == line.npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-}  // namespace
-
 TableColumns::TableColumns(const std::filesystem::path& file, std::span<const std::string> names)
     : names_(names.begin(), names.end()), cells_(names.size()) {
   std::ifstream stream(file);
@@ -35,7 +20,9 @@ TableColumns::TableColumns(const std::filesystem::path& file, std::span<const st
                 "freeplay study run or study merge makes it");
   }
   std::vector<std::string> header;
-  for (const std::string_view cell : cells_of_line(line)) header.emplace_back(cell);
+  std::vector<std::string_view> cells;
+  split_cells(line, cells);
+  for (const std::string_view cell : cells) header.emplace_back(cell);
   std::vector<std::size_t> places;
   for (const std::string& name : names_) {
     const auto found = std::ranges::find(header, name);
@@ -48,7 +35,7 @@ TableColumns::TableColumns(const std::filesystem::path& file, std::span<const st
     places.push_back(static_cast<std::size_t>(found - header.begin()));
   }
   while (std::getline(stream, line)) {
-    const std::vector<std::string_view> cells = cells_of_line(line);
+    split_cells(line, cells);
     if (cells.size() != header.size()) continue;
     for (std::size_t i = 0; i < places.size(); ++i) cells_[i].emplace_back(cells[places[i]]);
     ++rows_;
@@ -62,11 +49,7 @@ const std::vector<std::string>& TableColumns::words(const std::string& name) con
 std::vector<double> TableColumns::numbers(const std::string& name) const {
   std::vector<double> numbers;
   numbers.reserve(rows_);
-  for (const std::string& text : words(name)) {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    numbers.push_back(value);
-  }
+  for (const std::string& text : words(name)) numbers.push_back(number_of_cell(text));
   return numbers;
 }
 

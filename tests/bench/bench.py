@@ -16,6 +16,7 @@ import page
 import pareto
 import parts
 import series
+import studies
 import versus
 from hand_written import HandWritten, source_folder, trajectories
 from problems import PROBLEMS, ROOT
@@ -29,6 +30,7 @@ PARTS = {
     "startup": ("the whole process with one step", parts.start),
     "load": ("reading and checking models", parts.load),
     "output": ("what rows at 1 kHz of all channels cost", parts.output),
+    "studies": ("what the engine of studies costs a point, and memory and time of 10^5 points", studies.studies),
 }
 
 

@@ -2,6 +2,7 @@
 import os
 import re
 
+import studies
 from problems import PROBLEMS, ROOT
 
 PAGE = os.path.join(ROOT, "docs", "performance.md")
@@ -69,7 +70,11 @@ def of_kernels(found):
     return markdown(["kernel", "ns"], [[one["name"], "%.4g" % one["ns"]] for one in found["kernels"]])
 
 
-MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output,
+def of_studies(found):
+    return markdown(*studies.rows_of_engine(found)) + "\n" + markdown(*studies.rows_of_large(found))
+
+
+MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies,
           **{name: of_problem for name in PROBLEMS}}
 
 

@@ -41,6 +41,16 @@ class Bench(ProgramTest):
             self.assertAlmostEqual(4.0, coarse / fine, delta=0.6)  # second order
         self.assertLess(0.0, found["startup"]["3-rrr"]["median"])
 
+    def test_the_engine_of_studies_is_measured(self):
+        out, _ = self.bench("--quick", "studies")
+        self.assertIn("all but stepping [ms a point]", out)
+        found = json.loads(self.read("bench", "results.json"))["studies"]
+        self.assertTrue(0.0 < found["engine"]["overhead"] < 0.1, found)
+        self.assertTrue(0.0 < found["engine"]["efficiency"] <= 1.0, found)
+        self.assertEqual([200, 2000], [own["points"] for own in found["large"]])
+        for own in found["large"]:
+            self.assertTrue(1e6 < own["parent_bytes"] < 1e9 and own["merge_seconds"] > 0.0, own)
+
     def test_mistyped_words_get_the_nearest(self):
         for words, answer in ((["slider-crnk"], "did you mean 'slider-crank'?"), (["3-RRR"], "did you mean '3-rrr'?"), (["--quik"], "did you mean '--quick'?"),
                               (["--vs", "HEAD", "growth"], "--vs compares"), (["--page", "--quick"], "neither --quick")):

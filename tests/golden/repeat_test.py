@@ -171,6 +171,13 @@ class Repeat(ProgramTest):
         with open("/proc/%d/task/%d/children" % (process.pid, process.pid), encoding="ascii") as file:
             return [int(word) for word in file.read().split()]
 
+    @staticmethod
+    def ticks(process):
+        """Processor time, in hundredths of a second."""
+        with open("/proc/%d/stat" % process, encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return int(fields[11]) + int(fields[12])
+
     def wait_for_children(self, process):
         deadline = time.monotonic() + 60
         while len(self.children(process)) < 2 and time.monotonic() < deadline:
@@ -180,8 +187,10 @@ class Repeat(ProgramTest):
     def test_a_run_that_is_lost_costs_no_other(self):
         self.write("m.yaml", SIX_BAR)
         process = self.start("m.yaml", "--repeat", "6", "--end", "1 s")
-        time.sleep(0.2)
-        os.kill(self.wait_for_children(process)[0], signal.SIGSEGV)
+        worker = self.wait_for_children(process)[0]
+        while self.ticks(worker) < 10:  # a run that has not begun is done elsewhere
+            time.sleep(0.01)
+        os.kill(worker, signal.SIGSEGV)
         out, err = process.communicate(timeout=120)
         self.assertEqual(5, process.returncode, out + err)
         self.assertRegex(out, r"run \d of 6 failed: its process ended with SIGSEGV")

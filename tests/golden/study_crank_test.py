@@ -193,6 +193,8 @@ class StudyOfTheCrank(ProgramTest):
                 ("    c:", "    cc:", ["unknown-name", "cc"]),
                 ("joints.wrist.clearance", "joints.wirst.clearance", ["unknown-name", "'joints.wrist.clearance.contact.restitution'"]),
                 ("0.9, 3]", "0.9, 100000000]", ["too-large", "--yes"]),
+                ("every: 1 ms", "every: 1e-16 s", ["too-large", "at most 10^7 values"]),
+                ("reduce: mean", "reduce: mean, from: 2 ms, until: 1 ms", ["out-of-range", "ends at 0.001 s, before it begins"]),
                 ("joint.wrist.fn", "joint.wrist.fnn", ["unknown-name", "joint.wrist.fn"])):
             with self.subTest(new=new):
                 self.assertIn(old, STUDY)

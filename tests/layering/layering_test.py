@@ -31,12 +31,13 @@ STANDS_ON = {
     "analysis": ["assembly"],
     "load": ["yaml", "urdf", "run"],
     "report": ["results", "load"],
-    "study": ["results", "load", "convert", "analysis", "svg"],
+    "workers": ["base"],
+    "study": ["workers", "results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
     "python": ["load", "results", "convert", "drawing", "analysis", "contract"],
-    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "study"],
+    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "workers", "study"],
 }
-WITHOUT_SDK = {"base", "linear", "svg"}
+WITHOUT_SDK = {"base", "linear", "svg", "workers"}
 
 
 def rooms_below():

@@ -1,5 +1,5 @@
-"""The page of the study: page.py PROGRAM DOCS RESULTS writes tables of what was found, and of each claim whether it holds, with
-pictures, to the folder DOCS. RESULTS has the directories `series` and `ideal` that `freeplay study run --keep all` made of
+"""The page of the study: page.py PROGRAM DOCS RESULTS writes page.md.in with tables of what was found, and of each claim whether
+it holds, and pictures, to the folder DOCS. RESULTS has the directories `series` and `ideal` that `freeplay study run --keep all` made of
 series.yaml and ideal.yaml; `./dev study 3-rrr-vs-4-rrr` does it all.
 """
 import csv
@@ -203,103 +203,13 @@ def dynamic_claims(series, static, runs):
     return claims
 
 
-TEXT = """# 3-RRR against 4-RRR with loose joints
-
-Zhang and Zhang 2016 ("A comparative study of planar 3-RRR and 4-RRR mechanisms with joint clearances") compare the two
-mechanisms and find the redundant one, 4-RRR, better in kinematics and dynamics. This page asks the same question with
-Freeplay. The paper's own figures were not available to us: what is compared here are the mechanisms, not the pictures.
-`./dev study 3-rrr-vs-4-rrr` makes the page and its figures anew; what is varied stands in
-`series.yaml` and `ideal.yaml` of `mechanisms/studies/3-rrr-vs-4-rrr`, two [studies](studies.md) of the mechanisms
-`mechanisms/3-rrr.yaml` and `mechanisms/4-rrr.yaml`.
-
-The platform follows a circle of 50 mm radius. All joints between crank, coupler and platform are loose: six in the 3-RRR,
-eight in the 4-RRR. Unless a series varies them: radial clearance {c:.2f} mm, {T:g} s for one turn, friction {mu:g}
-(Ambrosio), Lankarani-Nikravesh contact with restitution 0.9. Runs last {turns:g} turns with an accuracy of {accuracy:g} um; the first
-fifth of a turn is left out.
-
-## What holds of "the 4-RRR is better"
-
-{claims}
-
-## At rest: how far the platform can move in the play
-
-To first order, the drivers held still. *Exact* counts only errors that all legs can make together; *least squares* lets each
-leg err as it likes, which is more than rigid links allow when there are more drivers than freedoms ([analysis](analysis.md)). The
-clearance is {c:.2f} mm; all errors are proportional to it.
-
-{static}
-
-![map of the 3-RRR]({images}/map-3-rrr.svg)
-
-![map of the 4-RRR]({images}/map-4-rrr.svg)
-
-Largest exact position errors at platform angle 0; hatched: out of reach; the circle is the path.
-
-![along the circle]({images}/bounds.svg)
-
-## In motion
-
-A mechanism with clearance is chaotic: a single largest value depends on rounding from some tenths of a second on. rms values
-and fractions are good to some percent, largest forces to some ten percent: differences of that size say nothing.
-
-### Clearance
-
-{table_c}
-
-### Speed
-
-{table_T}
-
-### Friction
-
-{table_mu}
-
-![position error over clearance]({images}/error-clearance.svg)
-
-![position error over the time of a turn]({images}/error-time.svg)
-
-![contact force over clearance]({images}/force-clearance.svg)
-
-![contact force over friction]({images}/force-friction.svg)
-
-What the largest position error depends on most, over the values of the tables:
-
-![what matters]({images}/what-matters.svg)
-
-The pictures leave out the base, which sets no axis. Forces are those of loose joints; an ideal run differs in the time of a turn alone.
-
-The last turn at the base values, as `freeplay plot` draws it: the platform's error in x and y of the 3-RRR (blue) and the 4-RRR (dashed),
-
-![platform error]({images}/errors.svg)
-
-drive torque and bearing force of the first leg with play (blue) and without (dashed), 3-RRR first,
-
-![loads of the 3-RRR]({images}/loads-3-rrr.svg)
-
-![loads of the 4-RRR]({images}/loads-4-rrr.svg)
-
-and the path of the journal in leg1.B, in the 3-RRR and in the 4-RRR.
-
-![orbit in the 3-RRR]({images}/orbit-3-rrr.svg)
-
-![orbit in the 4-RRR]({images}/orbit-4-rrr.svg)
-
-## Does the motion stay within the bounds at rest?
-
-The play bounds the platform also in motion, but for the elastic penetration of the contacts. Largest distance by which the
-simulated position error leaves the exact bound of its place on the circle, and the bound of a clearance that is larger by the
-largest penetration of the run (negative: it stays inside). The bounds are of first order in the clearance: what they neglect is at most about
-d^2 / (2 l), d = 2 c, so {second:.2f} um at the largest clearance. The largest of the last column is {worst:.2f} um.
-
-{envelope}
-"""
-
-
 def text(series, static, runs, images):
     envelope, worst = envelope_rows(series, static, runs)
     claims = static_claims(static) + dynamic_claims(series, static, runs)
     usual = next(iter(runs.values())).summary()["settings"]
-    return TEXT.format(
+    with open(os.path.join(HERE, "page.md.in"), encoding="utf-8") as file:
+        words = file.read()
+    return words.format(
         c=1e3 * BASE["c"], T=BASE["T"], mu=BASE["mu"], turns=usual["end"] / BASE["T"], accuracy=1e6 * usual["step"]["accuracy"],
         images=images, claims=table(["The 4-RRR has the", "", "found"], claims), static=static_table(static),
         table_c=run_rows(series, static, runs, "c"), table_T=run_rows(series, static, runs, "T"),

@@ -13,8 +13,8 @@ Json figures(double force) {
 TEST(RepeatSummary, HasMedianRangeAndAllValues) {
   RepeatSummary summary(4, 7, 0.01);
   for (const auto& [run, force] : {std::pair{0u, 3.0}, {1u, 1.0}, {2u, 9.0}, {3u, 5.0}})
-    summary.add(run, figures(force));
-  const Json json = summary.json();
+    summary.add(run, RepeatSummary::values_of(figures(force)));
+  const Json json = summary.json(figures(0.0));
   EXPECT_EQ(Json::parse(R"({"median": 4.0, "min": 1.0, "max": 9.0, "values": [3.0, 1.0, 9.0, 5.0]})"),
             json["joints"]["B"]["max_force"]);
   EXPECT_EQ(8.0, json["drivers"]["motor"]["max_abs"]["median"]);
@@ -26,17 +26,18 @@ TEST(RepeatSummary, HasMedianRangeAndAllValues) {
 
 TEST(RepeatSummary, IsTheSameInWhateverOrderRunsCome) {
   RepeatSummary one(3, 1, 0.01), other(3, 1, 0.01);
-  for (const std::size_t run : {0u, 1u, 2u}) one.add(run, figures(static_cast<double>(run)));
-  for (const std::size_t run : {2u, 0u, 1u}) other.add(run, figures(static_cast<double>(run)));
-  EXPECT_EQ(one.json().dump(), other.json().dump());
+  for (const std::size_t run : {0u, 1u, 2u}) one.add(run, RepeatSummary::values_of(figures(static_cast<double>(run))));
+  for (const std::size_t run : {2u, 0u, 1u})
+    other.add(run, RepeatSummary::values_of(figures(static_cast<double>(run))));
+  EXPECT_EQ(one.json(figures(0.0)).dump(), other.json(figures(0.0)).dump());
 }
 
 TEST(RepeatSummary, ARunThatFailedCostsNoOther) {
   RepeatSummary summary(3, 1, 0.01);
-  summary.add(2, figures(5.0));
+  summary.add(2, RepeatSummary::values_of(figures(5.0)));
   summary.fail(1, 4, "no step could be made");
-  summary.add(0, figures(4.0));
-  const Json json = summary.json();
+  summary.add(0, RepeatSummary::values_of(figures(4.0)));
+  const Json json = summary.json(figures(0.0));
   EXPECT_EQ(Json::parse("[4.0, null, 5.0]"), json["joints"]["B"]["max_force"]["values"]);
   EXPECT_EQ(4.5, json["joints"]["B"]["max_force"]["median"]);
   EXPECT_EQ(Json::parse(R"([{"run": 2, "exit_code": 4, "reason": "no step could be made"}])"), json["failed"]);

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "study/row_text.h"
-#include "study/work.h"
+#include "workers/work.h"
 
 namespace freeplay {
 

@@ -1,4 +1,4 @@
-#include "study/worker_pool.h"
+#include "workers/worker_pool.h"
 
 #include <chrono>
 #include <csignal>
@@ -56,6 +56,33 @@ TEST(WorkerPool, EveryPointRunsOnceWithAnyNumberOfWorkers) {
     }
     EXPECT_EQ(0u, found.lost);
   }
+}
+
+TEST(WorkerPool, ACallerThatIsBusyTakesTurnsAndForksNothing) {
+  FakeWork work(300);
+  WorkerPool pool(work, {.jobs = 3});
+  std::map<std::uint64_t, StudyOutcome> found;
+  std::uint64_t unit = 0;
+  const auto next = [&](StudyTask& task) {
+    if (unit == work.units()) return false;
+    task = {unit, 0, 1};
+    ++unit;
+    return true;
+  };
+  const auto take = [&](std::uint64_t point, const StudyOutcome& outcome) {
+    EXPECT_TRUE(found.emplace(point, outcome).second) << point;
+  };
+  pool.turn(next, take);
+  EXPECT_EQ(0u, unit);  // no worker is there
+  pool.start(1);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (found.size() < 100 && std::chrono::steady_clock::now() < deadline) {
+    pool.turn(next, take);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GE(found.size(), 100u);
+  pool.run(next, take, [] { return true; });
+  EXPECT_EQ(300u, found.size());
 }
 
 TEST(WorkerPool, ChainsHandTheirStateOn) {

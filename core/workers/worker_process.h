@@ -9,9 +9,9 @@
 
 #include <sys/types.h>
 
-#include "study/outcome.h"
-#include "study/work.h"
-#include "study/worker_pool.h"
+#include "workers/outcome.h"
+#include "workers/work.h"
+#include "workers/worker_pool.h"
 
 namespace freeplay {
 

@@ -1,4 +1,4 @@
-#include "study/outcome_bytes.h"
+#include "workers/outcome_bytes.h"
 
 #include <cstring>
 #include <stdexcept>

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "study/outcome.h"
-#include "study/worker_pool.h"
+#include "workers/outcome.h"
+#include "workers/worker_pool.h"
 
 namespace freeplay {
 

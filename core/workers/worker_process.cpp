@@ -1,4 +1,4 @@
-#include "study/worker_process.h"
+#include "workers/worker_process.h"
 
 #include <atomic>
 #include <cerrno>
@@ -23,7 +23,7 @@
 
 #include "base/error.h"
 #include "base/whole_text.h"
-#include "study/outcome_bytes.h"
+#include "workers/outcome_bytes.h"
 
 namespace freeplay {
 

@@ -1,4 +1,4 @@
-#include "study/worker_pool.h"
+#include "workers/worker_pool.h"
 
 #include <algorithm>
 #include <csignal>
@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 #include "base/number_text.h"
-#include "study/worker_process.h"
+#include "workers/worker_process.h"
 
 namespace freeplay {
 namespace {
@@ -61,16 +61,24 @@ bool WorkerPool::hungry(WorkerProcess& worker) const {
   return waiting < batch || (tasks.size() < 2 && waiting < short_point);
 }
 
-void WorkerPool::feed(WorkerProcess& worker, const Next& next) {
+void WorkerPool::start(WorkerProcess& worker) {
+  std::vector<WorkerProcess*> others;
+  for (const auto& other : workers_) {
+    if (other.get() != &worker) others.push_back(other.get());
+  }
+  worker.start(work_, options_.isolate, others);
+}
+
+void WorkerPool::start(std::size_t workers) {
+  for (std::size_t i = 0; i < std::min(workers, workers_.size()); ++i) {
+    if (!workers_[i]->runs()) start(*workers_[i]);
+  }
+}
+
+void WorkerPool::feed(WorkerProcess& worker, const Next& next, bool may_start) {
   StudyTask task;
-  while (hungry(worker) && fetch(next, task)) {
-    if (!worker.runs()) {
-      std::vector<WorkerProcess*> others;
-      for (const auto& other : workers_) {
-        if (other.get() != &worker) others.push_back(other.get());
-      }
-      worker.start(work_, options_.isolate, others);
-    }
+  while ((worker.runs() || may_start) && hungry(worker) && fetch(next, task)) {
+    if (!worker.runs()) start(worker);
     worker.give(std::move(task));
   }
 }
@@ -85,21 +93,33 @@ void WorkerPool::wait() const {
   ::poll(pipes.data(), pipes.size(), look_again_after);
 }
 
-void WorkerPool::run(const Next& next, const Take& take, const std::function<bool()>& beat) {
-  exhausted_ = false;
-  const Take timed = [&](std::uint64_t point, const StudyOutcome& outcome) {
+WorkerPool::Take WorkerPool::timed(const Take& take) {
+  return [this, &take](std::uint64_t point, const StudyOutcome& outcome) {
     constexpr double share = 0.1;
     point_seconds_ = point_seconds_ == 0.0 ? outcome.wall : (1.0 - share) * point_seconds_ + share * outcome.wall;
     take(point, outcome);
   };
+}
+
+void WorkerPool::look_after_all(const Take& take) {
+  for (const auto& worker : workers_) {
+    if (worker->runs()) look_after(*worker, take);
+  }
+}
+
+void WorkerPool::turn(const Next& next, const Take& take) {
+  look_after_all(timed(take));
+  for (const auto& worker : workers_) feed(*worker, next, false);
+}
+
+void WorkerPool::run(const Next& next, const Take& take, const std::function<bool()>& beat) {
+  exhausted_ = false;
   for (;;) {
-    for (const auto& worker : workers_) feed(*worker, next);
+    for (const auto& worker : workers_) feed(*worker, next, true);
     const bool busy = std::ranges::any_of(workers_, [](const auto& worker) { return !worker->tasks().empty(); });
     if (!beat() || !busy) break;
     wait();
-    for (const auto& worker : workers_) {
-      if (worker->runs()) look_after(*worker, timed);
-    }
+    look_after_all(timed(take));
   }
   for (const auto& worker : workers_) {
     if (worker->runs()) worker->end([](std::uint64_t, const StudyOutcome&) {});

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "study/outcome.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 

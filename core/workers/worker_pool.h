@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "study/outcome.h"
-#include "study/work.h"
+#include "workers/outcome.h"
+#include "workers/work.h"
 
 namespace freeplay {
 
@@ -42,6 +42,11 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
+  /// Forks some of the workers ahead, for a caller that will have threads when it calls turn().
+  void start(std::size_t workers);
+  /// A part of run() for a caller that is busy otherwise: workers that are there get more to do, and what they have
+  /// done is taken. Waits for nothing. Throws what `take` throws.
+  void turn(const Next& next, const Take& take);
   /// Runs all tasks. An outcome is taken before its worker gets more to do. `beat` is called at least every 0.1 s;
   /// where it returns false the points in hand are given up. Throws Error{file} "no-process", and what `take` throws.
   void run(const Next& next, const Take& take, const std::function<bool()>& beat);
@@ -52,7 +57,10 @@ class WorkerPool {
  private:
   bool fetch(const Next& next, StudyTask& task);
   bool hungry(WorkerProcess& worker) const;
-  void feed(WorkerProcess& worker, const Next& next);
+  void start(WorkerProcess& worker);
+  void feed(WorkerProcess& worker, const Next& next, bool may_start);
+  Take timed(const Take& take);
+  void look_after_all(const Take& take);
   void wait() const;
   void look_after(WorkerProcess& worker, const Take& take);
   void bury(WorkerProcess& worker, const Take& take);
