@@ -11,6 +11,7 @@
 #include "format/body_section.h"
 #include "format/doubtful_body.h"
 #include "format/doubtful_gear.h"
+#include "format/doubtful_load.h"
 #include "format/doubtful_motion.h"
 #include "format/doubtful_number.h"
 #include "format/draft.h"
@@ -78,6 +79,7 @@ class ModelBuilder {
     doubt_bodies(draft_);
     doubt_motions(draft_);
     doubt_gears(draft_);
+    doubt_loads(draft_);
     if (!document_.incomplete()) warn_unused_frames(draft_);
     if (diagnostics_.has_errors()) return nullptr;  // with --strict
     keep_frames();

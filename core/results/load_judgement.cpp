@@ -6,26 +6,22 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/whole_mass.h"
 
 namespace freeplay {
 namespace {
 
-// Accelerations that one load would give to all masses together [m/s^2]. Of a gun 6e4 move the bolt; a toggle clamp
-// holds 1e4 times its mass. Springs, dampers and friction answer motions, impacts among them.
-constexpr double most_of_load = 1e5, most_of_element = 3e5;
-constexpr double fastest_body = 1e3;  // [m/s]: a rifle's bullet
+// As most_of_load: springs, dampers and friction answer motions, impacts among them.
+constexpr double most_of_element = 3e5;  // [m/s^2]
+constexpr double fastest_body = 1e3;     // [m/s]: a rifle's bullet
 
 class LoadJudge {
  public:
-  explicit LoadJudge(const RunRecord& record) : record_(record), model_(record.model), size_(record.extremes.size) {
-    for (const Body& body : model_.bodies) {
-      mass_ += body.mass;
-      inertia_ += std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
-    }
-  }
+  explicit LoadJudge(const RunRecord& record)
+      : record_(record), model_(record.model), size_(record.extremes.size), all_(whole_mass(record.model)) {}
 
   void add_to(Verdict& verdict) {
-    if (!(mass_ > 0.0) || !(size_ > 0.0)) return;
+    if (!(all_.mass > 0.0) || !(size_ > 0.0)) return;
     look_at_forces();
     look_at_drivers();
     if (worst_.excess > 1.0) {
@@ -34,7 +30,7 @@ class LoadJudge {
            .level = Trust::doubtful,
            .message = fmt::format("{} of {:.3g} {} on {:.3g} kg in a mechanism of {:.2g} m: check its numbers and "
                                   "their units",
-                                  worst_.element, worst_.amount, worst_.unit, mass_, size_),
+                                  worst_.element, worst_.amount, worst_.unit, all_.mass, size_),
            .element = worst_.element,
            .value = worst_.excess * worst_.limit,
            .limit = worst_.limit});
@@ -57,8 +53,8 @@ class LoadJudge {
   }
 
   void look_at(double force, double torque, double limit, const std::string& element) {
-    const double by_torque = torque * size_ / (inertia_ + mass_ * size_ * size_);
-    if (force / mass_ > limit * worst_.excess) worst_ = {force / mass_ / limit, limit, force, "N", element};
+    const double by_force = all_.by_force(force), by_torque = all_.by_torque(torque, size_);
+    if (by_force > limit * worst_.excess) worst_ = {by_force / limit, limit, force, "N", element};
     if (by_torque > limit * worst_.excess) worst_ = {by_torque / limit, limit, torque, "N m", element};
   }
 
@@ -81,14 +77,6 @@ class LoadJudge {
     }
   }
 
-  bool is_on_ground() const {
-    return std::ranges::any_of(model_.joints, [&](const JointElement& joint) {
-      if (joint.is_force || joint.gear >= 0) return false;
-      return model_.markers[at(joint.marker_a)].body == ground || model_.markers[at(joint.marker_b)].body == ground;
-    });
-  }
-
-  /// A planet may be fast, a mechanism on ground not.
   void look_at_speeds(Verdict& verdict) const {
     double fastest = fastest_body;
     int body = -1;
@@ -96,7 +84,7 @@ class LoadJudge {
       const double speed = largest(record_.statistics.largest().places().speed(b));
       if (speed > fastest) fastest = speed, body = b;
     }
-    if (body < 0 || !is_on_ground()) return;
+    if (body < 0 || !is_on_ground(model_)) return;
     const std::string element = fmt::format("body '{}'", model_.bodies[at(body)].name);
     verdict.add({.id = "body-speed",
                  .level = Trust::doubtful,
@@ -115,7 +103,7 @@ class LoadJudge {
     const auto look = [&](double work, const char* kind, const std::string& name) {
       if (!(work > most)) return;
       most = work;
-      text = fmt::format("; {} '{}' has put {:.3g} J into {:.3g} kg", kind, name, work, mass_);
+      text = fmt::format("; {} '{}' has put {:.3g} J into {:.3g} kg", kind, name, work, all_.mass);
     };
     for (int f = 0; f < static_cast<int>(model_.force_elements.size()); ++f)
       look(record_.statistics.force(f).work, "force", force_words(model_, f).name);
@@ -126,7 +114,8 @@ class LoadJudge {
 
   const RunRecord& record_;
   const Model& model_;
-  double size_, mass_ = 0.0, inertia_ = 0.0;
+  double size_;
+  WholeMass all_;
   Load worst_{};
 };
 

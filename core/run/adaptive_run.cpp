@@ -193,13 +193,14 @@ AdaptiveRun::Found AdaptiveRun::end_at_force_kink(Search& search) {
 
 AdaptiveRun::Found AdaptiveRun::end_at_event(Search& search) {
   bool done = false;
-  if (!pursuit_.pursue(search.hunted, search.bracket, search.dt, search.hunts, done)) return Found::failed;
+  if (!pursuit_.pursue(search.hunted, search.bracket, search.dt, search.hunts, search.goal, done)) return Found::failed;
   if (done) return Found::yes;
   const double whole = run_.trial.t() - run_.accepted.t(), left = search.goal - run_.accepted.t();
   if (pursuit_.end_inside(search.hunted, search.dt, search.hunts, left)) {
     if (run_.trial.t() - run_.accepted.t() <= whole) return Found::yes;
     // Beyond its end another event may lie.
-    if (!pursuit_.pursue(search.hunted, search.bracket, search.dt, search.hunts, done)) return Found::failed;
+    if (!pursuit_.pursue(search.hunted, search.bracket, search.dt, search.hunts, search.goal, done))
+      return Found::failed;
     if (done) return Found::yes;
   }
   if (run_.outcome.status == RunStatus::failed) return Found::failed;

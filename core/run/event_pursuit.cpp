@@ -40,7 +40,8 @@ double EventPursuit::before_event(double dt, double shorter, StepEvents::Passage
   return found.fraction * dt;
 }
 
-bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, bool& done) {
+bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, double goal,
+                          bool& done) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   Fault fault;
   StepEvents::Passage found;
@@ -80,8 +81,8 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   const double aim = aim_past(hunted, dt);
   const double newton = dt - (hunted.value - aim) / hunted.rate;
   const bool near = std::abs(newton - dt) < 0.1 * dt && hunted.rate > 0.0;
-  // What a longer or less accurate step met is not here, or not yet.
-  if (found.joint < 0 && !(past >= 0.0) && !near) {
+  // What a longer or less accurate step met is not here, or not yet: no step goes beyond the goal for it.
+  if (found.joint < 0 && !(past >= 0.0) && (!near || run_.trial.t() >= goal)) {
     hunted = {};
     done = true;
     return true;

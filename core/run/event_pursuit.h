@@ -16,8 +16,8 @@ class EventPursuit {
   /// it met before, whose change of forces may be what it erred by.
   double before_event(double dt, double shorter, StepEvents::Passage& hunted);
   /// Whether the step that was just made may stand (`done`): no located event lies inside, or `hunted` lies at its end.
-  /// Else `dt` is where to try next. False when the run is over.
-  bool pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, bool& done);
+  /// Else `dt` is where to try next: no step goes beyond the time `goal`. False when the run is over.
+  bool pursue(StepEvents::Passage& hunted, EventBracket& bracket, double& dt, int hunts, double goal, bool& done);
   /// Ends the step that was just made at the event inside it or a little after, about `dt` after its start and before
   /// `longest`, by the interpolated motion. False where the event must be hunted by steps, or the run is over.
   bool end_inside(const StepEvents::Passage& hunted, double dt, int hunts, double longest);

@@ -132,12 +132,18 @@ std::string RunFailure::why_singular() {
 }
 
 std::string RunFailure::why_so_small(double dt, double smallest, int limiting_joint) const {
-  std::string text = fmt::format("t = {:.9g} s: a step of {:.3g} s is needed, the smallest allowed is {:.3g} s",
-                                 run_.accepted.t(), dt, smallest);
+  std::string text = fmt::format("t = {:.9g} s: ", run_.accepted.t());
+  // Two lengths that differ by little would read as the same.
+  text += dt < smallest ? fmt::format("a step below {:.3g} s is needed, the smallest allowed", smallest)
+                        : fmt::format("a step of {:.3g} s is needed, which is lost in the rounding of the time", dt);
   if (limiting_joint >= 0)
     return text + fmt::format("; joint '{}' asks for it", run_.model.joints[at(limiting_joint)].name);
   const int worst = run_.solver.local_error().worst_component();
-  if (worst < 0) return text;
+  if (worst < 0) {
+    if (const int joint = hardest_joint(ground); joint >= 0)
+      text += fmt::format("; joint '{}' pulls hardest", run_.model.joints[at(joint)].name);
+    return text + std::string(advice::error);
+  }
   const int width = run_.system.layout().body_velocities(), part = worst % width;
   const BodyId body = run_.system.layout().body_at(worst / width);
   constexpr const char* planar[] = {"x", "y", "angle"};

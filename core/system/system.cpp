@@ -4,31 +4,14 @@
 #include <cmath>
 
 #include "base/index.h"
+#include "model/whole_mass.h"
 
 namespace freeplay {
 namespace {
 
-double length(const Vector3& v) { return std::hypot(std::hypot(v[0], v[1]), v[2]); }
-
 std::vector<planar::DrivenBody> bodies_driven(const Model& model, Variant variant, Unknowns unknowns) {
   if (variant != Variant::released || unknowns != Unknowns::free_bodies) return {};
   return planar::driven_bodies(model);
-}
-
-// Largest distance between anything that the model places: bodies are as far apart as their markers let them be.
-double model_size(const Model& model) {
-  double size = 0.0;
-  for (const Marker& marker : model.markers) {
-    Vector3 place = marker.position;
-    if (marker.body != ground) {
-      for (std::size_t i = 0; i < 3; ++i) place[i] -= model.bodies[at(marker.body)].com[i];
-    }
-    size = std::max(size, length(place));
-  }
-  for (const Body& body : model.bodies) {
-    if (body.position) size = std::max(size, length(*body.position));
-  }
-  return size > 0.0 ? size : 1.0;
 }
 
 }  // namespace

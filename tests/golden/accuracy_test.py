@@ -19,6 +19,12 @@ class Accuracy(ProgramTest):
         for accuracy in ("2e-8", "1e-8", "1e-9"):
             self.run_json(mechanism("validation/cradle-5"), "--accuracy", accuracy, "--out", accuracy)
 
+    def test_an_event_just_after_the_end_does_not_stop_the_run(self):
+        # The motion so far has the impact before the end, the step up to the end has it a microsecond later.
+        for end in ("16 ms", "16.003 ms", "16.005 ms", "16.006 ms"):
+            self.run_json(mechanism("slider-crank"), "--accuracy", "1um", "--out", end, "--set", "simulation.end=" + end, "--set",
+                          "speed=480.2871635683082 rad/s", "--set", "joints.wrist.clearance.bearing_radius=0.01038812181255904 m")
+
     def test_a_slow_motion_with_play_goes_on(self):
         # Steps are as long as they may be: where one ends moves with its length.
         with open(mechanism("slider-crank"), encoding="utf-8") as file:

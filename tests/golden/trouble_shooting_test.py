@@ -187,6 +187,8 @@ CASES = {
         (0, pendulum("mass: 1 kg, inertia: 1 kg*m^2 / 12", "mass: 1e6, inertia: 1"), RUN),
     "the centre of mass of '...' is ... m away from its frames, which extend over ... m, ... [doubtful-com]":
         (0, pendulum("com: [0.5 m, 0]", "com: [1.8 m, 0]"), RUN),
+    "'...' comes to ... on ... kg in a mechanism of ... m, more than any machine has: ... [doubtful-value]":
+        (0, driven("kind: angle, value: t", "kind: torque, value: 1e6"), ["validate", "model.yaml"]),
     "the clearance of joint '...' is ... m, ... [doubtful-clearance]": (0, journal("0.1 mm", "0.1 nm"), RUN),
     "frame '...' is not used": (0, PENDULUM, RUN),
     "joints '...' and '...' hold '...' at one place, '...', so that its turning moves nothing: ... [same-frame]":
@@ -206,9 +208,9 @@ CASES = {
     "... left over with all drivers at rest, ... [left-free]":
         (0, driven("joints:", "  load: {mass: 1 kg, inertia: 0.1, com: [0.1, 0]}\njoints:\n  eye: {type: revolute, between: [rod/tip, load]}"), RUN),
     # While it runs
-    "a step of ... s is needed, the smallest allowed is ... s; joint '...' asks for it":
+    "a step below ... s is needed, the smallest allowed; joint '...' asks for it":
         (4, journal("step: 10 us", "step: {adaptive: true, size: 1 ms, min: 1 ms}"), RUN),
-    "a step of ... s is needed, the smallest allowed is ... s; the error is largest in body '...' (...)":
+    "a step below ... s is needed, the smallest allowed; the error is largest in body '...' (...)":
         (4, pendulum("step: 1 ms", "step: {adaptive: true, size: 50 ms, min: 50 ms, tolerance: 1e-9}"), RUN),
     "the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding hides how; ...":
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
