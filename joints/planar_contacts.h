@@ -201,6 +201,7 @@ class PlanarContacts : public Joint {
     layout.forces = 1;
     layout.forces_without_coordinate = 1;
     layout.analytic_derivatives = 1;
+    layout.wants_whole_mobility = 1;
     layout.internal_variables = static_cast<std::int32_t>(count * laws_.variables);
     layout.history = static_cast<std::int32_t>(count * (slots + laws_.variables));
     layout.kinks = static_cast<std::int32_t>(count) * count_kinks(laws_.friction);
@@ -351,13 +352,14 @@ class PlanarContacts : public Joint {
     return predicted_speed(at.approach(), rate_of(at.rate), dt,
                            [&](double s) { return (velocity + s * second).norm(); });
   }
-  /// 1/m = n^T W n with the mobility W of the origins, 0: not known; that the body also turns is left out.
+  /// 1/m = w.(W w) of the wrench w on b at its origin for a unit force at the contact; 0: not known.
   static double inverse_mass(const JointInput& in, const PlanarPair& pair, const PlanarContact<double>& at) {
-    if (in.mobility == nullptr) return 0.0;
-    const Eigen::Vector2d n = pair.in_world(at.normal);
+    if (in.whole_mobility == nullptr) return 0.0;
+    const Eigen::Vector2d force = pair.in_world(at.normal);
+    const double wrench[6] = {force.x(), force.y(), 0.0, 0.0, 0.0, cross(at.arm, at.normal)};
     double sum = 0.0;
-    for (int i = 0; i < 2; ++i)
-      for (int k = 0; k < 2; ++k) sum += n[i] * in.mobility[3 * i + k] * n[k];
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t k = 0; k < 6; ++k) sum += wrench[i] * in.whole_mobility[6 * i + k] * wrench[k];
     return sum;
   }
 

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "freeplay/plugin.h"
 #include "planar_contacts.h"
@@ -79,7 +81,7 @@ constexpr ChannelRole slide_roles[] = {
     ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none,
     ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none};
 
-/// Where the block starts in its guide: across it, untilted.
+/// Where the block starts in its guide: `shift` across it, `tilt`, and their rates.
 struct SlideStart {
   explicit SlideStart(const Parameters& p) {
     const int word = p.word("clearance.initial");
@@ -87,6 +89,9 @@ struct SlideStart {
     if (word >= 0) return;
     shift = across(p, "clearance.initial.eccentricity");
     shift_rate = across(p, "clearance.initial.velocity");
+    const auto given = [&](const char* path) { return p.given(path) ? p.number(path) : 0.0; };
+    tilt = given("clearance.initial.angle");
+    tilt_rate = given("clearance.initial.speed");
   }
   static double across(const Parameters& p, const char* path) {
     const auto value = p.vector(path);
@@ -97,7 +102,8 @@ struct SlideStart {
     return value[1];
   }
   bool loaded = false;
-  double shift = 0.0, shift_rate = 0.0;  // [m], [m/s]
+  double shift = 0.0, tilt = 0.0;            // [m], [rad]
+  double shift_rate = 0.0, tilt_rate = 0.0;  // [m/s], [rad/s]
 };
 
 /// Slider with play in its guide, in the plane: a block of length l and width 2 B (marker b in its middle) between two
@@ -125,19 +131,22 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
     layout.channel_roles = slide_roles;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { planar::Slide(in).write_along(row); }
-  /// Loaded, both ends of the block rest where static contact carries half of the force across; the moment of the ideal
-  /// joint is not carried.
+  /// Loaded, one corner at each end rests where static contact carries the force across and the moment together.
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
     const double* rotation = out.rotation;
     out = InitialOffset{};
     out.rotation = rotation;
     const Eigen::Vector2d n =
         rotation == nullptr ? Eigen::Vector2d(0.0, 1.0) : Eigen::Vector2d(rotation[1], rotation[4]);
-    const double shift = start_.loaded ? rest(0.5 * n.dot(Eigen::Vector2d(reaction[0], reaction[1]))) : start_.shift;
+    Stand stand{start_.shift, start_.tilt};
+    if (start_.loaded)
+      stand = rest(n.dot(Eigen::Vector2d(reaction[0], reaction[1])), reaction.size > 5 ? reaction[5] : 0.0);
     for (int i = 0; i < 2; ++i) {
-      out.position[i] = shift * n[i];
+      out.position[i] = stand.shift * n[i];
       out.velocity[i] = start_.shift_rate * n[i];
     }
+    out.turn = stand.tilt;
+    out.turn_rate = start_.tilt_rate;
   }
 
  private:
@@ -154,21 +163,52 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
                          "'gap' must be below half of 'length', or the slider turns over in its guide");
     if (!widths.known() && !is_inert(laws().friction))
       throw BadParameter("clearance", "missing-key", "friction needs 'guide_width' or 'width'");
-    // The sizes are rounded numbers: a corner at the wall is none in it.
-    if (std::abs(start_.shift) > (1.0 + 1e-9) * block.play)
-      throw BadParameter("clearance.initial.eccentricity", "out-of-range",
-                         "two corners would start in the wall: the shift must stay within 'gap'");
+    PlanarMotion<double> motion{};
+    motion.d.y = start_.shift;
+    motion.c = std::cos(start_.tilt);
+    motion.s = std::sin(start_.tilt);
+    for (std::size_t i = 0; i < BlockInGuide::contacts; ++i) {
+      // The sizes are rounded numbers: a corner at the wall is none in it.
+      if (!(motion.c > 0.0) || block.place(motion, i).penetration > 1e-9 * block.play)
+        throw BadParameter("clearance.initial", "out-of-range",
+                           "a corner would start in the wall: shift and half the length times the sine of the angle "
+                           "must stay within 'gap' together");
+    }
   }
   static PlanarLaws read_laws(const Parameters& p, const Radii& widths) {
     ContactPair pair{not_a_number, not_a_number, widths.clearance, not_a_number, {}, {}};
     read_materials(p, pair);
     return {p, pair};
   }
-  /// How far one end stands from the middle of the guide where static contact carries `force` [N] along n.
-  double rest(double force) const {
+  struct Stand {
+    double shift, tilt;  // [m], [rad]
+  };
+  /// Static equilibrium under a force along n and a moment on b. The tilt moves the corners, by which arms and depths
+  /// change a little: a few rounds settle it.
+  Stand rest(double across, double moment) const {
+    const BlockInGuide& block = geometry();
+    const double half = block.half_length;
+    double shift = 0.0, c = 1.0, s = 0.0, front = 0.5 * (across + moment / half), rear = 0.5 * (across - moment / half);
+    for (int i = 0; i < 50; ++i) {
+      const double arm_front = half * c + std::copysign(block.half_width, front) * s,
+                   arm_rear = -half * c + std::copysign(block.half_width, rear) * s;
+      front = (moment - arm_rear * across) / (arm_front - arm_rear);
+      rear = across - front;
+      const double sag = block.half_width * (s * s) / (1.0 + c);
+      const double end_front = rest_of_end(front, sag), end_rear = rest_of_end(rear, sag);
+      const double last = std::exchange(s, std::clamp(0.5 * (end_front - end_rear) / half, -0.9, 0.9));
+      shift = 0.5 * (end_front + end_rear);
+      c = std::sqrt(1.0 - s * s);
+      if (s == last) break;
+    }
+    return {shift, std::asin(s)};
+  }
+  /// How far one end stands from the middle of the guide where static contact carries `force` [N] along n and the tilt
+  /// draws its corner away from the wall by `sag`.
+  double rest_of_end(double force, double sag) const {
     const double size = std::abs(force);
     if (size < 1e-12) return 0.0;
-    const double away = geometry().play + resting_penetration(laws().normal, geometry().play, size);
+    const double away = geometry().play + sag + resting_penetration(laws().normal, geometry().play, size);
     return -std::copysign(away, force);
   }
 
@@ -202,6 +242,14 @@ constexpr Parameter slide_start_rows[] = {
      .unit = "m/s",
      .default_value = optional,
      .summary = "Velocity of the slider's middle across the guide at the start, in the same axes."},
+    {.name = "clearance.initial.angle",
+     .unit = "rad",
+     .default_value = optional,
+     .summary = "Angle of the slider against the guide at the start."},
+    {.name = "clearance.initial.speed",
+     .unit = "rad/s",
+     .default_value = optional,
+     .summary = "Angular velocity of the slider against the guide at the start."},
 };
 constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, slide_start_rows);
 

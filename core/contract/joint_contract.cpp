@@ -140,12 +140,14 @@ void check_offset(const JointProbe& probe, Findings& findings) {
   const double play = probe.layout().clearance;
   if (!(play > 0.0)) return;
   for (const double load : {0.0, 1.0, 50.0}) {
-    double reaction[3] = {0.6 * load, -0.8 * load, 0.0};
+    double reaction[6] = {0.6 * load, -0.8 * load, 0.0, 0.0, 0.0, 1e-3 * load};
     const InitialOffset offset = probe.initial_offset(reaction);
     const double size = std::hypot(offset.position[0], offset.position[1], offset.position[2]);
     const double speed = std::hypot(offset.velocity[0], offset.velocity[1], offset.velocity[2]);
-    findings.expect("initial-offset", std::isfinite(size) && std::isfinite(speed), [&] {
-      return fmt::format("for a load of {} N the start is {} m away and moves with {} m/s", load, size, speed);
+    const bool turns = std::isfinite(offset.turn) && std::isfinite(offset.turn_rate);
+    findings.expect("initial-offset", std::isfinite(size) && std::isfinite(speed) && turns, [&] {
+      return fmt::format("for a load of {} N the start is {} m and {} rad away and moves with {} m/s and {} rad/s",
+                         load, size, offset.turn, speed, offset.turn_rate);
     });
   }
 }
