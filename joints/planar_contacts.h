@@ -32,6 +32,8 @@ struct PlanarLaws {
 ///   static constexpr std::size_t contacts;                              how many
 ///   template <class T> ContactPlace<T> place(const PlanarMotion<T>&, std::size_t contact) const;
 ///   double play;                                                        scale of a flight [m]
+///   std::array<double, 2> stand(const PlanarMotion<double>&) const;     first channels: where b stands in its play
+///   bool between_walls() const;                                         endless ones, the joint's PlayShape
 ///
 /// With delta, n, and C, where both forces act, delta' = n.v and v_T = t.v, v: velocity of b less that of a at C,
 ///
@@ -115,8 +117,8 @@ class PlanarContacts : public Joint {
     }
   }
 
-  /// Shift across and tilt of b, deepest delta, sums of F_N, F_T and of the power of the forces, whether any contact is
-  /// on, v_T of the one that carries most; then delta, F_N and F_T of each.
+  /// Where b stands, deepest delta, sums of F_N, F_T and of the power of the forces, whether any contact is on, v_T of
+  /// the one that carries most; then, of several, delta, F_N and F_T of each.
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
     const Loads loads = load(in, motion);
@@ -133,13 +135,15 @@ class PlanarContacts : public Joint {
       normal += own_normal;
       tangential += own_tangential;
       power += own_tangential * at.slip - own_normal * at.rate;
+      if (count == 1) continue;
       const Span<double> own = channels.part(joint_channels + i * contact_channels, contact_channels);
       own[0] = at.penetration;
       own[1] = own_normal;
       own[2] = own_tangential;
     }
-    const double all[] = {motion.d.y, std::atan2(motion.s, motion.c),   deepest, normal, tangential, power,
-                          touching,   loads.at[most_loaded(loads)].slip};
+    const std::array<double, 2> stand = geometry_.stand(motion);
+    const double all[] = {stand[0],   stand[1], deepest,  normal,
+                          tangential, power,    touching, loads.at[most_loaded(loads)].slip};
     static_assert(std::size(all) == joint_channels);
     std::copy(std::begin(all), std::end(all), channels.begin());
   }
@@ -166,13 +170,14 @@ class PlanarContacts : public Joint {
       if (touches(one, at.approach())) write_kinks(laws_.friction, at.slip, g.part(each * i, each));
     }
   }
-  /// In flight no contact nears its surface by more than the play.
+  /// In flight no contact nears its surface by more than the play, whichever way an end may lie.
   double step_limit(const JointInput& in) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
     double limit = unbounded;
     for (std::size_t i = 0; i < count; ++i) {
       const JointInput one = contact_input(in, i);
-      const double speed = std::abs(gap(motion, i).rate);
+      const PlanarContact<double> at = contact(motion, i);
+      const double speed = geometry_.between_walls() ? std::abs(at.rate) : std::sqrt(dot(at.velocity, at.velocity));
       if (one.history[phase] != flight) {
         limit = std::min(limit, impact_step(one));
       } else if (speed > 0.0) {
@@ -180,6 +185,17 @@ class PlanarContacts : public Joint {
       }
     }
     return limit;
+  }
+  /// Between walls no depth changes by more than the shift across and the way of the contact in a turn.
+  double free_distance(const JointInput& in) const override {
+    if (!geometry_.between_walls()) return 0.0;
+    const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    double free = unbounded;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (in.history[i * slots + phase] != flight) return 0.0;
+      free = std::min(free, -contact(motion, i).penetration);
+    }
+    return std::max(0.0, free);
   }
   const char* warning(const JointInput& in) const override {
     if (all_fly(in)) return nullptr;

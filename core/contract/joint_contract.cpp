@@ -160,7 +160,8 @@ bool same_names(Span<const Channel> a, Span<const Channel> b) {
 bool same_layout(const JointLayout& a, const JointLayout& b) {
   const auto numbers = [](const JointLayout& l) {
     return std::tuple(l.coordinate, l.constraint_rows, l.internal_variables, l.history, l.forces != 0,
-                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale);
+                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale,
+                      l.play_shape, l.contact_reach);
   };
   return numbers(a) == numbers(b) && std::ranges::equal(a.planar_rows, b.planar_rows) &&
          same_names(a.channels, b.channels) && std::ranges::equal(a.channel_roles, b.channel_roles) &&

@@ -76,6 +76,13 @@ enum class PlanarRow : std::uint32_t {
   turn      ///< theta_b - theta_a = 0, up to whole turns
 };
 
+/// Where the play of a joint lets the origin of b stand.
+enum class PlayShape : std::uint32_t {
+  by_coordinate,  ///< between walls where the coordinate is a position, else round
+  round,          ///< as far as `clearance` from the origin of a, in a circle across the axis or in a ball
+  walls           ///< as far as `clearance` to both sides of the x axis of a, and anywhere along it
+};
+
 /// What a joint asks of the model, answered once, before the layout of the state is fixed.
 struct JointLayout {
   std::uint32_t size = sizeof(JointLayout);
@@ -113,6 +120,9 @@ struct JointLayout {
   Span<const EventRole> event_roles;
   std::int32_t kinks = 0;                  ///< numbers that kinks() fills
   std::uint32_t wants_whole_mobility = 0;  ///< nonzero: on_event() gets JointInput::whole_mobility
+  PlayShape play_shape = PlayShape::by_coordinate;
+  double contact_reach = 0.0;  ///< between walls: most by which a depth changes with the angle of b, as by corners that
+                               ///< stand so far from its origin [m]
 };
 
 /// Everything a joint may read. All views are valid during the call only.
@@ -225,7 +235,9 @@ class Joint {
   /// while the joint certainly leaves everything alone [m]: no wrench, no stored energy, z' = 0, no event past its
   /// zero, no warning, and commit() changes nothing that a later call reads. begin_step() may then be left out, too. In
   /// steps of fixed size the host does not ask a joint for anything of that until its markers have used up the
-  /// distance, nearly. 0: no promise.
+  /// distance, nearly. 0: no promise. Play between walls (PlayShape) counts otherwise, in planar models: how far the
+  /// origin of b moves across the x axis of a, seen from a, and JointLayout::contact_reach times the angle by which b
+  /// turns against a, added.
   virtual double free_distance(const JointInput&) const { return 0.0; }
   /// The first time after t [s] at which forces or rows, as functions of JointInput::t alone, begin, end, jump or have
   /// a kink: runs with error control end a step there. It depends on nothing but t. `unbounded`: there is none. Corners
