@@ -192,6 +192,20 @@ class Block(ModelTest):
         first = {name: values[:100] for name, values in columns.items()}
         self.assert_column(first, "joint.G.shift", lambda t: 1.5e-4 + 2e-3 * t - 9.81 / 2 * t * t, 1e-12)
 
+    def test_every_impact_of_a_corner_gets_its_steps(self):
+        """The error would allow a few: 1/m = 1/2 kg + (l/2)^2/J of a corner that may turn its block away."""
+        loose = "integrator: dopri5, step: {size: 0.1 ms, adaptive: true, tolerance: 1e-2}"
+        text = block(gravity="0, 0", rest=", initial: {angle: 1 mrad, velocity: [0, -0.1 m/s]}", simulation=loose).replace(
+            "K: 1e9", "K: 1e12").replace("inertia: 0.01", "inertia: 1e-4").replace("end: 20 ms", "end: 2 ms")
+        self.run_model(text)
+        ends = [event for event in csv.DictReader(self.read("out", "events.csv").splitlines()) if event["kind"].endswith("contact_end")]
+        self.assertGreater(len(ends), 2)
+        mass = 1 / (1 / 2 + 0.05 ** 2 / 1e-4)
+        for event in ends:
+            self.assertGreaterEqual(int(event["steps"]), 20)
+            alone = 3.21806545972 * (mass ** 2 / (1e24 * float(event["approach_speed"]))) ** 0.2
+            self.assertLess(abs(float(event["duration"]) / alone - 1), 0.01)
+
     def test_it_rests_under_a_moment_as_well(self):
         """The guide holds it 30 mm and 80 mm from its centre of mass: on two corners of one side, or on opposite ones."""
         weight = 2 * 9.81
