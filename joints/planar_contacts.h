@@ -32,6 +32,8 @@ struct PlanarLaws {
 ///   static constexpr std::size_t contacts;                              how many
 ///   template <class T> ContactPlace<T> place(const PlanarMotion<T>&, std::size_t contact) const;
 ///   double play;                                                        scale of a flight [m]
+///   std::array<double, 2> stand(const PlanarMotion<double>&) const;     first channels: where b stands in its play
+///   bool between_walls() const;                                         endless ones, the joint's PlayShape
 ///
 /// With delta, n, and C, where both forces act, delta' = n.v and v_T = t.v, v: velocity of b less that of a at C,
 ///
@@ -115,8 +117,8 @@ class PlanarContacts : public Joint {
     }
   }
 
-  /// Shift across and tilt of b, deepest delta, sums of F_N, F_T and of the power of the forces, whether any contact is
-  /// on, v_T of the one that carries most; then delta, F_N and F_T of each.
+  /// Where b stands, deepest delta, sums of F_N, F_T and of the power of the forces, whether any contact is on, v_T of
+  /// the one that carries most; then, of several, delta, F_N and F_T of each.
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
     const Loads loads = load(in, motion);
@@ -133,13 +135,15 @@ class PlanarContacts : public Joint {
       normal += own_normal;
       tangential += own_tangential;
       power += own_tangential * at.slip - own_normal * at.rate;
+      if (count == 1) continue;
       const Span<double> own = channels.part(joint_channels + i * contact_channels, contact_channels);
       own[0] = at.penetration;
       own[1] = own_normal;
       own[2] = own_tangential;
     }
-    const double all[] = {motion.d.y, std::atan2(motion.s, motion.c),   deepest, normal, tangential, power,
-                          touching,   loads.at[most_loaded(loads)].slip};
+    const std::array<double, 2> stand = geometry_.stand(motion);
+    const double all[] = {stand[0],   stand[1], deepest,  normal,
+                          tangential, power,    touching, loads.at[most_loaded(loads)].slip};
     static_assert(std::size(all) == joint_channels);
     std::copy(std::begin(all), std::end(all), channels.begin());
   }
@@ -166,13 +170,14 @@ class PlanarContacts : public Joint {
       if (touches(one, at.approach())) write_kinks(laws_.friction, at.slip, g.part(each * i, each));
     }
   }
-  /// In flight no contact nears its surface by more than the play.
+  /// In flight no contact nears its surface by more than the play, whichever way an end may lie.
   double step_limit(const JointInput& in) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
     double limit = unbounded;
     for (std::size_t i = 0; i < count; ++i) {
       const JointInput one = contact_input(in, i);
-      const double speed = std::abs(gap(motion, i).rate);
+      const PlanarContact<double> at = contact(motion, i);
+      const double speed = geometry_.between_walls() ? std::abs(at.rate) : std::sqrt(dot(at.velocity, at.velocity));
       if (one.history[phase] != flight) {
         limit = std::min(limit, impact_step(one));
       } else if (speed > 0.0) {
@@ -180,6 +185,17 @@ class PlanarContacts : public Joint {
       }
     }
     return limit;
+  }
+  /// Between walls no depth changes by more than the shift across and the way of the contact in a turn.
+  double free_distance(const JointInput& in) const override {
+    if (!geometry_.between_walls()) return 0.0;
+    const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    double free = unbounded;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (in.history[i * slots + phase] != flight) return 0.0;
+      free = std::min(free, -contact(motion, i).penetration);
+    }
+    return std::max(0.0, free);
   }
   const char* warning(const JointInput& in) const override {
     if (all_fly(in)) return nullptr;
@@ -201,6 +217,7 @@ class PlanarContacts : public Joint {
     layout.forces = 1;
     layout.forces_without_coordinate = 1;
     layout.analytic_derivatives = 1;
+    layout.wants_whole_mobility = 1;
     layout.internal_variables = static_cast<std::int32_t>(count * laws_.variables);
     layout.history = static_cast<std::int32_t>(count * (slots + laws_.variables));
     layout.kinks = static_cast<std::int32_t>(count) * count_kinks(laws_.friction);
@@ -351,13 +368,14 @@ class PlanarContacts : public Joint {
     return predicted_speed(at.approach(), rate_of(at.rate), dt,
                            [&](double s) { return (velocity + s * second).norm(); });
   }
-  /// 1/m = n^T W n with the mobility W of the origins, 0: not known; that the body also turns is left out.
+  /// 1/m = w.(W w) of the wrench w on b at its origin for a unit force at the contact; 0: not known.
   static double inverse_mass(const JointInput& in, const PlanarPair& pair, const PlanarContact<double>& at) {
-    if (in.mobility == nullptr) return 0.0;
-    const Eigen::Vector2d n = pair.in_world(at.normal);
+    if (in.whole_mobility == nullptr) return 0.0;
+    const Eigen::Vector2d force = pair.in_world(at.normal);
+    const double wrench[6] = {force.x(), force.y(), 0.0, 0.0, 0.0, cross(at.arm, at.normal)};
     double sum = 0.0;
-    for (int i = 0; i < 2; ++i)
-      for (int k = 0; k < 2; ++k) sum += n[i] * in.mobility[3 * i + k] * n[k];
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t k = 0; k < 6; ++k) sum += wrench[i] * in.whole_mobility[6 * i + k] * wrench[k];
     return sum;
   }
 

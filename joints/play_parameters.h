@@ -20,14 +20,15 @@ struct Radii {
   bool known() const { return !std::isnan(bearing); }
 };
 
-/// Paths of the keys that give the sizes of both surfaces: outer - inner = parts times play.
+/// Paths of the keys that give the sizes of both surfaces, and the parts of which one counts: play = outer/outer_parts
+/// - inner/inner_parts.
 struct SizeKeys {
   const char *outer, *inner, *play;
-  double parts = 1.0;
+  double outer_parts = 1.0, inner_parts = 1.0;
 
   static std::string quoted(const char* path) { return "'" + std::string(path).substr(path_start) + "'"; }
   /// The outer size as the play counts it.
-  std::string share_of_outer() const { return (parts == 1.0 ? "" : "half of ") + quoted(outer); }
+  std::string share_of_outer() const { return (outer_parts == 1.0 ? "" : "half of ") + quoted(outer); }
   static constexpr std::size_t path_start = sizeof("clearance.") - 1;
 };
 inline constexpr SizeKeys radius_keys{"clearance.bearing_radius", "clearance.journal_radius",
@@ -37,12 +38,14 @@ inline constexpr SizeKeys radius_keys{"clearance.bearing_radius", "clearance.jou
 inline Radii read_radii(const Parameters& p, const SizeKeys& keys = radius_keys) {
   const std::string outer = SizeKeys::quoted(keys.outer), inner = SizeKeys::quoted(keys.inner),
                     play = SizeKeys::quoted(keys.play);
-  Radii r{p.number(keys.outer) / keys.parts, p.number(keys.inner) / keys.parts, p.number(keys.play)};
+  Radii r{p.number(keys.outer) / keys.outer_parts, p.number(keys.inner) / keys.inner_parts, p.number(keys.play)};
   const bool bearing = !std::isnan(r.bearing), journal = !std::isnan(r.journal), gap = !std::isnan(r.clearance);
   if (!gap && !(bearing && journal))
     throw BadParameter("clearance", "missing-key", "give two of " + outer + ", " + inner + " and " + play);
   if (bearing && journal && !(r.journal < r.bearing))
-    throw BadParameter(keys.inner, "out-of-range", inner + " must be below " + outer);
+    throw BadParameter(
+        keys.inner, "out-of-range",
+        inner + " must be below " + (keys.outer_parts == keys.inner_parts ? outer : keys.share_of_outer()));
   if (bearing && journal && gap && !(std::abs(r.bearing - r.journal - r.clearance) <= 1e-9 * r.clearance))
     throw BadParameter(keys.play, "conflicting-keys", play + " is not " + keys.share_of_outer() + " minus " + inner);
   if (bearing && gap && !(r.clearance < r.bearing))

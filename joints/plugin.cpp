@@ -10,6 +10,7 @@ Component distance();
 Component spring_damper();
 Component revolute_clearance();
 Component prismatic_clearance();
+Component point_on_line_clearance();
 Component spherical();
 Component universal();
 Component cylindrical();
@@ -30,6 +31,7 @@ FREEPLAY_PLUGIN(joints) {
                                          spring_damper(),
                                          revolute_clearance(),
                                          prismatic_clearance(),
+                                         point_on_line_clearance(),
                                          spherical(),
                                          universal(),
                                          cylindrical(),

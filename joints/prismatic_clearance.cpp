@@ -1,16 +1,17 @@
+#include <algorithm>
 #include <cmath>
-#include <string>
+#include <utility>
 
 #include "freeplay/plugin.h"
-#include "planar_contacts.h"
 #include "planar_slide.h"
+#include "wall_play.h"
 
 namespace freeplay {
 namespace {
 
 using namespace play;
 
-constexpr SizeKeys width_keys{"clearance.guide_width", "clearance.width", "clearance.gap", 2.0};
+constexpr SizeKeys width_keys{"clearance.guide_width", "clearance.width", "clearance.gap", 2.0, 2.0};
 
 /// The four corners of a block of length l and width 2 B, centred on b, between walls at +-(B + g) along the x axis of
 /// a. In the order front and rear upper, front and rear lower; front is +x of b.
@@ -33,6 +34,11 @@ struct BlockInGuide {
   static T sag(const PlanarMotion<T>& m) {
     return space::value_of(m.c) > 0.0 ? (m.s * m.s) / (T(1.0) + m.c) : T(1.0) - m.c;
   }
+
+  static std::array<double, 2> stand(const PlanarMotion<double>& m) { return {m.d.y, std::atan2(m.s, m.c)}; }
+  static constexpr bool between_walls() { return true; }
+  /// Of a corner from the middle.
+  double reach() const { return std::hypot(half_length, half_width); }
 
   double half_length, half_width;  ///< [m]
   double play;                     ///< g, to each side [m]
@@ -79,25 +85,13 @@ constexpr ChannelRole slide_roles[] = {
     ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none,
     ChannelRole::none,           ChannelRole::none, ChannelRole::none,        ChannelRole::none};
 
-/// Where the block starts in its guide: across it, untilted.
-struct SlideStart {
-  explicit SlideStart(const Parameters& p) {
-    const int word = p.word("clearance.initial");
-    loaded = word == 1;
-    if (word >= 0) return;
-    shift = across(p, "clearance.initial.eccentricity");
-    shift_rate = across(p, "clearance.initial.velocity");
+/// Where the block starts in its guide: besides its shift its tilt, and how fast that grows.
+struct SlideStart : WallStart {
+  explicit SlideStart(const Parameters& p) : WallStart(p) {
+    if (p.given("clearance.initial.angle")) tilt = p.number("clearance.initial.angle");
+    if (p.given("clearance.initial.speed")) tilt_rate = p.number("clearance.initial.speed");
   }
-  static double across(const Parameters& p, const char* path) {
-    const auto value = p.vector(path);
-    if (value[0] != 0.0)
-      throw BadParameter(path, "out-of-range",
-                         "its first number, along the guide, must be 0: the slider is free there; `initial: {joints: "
-                         "...}` of the model sets it");
-    return value[1];
-  }
-  bool loaded = false;
-  double shift = 0.0, shift_rate = 0.0;  // [m], [m/s]
+  double tilt = 0.0, tilt_rate = 0.0;  // [rad], [rad/s]
 };
 
 /// Slider with play in its guide, in the plane: a block of length l and width 2 B (marker b in its middle) between two
@@ -119,31 +113,30 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
     declare_contacts(layout);
     layout.coordinate = Coordinate::position;
     layout.planar_coordinate = 1;
+    layout.play_shape = PlayShape::walls;
+    layout.contact_reach = geometry().reach();
+    layout.contact_length = 2.0 * geometry().half_length;
     layout.events = {all_events.data(), all_events.size()};
     layout.event_roles = event_roles;
     layout.channels = slide_channels;
     layout.channel_roles = slide_roles;
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { planar::Slide(in).write_along(row); }
-  /// Loaded, both ends of the block rest where static contact carries half of the force across; the moment of the ideal
-  /// joint is not carried.
+  /// Loaded, one corner at each end rests where static contact carries the force across and the moment together.
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
-    const double* rotation = out.rotation;
-    out = InitialOffset{};
-    out.rotation = rotation;
-    const Eigen::Vector2d n =
-        rotation == nullptr ? Eigen::Vector2d(0.0, 1.0) : Eigen::Vector2d(rotation[1], rotation[4]);
-    const double shift = start_.loaded ? rest(0.5 * n.dot(Eigen::Vector2d(reaction[0], reaction[1]))) : start_.shift;
-    for (int i = 0; i < 2; ++i) {
-      out.position[i] = shift * n[i];
-      out.velocity[i] = start_.shift_rate * n[i];
-    }
+    const Eigen::Vector2d n = across_walls(out);
+    Stand stand{start_.shift, start_.tilt};
+    if (start_.loaded)
+      stand = rest(n.dot(Eigen::Vector2d(reaction[0], reaction[1])), reaction.size > 5 ? reaction[5] : 0.0);
+    write_start(n, stand.shift, start_.shift_rate, out);
+    out.turn = stand.tilt;
+    out.turn_rate = start_.tilt_rate;
   }
 
  private:
   PrismaticClearance(const Parameters& p, const Radii& widths)
       : PlanarContacts({0.5 * p.number("clearance.length"), widths.known() ? widths.journal : 0.0, widths.clearance},
-                       read_laws(p, widths)),
+                       wall_laws(p, widths.clearance)),
         start_(p) {
     const BlockInGuide& block = geometry();
     if (widths.known() && !(block.play < 2.0 * widths.journal))
@@ -154,24 +147,42 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
                          "'gap' must be below half of 'length', or the slider turns over in its guide");
     if (!widths.known() && !is_inert(laws().friction))
       throw BadParameter("clearance", "missing-key", "friction needs 'guide_width' or 'width'");
-    // The sizes are rounded numbers: a corner at the wall is none in it.
-    if (std::abs(start_.shift) > (1.0 + 1e-9) * block.play)
-      throw BadParameter("clearance.initial.eccentricity", "out-of-range",
-                         "two corners would start in the wall: the shift must stay within 'gap'");
+    PlanarMotion<double> motion{};
+    motion.d.y = start_.shift;
+    motion.c = std::cos(start_.tilt);
+    motion.s = std::sin(start_.tilt);
+    for (std::size_t i = 0; i < BlockInGuide::contacts; ++i) {
+      // The sizes are rounded numbers: a corner at the wall is none in it.
+      if (!(motion.c > 0.0) || block.place(motion, i).penetration > 1e-9 * block.play)
+        throw BadParameter("clearance.initial", "out-of-range",
+                           "a corner would start in the wall: shift and half the length times the sine of the angle "
+                           "must stay within 'gap' together");
+    }
   }
-  static PlanarLaws read_laws(const Parameters& p, const Radii& widths) {
-    ContactPair pair{not_a_number, not_a_number, widths.clearance, not_a_number, {}, {}};
-    read_materials(p, pair);
-    return {p, pair};
+  struct Stand {
+    double shift, tilt;  // [m], [rad]
+  };
+  /// Static equilibrium under a force along n and a moment on b. The tilt moves the corners, by which arms and depths
+  /// change a little: a few rounds settle it.
+  Stand rest(double across, double moment) const {
+    const BlockInGuide& block = geometry();
+    const double half = block.half_length;
+    double shift = 0.0, c = 1.0, s = 0.0, front = 0.5 * (across + moment / half), rear = 0.5 * (across - moment / half);
+    for (int i = 0; i < 50; ++i) {
+      const double arm_front = half * c + std::copysign(block.half_width, front) * s,
+                   arm_rear = -half * c + std::copysign(block.half_width, rear) * s;
+      front = (moment - arm_rear * across) / (arm_front - arm_rear);
+      rear = across - front;
+      const double sag = block.half_width * (s * s) / (1.0 + c);
+      const double end_front = rest_at_wall(laws().normal, block.play, front, sag),
+                   end_rear = rest_at_wall(laws().normal, block.play, rear, sag);
+      const double last = std::exchange(s, std::clamp(0.5 * (end_front - end_rear) / half, -0.9, 0.9));
+      shift = 0.5 * (end_front + end_rear);
+      c = std::sqrt(1.0 - s * s);
+      if (s == last) break;
+    }
+    return {shift, std::asin(s)};
   }
-  /// How far one end stands from the middle of the guide where static contact carries `force` [N] along n.
-  double rest(double force) const {
-    const double size = std::abs(force);
-    if (size < 1e-12) return 0.0;
-    const double away = geometry().play + resting_penetration(laws().normal, geometry().play, size);
-    return -std::copysign(away, force);
-  }
-
   SlideStart start_;
 };
 
@@ -186,24 +197,17 @@ constexpr Parameter width_rows[] = {
      .open = Open::minimum,
      .summary = "Length of the slider along the guide; its middle is the second frame."},
 };
-constexpr Parameter slide_start_rows[] = {
-    {.name = "clearance.initial",
-     .kind = ParameterKind::choice,
-     .default_value = 0,
-     .choices = "centered|loaded",
-     .summary = "Start of the slider: in the middle, resting where static contact carries the load, or a map."},
-    {.name = "clearance.initial.eccentricity",
-     .kind = ParameterKind::vector,
-     .unit = "m",
+constexpr Parameter tilt_rows[] = {
+    {.name = "clearance.initial.angle",
+     .unit = "rad",
      .default_value = optional,
-     .summary = "Place of the slider's middle at the start in the axes of the guide: 0 along it, then across."},
-    {.name = "clearance.initial.velocity",
-     .kind = ParameterKind::vector,
-     .unit = "m/s",
+     .summary = "Angle of the slider against the guide at the start."},
+    {.name = "clearance.initial.speed",
+     .unit = "rad/s",
      .default_value = optional,
-     .summary = "Velocity of the slider's middle across the guide at the start, in the same axes."},
+     .summary = "Angular velocity of the slider against the guide at the start."},
 };
-constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, slide_start_rows);
+constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, wall_start_rows, tilt_rows);
 
 }  // namespace
 

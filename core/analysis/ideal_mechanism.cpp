@@ -13,6 +13,7 @@
 #include "assembly/assembly.h"
 #include "base/error.h"
 #include "base/index.h"
+#include "component/joint_roles.h"
 
 namespace freeplay {
 namespace {
@@ -116,7 +117,7 @@ void IdealMechanism::add_play(int joint, double radius) {
     if (size > 0.0) plays_.push_back(play);
   };
   const double length = parameter(model_->joints[at(joint)], "clearance.length");
-  const bool slide = model_->joints[at(joint)].ideal_layout.coordinate == Coordinate::position;
+  const bool slide = plays_between_walls(model_->joints[at(joint)].layout);
   if (model_->space == Space::planar && slide && length > 0.0) {
     // Both ends of the slider are free across the guide, each by itself.
     const double tilt = 1.0 / length;

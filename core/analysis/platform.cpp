@@ -49,9 +49,9 @@ void choose_inputs(const Model& model, Platform& platform) {
       throw Error(Error::Category::input, "duplicate-name",
                   fmt::format("joint '{}' is named as an input twice", joint.name), place);
     }
-    if (joint.has_play) {
+    if (joint.has_play && joint.layout.coordinate == Coordinate::none) {
       throw Error(Error::Category::input, "driver-on-clearance",
-                  fmt::format("joint '{}' has clearance; it cannot be an input", joint.name), place,
+                  fmt::format("joint '{}' has clearance, which leaves no coordinate to drive", joint.name), place,
                   "--ideal closes it");
     }
     if (joint.ideal_layout.coordinate == Coordinate::none || joint.gear >= 0) {

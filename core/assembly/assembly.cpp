@@ -145,17 +145,17 @@ class Assembler {
     }
   }
 
-  // Starts of the joints with play; `reactions` hold a force for each joint, or nothing yet.
-  bool set_offsets(const std::vector<std::array<double, 3>>& reactions) {
+  // Starts of the joints with play; `reactions` hold a wrench for each joint, or nothing yet.
+  bool set_offsets(const std::vector<std::array<double, 6>>& reactions) {
     bool moved = false;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& joint = model_.joints[at(j)];
       if (!joint.has_play) continue;
-      std::array<double, 3> force = reactions.empty() ? std::array<double, 3>{} : reactions[at(j)];
+      std::array<double, 6> wrench = reactions.empty() ? std::array<double, 6>{} : reactions[at(j)];
       InitialOffset offset{};
       Message message;
       if (!reactions.empty()) offset.rotation = e_.markers[at(joint.marker_a)].rotation;
-      if (!joint.joint.initial_offset({force.data(), force.size()}, offset, message)) {
+      if (!joint.joint.initial_offset({wrench.data(), wrench.size()}, offset, message)) {
         throw Error(Error::Category::input, "assembly-failed",
                     fmt::format("joint '{}' has no start: {}", joint.name, message.text), joint.location);
       }
@@ -289,11 +289,9 @@ class Assembler {
     StateView view = state_.view();
     if (!solver.accelerate(view, view.z)) return false;  // the released mechanism decides
     evaluate(term_position | term_velocity | term_force);
-    std::vector<std::array<double, 3>> reactions(model_.joints.size());
+    std::vector<std::array<double, 6>> reactions(model_.joints.size());
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      double wrench[6];
-      closed_.constraints().reaction(j, e_, state_.lambda(), wrench);
-      reactions[at(j)] = {wrench[0], wrench[1], wrench[2]};
+      closed_.constraints().reaction(j, e_, state_.lambda(), reactions[at(j)].data());
     }
     return set_offsets(reactions);
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/index.h"
+#include "component/joint_roles.h"
 #include "component/parameter_block.h"
 #include "linear/stacked_rows.h"
 
@@ -68,7 +69,7 @@ double share_inside(ClosedMechanism& mechanism, const std::vector<InitialOffset>
   double share = 1.0;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointElement& joint = model.joints[j];
-    if (!joint.has_play || joint.ideal_layout.coordinate == Coordinate::position) continue;
+    if (!joint.has_play || plays_between_walls(joint.layout)) continue;
     const MarkerKinematics &a = mechanism.e.markers[at(joint.marker_a)], &b = mechanism.e.markers[at(joint.marker_b)];
     const double apart[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
                              b.position[2] - a.position[2]};
@@ -138,6 +139,7 @@ bool yield_in_play(ClosedMechanism& mechanism, std::vector<InitialOffset> offset
     if (share >= 1.0) return true;
     for (InitialOffset& offset : offsets) {
       for (double& e : offset.position) e *= inside * share;
+      offset.turn *= inside * share;
     }
   }
   std::ranges::copy(centred, mechanism.state.q().begin());

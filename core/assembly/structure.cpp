@@ -16,6 +16,7 @@
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
+#include "component/joint_roles.h"
 
 namespace freeplay {
 namespace {
@@ -131,7 +132,7 @@ class Examination {
       double apart[3], along = 0.0;
       for (std::size_t i = 0; i < 3; ++i) apart[i] = b.position[i] - a.position[i];
       // The axis of a pin in space, z of the first marker, does not count, nor does that of a slide, x.
-      const bool slide = joint.ideal_layout.coordinate == Coordinate::position;
+      const bool slide = plays_between_walls(joint.layout);
       const bool pin = model_.space == Space::spatial && joint.ideal_layout.coordinate == Coordinate::angle;
       const std::size_t axis = slide ? 0 : 2;
       for (std::size_t i = 0; i < 3 && (pin || slide); ++i) along += apart[i] * a.rotation[3 * i + axis];

@@ -9,6 +9,7 @@
 #include "assembly/closed_mechanism.h"
 #include "base/angle.h"
 #include "base/index.h"
+#include "component/joint_roles.h"
 #include "linear/row_solutions.h"
 #include "stage/newton_stage_solver.h"
 
@@ -226,7 +227,7 @@ class WarmStart {
     const MarkerKinematics &a = e_.markers[at(one.marker_a)], &b = e_.markers[at(one.marker_b)];
     const Eigen::Vector3d apart =
         Eigen::Map<const Eigen::Vector3d>(b.position) - Eigen::Map<const Eigen::Vector3d>(a.position);
-    if (one.ideal_layout.coordinate != Coordinate::position) return apart;
+    if (!plays_between_walls(one.layout)) return apart;
     const Eigen::Vector3d axis(a.rotation[0], a.rotation[3], a.rotation[6]);
     return apart - axis.dot(apart) * axis;
   }

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/suggestion.h"
 #include "cli/options.h"
+#include "component/joint_roles.h"
 #include "results/body_motion.h"
 #include "results/figure_text.h"
 
@@ -151,9 +152,15 @@ class PictureReading {
     }
     for (MagnifiedJoint& one : out_.picture.magnified) {
       const JointElement& joint = model.joints[static_cast<std::size_t>(one.joint)];
-      const auto bearing = world_position(system_, model.markers[static_cast<std::size_t>(joint.marker_a)], q);
+      const Marker& first = model.markers[static_cast<std::size_t>(joint.marker_a)];
+      const auto bearing = world_position(system_, first, q);
       const auto journal = world_position(system_, model.markers[static_cast<std::size_t>(joint.marker_b)], q);
-      one.orbit.push_back({journal[0] - bearing[0], journal[1] - bearing[1]});
+      const double x = journal[0] - bearing[0], y = journal[1] - bearing[1];
+      // Walls lie level in the picture, however their body turns.
+      const bool turned = plays_between_walls(joint.layout);
+      const double own = first.body == ground ? 0.0 : q[3 * static_cast<std::size_t>(first.body) + 2];
+      const double angle = turned ? first.angle + own : 0.0, c = std::cos(angle), s = std::sin(angle);
+      one.orbit.push_back({c * x + s * y, c * y - s * x});
     }
     out_.q.assign(q.begin(), q.end());
   }

@@ -49,6 +49,10 @@ std::string declaration_fault(const JointLayout& layout) {
   if (!(layout.clearance >= 0.0) || !std::isfinite(layout.clearance)) {
     return fmt::format("it declares a clearance of {} m", layout.clearance);
   }
+  if (layout.play_shape > PlayShape::walls) return "it declares play of an unknown shape";
+  if (!(layout.contact_reach >= 0.0) || !std::isfinite(layout.contact_reach)) {
+    return fmt::format("it declares contacts {} m from the second origin", layout.contact_reach);
+  }
   if (layout.planar_rows.size > 0 && layout.space == Space::planar) {
     if (layout.planar_rows.data == nullptr) return "it declares planar rows and does not say which";
     std::int32_t rows = 0;

@@ -1,4 +1,5 @@
-// JointRoles: what the channels and events of a joint mean, as declared or, where nothing is, by their names.
+// JointRoles: what the channels and events of a joint mean, as declared or, where nothing is, by their names; and how
+// its play lies.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +30,12 @@ inline EventRole event_role(const JointLayout& layout, std::size_t event) {
   const std::string_view name = layout.events[event].name;
   if (name.ends_with("contact_begin")) return EventRole::contact_begin;
   return name.ends_with("contact_end") ? EventRole::contact_end : EventRole::none;
+}
+
+/// Whether the play of a joint lies between walls along its x axis; else it is round.
+inline bool plays_between_walls(const JointLayout& layout) {
+  if (layout.play_shape == PlayShape::by_coordinate) return layout.coordinate == Coordinate::position;
+  return layout.play_shape == PlayShape::walls;
 }
 
 /// Contacts of a joint: its events that begin one.

@@ -140,12 +140,14 @@ void check_offset(const JointProbe& probe, Findings& findings) {
   const double play = probe.layout().clearance;
   if (!(play > 0.0)) return;
   for (const double load : {0.0, 1.0, 50.0}) {
-    double reaction[3] = {0.6 * load, -0.8 * load, 0.0};
+    double reaction[6] = {0.6 * load, -0.8 * load, 0.0, 0.0, 0.0, 1e-3 * load};
     const InitialOffset offset = probe.initial_offset(reaction);
     const double size = std::hypot(offset.position[0], offset.position[1], offset.position[2]);
     const double speed = std::hypot(offset.velocity[0], offset.velocity[1], offset.velocity[2]);
-    findings.expect("initial-offset", std::isfinite(size) && std::isfinite(speed), [&] {
-      return fmt::format("for a load of {} N the start is {} m away and moves with {} m/s", load, size, speed);
+    const bool turns = std::isfinite(offset.turn) && std::isfinite(offset.turn_rate);
+    findings.expect("initial-offset", std::isfinite(size) && std::isfinite(speed) && turns, [&] {
+      return fmt::format("for a load of {} N the start is {} m and {} rad away and moves with {} m/s and {} rad/s",
+                         load, size, offset.turn, speed, offset.turn_rate);
     });
   }
 }
@@ -158,7 +160,8 @@ bool same_names(Span<const Channel> a, Span<const Channel> b) {
 bool same_layout(const JointLayout& a, const JointLayout& b) {
   const auto numbers = [](const JointLayout& l) {
     return std::tuple(l.coordinate, l.constraint_rows, l.internal_variables, l.history, l.forces != 0,
-                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale);
+                      l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale,
+                      l.play_shape, l.contact_reach);
   };
   return numbers(a) == numbers(b) && std::ranges::equal(a.planar_rows, b.planar_rows) &&
          same_names(a.channels, b.channels) && std::ranges::equal(a.channel_roles, b.channel_roles) &&

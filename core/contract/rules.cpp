@@ -120,7 +120,8 @@ constexpr Rule rules[] = {
     {"next-corner", joints,
      "next_corner(t) gives the first corner after t, later than t and the same from wherever in between it is asked; "
      "unbounded where none is left."},
-    {"initial-offset", joints, "A joint with play starts at a finite place with a finite speed, for any load."},
+    {"initial-offset", joints,
+     "A joint with play starts at a finite place and angle with finite speeds, for any load."},
     // Contact laws.
     {"no-tension", contact_laws,
      "The normal force is never negative: surfaces do not pull. Return zero where it would be."},

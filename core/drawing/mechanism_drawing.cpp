@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "component/joint_roles.h"
 #include "drawing/given_start.h"
 #include "drawing/joint_stops.h"
 #include "drawing/pitch_radii.h"
@@ -209,15 +210,14 @@ class Drawing {
         kind, svg::path(kept));
   }
 
-  /// The clearance circle of a joint with the way of its journal's centre, in a box right of the mechanism.
+  /// The clearance of a joint with the way of its journal's or slider's centre, in a box right of the mechanism: a
+  /// circle, or the walls of the guide, which lies level there; along it nothing is magnified.
   std::string inset(const MagnifiedJoint& magnified, std::size_t index) const {
     const JointElement& joint = model_.joints[static_cast<std::size_t>(magnified.joint)];
     const double top = inset_height * static_cast<double>(index) + 12.0, left = width, side = inset_width - 12.0;
     const double bottom = top + inset_height - 24.0, scale = scale_ * magnified.factor;
+    const double play = scale * joint.layout.clearance;
     const Point middle{left + 0.5 * side, 0.5 * (top + bottom) + 6.0};
-    const auto place = [&](const std::array<double, 2>& e) {
-      return Point{middle.x + scale * e[0], middle.y - scale * e[1]};
-    };
     svg::Page box;
     box.shape(
         "<clipPath id=\"inset{0}\"><rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\"/></clipPath>\n"
@@ -226,27 +226,52 @@ class Drawing {
         "<g class=\"inset\" clip-path=\"url(#inset{0})\">\n",
         index, px(left), px(top), px(side), px(bottom - top), px(page(world(marker(joint.marker_b))).x),
         px(page(world(marker(joint.marker_b))).y));
-    box.circle(middle, scale * joint.layout.clearance,
-               "class=\"clearance\" fill=\"none\" stroke=\"#cc3311\" stroke-dasharray=\"5 3\"");
+    const bool walls = plays_between_walls(joint.layout);
+    constexpr const char* dashed = "class=\"clearance\" fill=\"none\" stroke=\"#cc3311\" stroke-dasharray=\"5 3\"";
+    if (walls) {
+      box.shape("<path {0} d=\"M{1} {2}h{4}M{1} {3}h{4}\"/>\n", dashed, px(left), px(middle.y - play),
+                px(middle.y + play), px(side));
+    } else {
+      box.circle(middle, play, dashed);
+    }
     box.shape("<path d=\"M{0} {1}m-4 0h8m-4 -4v8\" stroke=\"#cc3311\" stroke-width=\"0.8\"/>\n", px(middle.x),
               px(middle.y));
-    const double whole = 0.48 * (bottom - top) / (scale_ * joint.layout.clearance);  // times that fit
-    std::vector<Point> points;
-    for (const auto& e : magnified.orbit) points.push_back(place(e));
+    const double whole = 0.48 * (bottom - top) * magnified.factor / play;  // times that fit
+    const std::vector<Point> points = walls ? way_along(magnified, middle, 0.9 * side) : way_about(magnified, middle);
     if (!points.empty()) {
       draw_way(box, points, "orbit");
       box.circle(points.back(), 4.0, "class=\"journal\" fill=\"black\"");
     }
     box.shape(
         "</g>\n<text x=\"{}\" y=\"{}\" font-weight=\"bold\" paint-order=\"stroke\" stroke=\"white\" "
-        "stroke-width=\"4\">{}, {:g} times</text>\n",
-        px(left + 8.0), px(top + 16.0), svg::escaped(joint.name), magnified.factor);
-    // Beyond the corners of the box nothing of the circle is seen.
-    if (magnified.factor > 1.45 * whole) {
+        "stroke-width=\"4\">{}, {:g} times{}</text>\n",
+        px(left + 8.0), px(top + 16.0), svg::escaped(joint.name), magnified.factor, walls ? " across" : "");
+    // Beyond the corners of the box nothing of the circle is seen, and of walls nothing beyond its sides.
+    if (magnified.factor > (walls ? 1.0 : 1.45) * whole) {
       box.shape("<text x=\"{}\" y=\"{}\" fill=\"#cc3311\">its clearance is larger: up to {:g} times</text>\n",
                 px(left + 8.0), px(top + 32.0), whole < 10.0 ? 0.1 * std::floor(10.0 * whole) : std::floor(whole));
     }
     return box.text() + svg::scale_bar(scale, side / 4.0, left + 8.0, bottom - 10.0);
+  }
+
+  /// The way of a centre in the box.
+  std::vector<Point> way_about(const MagnifiedJoint& magnified, const Point& middle) const {
+    const double scale = scale_ * magnified.factor;
+    std::vector<Point> points;
+    for (const auto& e : magnified.orbit) points.push_back({middle.x + scale * e[0], middle.y - scale * e[1]});
+    return points;
+  }
+  std::vector<Point> way_along(const MagnifiedJoint& magnified, const Point& middle, double room) const {
+    if (magnified.orbit.empty()) return {};
+    const auto [first, last] =
+        std::ranges::minmax(magnified.orbit, {}, [](const std::array<double, 2>& e) { return e[0]; });
+    const double stroke = last[0] - first[0], from = 0.5 * (first[0] + last[0]);
+    const double along = stroke * scale_ > room ? room / stroke : scale_;
+    std::vector<Point> points;
+    for (const auto& e : magnified.orbit) {
+      points.push_back({middle.x + along * (e[0] - from), middle.y - scale_ * magnified.factor * e[1]});
+    }
+    return points;
   }
 
   std::string caption() const {

@@ -16,11 +16,13 @@ struct Trace {
   std::vector<std::array<double, 3>> points;  ///< z is 0 in the plane
 };
 
-/// The journal of a planar joint with play in its clearance, beside the mechanism.
+/// The journal or slider of a planar joint with play in its clearance, beside the mechanism.
 struct MagnifiedJoint {
   int joint = 0;
-  double factor = 1.0;                       ///< against the mechanism
-  std::vector<std::array<double, 2>> orbit;  ///< of the journal's centre from the bearing's, in world axes [m]
+  double factor = 1.0;  ///< against the mechanism
+  /// Of the journal's centre from the bearing's, in world axes, or of the slider's from the guide's, in the guide's
+  /// [m].
+  std::vector<std::array<double, 2>> orbit;
 };
 
 struct MechanismPicture {

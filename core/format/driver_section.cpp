@@ -144,9 +144,9 @@ class DriverEntry {
 
   /// Has the joint a coordinate of its own? Reports at `clearance_place` or `place` when not.
   bool may_be_driven(int joint, const CheckedValue& place, const CheckedValue& clearance_place) const {
-    if (element(joint).has_play) {
+    if (element(joint).has_play && element(joint).layout.coordinate == Coordinate::none) {
       clearance_place.fail("driver-on-clearance",
-                           "joint '" + element(joint).name + "' has clearance; it cannot be driven", {},
+                           "joint '" + element(joint).name + "' has clearance, which leaves no coordinate to drive", {},
                            "--ideal closes it");
       return false;
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "component/joint_roles.h"
 #include "report/base64.h"
 
 namespace freeplay {
@@ -179,6 +180,7 @@ Json Animation::joint_json(const DrawnJoint& drawn) const {
   const Marker& a = model_.markers[static_cast<std::size_t>(joint.marker_a)];
   const Marker& b = model_.markers[static_cast<std::size_t>(joint.marker_b)];
   const char* what = symbol(joint, planar_);
+  const bool round = joint.layout.clearance > 0.0 && !plays_between_walls(joint.layout);  // drawn as a circle
   Json json = {{"name", joint.name},
                {"kind", joint.component->description.name},
                {"symbol", what},
@@ -186,7 +188,7 @@ Json Animation::joint_json(const DrawnJoint& drawn) const {
                {"at_first", point(a.body, a.position)},
                {"second", name_of(b.body)},
                {"at_second", point(b.body, b.position)},
-               {"clearance", joint.layout.clearance > 0.0 ? Json(joint.layout.clearance) : Json(nullptr)},
+               {"clearance", round ? Json(joint.layout.clearance) : Json(nullptr)},
                {"forces", drawn.force.still ? std::string() : base64_floats(drawn.force.numbers)}};
   if (what != std::string_view("slide")) return json;
   const Rotation& r = a.rotation;

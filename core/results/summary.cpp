@@ -9,6 +9,7 @@
 
 #include "base/sha256.h"
 #include "base/version.h"
+#include "component/joint_roles.h"
 
 namespace freeplay {
 namespace {
@@ -162,6 +163,7 @@ Json play_part(const RunRecord& record, int joint) {
 /// Null for a joint without play; what the file leaves open is null, too.
 Json clearance_part(const JointLayout& layout) {
   if (!(layout.clearance > 0.0)) return nullptr;
+  if (plays_between_walls(layout)) return {{"gap", layout.clearance}, {"length", json_number(layout.contact_length)}};
   return {{"radial_clearance", layout.clearance},
           {"bearing_radius", json_number(layout.smaller_radius + layout.clearance)},
           {"journal_radius", json_number(layout.smaller_radius)},

@@ -69,13 +69,14 @@ Json joint_part() {
   }
   fields["contacts"] = integer_or_null();
   for (const char* name : {"contact_fraction", "dissipated"}) fields[name] = number_or_null();
-  fields["clearance"] = numbers({"radial_clearance", "bearing_radius", "journal_radius", "length"});
+  const Json round = numbers({"radial_clearance", "bearing_radius", "journal_radius", "length"});
+  fields["clearance"] = {{"anyOf", {round, numbers({"gap", "length"}), {{"type", "null"}}}}};
   fields["play"] = numbers({"flight", "impact", "lasting", "max_approach_speed", "max_impulse", "mean_fn", "load_angle",
                             "load_concentration", "load_elevation", "sliding", "work", "pv_mean", "pv_max",
                             "carried_in", "carried_out"});
   fields["play"]["properties"]["impacts"] = integer();
   fields["play"]["required"].push_back("impacts");
-  for (const char* name : {"clearance", "play"}) fields[name]["type"] = {"object", "null"};
+  fields["play"]["type"] = {"object", "null"};
   return record(std::move(fields));
 }
 

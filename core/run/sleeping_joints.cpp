@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "base/index.h"
+#include "component/joint_roles.h"
 
 namespace freeplay {
 namespace {
 
 constexpr double rounding_off = 1e-9;  // of the promised distance
+constexpr double no_cubic = 1e-3;      // of it, for ways that are cubics of the markers only nearly
 // Cubics that begin and end with so many steps to go, at the speeds there, stay within the distance between.
 constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
@@ -19,21 +21,19 @@ SleepingJoints::SleepingJoints(const Joints& joints, const Forces& forces, Evalu
   const std::span<const ForceBlock> blocks = forces.blocks();
   for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {
     const int j = blocks[at(f)].joint;
-    if (blocks[at(f)].internal == 0) candidates_.push_back({j, f, joints[j].marker_a, joints[j].marker_b});
+    if (blocks[at(f)].internal != 0) continue;
+    candidates_.push_back({j, f, joints[j].marker_a, joints[j].marker_b});
+    const JointLayout& layout = joints.layout(j);
+    if (layout.space == Space::planar && layout.clearance > 0.0 && plays_between_walls(layout))
+      context.sleeps[at(j)].reach = layout.contact_reach;
   }
 }
 
-// Lengths are never more than the sums of their parts.
 void SleepingJoints::look(Candidate& candidate, const Evaluation& e) const {
   const Sleep& sleep = context_.sleeps[at(candidate.joint)];
   const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
-  double moved = 0.0, speed = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    moved += std::abs(b.position[i] - a.position[i] - sleep.from[i]);
-    speed += std::abs(b.velocity[i] - a.velocity[i]);
-  }
-  candidate.room = sleep.radius - moved;
-  candidate.speed = speed;
+  candidate.room = sleep.radius - sleep.way(a, b);
+  candidate.speed = sleep.speed(a, b);
 }
 
 bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, Fault& fault) {
@@ -49,9 +49,9 @@ bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, F
     if (!joint.joint.free_distance(Joints::input(joint, start, e), distance, fault.message))
       return fault.blame(candidate.joint);
     if (!(distance > 0.0)) continue;
-    sleep.radius = (1.0 - rounding_off) * distance;
-    const MarkerKinematics &a = e.markers[at(candidate.marker_a)], &b = e.markers[at(candidate.marker_b)];
-    for (int i = 0; i < 3; ++i) sleep.from[i] = b.position[i] - a.position[i];
+    const bool is_cubic = sleep.reach == Sleep::round;
+    sleep.radius = (1.0 - (is_cubic ? rounding_off : no_cubic)) * distance;
+    sleep.place(e.markers[at(candidate.marker_a)], e.markers[at(candidate.marker_b)], sleep.from);
     look(candidate, e);
     sleep.now = candidate.room > way * candidate.speed;
   }

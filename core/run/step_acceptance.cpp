@@ -58,7 +58,8 @@ void StepAcceptance::add_energy() {
 bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
   const auto mobility = [](void* self, int joint, double* out) {
     auto& run = *static_cast<RunContext*>(self);
-    return run.solver.mobility(run.trial, joint, {out, 9});
+    const bool whole = run.system.joints().layout(joint).wants_whole_mobility != 0;
+    return run.solver.mobility(run.trial, joint, {out, 9}, {out + 9, whole ? 36u : 0u});
   };
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   Fault fault;

@@ -143,7 +143,7 @@ bool StepEvents::handle_inside(int joint, int event, double s, const Step& step,
   State& after = step.after;
   const double dt = after.t() - before.t();
   // A contact wants its mass to know how long an impact of it lasts. The room for the state between is lent.
-  double mobility[9];
+  double mobility[mobility_numbers];
   const bool begins = event_role(system_.joints().layout(joint), at(event)) == EventRole::contact_begin;
   const bool moves = begins && step.mobility(step.self, joint, mobility);
   between_.t() = before.t() + s * dt;
@@ -336,7 +336,7 @@ bool StepEvents::apply_at_end(const Passage& hunted, double late, State& after, 
       if (happening_[at(i)] == 0) continue;
       if (changed && !functions(joint, point(after), e_after, g, r, fault)) return false;
       if (changed && !happens(i)) continue;
-      double numbers[9];
+      double numbers[mobility_numbers];
       if (!mobility(self, joint, numbers) || !handle(joint, i, point(after), e_after, after, fault, numbers)) {
         return false;
       }
@@ -353,6 +353,7 @@ bool StepEvents::handle(int joint, int event, const Point& here, const Evaluatio
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
   JointInput in = system_.joints().input(joint, here, e);
   in.mobility = mobility;
+  if (mobility != nullptr && system_.joints().layout(joint).wants_whole_mobility != 0) in.whole_mobility = mobility + 9;
   const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
                      history = Span<double>(state.h()).part(at(h.offset), at(h.size));
   if (!system_.joints().handle(joint).on_event(event, in, internal, history, {values_.data() + first, count},

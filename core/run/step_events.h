@@ -18,8 +18,10 @@ inline constexpr double event_rounding = 1e-15;
 /// states.
 class StepEvents {
  public:
-  /// Gives the mobility of a joint at the end of a located step (JointInput::mobility); false when it fails.
+  /// Gives the mobility of a joint at the end of a located step, JointInput::mobility, and after it whole_mobility if
+  /// the joint wants it; false when it fails.
   using Mobility = bool (*)(void* self, int joint, double* mobility);
+  static constexpr std::size_t mobility_numbers = 9 + 36;
 
   /// `located`: events that are located are handled by apply_at_end() and left alone by apply(). `between` and
   /// `e_between` are lent for each call: what they hold does not matter, and is lost.

@@ -335,33 +335,57 @@ bool IndexOneSolver::part_along_motion(std::span<const double> error, std::span<
   return true;
 }
 
-bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> out) {
+bool IndexOneSolver::mobility(const State& state, int joint, std::span<double> out, std::span<double> whole) {
   if (!system_.evaluate(point(state), term_position, e_)) return false;
   if (!is_factored_here() && !factor()) return false;
   const JointElement& element = system_.model().joints[at(joint)];
+  const bool planar = system_.model().space == Space::planar;
+  constexpr std::size_t directions[] = {0, 1, 2, 3, 4, 5}, in_plane[] = {0, 1, 5};
+  constexpr double none[3] = {};
+  if (!accelerations_by_units(joint, std::span(directions).first(planar ? 2 : 3), none, 3, out)) return false;
+  if (whole.empty()) return true;
+  const double *a = e_->markers[at(element.marker_a)].position, *b = e_->markers[at(element.marker_b)].position;
+  const double arm[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  return accelerations_by_units(joint, planar ? std::span<const std::size_t>(in_plane) : directions, arm, 6, whole);
+}
+
+// `out` (`width` x `width`) <- the acceleration of the second marker against the first, counted at `arm` from it, by
+// unit wrenches in these directions on the second marker and their opposites on the first at the same place.
+bool IndexOneSolver::accelerations_by_units(int joint, std::span<const std::size_t> directions, const double* arm,
+                                            std::size_t width, std::span<double> out) {
+  const JointElement& element = system_.model().joints[at(joint)];
   const int markers[2] = {element.marker_a, element.marker_b};
+  const auto unit = [&](std::size_t direction, int end, double(&wrench)[6]) {
+    std::ranges::fill(wrench, 0.0);
+    wrench[direction] = end == 0 ? -1.0 : 1.0;
+    if (end == 1 || direction > 2) return;
+    const std::size_t next = (direction + 1) % 3, last = (direction + 2) % 3;
+    wrench[3 + next] = -arm[last];
+    wrench[3 + last] = arm[next];
+  };
   std::ranges::fill(out, 0.0);
   std::ranges::fill(right_c_, 0.0);
-  const std::size_t directions = system_.model().space == Space::planar ? 2 : 3;
-  for (std::size_t direction = 0; direction < directions; ++direction) {
+  for (const std::size_t direction : directions) {
     std::ranges::fill(right_a_, 0.0);
-    double wrench[6] = {};
+    double wrench[6];
     for (const int end : {0, 1}) {
-      wrench[direction] = end == 0 ? -1.0 : 1.0;
+      unit(direction, end, wrench);
       if (system_.markers().unknown(markers[end]) != ground) {
         system_.markers().apply(markers[end], wrench, e_, right_a_);
       }
     }
     if (!move_by_forces()) return false;
-    const std::size_t width = at(system_.layout().body_velocities());
+    const std::size_t columns = at(system_.layout().body_velocities());
     for (const int end : {0, 1}) {
       const BodyId body = system_.markers().unknown(markers[end]);
       if (body == ground) continue;
-      for (std::size_t i = 0; i < directions; ++i) {
-        double g[6] = {}, row[6];
-        g[i] = end == 0 ? -1.0 : 1.0;
-        system_.markers().row(markers[end], g, e_, row);
-        for (std::size_t c = 0; c < width; ++c) out[3 * i + direction] += row[c] * increment_[width * at(body) + c];
+      for (const std::size_t i : directions) {
+        double row[6];
+        unit(i, end, wrench);
+        system_.markers().row(markers[end], wrench, e_, row);
+        for (std::size_t c = 0; c < columns; ++c) {
+          out[width * i + direction] += row[c] * increment_[columns * at(body) + c];
+        }
       }
     }
   }

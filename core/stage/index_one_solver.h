@@ -32,8 +32,8 @@ class IndexOneSolver {
   /// Multipliers mu of the last project_velocity(): the impulse on the bodies was -Phi_q^T mu [N s, N m s].
   std::span<const double> impulse() const { return multipliers_; }
   bool project_position(StateView& state);
-  /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
-  bool mobility(const State& state, int joint, std::span<double> out);
+  /// JointInput::mobility and, unless `whole` is empty, JointInput::whole_mobility.
+  bool mobility(const State& state, int joint, std::span<double> out, std::span<double> whole);
   /// The states to come are not close to the last one: factors are made anew there.
   void move_away() { valid_ = false; }
   /// Looks for redundant rows at the present evaluation, unless that was done before.
@@ -61,6 +61,8 @@ class IndexOneSolver {
   /// One such update. Returns how large it is, relative.
   void solve_linear(std::span<double> x, std::span<double> l);
   double refine_once(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers);
+  bool accelerations_by_units(int joint, std::span<const std::size_t> directions, const double* arm, std::size_t width,
+                              std::span<double> out);
   bool move_by_forces();
   /// Whether every equation holds as well as its terms are rounded (Oettli and Prager 1964), and parts of it; the
   /// second with the right sides `right`, to so many roundings.

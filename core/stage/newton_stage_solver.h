@@ -63,7 +63,9 @@ class NewtonStageSolver {
   /// accelerate() appends the rates of `flows` to z'; z of the states handed in then has as many numbers more.
   void integrate_flows(const Flows& flows) { index_one_.integrate_flows(&flows); }
   /// 3 x 3: acceleration of a joint's second marker relative to its first per unit force between them, world axes.
-  bool mobility(const State& state, int joint, std::span<double> out) { return index_one_.mobility(state, joint, out); }
+  bool mobility(const State& state, int joint, std::span<double> out, std::span<double> whole) {
+    return index_one_.mobility(state, joint, out, whole);
+  }
 
   /// The states to come are not close to the last one: factors are made anew there.
   void move_away() { index_one_.move_away(); }

@@ -80,9 +80,10 @@ bool Constraints::make_rows(const Point& point, Evaluation& e) const {
     map(own.offset_b, joint.marker_b, jacobian + 6);
     for (std::size_t r = 0; r < count; ++r) e.gamma[first + r] = gamma[r] - products[r];
     if (joints_.variant() != Variant::closed) continue;
-    const double* velocity = joints_.offset(j).velocity;
+    const InitialOffset& offset = joints_.offset(j);
     for (std::size_t r = 0; r < count; ++r) {
-      for (std::size_t i = 0; i < 3; ++i) e.nu[first + r] += jacobian[12 * r + 6 + i] * velocity[i];
+      for (std::size_t i = 0; i < 3; ++i) e.nu[first + r] += jacobian[12 * r + 6 + i] * offset.velocity[i];
+      e.nu[first + r] += jacobian[12 * r + 11] * offset.turn_rate;
     }
   }
   return true;

@@ -87,6 +87,14 @@ void Joints::shift_all(Evaluation& e) const {
       k.position[i] -= offsets_[j].position[i];
       k.velocity[i] -= offsets_[j].velocity[i];
     }
+    if (offsets_[j].turn == 0.0 && offsets_[j].turn_rate == 0.0) continue;
+    const double c = std::cos(offsets_[j].turn), s = std::sin(offsets_[j].turn);
+    for (int column = 0; column < 2; ++column) {
+      const double x = k.rotation[column], y = k.rotation[3 + column];
+      k.rotation[column] = c * x + s * y;
+      k.rotation[3 + column] = c * y - s * x;
+    }
+    k.angular_velocity[2] -= offsets_[j].turn_rate;
   }
 }
 

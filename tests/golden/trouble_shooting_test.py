@@ -135,8 +135,6 @@ CASES = {
         (3, journal("length: 10 mm", "journal_radius: 5 mm"), RUN),
     "'K' is required, as it cannot be computed without ... [missing-key]":
         (3, journal("      material: {E: 207 GPa, nu: 0.3}\n", ""), RUN),
-    "joint '...' has clearance; it cannot be driven [driver-on-clearance]":
-        (3, journal("simulation:", "drivers: {m: {joint: B, kind: angle, value: t}}\nsimulation:"), RUN),
     "a driver moves joint '...'; it has no start value of its own [conflicting-keys]":
         (3, driven("simulation:", "initial: {joints: {pivot: 0}}\nsimulation:"), RUN),
     "cannot read '...': there is no such file [file-not-found]": (3, PENDULUM, ["run", "modell.yaml"]),

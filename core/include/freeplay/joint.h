@@ -76,6 +76,13 @@ enum class PlanarRow : std::uint32_t {
   turn      ///< theta_b - theta_a = 0, up to whole turns
 };
 
+/// Where the play of a joint lets the origin of b stand.
+enum class PlayShape : std::uint32_t {
+  by_coordinate,  ///< between walls where the coordinate is a position, else round
+  round,          ///< as far as `clearance` from the origin of a, in a circle across the axis or in a ball
+  walls           ///< as far as `clearance` to both sides of the x axis of a, and anywhere along it
+};
+
 /// What a joint asks of the model, answered once, before the layout of the state is fixed.
 struct JointLayout {
   std::uint32_t size = sizeof(JointLayout);
@@ -111,7 +118,11 @@ struct JointLayout {
   Span<const ChannelRole> channel_roles;
   /// One for each of `events`. Empty: from names that end in contact_begin and contact_end.
   Span<const EventRole> event_roles;
-  std::int32_t kinks = 0;  ///< numbers that kinks() fills
+  std::int32_t kinks = 0;                  ///< numbers that kinks() fills
+  std::uint32_t wants_whole_mobility = 0;  ///< nonzero: on_event() gets JointInput::whole_mobility
+  PlayShape play_shape = PlayShape::by_coordinate;
+  double contact_reach = 0.0;  ///< between walls: most by which a depth changes with the angle of b, as by corners that
+                               ///< stand so far from its origin [m]
 };
 
 /// Everything a joint may read. All views are valid during the call only.
@@ -132,6 +143,10 @@ struct JointInput {
   /// constraints included, world axes. In runs that do not end their steps at events, it is that at the end of the
   /// step, and only events that begin a contact get it. Else null.
   const double* mobility = nullptr;
+  /// With `mobility`, for joints that want it: 6 x 6, acceleration [m/s^2, rad/s^2] of b against a, both at the origin
+  /// of b, for a unit wrench on b there and its opposite on a at the same point. So 1/m of a contact with the wrench w
+  /// on b is w.(W w), turning included.
+  const double* whole_mobility = nullptr;
 };
 
 /// Rows of Phi(q,t) = 0. Zeroed by the host.
@@ -170,8 +185,11 @@ struct InitialOffset {
   double position[3];  ///< [m]
   double velocity[3];  ///< [m/s]
   // Appended.
-  /// In, spatial models: world-from-marker of the first marker, 9 numbers; null: its axes are those of the world.
+  /// In: world-from-marker of the first marker, 9 numbers; null: its axes are those of the world.
   const double* rotation = nullptr;
+  /// Planar models: angle of b against where the ideal joint holds it, and its rate.
+  double turn = 0.0;       ///< [rad]
+  double turn_rate = 0.0;  ///< [rad/s]
 };
 
 /// Marker accelerations [a; alpha] in world axes, 6 numbers each [m/s^2, rad/s^2].
@@ -207,7 +225,8 @@ class Joint {
   virtual double step_limit(const JointInput&) const { return unbounded; }
   /// Pose of marker b in marker a for a value of the joint coordinate; false: this type cannot place a body.
   virtual bool place(double /*coordinate*/, Pose& /*b_in_a*/) const { return false; }
-  /// A joint with play: its start, given the force [N] of the ideal joint on the second body (world axes).
+  /// A joint with play: its start, given the force [N] and the moment [N m] of the ideal joint on the second body at
+  /// its marker (world axes, 6 numbers; hosts of older versions give the 3 of the force).
   virtual void initial_offset(Span<const double> /*reaction*/, InitialOffset&) const {}
   /// A static sentence when the joint or one of its laws is used outside its range here, else null. Asked at accepted
   /// states; the host reports the first answer of each joint.
@@ -216,7 +235,9 @@ class Joint {
   /// while the joint certainly leaves everything alone [m]: no wrench, no stored energy, z' = 0, no event past its
   /// zero, no warning, and commit() changes nothing that a later call reads. begin_step() may then be left out, too. In
   /// steps of fixed size the host does not ask a joint for anything of that until its markers have used up the
-  /// distance, nearly. 0: no promise.
+  /// distance, nearly. 0: no promise. Play between walls (PlayShape) counts otherwise, in planar models: how far the
+  /// origin of b moves across the x axis of a, seen from a, and JointLayout::contact_reach times the angle by which b
+  /// turns against a, added.
   virtual double free_distance(const JointInput&) const { return 0.0; }
   /// The first time after t [s] at which forces or rows, as functions of JointInput::t alone, begin, end, jump or have
   /// a kink: runs with error control end a step there. It depends on nothing but t. `unbounded`: there is none. Corners
