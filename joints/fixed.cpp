@@ -1,5 +1,5 @@
+#include "freeplay/kit/planar_marker.h"
 #include "freeplay/plugin.h"
-#include "planar_marker.h"
 #include "rotation_vector.h"
 
 namespace freeplay {

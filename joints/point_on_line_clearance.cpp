@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
+#include "freeplay/kit/planar_slide.h"
+#include "freeplay/kit/wall_play.h"
 #include "freeplay/plugin.h"
-#include "planar_slide.h"
-#include "wall_play.h"
 
 namespace freeplay {
 namespace {

@@ -1,5 +1,5 @@
+#include "freeplay/kit/planar_slide.h"
 #include "freeplay/plugin.h"
-#include "planar_slide.h"
 #include "rotation_vector.h"
 
 namespace freeplay {

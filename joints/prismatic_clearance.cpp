@@ -2,9 +2,9 @@
 #include <cmath>
 #include <utility>
 
+#include "freeplay/kit/planar_slide.h"
+#include "freeplay/kit/wall_play.h"
 #include "freeplay/plugin.h"
-#include "planar_slide.h"
-#include "wall_play.h"
 
 namespace freeplay {
 namespace {
@@ -47,16 +47,8 @@ struct BlockInGuide {
 constexpr const char* corner_events[] = {
     "front_upper_contact_begin", "front_upper_contact_end", "rear_upper_contact_begin", "rear_upper_contact_end",
     "front_lower_contact_begin", "front_lower_contact_end", "rear_lower_contact_begin", "rear_lower_contact_end"};
-constexpr auto events_of_corners() {
-  std::array<Event, 2 * BlockInGuide::contacts> all{};
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[i] = {corner_events[i], i % 2 == 0 ? Crossing::rising : Crossing::falling, 1, event_fields};
-  return all;
-}
-constexpr auto all_events = events_of_corners();
-constexpr EventRole event_roles[] = {EventRole::contact_begin, EventRole::contact_end,   EventRole::contact_begin,
-                                     EventRole::contact_end,   EventRole::contact_begin, EventRole::contact_end,
-                                     EventRole::contact_begin, EventRole::contact_end};
+constexpr auto all_events = contact_events(corner_events);
+constexpr auto all_event_roles = contact_event_roles<all_events.size()>();
 
 constexpr Channel slide_channels[] = {{"shift", "m"},
                                       {"tilt", "rad"},
@@ -117,7 +109,7 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
     layout.contact_reach = geometry().reach();
     layout.contact_length = 2.0 * geometry().half_length;
     layout.events = {all_events.data(), all_events.size()};
-    layout.event_roles = event_roles;
+    layout.event_roles = {all_event_roles.data(), all_event_roles.size()};
     layout.channels = slide_channels;
     layout.channel_roles = slide_roles;
   }

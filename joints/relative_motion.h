@@ -1,7 +1,7 @@
 // The motion of marker b seen in the axes of marker a, and the way of a force found there back to both markers.
 #pragma once
 
-#include "dual.h"
+#include "freeplay/kit/dual.h"
 #include "rotation_vector.h"
 
 namespace freeplay::space {

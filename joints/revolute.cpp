@@ -1,5 +1,5 @@
+#include "freeplay/kit/planar_marker.h"
 #include "freeplay/plugin.h"
-#include "planar_marker.h"
 #include "spatial_marker.h"
 
 namespace freeplay {

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact_phase.h"
+#include "freeplay/kit/contact_phase.h"
+#include "freeplay/kit/friction_slopes.h"
+#include "freeplay/kit/planar_marker.h"
 #include "freeplay/plugin.h"
-#include "friction_slopes.h"
-#include "planar_marker.h"
 #include "revolute_clearance_in_space.h"
 
 namespace freeplay {

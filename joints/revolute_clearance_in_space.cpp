@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "planar_marker.h"
+#include "freeplay/kit/planar_marker.h"
 #include "revolute_play_ends.h"
 
 namespace freeplay {

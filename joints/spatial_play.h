@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "contact_phase.h"
-#include "friction_slopes.h"
+#include "freeplay/kit/contact_phase.h"
+#include "freeplay/kit/friction_slopes.h"
 #include "relative_motion.h"
 
 namespace freeplay::play {

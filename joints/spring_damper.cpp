@@ -1,5 +1,5 @@
 #include "axis_force.h"
-#include "planar_marker.h"
+#include "freeplay/kit/planar_marker.h"
 
 namespace freeplay {
 namespace {

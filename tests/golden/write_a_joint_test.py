@@ -64,6 +64,17 @@ class PageTest(InstalledTest):
             self.assertAlmostEqual(0.1 * math.sin(2 * math.pi * float(row["time"])), float(row["body.block.x"]),
                                    delta=1e-9)
 
+        events = self.rows("results", "hole", "events.csv")
+        self.assertEqual({"right", "upper", "lower"}, {event["kind"].split("_")[0] for event in events})
+        ends = [event for event in events if event["kind"].endswith("contact_end")]
+        self.assertGreater(len(ends), 2)
+        summary = json.loads(self.read("work", "results", "hole", "summary.json"))
+        hole = summary["joints"]["hole"]
+        self.assertEqual(hole["contacts"], hole["play"]["impacts"] + sum(event["impact"] == "0" for event in ends) +
+                         sum(event["kind"] == "contact_open" for event in events))
+        self.assertGreaterEqual(summary["advice"]["min_steps_per_contact"], 20)
+        self.assertLess(summary["residuals"]["energy_max"], 1e-8)
+
     def test_a_term_left_out_is_found(self):
         with open(PAGE, encoding="utf-8") as file:
             source = next(text for language, name, text in BLOCK.findall(file.read()) if language == "cpp")

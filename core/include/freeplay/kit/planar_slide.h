@@ -1,7 +1,7 @@
 // The line of a slide in the plane: a point of one body on the x axis of a marker on another.
 #pragma once
 
-#include "planar_marker.h"
+#include "freeplay/kit/planar_marker.h"
 
 namespace freeplay::planar {
 

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "contact_phase.h"
-#include "friction_slopes.h"
-#include "planar_pair.h"
+#include "freeplay/kit/contact_phase.h"
+#include "freeplay/kit/friction_slopes.h"
+#include "freeplay/kit/planar_pair.h"
 
 namespace freeplay::play {
 
@@ -26,6 +26,21 @@ struct PlanarLaws {
   FrictionLawRef friction;
   std::size_t variables = 0;
 };
+
+/// Events of contacts, by name: begin and end of the first one, of the second one, ...
+template <std::size_t N>
+constexpr std::array<Event, N> contact_events(const char* const (&names)[N]) {
+  std::array<Event, N> all{};
+  for (std::size_t i = 0; i < N; ++i)
+    all[i] = {names[i], i % 2 == 0 ? Crossing::rising : Crossing::falling, 1, event_fields};
+  return all;
+}
+template <std::size_t N>
+constexpr std::array<EventRole, N> contact_event_roles() {
+  std::array<EventRole, N> all{};
+  for (std::size_t i = 0; i < N; ++i) all[i] = begin_and_end[i % 2];
+  return all;
+}
 
 /// A joint whose contacts stand where `Geometry` says:
 ///

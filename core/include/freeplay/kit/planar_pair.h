@@ -1,9 +1,9 @@
 // The motion of marker b in the axes of marker a in the plane, contacts between both, and the way of a force back.
 #pragma once
 
-#include "contact_phase.h"
-#include "dual.h"
-#include "planar_marker.h"
+#include "freeplay/kit/contact_phase.h"
+#include "freeplay/kit/dual.h"
+#include "freeplay/kit/planar_marker.h"
 
 namespace freeplay::play {
 

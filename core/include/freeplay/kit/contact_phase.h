@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "play_parameters.h"
+#include "freeplay/kit/play_parameters.h"
 
 namespace freeplay::play {
 

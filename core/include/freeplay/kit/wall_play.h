@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "planar_contacts.h"
+#include "freeplay/kit/planar_contacts.h"
 
 namespace freeplay::play {
 
