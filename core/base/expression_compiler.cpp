@@ -194,11 +194,15 @@ class ExpressionCompiler : ExpressionOperands {
   /// Names of things may hold '-' and '/': the longest name that is known counts.
   Operand channel(std::size_t begin) {
     std::size_t end = begin, plain = 0;
-    for (; end < text_.size(); ++end) {
+    for (int dots = 0; end < text_.size();) {
       const char c = text_[end];
-      if ((c == '-' || c == '/') && plain == 0) plain = end;
-      const bool of_word = word_end(text_, end) > end || (c >= '0' && c <= '9');
-      if (!of_word && c != '-' && c != '/' && c != '.') break;
+      // KIND.NAME.QUANTITY may end there.
+      if ((c == '-' || c == '/') && plain == 0 && dots >= 2) plain = end;
+      dots += c == '.' ? 1 : 0;
+      const bool sign = c == '-' || c == '/' || c == '.' || (c >= '0' && c <= '9');
+      const std::size_t next = sign ? end + 1 : word_end(text_, end);
+      if (next == end) break;
+      end = next;
     }
     if (plain == 0) plain = end;
     if (variables_ == nullptr) {
@@ -214,10 +218,8 @@ class ExpressionCompiler : ExpressionOperands {
       } while (last > plain && text_[last] != '-' && text_[last] != '/');
     }
     if (!found) {
-      // A frame has its '/' in the name: what follows the first dot after it is still of the name.
-      const std::size_t wrong = text_.substr(begin, 6) == "frame." ? end : plain;
-      const std::string name(text_.substr(begin, wrong - begin));
-      fail("unknown-name", begin, wrong, fmt::format("unknown {} '{}'", variables_->word(), name),
+      const std::string name(text_.substr(begin, plain - begin));
+      fail("unknown-name", begin, plain, fmt::format("unknown {} '{}'", variables_->word(), name),
            variables_->nearest(name));
     }
     position_ = last;

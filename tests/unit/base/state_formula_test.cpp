@@ -62,6 +62,7 @@ TEST(StateFormula, NamesChannelsAndChecksTheirUnits) {
   EXPECT_EQ(compiled("3 N*s/m*body.a.vx").dimension(), dimension::force);
   EXPECT_EQ(error_of("body.a.x + body.a.vx"), "dimension-mismatch 0+20");
   EXPECT_EQ(error_of("2*body.a.y"), "unknown-name 2+8");
+  EXPECT_EQ(error_of("2*body.a-b.y-body.a.x"), "unknown-name 2+10");
   EXPECT_EQ(error_of("if(body.a.x, 1, 2)"), "bad-expression 3+8");
   EXPECT_EQ(error_of("if(body.a.x > 1, 2)"), "bad-expression 0+18");
   EXPECT_EQ(error_of("if(body.a.x > 1 s, 2, 3)"), "dimension-mismatch 3+14");
