@@ -50,6 +50,8 @@ int Expression::operand_count(Operation operation) noexcept {
       return 2;
     case Operation::smooth:
       return 3;
+    case Operation::choose:
+      return 4;
     default:
       return 1;
   }
@@ -143,12 +145,22 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
     case Operation::absolute:
       a = abs(a);
       break;
+    case Operation::sign:
+      a = Jet::constant(less_from_right(a, Jet{}) ? -1.0 : less_from_right(Jet{}, a) ? 1.0 : 0.0);
+      break;
     case Operation::minimum:
       a = min(a, *b);
       break;
     case Operation::maximum:
       a = max(a, *b);
       break;
+    case Operation::choose: {
+      const Jet over = margin(instruction.comparison(), a, b[0]);
+      const bool holds = less_from_right(Jet{}, over) ||
+                         (!is_strict(instruction.comparison()) && over.value == 0.0 && !less_from_right(over, Jet{}));
+      a = std::isnan(over.value) ? over : holds ? b[1] : b[2];
+      break;
+    }
     default:
       outside = apply_function(instruction, operands);
   }
@@ -204,11 +216,69 @@ bool Expression::run(double t, std::span<const double> variables, Jet& out, Eval
         break;
     }
     Jet* const operands = top - operand_count(instruction.operation);
-    if (!apply(instruction, operands, failure)) return false;
+    if (!chooses_) {
+      if (!apply(instruction, operands, failure)) return false;
+    } else if (!apply_or_lack(instruction, operands, failure)) {
+      operands[0] = Jet::constant(std::numeric_limits<double>::quiet_NaN());
+    }
     top = operands + 1;
   }
+  if (chooses_ && !stack[0].is_finite(derivatives_)) return false;
   out = stack[0];
   return true;
+}
+
+// What lacks a value makes what is formed of it lack one, until a choice leaves it out. The failure is the first.
+bool Expression::apply_or_lack(const Instruction& instruction, Jet* operands,
+                               EvaluationFailure& failure) const noexcept {
+  const int counted = instruction.operation == Operation::choose ? 2 : operand_count(instruction.operation);
+  for (int i = 0; i < counted; ++i) {
+    if (std::isnan(operands[i].value)) return false;
+  }
+  EvaluationFailure own;
+  if (apply(instruction, operands, own)) return true;
+  if (*failure.id == '\0') failure = own;
+  return false;
+}
+
+Expression Expression::part(std::size_t begin, std::size_t end) const {
+  Expression part;
+  part.program_.assign(program_.begin() + static_cast<std::ptrdiff_t>(begin),
+                       program_.begin() + static_cast<std::ptrdiff_t>(end));
+  part.stack_depth_ = stack_depth_;
+  part.characters_ = characters_;
+  part.derivatives_ = derivatives_;
+  part.depends_on_time_ = true;
+  part.chooses_ = chooses_;
+  return part;
+}
+
+std::vector<Expression> Expression::time_parts() const {
+  struct Value {
+    std::size_t begin;
+    bool of_time, of_variables;
+  };
+  std::vector<Expression> parts;
+  std::vector<Value> stack;
+  const auto take = [&](const Value& value, std::size_t end) {
+    if (value.of_time && !value.of_variables) parts.push_back(part(value.begin, end));
+  };
+  for (std::size_t i = 0; i < program_.size(); ++i) {
+    const Operation operation = program_[i].operation;
+    const std::size_t first = stack.size() - static_cast<std::size_t>(operand_count(operation));
+    Value made{i, operation == Operation::push_time, operation == Operation::push_variable};
+    for (std::size_t k = first; k < stack.size(); ++k) {
+      made = {std::min(made.begin, stack[k].begin), made.of_time || stack[k].of_time,
+              made.of_variables || stack[k].of_variables};
+    }
+    for (std::size_t k = first; made.of_variables && k < stack.size(); ++k) {
+      take(stack[k], k + 1 < stack.size() ? stack[k + 1].begin : i);
+    }
+    stack.resize(first);
+    stack.push_back(made);
+  }
+  if (!stack.empty()) take(stack.front(), program_.size());
+  return parts;
 }
 
 bool Expression::evaluate(double t, Jet& out, EvaluationFailure& failure) const noexcept {

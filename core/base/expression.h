@@ -1,6 +1,7 @@
 // Expression: a formula of the model file, with units, parameters and exact time derivatives.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,8 +75,8 @@ struct EvaluationFailure {
   int offset = 0, length = 1;
 };
 
-/// A time at which a formula changes its form: an abs, min or max changes sides or a ramp of smooth() begins or ends.
-/// Just before it the formula is still what it was.
+/// A time at which a formula changes its form: an abs, sign, min, max or if changes sides or a ramp of smooth() begins
+/// or ends. Just before it the formula is still what it was.
 struct Corner {
   double time = 0.0;    ///< [s]
   bool smooth = false;  ///< value, rate and acceleration do not jump there
@@ -94,6 +95,7 @@ struct Outline {
 };
 
 /// A compiled formula f(t). Parameters are folded in as constants; what depends on `t` becomes a flat postfix program.
+/// What `if` leaves out need not have a value.
 /// Immutable, cheap to copy for short formulas, safe to evaluate from several threads.
 class Expression {
  public:
@@ -101,7 +103,8 @@ class Expression {
   /// `t` is `time-not-allowed` unless `time_allowed`. Parameters that are themselves in error are the caller's matter:
   /// do not compile a text whose referenced_parameters() contain one.
   static Expression compile(std::string_view text, const Scope& scope, bool time_allowed);
-  /// The same where `[name]` is one of `variables`, with constants only besides. What it gives is for value() alone.
+  /// The same where `[name]` is one of `variables`, and so is a name with dots, such as body.ram.vx. What it gives is
+  /// for value() and StateFormula alone.
   static Expression compile(std::string_view text, const Scope& scope, bool time_allowed,
                             const FormulaVariables& variables);
 
@@ -120,7 +123,11 @@ class Expression {
   /// rest is unknown: then the last rate is infinite. Allocates.
   Outline outline(double from, double to) const;
 
+  /// On time or on variables.
   bool depends_on_time() const { return depends_on_time_; }
+  bool depends_on_variables() const { return depends_on_variables_; }
+  /// The largest parts of it that depend on time but on no variable, in order.
+  std::vector<Expression> time_parts() const;
   DimensionKind kind() const { return kind_; }
   const Dimension& dimension() const { return dimension_; }
 
@@ -132,9 +139,11 @@ class Expression {
 
  private:
   friend class ExpressionCompiler;
+  friend class ExpressionOperands;
   friend class FormulaCourse;
   friend class FormulaForms;
   friend class FormulaSides;
+  friend class StateFormula;
 
   enum class Operation {
     push_constant,
@@ -156,27 +165,42 @@ class Expression {
     exponential,
     logarithm,
     absolute,
+    sign,
     arctangent2,
     minimum,
     maximum,
-    smooth
+    smooth,
+    choose  ///< of l, r, a, b: a where l and r compare as Comparison says, else b
   };
+  enum class Comparison { greater, at_least, less, at_most };
   struct Instruction {
     Operation operation;
-    double constant;     // of push_constant; the exponent of power_constant; the index of push_variable
+    double constant;     // of push_constant; exponent of power_constant; index of push_variable; Comparison of choose
     int offset, length;  // of the operator or function in the text [characters]
+    Comparison comparison() const { return static_cast<Comparison>(static_cast<int>(constant)); }
   };
 
   template <int depth>
   bool run(double t, std::span<const double> variables, Jet& out, EvaluationFailure& failure) const noexcept;
   static const char* apply_function(const Instruction& instruction, Jet* operands) noexcept;
   bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
+  bool apply_or_lack(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   static int operand_count(Operation operation) noexcept;
+  static bool is_strict(Comparison comparison) {
+    return comparison == Comparison::greater || comparison == Comparison::less;
+  }
+  /// What decides a choice: positive where it holds.
+  template <class Number>
+  static Number margin(Comparison comparison, const Number& l, const Number& r) {
+    return comparison == Comparison::greater || comparison == Comparison::at_least ? l - r : r - l;
+  }
+  Expression part(std::size_t begin, std::size_t end) const;
   std::vector<Instruction> program_;
   int stack_depth_ = 0;
   int characters_ = 0;
   int derivatives_ = 2;
-  bool depends_on_time_ = false;
+  bool depends_on_time_ = false, depends_on_variables_ = false;
+  bool chooses_ = false;  ///< some values may be left out
   DimensionKind kind_ = DimensionKind::plain;
   Dimension dimension_;
 };

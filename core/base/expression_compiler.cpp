@@ -13,17 +13,17 @@
 #include <fmt/format.h>
 
 #include "base/expression.h"
-#include "base/expression_text.h"
+#include "base/expression_operands.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/token.h"
 
 namespace freeplay {
 
-class ExpressionCompiler : ExpressionText {
+class ExpressionCompiler : ExpressionOperands {
  public:
   ExpressionCompiler(std::string_view text, const Scope& scope, bool time_allowed, const FormulaVariables* variables)
-      : ExpressionText(text), scope_(scope), time_allowed_(time_allowed), variables_(variables) {}
+      : ExpressionOperands(text), scope_(scope), time_allowed_(time_allowed), variables_(variables) {}
 
   Expression compile() {
     expression_.characters_ = character_count(text_);
@@ -40,43 +40,7 @@ class ExpressionCompiler : ExpressionText {
  private:
   using Operation = Expression::Operation;
 
-  /// What is known of a value on the stack; [begin, end) are bytes of the text.
-  struct Operand {
-    DimensionKind kind = DimensionKind::plain;
-    Dimension dimension{};
-    bool depends_on_time = false;
-    std::size_t begin = 0, end = 0;
-
-    bool dimensioned() const { return kind == DimensionKind::dimensioned; }
-  };
-
-  struct Function {
-    std::string_view name;
-    Operation operation;
-    int least, most;  // number of arguments
-  };
-
-  static constexpr int longest = 10000, any_number = 1 << 20;
-  static constexpr std::array<Function, 13> functions = {{
-      {"sin", Operation::sine, 1, 1},
-      {"cos", Operation::cosine, 1, 1},
-      {"tan", Operation::tangent, 1, 1},
-      {"asin", Operation::arcsine, 1, 1},
-      {"acos", Operation::arccosine, 1, 1},
-      {"sqrt", Operation::root, 1, 1},
-      {"exp", Operation::exponential, 1, 1},
-      {"log", Operation::logarithm, 1, 1},
-      {"abs", Operation::absolute, 1, 1},
-      {"atan2", Operation::arctangent2, 2, 2},
-      {"min", Operation::minimum, 2, any_number},
-      {"max", Operation::maximum, 2, any_number},
-      {"smooth", Operation::smooth, 3, 3},
-  }};
-
-  static const Function* find_function(std::string_view name) {
-    const auto found = std::find_if(functions.begin(), functions.end(), [&](const auto& f) { return f.name == name; });
-    return found == functions.end() ? nullptr : &*found;
-  }
+  static constexpr int longest = 10000;
 
   // --- grammar
 
@@ -216,14 +180,96 @@ class ExpressionCompiler : ExpressionText {
            variables_->nearest(name));
     }
     const Operand operand{found->kind, found->dimension, true, begin, position_};
+    expression_.depends_on_variables_ = true;
     return emit(Operation::push_variable, operand, begin, position_, found->index);
+  }
+
+  /// A name with dots, such as body.ram.vx.
+  bool begins_channel(std::size_t begin, std::size_t end) const {
+    if (end + 1 >= text_.size() || text_[end] != '.' || word_end(text_, end + 1) == end + 1) return false;
+    return variables_ != nullptr || is_channel_kind(text_.substr(begin, end - begin));
+  }
+  static bool is_channel_kind(std::string_view word) { return word == "body" || word == "joint" || word == "frame"; }
+
+  /// Names of things may hold '-' and '/': the longest name that is known counts.
+  Operand channel(std::size_t begin) {
+    std::size_t end = begin, plain = 0;
+    for (int dots = 0; end < text_.size();) {
+      const char c = text_[end];
+      // KIND.NAME.QUANTITY may end there.
+      if ((c == '-' || c == '/') && plain == 0 && dots >= 2) plain = end;
+      dots += c == '.' ? 1 : 0;
+      const bool sign = c == '-' || c == '/' || c == '.' || (c >= '0' && c <= '9');
+      const std::size_t next = sign ? end + 1 : word_end(text_, end);
+      if (next == end) break;
+      end = next;
+    }
+    if (plain == 0) plain = end;
+    if (variables_ == nullptr) {
+      position_ = plain;
+      fail("state-not-allowed", begin, plain,
+           fmt::format("'{}' is a value of the motion, which is not allowed here", text_.substr(begin, plain - begin)));
+    }
+    std::optional<FormulaVariable> found;
+    std::size_t last = end;
+    while (!(found = variables_->find(text_.substr(begin, last - begin))) && last > plain) {
+      do {
+        --last;
+      } while (last > plain && text_[last] != '-' && text_[last] != '/');
+    }
+    if (!found) {
+      const std::string name(text_.substr(begin, plain - begin));
+      fail("unknown-name", begin, plain, fmt::format("unknown {} '{}'", variables_->word(), name),
+           variables_->nearest(name));
+    }
+    position_ = last;
+    expression_.depends_on_variables_ = true;
+    const Operand operand{found->kind, found->dimension, true, begin, position_};
+    return emit(Operation::push_variable, operand, begin, position_, found->index);
+  }
+
+  /// if(l > r, a, b)
+  Operand choice(std::size_t begin) {
+    const std::size_t open = position_;
+    enter(open);
+    const Operand left = sum();
+    const char sign = peek();
+    if (sign != '<' && sign != '>') {
+      fail("bad-expression", left.begin, std::max(position_, left.begin + 1),
+           "'if' begins with a comparison by <, <=, > or >=");
+    }
+    const bool greater = sign == '>';
+    ++position_;
+    const bool equal = position_ < text_.size() && text_[position_] == '=';
+    if (equal) ++position_;
+    const auto comparison = greater ? (equal ? Expression::Comparison::at_least : Expression::Comparison::greater)
+                                    : (equal ? Expression::Comparison::at_most : Expression::Comparison::less);
+    const Operand right = sum();
+    const Operand compared = agree(left, right);
+    std::array<Operand, 2> ways;
+    for (Operand& way : ways) {
+      if (peek() != ',') fail("bad-expression", begin, position_, "'if' needs a comparison and two values");
+      ++position_;
+      way = sum();
+    }
+    if (peek() == ',') fail_at_comma();
+    leave(open);
+    Operand result = agree(ways[0], ways[1]);
+    result.depends_on_time = result.depends_on_time || compared.depends_on_time;
+    result.begin = begin;
+    result.end = position_;
+    expression_.chooses_ = true;
+    return emit(Operation::choose, result, begin, begin + 2, static_cast<double>(comparison));
   }
 
   Operand word() {
     const std::size_t begin = position_, end = word_end(text_, begin);
     const std::string_view name = text_.substr(begin, end - begin);
     position_ = end;
-    if (const Function* function = find_function(name); function && peek() == '(') return call(*function, begin);
+    if (begins_channel(begin, end)) return channel(begin);
+    if (const Function* function = find_function(name); function && peek() == '(') {
+      return function->operation == Operation::choose ? choice(begin) : call(*function, begin);
+    }
     Operand operand;
     operand.begin = begin;
     operand.end = end;
@@ -296,53 +342,7 @@ class ExpressionCompiler : ExpressionText {
     return operand;
   }
 
-  // --- dimensions
-
-  static Operand join(const Operand& left, const Operand& right) {
-    Operand result;
-    result.depends_on_time = left.depends_on_time || right.depends_on_time;
-    result.begin = left.begin;
-    result.end = right.end;
-    return result;
-  }
-
-  /// Operands that are added or compared.
-  Operand agree(const Operand& left, const Operand& right) const {
-    if (left.dimensioned() && right.dimensioned() && !(left.dimension == right.dimension)) {
-      fail("dimension-mismatch", left.begin, right.end,
-           fmt::format("{} and {} cannot be added or compared", dimension_name(left.dimension),
-                       dimension_name(right.dimension)));
-    }
-    Operand result = join(left, right);
-    const Operand& leading = left.kind >= right.kind ? left : right;  // plain < free < dimensioned
-    result.kind = leading.kind;
-    result.dimension = leading.dimension;
-    return result;
-  }
-
-  Operand call_result(const Function& function, const std::vector<Operand>& arguments) const {
-    Operand result = arguments.front();
-    switch (function.operation) {
-      case Operation::absolute:
-        return result;
-      case Operation::root:
-        result.dimension = power(result.dimension, 0.5);
-        return result;
-      case Operation::arctangent2:
-      case Operation::smooth:
-        for (std::size_t i = 1; i < arguments.size(); ++i) result = agree(result, arguments[i]);
-        break;
-      default:
-        if (result.dimensioned() && !result.dimension.dimensionless()) {
-          fail("dimension-mismatch", result.begin, result.end,
-               fmt::format("'{}' needs an angle or a number, but this is {}", function.name,
-                           dimension_name(result.dimension)));
-        }
-    }
-    result.kind = DimensionKind::plain;
-    result.dimension = {};
-    return result;
-  }
+  // --- program
 
   Operand raise(const Operand& base, const Operand& exponent, std::size_t caret) {
     if (exponent.dimensioned()) {
@@ -362,8 +362,6 @@ class ExpressionCompiler : ExpressionText {
     return emit(Operation::power_constant, result, caret, caret + 1, n);
   }
 
-  // --- program
-
   void push(double constant, std::size_t begin, std::size_t end) {
     append({Operation::push_constant, constant, characters(0, begin), characters(begin, end)});
   }
@@ -382,7 +380,7 @@ class ExpressionCompiler : ExpressionText {
     }
     // A constant operand is always a single push, so the operands are the last instructions.
     const int count = Expression::operand_count(operation);
-    std::array<Jet, 3> operands{};
+    std::array<Jet, 4> operands{};
     for (int i = count; i-- > 0; pop()) {
       operands[static_cast<std::size_t>(i)] = Jet::constant(expression_.program_.back().constant);
     }

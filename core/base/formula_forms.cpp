@@ -44,7 +44,11 @@ bool FormulaForms::look(double t, Form& form) {
     const std::size_t first = stack_.size() - std::max<std::size_t>(count, 1);
     Jet* const operands = stack_.data() + first;
     forms_[first] = of(instruction, operands, forms_.data() + first, std::max<std::size_t>(count, 1));
-    if (!expression_.apply(instruction, operands, failure)) return false;
+    if (!expression_.apply(instruction, operands, failure)) {
+      if (!expression_.chooses_) return false;
+      operands[0] = Jet::constant(std::numeric_limits<double>::quiet_NaN());  // a choice may leave it out
+      forms_[first] = no_form;
+    }
     stack_.resize(first + 1), forms_.resize(first + 1);
   }
   form = forms_.front();
@@ -60,6 +64,12 @@ FormulaForms::Form FormulaForms::of(const Expression::Instruction& instruction, 
     case Operation::maximum: {
       const bool second_is_less = less_from_right(x[1], x[0]);
       return form[second_is_less == (instruction.operation == Operation::minimum) ? 1 : 0];
+    }
+    case Operation::sign:
+      return {};
+    case Operation::choose: {
+      const Jet over = Expression::margin(instruction.comparison(), x[0], x[1]);
+      return form[over.value > 0.0 || (over.value == 0.0 && !Expression::is_strict(instruction.comparison())) ? 2 : 3];
     }
     case Operation::smooth:
       if (x[0].value <= x[1].value || x[0].value >= x[2].value) return {};

@@ -37,8 +37,10 @@ void FormulaSides::list_sides() {
     first_side_of_.push_back(static_cast<int>(sides_.size()));
     switch (instruction.operation) {
       case Operation::absolute:
+      case Operation::sign:
       case Operation::minimum:
       case Operation::maximum:
+      case Operation::choose:
         sides_.push_back({i, first, 0, false});
         break;
       case Operation::smooth:
@@ -151,6 +153,18 @@ IntervalJet FormulaSides::bound_operation(int i, const IntervalJet* x, const Jet
       const Where where = decide(side, x[0], middle[0], hangs, span, depth);
       if (where != Where::open) return where == Where::above ? x[0] : -x[0];
       return {{0.0, largest(x[0].value)}, hull(x[0].rate, -x[0].rate), Interval::whole()};
+    }
+    case Operation::sign: {
+      const Where where = decide(side, x[0], middle[0], hangs, span, depth);
+      if (where != Where::open) return IntervalJet::constant(Interval::at(where == Where::above ? 1.0 : -1.0));
+      return {{-1.0, 1.0}, Interval::whole(), Interval::whole()};
+    }
+    case Operation::choose: {
+      const Expression::Comparison comparison = instruction.comparison();
+      const Where where = decide(side, Expression::margin(comparison, x[0], x[1]),
+                                 Expression::margin(comparison, middle[0], middle[1]), hangs, span, depth);
+      if (where != Where::open) return x[where == Where::above ? 2 : 3];
+      return {hull(x[2].value, x[3].value), Interval::whole(), Interval::whole()};
     }
     case Operation::minimum:
     case Operation::maximum: {
@@ -387,6 +401,7 @@ bool FormulaSides::value_of(std::size_t s, double t, Jet& value) {
   work_ += side.instruction - side.first;
   stack_.clear();
   EvaluationFailure failure;
+  const Expression::Instruction& decided = expression_.program_[static_cast<std::size_t>(side.instruction)];
   for (int i = side.first; i < side.instruction; ++i) {
     const Expression::Instruction& instruction = expression_.program_[static_cast<std::size_t>(i)];
     if (instruction.operation == Operation::push_time) {
@@ -396,11 +411,18 @@ bool FormulaSides::value_of(std::size_t s, double t, Jet& value) {
     const auto count = static_cast<std::size_t>(Expression::operand_count(instruction.operation));
     if (count == 0) stack_.emplace_back();
     const std::size_t first = stack_.size() - std::max<std::size_t>(count, 1);
-    if (!expression_.apply(instruction, &stack_[first], failure)) return false;
+    if (!expression_.apply(instruction, &stack_[first], failure)) {
+      if (!expression_.chooses_) return false;
+      stack_[first] = Jet::constant(std::numeric_limits<double>::quiet_NaN());  // a choice may leave it out
+    }
     stack_.resize(first + 1);
   }
-  switch (expression_.program_[static_cast<std::size_t>(side.instruction)].operation) {
+  switch (decided.operation) {
+    case Operation::choose:
+      value = Expression::margin(decided.comparison(), stack_[0], stack_[1]);
+      break;
     case Operation::absolute:
+    case Operation::sign:
     case Operation::root:
     case Operation::power_constant:
       value = stack_[0];
@@ -415,7 +437,7 @@ bool FormulaSides::value_of(std::size_t s, double t, Jet& value) {
     default:
       value = stack_[0] - stack_[1 + static_cast<std::size_t>(side.which)];
   }
-  return true;
+  return !std::isnan(value.value);
 }
 
 }  // namespace freeplay

@@ -56,7 +56,9 @@ std::optional<Expression> CheckedValue::compile(const Node& text_node, std::stri
     return variables == nullptr ? Expression::compile(text, *reading_->scope, time_allowed)
                                 : Expression::compile(text, *reading_->scope, time_allowed, *variables);
   } catch (const ExpressionError& error) {
-    fail_inside(text_node, error, offset);
+    const auto* channels = dynamic_cast<const ChannelNames*>(variables);
+    const bool excused = channels != nullptr && channels->excused() && error.id == "unknown-name";
+    if (!excused) fail_inside(text_node, error, offset);
   }
   return std::nullopt;
 }
@@ -111,12 +113,13 @@ bool CheckedValue::tried(const Expression& expression) const {
   return false;
 }
 
-std::optional<Expression> CheckedValue::time_function(const Dimension& dimension, int derivatives) const {
+std::optional<Expression> CheckedValue::time_function(const Dimension& dimension, int derivatives,
+                                                      const ChannelNames* channels) const {
   if (!node_->is_scalar()) {
     wrong_type("a quantity");
     return std::nullopt;
   }
-  std::optional<Expression> expression = compile(*node_, node_->text, 0, true);
+  std::optional<Expression> expression = compile(*node_, node_->text, 0, true, channels);
   if (!expression) return std::nullopt;
   try {
     expression->require(dimension);
@@ -125,9 +128,10 @@ std::optional<Expression> CheckedValue::time_function(const Dimension& dimension
     return std::nullopt;
   }
   expression->need(derivatives);
-  if (!tried(*expression)) return std::nullopt;
+  if (!expression->depends_on_variables() && !tried(*expression)) return std::nullopt;
   if (reading_->readout != nullptr) {
-    reading_->readout->note_function(reading_->instance, *node_, *expression, *reading_->scope);
+    reading_->readout->note_function(reading_->instance, *node_, *expression, *reading_->scope,
+                                     channels == nullptr ? NamesInFull{} : channels->found());
   }
   return expression;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/expression.h"
@@ -12,6 +13,15 @@
 #include "model/model.h"
 
 namespace freeplay {
+
+/// Names of channels in a formula, and what was found under them.
+class ChannelNames : public FormulaVariables {
+ public:
+  /// Names as written, each once, and in full.
+  virtual const std::vector<std::pair<std::string, std::string>>& found() const = 0;
+  /// One that was not found may belong to an entry that is in error: it need not be reported.
+  virtual bool excused() const = 0;
+};
 
 /// Readers return nothing after they have reported why; they never throw for what a person wrote.
 class CheckedValue : public LocatedValue {
@@ -22,8 +32,10 @@ class CheckedValue : public LocatedValue {
   std::optional<double> quantity(const Dimension& dimension, const Range& range = {}) const;
   /// A constant of whatever dimension.
   std::optional<Quantity> any_quantity() const;
-  /// A function of time, tried at the start time, of which the first `derivatives` are used.
-  std::optional<Expression> time_function(const Dimension& dimension, int derivatives = 2) const;
+  /// A function of time, tried at the start time, of which the first `derivatives` are used; with `channels` also one
+  /// of these, which cannot be tried.
+  std::optional<Expression> time_function(const Dimension& dimension, int derivatives = 2,
+                                          const ChannelNames* channels = nullptr) const;
   /// A function of time and of `variables`, of whatever dimension.
   std::optional<Expression> formula(const FormulaVariables& variables) const;
   std::optional<long> integer(long minimum, long maximum) const;

@@ -88,6 +88,17 @@ std::optional<int> Draft::find_joint(const std::string& name, const Part& part) 
   return look_up(joints, name, part);
 }
 
+const std::string* Draft::lone_frame(const std::string& name) const {
+  if (lone_frames_.empty()) {
+    for (const auto& [full, frame] : frames) {
+      const auto [place, fresh] = lone_frames_.try_emplace(full.substr(full.find('/') + 1), full);
+      if (!fresh) place->second.clear();
+    }
+  }
+  const auto found = lone_frames_.find(name);
+  return found == lone_frames_.end() || found->second.empty() ? nullptr : &found->second;
+}
+
 std::optional<BodyId> Draft::body(const CheckedValue& value, const Part& part) const {
   const std::optional<std::string> name = value.reference();
   if (!name) return std::nullopt;

@@ -79,6 +79,10 @@ struct Draft {
   std::optional<BodyId> find_body(const std::string& name, const Part& part) const;
   std::optional<int> find_joint(const std::string& name, const Part& part) const;
 
+  /// BODY/FRAME of the only frame that is called so, of whatever body; null where there is none or more than one. All
+  /// frames are known.
+  const std::string* lone_frame(const std::string& name) const;
+
   const std::string& body_name(BodyId id) const;
   int marker(const std::string& full_name);
   /// A marker that stands where another does, its axes turned by `turn` in that one's axes. Always a new one.
@@ -90,6 +94,7 @@ struct Draft {
   static void check_name(const CheckedValue& entry, const std::vector<std::string>& reserved = {});
 
  private:
+  mutable std::unordered_map<std::string, std::string> lone_frames_;  ///< by name; empty text: several
   void unknown(const CheckedValue& value, const char* kind, const std::string& name, const NameTable& table,
                const Part& part) const;
   std::optional<std::string> frame_name(const CheckedValue& value, const std::string& reference,

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "format/kinematics_keys.h"
+#include "format/motion_names.h"
 #include "format/table_keys.h"
 #include "model/leg.h"
 
@@ -109,12 +110,25 @@ class DriverEntry {
       driver.table = read_table(draft_, *value, dimension, &driver.table_source);
       if (!driver.table) return;
     } else {
-      std::optional<Expression> expression = value->time_function(dimension, derivatives_of(kind));
-      if (!expression) return;
-      driver.value = std::move(*expression);
-      driver.text = value->node().text;
+      if (!read_value(*value, dimension, driver)) return;
     }
     draft_.model.drivers.push_back(std::move(driver));
+  }
+
+  /// An effort may depend on the motion.
+  bool read_value(const CheckedValue& value, const Dimension& dimension, Driver& driver) const {
+    const MotionNames names(draft_, part_, driver.by_motion.channels);
+    std::optional<Expression> expression =
+        value.time_function(dimension, derivatives_of(driver.kind), prescribes(driver.kind) ? nullptr : &names);
+    if (!expression) return false;
+    driver.text = value.node().text;
+    if (expression->depends_on_variables()) {
+      driver.in_time = expression->time_parts();
+      driver.by_motion.formulas.emplace_back(*expression);
+    } else {
+      driver.value = std::move(*expression);
+    }
+    return true;
   }
 
   /// For the mistakes in it, when the joint is not known.

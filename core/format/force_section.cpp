@@ -5,6 +5,7 @@
 
 #include "base/name_pattern.h"
 #include "format/joint_section.h"
+#include "format/motion_names.h"
 
 namespace freeplay {
 namespace {
@@ -76,6 +77,9 @@ class ForceEntry {
   }
 
   void add(AppliedForce force) {
+    if (std::ranges::any_of(force.value, &Expression::depends_on_variables)) {
+      for (const Expression& value : force.value) force.by_motion.formulas.emplace_back(value);
+    }
     draft_.model.force_elements.push_back({static_cast<int>(draft_.model.forces.size()), -1});
     draft_.model.forces.push_back(std::move(force));
   }
@@ -125,9 +129,11 @@ class ForceEntry {
     return found;
   }
 
-  static bool append(const CheckedValue& value, const Dimension& dimension, AppliedForce& force) {
-    std::optional<Expression> expression = value.time_function(dimension, 0);
+  bool append(const CheckedValue& value, const Dimension& dimension, AppliedForce& force) const {
+    const MotionNames names(draft_, part_, force.by_motion.channels);
+    std::optional<Expression> expression = value.time_function(dimension, 0, &names);
     if (expression) {
+      for (Expression& part : expression->time_parts()) force.in_time.push_back(std::move(part));
       force.value.push_back(std::move(*expression));
       force.text.push_back(value.node().text);
     }

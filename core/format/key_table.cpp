@@ -92,7 +92,8 @@ constexpr FormatKey driver[] = {
     {"joint", "name", "", "required unless inverse_kinematics", "The joint that it moves.", "pin"},
     {"kind", "'angle' | 'position' | 'velocity' | 'torque' | 'force'", "", "required unless inverse_kinematics",
      "What is prescribed, or the effort that acts.", "angle"},
-    {"value", "time function", "by kind", "", "Function of t; either this or `table`.", "2*pi*t"},
+    {"value", "time function", "by kind", "", "Function of t, an effort also of the motion; either this or `table`.",
+     "2*pi*t"},
     {"table", "text | map table", "", "", "Values from a file or a list.", "motor.csv"},
     {"inverse_kinematics", "map inverse_kinematics", "", "", "Instead of all these: a frame follows a path.",
      "{frame: platform, path: {x: 0.1*t}, joints: [A]}"},
@@ -130,14 +131,15 @@ constexpr FormatKey force[] = {
 constexpr FormatKey applied_force[] = {
     {"type", "'force'", "", "required", "A force on a point.", "force"},
     {"at", "frame", "", "required", "Where it acts.", "rod/tip"},
-    {"value", "list of time function", "N", "required", "Components.", "[10 N * sin(t), 0]"},
+    {"value", "list of time function", "N", "required", "Components; may depend on the motion.", "[10 N * sin(t), 0]"},
     {"axes", "'global' | 'frame'", "", "global", "Axes of the components.", "frame"},
     use};
 
-constexpr FormatKey applied_torque[] = {{"type", "'torque'", "", "required", "A torque on a body.", "torque"},
-                                        {"on", "name", "", "required", "The body.", "rod"},
-                                        {"value", "time function", "N*m", "required", "Counter-clockwise.", "2 N*m"},
-                                        use};
+constexpr FormatKey applied_torque[] = {
+    {"type", "'torque'", "", "required", "A torque on a body.", "torque"},
+    {"on", "name", "", "required", "The body.", "rod"},
+    {"value", "time function", "N*m", "required", "Counter-clockwise; may depend on the motion.", "2 N*m"},
+    use};
 
 constexpr FormatKey gravity[] = {
     {"type", "'gravity'", "", "required", "Another gravity for some bodies.", "gravity"},

@@ -24,6 +24,27 @@ std::size_t reference_length(std::string_view text, const std::string& name) {
   return name.size() + (text.substr(1).starts_with('{') ? 3 : 1);
 }
 
+bool is_of_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+}
+
+/// The text with the names of channels as they are called outside of a template; of two that begin alike the longer.
+std::string with_names(std::string_view text, const NamesInFull& names) {
+  std::string full;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::pair<std::string, std::string>* longest = nullptr;
+    for (const auto& name : names) {
+      const std::size_t end = i + name.first.size();
+      if ((i > 0 && is_of_name(text[i - 1])) || text.substr(i, name.first.size()) != name.first) continue;
+      if (end < text.size() && is_of_name(text[end])) continue;
+      if (longest == nullptr || name.first.size() > longest->first.size()) longest = &name;
+    }
+    full += longest == nullptr ? std::string(1, text[i]) : longest->second;
+    i += longest == nullptr ? 1 : longest->first.size();
+  }
+  return full;
+}
+
 }  // namespace
 
 void Readout::note_number(const std::string& instance, const Node& node, double value) {
@@ -31,10 +52,11 @@ void Readout::note_number(const std::string& instance, const Node& node, double 
 }
 
 void Readout::note_function(const std::string& instance, const Node& node, const Expression& expression,
-                            const Scope& scope) {
+                            const Scope& scope, const NamesInFull& channels) {
   if (instance.empty()) return;
+  const std::string written = with_names(node.text, channels);
   std::string text;
-  for (std::string_view rest = node.text; !rest.empty();) {
+  for (std::string_view rest = written; !rest.empty();) {
     const std::size_t dollar = rest.find('$');
     text += rest.substr(0, dollar);
     if (dollar == std::string_view::npos) break;
@@ -45,7 +67,8 @@ void Readout::note_function(const std::string& instance, const Node& node, const
   }
   // A parameter without a unit fits anywhere, a number in its place may not: what depends on t fits anywhere, too.
   if (expression.kind() == DimensionKind::free &&
-      Expression::compile(text, EmptyScope(), true).kind() != DimensionKind::free) {
+      (expression.depends_on_variables() ||
+       Expression::compile(text, EmptyScope(), true).kind() != DimensionKind::free)) {
     text = "(1 + 0*t)*(" + text + ")";
   }
   texts_[{instance, &node}] = {std::move(text)};

@@ -11,6 +11,9 @@
 
 namespace freeplay {
 
+/// Names as they are written, and in full.
+using NamesInFull = std::vector<std::pair<std::string, std::string>>;
+
 /// Kept for those who write a model without its templates: every value of an instance stands in the template once, but
 /// means something else in each instance. Values are kept of instances only, references of the top level, too.
 class Readout {
@@ -25,8 +28,9 @@ class Readout {
 
   /// A constant in SI.
   void note_number(const std::string& instance, const Node& node, double value);
-  /// A function of time: its text with the values of its parameters, in SI.
-  void note_function(const std::string& instance, const Node& node, const Expression& expression, const Scope& scope);
+  /// A function of time: its text with the values of its parameters, in SI, and the full names of channels.
+  void note_function(const std::string& instance, const Node& node, const Expression& expression, const Scope& scope,
+                     const NamesInFull& channels);
   /// Full names that a reference stands for; several for a pattern. `node` may be a key.
   void note_names(const std::string& instance, const Node& node, std::vector<std::string> names);
 

@@ -12,6 +12,7 @@
 #include "base/expression.h"
 #include "component/instances.h"
 #include "model/grid_values.h"
+#include "model/motion_formula.h"
 #include "model/time_table.h"
 
 namespace freeplay {
@@ -103,8 +104,10 @@ struct Driver {
   Location location;
   int joint = 0;
   DriverKind kind = DriverKind::angle;
-  Expression value;  ///< of time; unused when `table` or `kinematics` is set
-  std::string text;  ///< of the expression, as written
+  Expression value;                 ///< of time; unused when `table`, `kinematics` or `by_motion` is set
+  std::string text;                 ///< of the expression, as written
+  std::vector<Expression> in_time;  ///< parts of a value by the motion that depend on time alone
+  MotionFormulas by_motion;         ///< an effort that depends on the motion
   std::shared_ptr<const TimeTable> table;
   TableSource table_source;
   int kinematics = -1;  ///< index into Model::kinematics: motion by inverse kinematics
@@ -124,15 +127,17 @@ struct InverseKinematics {
 
 enum class ForceKind { force, torque };
 
-/// Force or torque given as functions of time.
+/// Force or torque given as functions of time, or of time and the motion.
 struct AppliedForce {
   std::string name;
   Location location;
   ForceKind kind = ForceKind::force;
-  int marker = 0;                 ///< torque: the marker `com` of the body
-  bool frame_axes = false;        ///< force: components in the marker's axes instead of world axes
-  std::vector<Expression> value;  ///< force: 2 or 3 [N]; torque: 1 or 3 [N m]
-  std::vector<std::string> text;  ///< of each expression, as written
+  int marker = 0;                   ///< torque: the marker `com` of the body
+  bool frame_axes = false;          ///< force: components in the marker's axes instead of world axes
+  std::vector<Expression> value;    ///< force: 2 or 3 [N]; torque: 1 or 3 [N m]
+  std::vector<std::string> text;    ///< of each expression, as written
+  std::vector<Expression> in_time;  ///< what of them depends on time alone: all of them, or parts
+  MotionFormulas by_motion;         ///< the same values where one depends on the motion; else empty
 };
 
 /// An entry of `forces` that gives bodies a gravity of their own (Body::gravity has it).
@@ -234,5 +239,17 @@ struct Model {
     return count;
   }
 };
+
+/// Calls `each` with the formulas of all forces and drivers that depend on the motion, in the order in which h keeps
+/// the sides of their switches.
+template <class Each>
+void for_each_motion_formulas(const Model& model, Each&& each) {
+  for (const AppliedForce& force : model.forces) {
+    if (!force.by_motion.empty()) each(force.by_motion);
+  }
+  for (const Driver& driver : model.drivers) {
+    if (!driver.by_motion.empty()) each(driver.by_motion);
+  }
+}
 
 }  // namespace freeplay

@@ -141,7 +141,7 @@ AdaptiveRun::Found AdaptiveRun::shorten(Search& search, bool converged) {
   }
   const double smallest = control_.limits().smallest;
   if (dt >= smallest) return Found::no;
-  if (run_.plugin_fault.kind == Fault::Kind::plugin) {
+  if (run_.plugin_fault.kind != Fault::Kind::none) {
     parts_.failure.fail_with(run_.plugin_fault, run_.accepted.t());
   } else if (run_.solver.regularity() < stuck_there) {
     parts_.failure.fail(4, parts_.failure.why_singular());
@@ -204,6 +204,11 @@ AdaptiveRun::Found AdaptiveRun::end_at_event(Search& search) {
     if (done) return Found::yes;
   }
   if (run_.outcome.status == RunStatus::failed) return Found::failed;
+  // Just beyond the goal: the next step meets it.
+  if (run_.trial.t() >= search.goal && search.hunted.value < 0.0 && search.dt >= whole) {
+    search.hunted = {};
+    return Found::yes;
+  }
   ++search.hunts;
   return Found::no;
 }

@@ -79,6 +79,7 @@ RunContext::RunContext(std::shared_ptr<const RunEquations> all_equations, const 
       z_rate(at(system.layout().nz() + flows)) {
   if (adaptive) {
     allowed = local_tolerance(system);
+    events.allow(allowed);
     require_attainable_accuracy(system);
     // An accuracy is kept per second; a tolerance is relative in velocity, too.
     solver.control_error(allowed, allowed, settings.accuracy > 0.0 ? 0.0 : settings.tolerance);

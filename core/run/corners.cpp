@@ -108,15 +108,16 @@ bool Corners::loads_jump(double corner) {
     const TimeValue &from = motion_before_[d], &to = motion_after_[d];
     if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
   }
-  for (const AppliedForce& force : run_.model.forces) {
-    for (const Expression& component : force.value) {
+  const auto one_jumps = [&](const std::vector<Expression>& components) {
+    return std::ranges::any_of(components, [&](const Expression& component) {
       Jet from, to;
       EvaluationFailure failure;
       if (!component.evaluate(before, from, failure) || !component.evaluate(after, to, failure)) return true;
-      if (jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate))) return true;
-    }
-  }
-  return false;
+      return jumps(from.value, to.value, std::abs(from.rate) + std::abs(to.rate));
+    });
+  };
+  return std::ranges::any_of(run_.model.forces, one_jumps, &AppliedForce::in_time) ||
+         std::ranges::any_of(run_.model.drivers, one_jumps, &Driver::in_time);
 }
 
 double Corners::before(double kink) { return kink - margin(kink); }

@@ -14,10 +14,11 @@ DriveKinks::DriveKinks(const Model& model, Of of) {
     } else if (driver.kinematics < 0) {
       add(driver.value, model.settings);
     }
+    for (const Expression& part : driver.in_time) add(part, model.settings);
   }
   if (of == Of::loads) {
     for (const AppliedForce& force : model.forces) {
-      for (const Expression& component : force.value) add(component, model.settings);
+      for (const Expression& component : force.in_time) add(component, model.settings);
     }
     return;
   }

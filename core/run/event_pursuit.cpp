@@ -71,9 +71,7 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   }
   if (hunts > most_hunts) {
     return failure_.fail(
-        4, fmt::format("t = {:.9g} s: event '{}' of joint '{}' could not be located{}", run_.accepted.t(),
-                       run_.system.joints().layout(hunted.joint).events[at(hunted.event)].name,
-                       run_.model.joints[at(hunted.joint)].name,
+        4, fmt::format("t = {:.9g} s: {} could not be located{}", run_.accepted.t(), run_.events.words(hunted),
                        failure_.all_built_in() ? std::string(advice::other_steps) : fmt::format("; {}", event_rule)));
   }
   bracket.note(hunted, dt);

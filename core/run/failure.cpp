@@ -194,6 +194,14 @@ bool RunFailure::fail_in_storm(const StepEvents::Happening& last, const EventSto
                              run_.system.joints().layout(last.joint).events[at(last.event)].name, event_rule));
 }
 
+bool RunFailure::fail_in_switching(const EventStorm::Finding& found) {
+  return fail(4,
+              fmt::format("t = {:.9g} s: the formula of {} changes its form without end: {} times within "
+                          "{:.2g} s; a force that jumps back whenever it has acted holds a body still as dry friction "
+                          "does: write it with smooth(), or as the friction of a joint [event-storm]",
+                          run_.accepted.t(), run_.events.switched_words(), found.events, found.within));
+}
+
 // Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.
 void RunFailure::explain_dead_point() {
   if (run_.outcome.status != RunStatus::failed || run_.outcome.exit_code != 4) return;

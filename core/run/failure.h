@@ -27,6 +27,8 @@ class RunFailure {
   [[gnu::cold]] bool fail_with(const Fault& fault, double t);
   /// A joint has written past the end of the state's history.
   [[gnu::cold]] bool fail_beside(int joint);
+  /// The formula of an applied force changes its form without end.
+  [[gnu::cold]] bool fail_in_switching(const EventStorm::Finding& found);
   [[gnu::cold]] bool fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found);
 
   std::string why_not_converged(double dt) const;

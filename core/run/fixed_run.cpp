@@ -52,7 +52,7 @@ bool FixedRun::step() {
       if (!run_.sleeping.stayed()) continue;
       ++run_.outcome.rejected;
       dt *= 0.5;
-      if (dt < smallest && run_.plugin_fault.kind == Fault::Kind::plugin)
+      if (dt < smallest && run_.plugin_fault.kind != Fault::Kind::none)
         return parts_.failure.fail_with(run_.plugin_fault, run_.accepted.t());
       if (dt < smallest) return parts_.failure.fail(4, parts_.failure.why_not_converged(dt));
       continue;

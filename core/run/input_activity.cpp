@@ -101,6 +101,7 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
     } else if (driver.kinematics < 0) {
       add("driver", driver.name, driver.value, sharp, unit_of(driver.kind), bends(d));
     }
+    for (const Expression& part : driver.in_time) add("driver", driver.name, part, CornerKind::load, Unit::other);
   }
   for (const InverseKinematics& entry : model.kinematics) {
     int moved = 0;
@@ -111,8 +112,10 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
     }
   }
   for (const AppliedForce& force : model.forces) {
-    const Unit unit = force.kind == ForceKind::force ? Unit::force : Unit::torque;
-    for (const Expression& component : force.value) add("force", force.name, component, CornerKind::load, unit);
+    // What a part of a formula makes of a force is not known.
+    const Unit whole = force.kind == ForceKind::force ? Unit::force : Unit::torque;
+    const Unit unit = force.by_motion.empty() ? whole : Unit::other;
+    for (const Expression& component : force.in_time) add("force", force.name, component, CornerKind::load, unit);
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) add_joint(j);
   std::size_t signals = 2;

@@ -35,7 +35,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       peaks_(statistics_.largest().places().size()),
       contact_rows_(run.system, run.channels, statistics_, run.adaptive),
       contact_peaks_(contact_rows_.largest().size()),
-      storm_(run.model.joints.size(), storm_limits(run.settings, run.adaptive)),
+      storm_(run.model.joints.size() + 1, storm_limits(run.settings, run.adaptive)),
       feed_(run.channels.time, run.channels.all().size()),
       row_(run.channels.all().size(), 0.0),
       row_between_(row_.size(), 0.0),
@@ -168,6 +168,11 @@ bool Recorder::write_events() {
     }
     const EventStorm::Finding found = storm_.note(happening.joint, happening.time, run_.outcome.steps);
     if (found.events > 0) return failure_.fail_in_storm(happening, found);
+  }
+  if (run_.events.switched()) {
+    const int switches = static_cast<int>(run_.model.joints.size());
+    const EventStorm::Finding found = storm_.note(switches, run_.accepted.t(), run_.outcome.steps);
+    if (found.events > 0 && run_.adaptive) return failure_.fail_in_switching(found);
   }
   if (contact_rows_.active() && !write_contact_rows()) return false;
   return run_.events.happenings().empty() || sinks_are_well();

@@ -30,6 +30,7 @@ bool StepAcceptance::begin() {
   if (!attempt_.start()) return false;
   Fault fault;
   if (!run_.events.at_start(run_.accepted, run_.e_accepted, fault)) return failure_.fail_with(fault, run_.accepted.t());
+  if (run_.events.switched() && !attempt_.restart()) return false;
   if (!recorder_.observe_start()) return false;
   growth_.start();
   doubts_.note_event_directions();
@@ -88,10 +89,11 @@ bool StepAcceptance::accept(const End& end) {
   const bool expected = run_.adaptive && (end.located.joint >= 0 || end.kink < unbounded);
   if (expected && !recorder_.note_abrupt_end()) return false;
   if (!apply_events(end.located, end.late) || !attempt_.commit_history()) return false;
+  run_.events.renew_switches(run_.trial, run_.e_trial);
   std::swap(run_.accepted, run_.trial);
   swap(run_.e_accepted, run_.e_trial);
   run_.outcome.time = run_.accepted.t();
-  const bool changed = !run_.events.happenings().empty() || run_.ended_inside;
+  const bool changed = run_.events.changed() || run_.ended_inside;
   run_.ended_inside = false;
   run_.ended_abruptly = changed || expected;
   if (!go_on_from(changed, end)) return false;

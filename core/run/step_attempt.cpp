@@ -133,9 +133,14 @@ bool StepAttempt::make(double dt, bool& converged) {
   }
   if (!good) {
     require_memory(message);
-    // A joint may fail at a trial state that a shorter step does not meet; a driver fails by its time alone.
+    // A joint, or a load that depends on the motion, may fail at a trial state that a shorter step does not meet; a
+    // driver fails by its time alone.
     run_.plugin_fault = run_.solver.fault();
-    if (run_.plugin_fault.kind == Fault::Kind::plugin) return true;
+    const MotionFault& load = run_.plugin_fault.motion;
+    const bool by_motion = run_.plugin_fault.kind == Fault::Kind::motion &&
+                           ((load.force >= 0 && !run_.model.forces[at(load.force)].by_motion.empty()) ||
+                            (load.driver >= 0 && !run_.model.drivers[at(load.driver)].by_motion.empty()));
+    if (run_.plugin_fault.kind == Fault::Kind::plugin || by_motion) return true;
     if (run_.plugin_fault.kind == Fault::Kind::motion) return failure_.fail_with(run_.plugin_fault, *view.t);
     if (!*run_.solver.trouble()) {
       return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: {} [plugin-failed]", run_.accepted.t(),

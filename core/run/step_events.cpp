@@ -32,12 +32,14 @@ StepEvents::StepEvents(const System& system, const EvaluationContext& context, b
     : system_(system),
       context_(context),
       located_(located),
+      switches_(system),
       between_(between),
       e_between_(e_between),
-      inside_(system.model().joints.size(), 0) {
+      inside_(system.model().joints.size() + 1, 0) {
   std::size_t most_events = 0, all_fields = 0, all_events = 0;
-  for (int j = 0; j < static_cast<int>(system.model().joints.size()); ++j) {
-    const Span<const Event> events = system.joints().layout(j).events;
+  const int joints = static_cast<int>(system.model().joints.size());
+  for (int j = 0; j < joints + (located ? 1 : 0); ++j) {
+    const Span<const Event> events = events_of(j);
     if (events.empty()) continue;
     watched_.push_back(j);
     first_event_.push_back(all_events);
@@ -61,9 +63,13 @@ StepEvents::StepEvents(const System& system, const EvaluationContext& context, b
   happenings_.reserve(most_per_step * watched_.size());
 }
 
-bool StepEvents::functions(int joint, const Point& point, const Evaluation& e, std::span<double> g,
-                           std::span<double> rate, Fault& fault) const {
-  if (system_.joints().handle(joint).events(system_.joints().input(joint, point, e), {g.data(), g.size()},
+bool StepEvents::functions(int joint, const Place& place, const Evaluation& e, std::span<double> g,
+                           std::span<double> rate, Fault& fault) {
+  if (are_switches(joint)) {
+    switches_.functions(place.point, place.a, e, g, rate);
+    return true;
+  }
+  if (system_.joints().handle(joint).events(system_.joints().input(joint, place.point, e), {g.data(), g.size()},
                                             {rate.data(), rate.size()}, fault.message)) {
     // What is not armed is NaN; a difference of a number from itself is zero unless it is not finite.
     const auto wild = [&](std::size_t i) { return !std::isnan(g[i]) && (g[i] - g[i]) + (rate[i] - rate[i]) != 0.0; };
@@ -82,8 +88,9 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
                        Mobility mobility, void* self, Fault& fault) {
   happenings_.clear();
   values_.clear();
+  switched_ = false;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const Span<const Event> events = system_.joints().layout(watched_[w]).events;
+    const Span<const Event> events = events_of(watched_[w]);
     for (std::size_t i = 0; located_ && i < events.size; ++i) {
       if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
     }
@@ -113,8 +120,8 @@ bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault
   const std::span handled = std::span(happening_).first(events.size);  // at `reached`
   std::ranges::fill(handled, 0);
   for (int count = 0; count < most_per_step; ++count) {
-    if (!functions(joint, step.start, step.e_before, g0, r0, fault)) return false;
-    if (!functions(joint, step.end, step.e_after, g1, r1, fault)) return false;
+    if (!functions(joint, {step.start, step.before.a()}, step.e_before, g0, r0, fault)) return false;
+    if (!functions(joint, {step.end, step.after.a()}, step.e_after, g1, r1, fault)) return false;
     int next = -1;
     double earliest = 2.0;
     for (std::size_t i = 0; i < events.size; ++i) {
@@ -166,11 +173,11 @@ bool StepEvents::handle_inside(int joint, int event, double s, const Step& step,
   return handle(joint, event, point(between_), e_between_, after, fault, moves ? mobility : nullptr);
 }
 
-bool StepEvents::functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g,
-                                  std::vector<double>& rate, Fault& fault) const {
+bool StepEvents::functions_of_all(const Place& place, const Evaluation& e, std::vector<double>& g,
+                                  std::vector<double>& rate, Fault& fault) {
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const std::size_t first = first_event_[w], count = system_.joints().layout(watched_[w]).events.size;
-    if (!functions(watched_[w], point, e, std::span(g).subspan(first, count), std::span(rate).subspan(first, count),
+    const std::size_t first = first_event_[w], count = events_of(watched_[w]).size;
+    if (!functions(watched_[w], place, e, std::span(g).subspan(first, count), std::span(rate).subspan(first, count),
                    fault)) {
       return false;
     }
@@ -182,9 +189,10 @@ bool StepEvents::look_from(const State& start, const Evaluation& e_start, Fault&
   std::swap(start_, earlier_);
   std::swap(start_rate_, earlier_rate_);
   // After an event functions go on otherwise.
-  earlier_by_ = happenings_.empty() ? start.t() - start_time_ : 0.0;
+  earlier_by_ = !changed() ? start.t() - start_time_ : 0.0;
   start_time_ = start.t();
-  if (!functions_of_all(point(start), e_start, start_, start_rate_, fault)) return false;
+  if (located_ && switches_.count() > 0) switches_.look_from(point(start), e_start);
+  if (!functions_of_all(place(start), e_start, start_, start_rate_, fault)) return false;
   for (const Happening& handled : happenings_) leave_zero(handled.joint, handled.event);
   return true;
 }
@@ -202,7 +210,7 @@ StepEvents::Passage StepEvents::expected_within(double dt) const {
   Passage first;
   if (!(dt <= much_longer * earlier_by_)) return first;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const Span<const Event> events = system_.joints().layout(watched_[w]).events;
+    const Span<const Event> events = events_of(watched_[w]);
     for (std::size_t i = 0; i < events.size; ++i) {
       const std::size_t event = first_event_[w] + i;
       if (events[i].locate == 0 || std::isnan(earlier_[event]) || std::isnan(start_[event])) continue;
@@ -229,14 +237,14 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
                                 const Evaluation& e_after, bool sharp, Passage& found, Fault& fault) {
   found = {};
   if (watched_.empty()) return true;
-  const Point end{after.t(), after.q(), after.v(), after.z(), before.h()};
+  const Place end{{after.t(), after.q(), after.v(), after.z(), before.h()}, after.a()};
   if (!functions_of_all(end, e_after, end_, end_rate_, fault)) return false;
   const double dt = after.t() - before.t(), half = 0.5 * dt;
   double earliest = 2.0;
   bool looked = false;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const int joint = watched_[w];
-    const Span<const Event> events = system_.joints().layout(joint).events;
+    const Span<const Event> events = events_of(joint);
     const std::span gm = std::span(gm_).first(events.size), rm = std::span(rm_).first(events.size);
     bool asked = false;
     for (std::size_t i = 0; i < events.size; ++i) {
@@ -249,13 +257,10 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       if (!looked) {
         DenseStep(system_.model().space, before, e_before.internal_rate, after, e_after.internal_rate)
             .at(0.5, between_);
-        if (!system_.evaluate(point(between_), term_event, e_between_)) {
-          fault = e_between_->fault;
-          return false;
-        }
+        if (!look_between(fault)) return false;
       }
       looked = true;
-      if (!asked && !functions(joint, point(between_), e_between_, gm, rm, fault)) return false;
+      if (!asked && !functions(joint, place(between_), e_between_, gm, rm, fault)) return false;
       asked = true;
       if (std::isnan(gm[i])) {
         seen_[event] = 0;
@@ -282,21 +287,27 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
   return !sharp || found.joint < 0 || found.fraction == 1.0 || sharpen(before, e_before, after, e_after, found, fault);
 }
 
+bool StepEvents::look_between(Fault& fault) {
+  if (system_.evaluate(point(between_), term_event, e_between_)) {
+    if (switches_.count() > 0) system_.constraints().fill_driven(e_between_);
+    return true;
+  }
+  fault = e_between_->fault;
+  return false;
+}
+
 // Newton's steps on the interpolated motion, which knows more than the cubics of the function.
 bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
                          Passage& found, Fault& fault) {
-  const Span<const Event> events = system_.joints().layout(found.joint).events;
+  const Span<const Event> events = events_of(found.joint);
   const std::span g = std::span(gm_).first(events.size), rate = std::span(rm_).first(events.size);
   const double sign = events[at(found.event)].crossing == Crossing::rising ? 1.0 : -1.0;
   const double dt = after.t() - before.t();
   for (int step = 0; step < 2; ++step) {
     DenseStep(system_.model().space, before, e_before.internal_rate, after, e_after.internal_rate)
         .at(found.fraction, between_);
-    if (!system_.evaluate(point(between_), term_event, e_between_)) {
-      fault = e_between_->fault;
-      return false;
-    }
-    if (!functions(found.joint, point(between_), e_between_, g, rate, fault)) return false;
+    if (!look_between(fault)) return false;
+    if (!functions(found.joint, place(between_), e_between_, g, rate, fault)) return false;
     const double change = sign * g[at(found.event)] / (sign * rate[at(found.event)] * dt);
     // Far from the cubics' root it is another root, or none.
     if (!(std::abs(change) < 0.1 * found.fraction) || !(found.fraction - change < 1.0)) break;
@@ -306,9 +317,9 @@ bool StepEvents::sharpen(const State& before, const Evaluation& e_before, const 
 }
 
 bool StepEvents::at_end(const State& after, const Evaluation& e_after, Passage& passage, Fault& fault) {
-  const Span<const Event> events = system_.joints().layout(passage.joint).events;
+  const Span<const Event> events = events_of(passage.joint);
   const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
-  if (!functions(passage.joint, point(after), e_after, g, r, fault)) return false;
+  if (!functions(passage.joint, place(after), e_after, g, r, fault)) return false;
   const double sign = events[at(passage.event)].crossing == Crossing::rising ? 1.0 : -1.0;
   passage.value = sign * g[at(passage.event)];
   passage.rate = sign * r[at(passage.event)];
@@ -319,14 +330,14 @@ bool StepEvents::apply_at_end(const Passage& hunted, double late, State& after, 
                               Mobility mobility, void* self, Fault& fault) {
   if (hunted.joint < 0) return true;
   for (const int joint : watched_) {
-    const Span<const Event> events = system_.joints().layout(joint).events;
+    const Span<const Event> events = events_of(joint);
     const std::span g = std::span(g1_).first(events.size), r = std::span(r1_).first(events.size);
     const auto happens = [&](int i) {
       const double sign = events[at(i)].crossing == Crossing::rising ? 1.0 : -1.0, past = sign * g[at(i)];
       if (past >= -tolerance && past <= std::max(tolerance, late) && sign * r[at(i)] > 0.0) return true;
       return joint == hunted.joint && i == hunted.event && !std::isnan(g[at(i)]);
     };
-    if (!functions(joint, point(after), e_after, g, r, fault)) return false;
+    if (!functions(joint, place(after), e_after, g, r, fault)) return false;
     for (int i = 0; i < static_cast<int>(events.size); ++i) {
       happening_[at(i)] = events[at(i)].locate != 0 && happens(i) ? 1 : 0;
     }
@@ -334,8 +345,14 @@ bool StepEvents::apply_at_end(const Passage& hunted, double late, State& after, 
     bool changed = false;
     for (int i = 0; i < static_cast<int>(events.size); ++i) {
       if (happening_[at(i)] == 0) continue;
-      if (changed && !functions(joint, point(after), e_after, g, r, fault)) return false;
+      if (changed && !functions(joint, place(after), e_after, g, r, fault)) return false;
       if (changed && !happens(i)) continue;
+      if (are_switches(joint)) {
+        switches_.change(i, after);
+        switched_ = true;
+        last_switch_ = i;
+        continue;
+      }
       double numbers[mobility_numbers];
       if (!mobility(self, joint, numbers) || !handle(joint, i, point(after), e_after, after, fault, numbers)) {
         return false;
@@ -372,11 +389,19 @@ bool StepEvents::handle(int joint, int event, const Point& here, const Evaluatio
 bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
   happenings_.clear();
   values_.clear();
+  switched_ = switches_.renew(start, e);
+  switched_ = false;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
     const int joint = watched_[w];
-    const Span<const Event> events = system_.joints().layout(joint).events;
+    if (are_switches(joint)) {
+      const auto first = armed_.begin() + static_cast<std::ptrdiff_t>(first_event_[w]);
+      std::fill_n(first, switches_.count(), char{1});
+      std::fill_n(seen_.begin() + static_cast<std::ptrdiff_t>(first_event_[w]), switches_.count(), char{1});
+      continue;
+    }
+    const Span<const Event> events = events_of(joint);
     const std::span g = std::span(g0_).first(events.size), r = std::span(r0_).first(events.size);
-    if (!functions(joint, point(start), e, g, r, fault)) return false;
+    if (!functions(joint, place(start), e, g, r, fault)) return false;
     for (std::size_t i = 0; i < events.size; ++i) {
       armed_[first_event_[w] + i] = seen_[first_event_[w] + i] = std::isnan(g[i]) ? 0 : 1;
       if (events[i].crossing != Crossing::rising || !(g[i] > 0.0)) continue;
@@ -384,6 +409,12 @@ bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
     }
   }
   return true;
+}
+
+std::string StepEvents::words(const Passage& passage) const {
+  if (are_switches(passage.joint)) return "the change of form of " + switches_.words(passage.event);
+  return std::string("event '") + events_of(passage.joint)[at(passage.event)].name + "' of joint '" +
+         system_.model().joints[at(passage.joint)].name + "'";
 }
 
 }  // namespace freeplay

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "run/dense_step.h"
+#include "run/load_switches.h"
 #include "run/sink.h"
 #include "system/system.h"
 
@@ -28,7 +29,11 @@ class StepEvents {
   StepEvents(const System& system, const EvaluationContext& context, bool located, State& between,
              KeptEvaluation& e_between);
 
-  /// A crossing that a step passes or ends at.
+  /// What positions may err by in a step [m], with error control.
+  void allow(double error) { switches_.allow(error); }
+
+  /// A crossing that a step passes or ends at. A joint's number beyond those of the model stands for the switches of
+  /// applied forces.
   struct Passage {
     int joint = -1, event = 0;
     double fraction = 1.0;  ///< of the step
@@ -62,6 +67,18 @@ class StepEvents {
   /// Passes on rising events whose function is past zero already when the run starts.
   bool at_start(State& start, const Evaluation& e, Fault& fault);
 
+  /// Steps of fixed size: takes the sides of the switches of applied forces at the end of a step that stands.
+  void renew_switches(State& after, const Evaluation& e) {
+    if (!located_ && switches_.count() > 0 && switches_.renew(after, e)) switched_ = true;
+  }
+  /// Other forces act after the last call: by an event of a joint, or as an applied force changes its form.
+  bool changed() const { return !happenings_.empty() || switched_; }
+  bool switched() const { return switched_; }
+  /// "event 'x' of joint 'y'", for messages.
+  std::string words(const Passage& passage) const;
+  /// The force or driver whose formula changed its form last.
+  std::string switched_words() const { return switches_.words(last_switch_); }
+
   /// Events of the last call in order of time, then of declaration.
   struct Happening {
     double time;
@@ -83,6 +100,7 @@ class StepEvents {
     archive(self.earlier_, self.earlier_rate_, self.start_time_, self.earlier_by_);
     archive.list(self.happenings_);
     archive.list(self.values_);
+    archive(self.switched_, self.last_switch_);
   }
 
  private:
@@ -97,10 +115,21 @@ class StepEvents {
     void* self;
   };
   bool apply_joint(std::size_t watched, const Step& step, Fault& fault);
-  bool functions(int joint, const Point& point, const Evaluation& e, std::span<double> g, std::span<double> rate,
-                 Fault& fault) const;
-  bool functions_of_all(const Point& point, const Evaluation& e, std::vector<double>& g, std::vector<double>& rate,
-                        Fault& fault) const;
+  /// Where a joint, or the switches, are asked.
+  struct Place {
+    Point point;
+    std::span<const double> a;
+  };
+  static Place place(const State& state) { return {point(state), state.a()}; }
+  bool are_switches(int joint) const { return joint >= system_.joints().count(); }
+  Span<const Event> events_of(int joint) const {
+    return are_switches(joint) ? switches_.events() : system_.joints().layout(joint).events;
+  }
+  bool functions(int joint, const Place& place, const Evaluation& e, std::span<double> g, std::span<double> rate,
+                 Fault& fault);
+  bool functions_of_all(const Place& place, const Evaluation& e, std::vector<double>& g, std::vector<double>& rate,
+                        Fault& fault);
+  bool look_between(Fault& fault);
   void leave_zero(int joint, int event);
   bool could_cross(std::size_t event, double sign, double dt) const;
   bool sharpen(const State& before, const Evaluation& e_before, const State& after, const Evaluation& e_after,
@@ -112,6 +141,9 @@ class StepEvents {
   const System& system_;
   const EvaluationContext& context_;
   bool located_;
+  LoadSwitches switches_;
+  bool switched_ = false;
+  int last_switch_ = 0;
   State& between_;
   KeptEvaluation& e_between_;
   std::vector<int> watched_;

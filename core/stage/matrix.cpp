@@ -22,7 +22,7 @@ std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) c
   std::size_t of_rows = 0;
   for (const JacobianBlock& block : system_.jacobian().blocks()) of_rows += at(2 * width * block.rows);
   std::vector<MatrixEntry> all;
-  all.reserve(at(nv + nc) + (forces_ ? at(4 * width * width) * system_.forces().blocks().size() + at(3 * nv) : 0) +
+  all.reserve(at(nv + nc) + (forces_ ? at(4 * width * width) * system_.forces().pairs().size() + at(3 * nv) : 0) +
               of_rows);
   for (int i = 0; i < nv; ++i) all.push_back({i, i});
   for (int r = 0; r < nc; ++r) all.push_back(dependent[at(r)] ? MatrixEntry{nv + r, nv + r} : nowhere);
@@ -41,8 +41,8 @@ std::vector<MatrixEntry> StageMatrix::entries(std::span<const char> dependent) c
 // Of forces, in space of gyroscopic moments, too.
 void StageMatrix::add_force_entries(std::vector<MatrixEntry>& all) const {
   const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
-  for (const ForceBlock& block : system_.forces().blocks()) {
-    const BodyId bodies[2] = {block.a, block.b};
+  for (const BodyPair& pair : system_.forces().pairs()) {
+    const BodyId bodies[2] = {pair.a, pair.b};
     for (int r = 0; r < 2 * width; ++r) {
       for (int c = 0; c < 2 * width; ++c) {
         const BodyId row = bodies[r / width], column = bodies[c / width];
@@ -177,7 +177,7 @@ void StageMatrix::place_free(std::span<const MatrixEntry> all, const Division& d
 void StageMatrix::share_out(const std::vector<int>& slots) {
   const int nv = system_.layout().nv(), width = system_.layout().body_velocities();
   const auto first_forces = slots.begin() + nv + system_.layout().nc();
-  const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.forces().blocks().size() : 0;
+  const std::size_t of_forces = forces_ ? at(4 * width * width) * system_.forces().pairs().size() : 0;
   const auto first_turning = first_forces + static_cast<std::ptrdiff_t>(of_forces);
   const auto first_rows = first_turning + (forces_ && width == 6 ? 9 * (nv / 6) : 0);
   slots_ = {{slots.begin(), first_forces},

@@ -54,7 +54,7 @@ class StageMatrix {
   /// The slots of all entries, in the order in which factor() fills them.
   struct Slots {
     std::vector<int> constant;  // masses, and ones of dependent rows
-    std::vector<int> forces;    // of each force block, 6 x 6 or 12 x 12
+    std::vector<int> forces;    // of each pair of bodies, 6 x 6 or 12 x 12
     std::vector<int> turning;   // in space, with forces: 3 x 3 by body
     std::vector<int> rows;      // Phi_q, each entry followed by that of the transposed
   };

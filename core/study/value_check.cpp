@@ -7,9 +7,9 @@ namespace freeplay {
 namespace {
 
 // What does not depend on the size of numbers.
-constexpr std::array ids = {"unknown-name",       "unknown-key",  "unknown-type",     "missing-key",    "wrong-type",
-                            "dimension-mismatch", "bad-value",    "conflicting-keys", "bad-expression", "bad-unit",
-                            "time-not-allowed",   "wrong-length", "type-space"};
+constexpr std::array ids = {"unknown-name",       "unknown-key",  "unknown-type",     "missing-key",      "wrong-type",
+                            "dimension-mismatch", "bad-value",    "conflicting-keys", "bad-expression",   "bad-unit",
+                            "time-not-allowed",   "wrong-length", "type-space",       "state-not-allowed"};
 
 const Diagnostic* fault_in(const ModelProbe::Result& result) {
   const auto found = std::ranges::find_if(

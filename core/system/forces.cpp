@@ -36,7 +36,7 @@ Forces::Forces(const Model& model, const Layout& layout, const Markers& markers,
       joints_(joints),
       inertia_(inertia),
       size_(size),
-      applied_(model, markers, joints) {
+      applied_(model, layout, markers, joints) {
   int internal_offset = 0;
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointRecord& r = joints[j];
@@ -44,6 +44,8 @@ Forces::Forces(const Model& model, const Layout& layout, const Markers& markers,
     blocks_.push_back({j, layout.unknown(r.body_a), layout.unknown(r.body_b), r.internal.size, internal_offset});
     internal_offset += r.internal.size * (6 * layout.body_velocities() + r.internal.size);
   }
+  for (const ForceBlock& block : blocks_) pairs_.push_back({block.a, block.b});
+  applied_.add_pairs(pairs_);
 }
 
 ForceValues::ForceValues(const Forces& forces, const Model& model)
@@ -56,7 +58,8 @@ ForceValues::ForceValues(const Forces& forces, const Model& model)
       acts(forces.blocks_.size(), 0) {
   if (model.space == Space::spatial) gyroscopic_v.resize(9 * model.bodies.size());
   const int width = forces.layout_.body_velocities();
-  force_q.resize(at(4 * width * width) * forces.blocks_.size());
+  force_q.resize(at(4 * width * width) * forces.pairs_.size());
+  channel_space.resize(forces.applied_.channel_numbers());
   force_v.resize(force_q.size());
   for (const ForceBlock& block : forces.blocks_) {
     internal_derivatives.resize(at(block.internal_offset + block.internal * (6 * width + block.internal)));
@@ -136,7 +139,7 @@ bool Forces::evaluate_in(const Point& point, bool derivatives, Evaluation& e) co
     if (!take<Bodies>(f, out, derivatives, e)) return false;
     clean = false;
   }
-  if (!applied_.empty() && !applied_.add(point, e)) return false;
+  if (!applied_.empty() && !applied_.add(point, derivatives, e)) return false;
   if (Bodies::velocities == spatial::velocities) {
     inertia_.add_gyroscopic(point.v, e.force, derivatives ? std::span(e.gyroscopic_v) : std::span<double>());
   }

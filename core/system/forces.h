@@ -24,6 +24,11 @@ struct ForceBlock {
   int internal_offset = 0;  ///< of its part of ForceValues::internal_derivatives
 };
 
+/// Two bodies by whose increments and velocities forces on either change: unknowns, or `ground`.
+struct BodyPair {
+  BodyId a = ground, b = ground;
+};
+
 /// Of a joint's part of ForceValues::internal_derivatives.
 InternalDerivatives internal_derivatives(const ForceBlock& block, int body_velocities, std::span<double> all);
 
@@ -32,7 +37,7 @@ struct ForceValues {
   ForceValues(const Forces& forces, const Model& model);
 
   std::vector<double> force;                 ///< generalised, on all bodies
-  std::vector<double> force_q, force_v;      ///< of force blocks
+  std::vector<double> force_q, force_v;      ///< of pairs of bodies
   std::vector<double> gyroscopic_v;          ///< in space, 3 x 3 by body: its gyroscopic moment by its w
   std::vector<double> internal_derivatives;  ///< of force blocks with internal variables
   std::vector<double> potential;             ///< stored energy by joint [J]
@@ -43,7 +48,7 @@ struct ForceValues {
   std::vector<unsigned char> acts;           ///< by force block: whether its wrenches are not all zero
   std::uint64_t acting = 0;                  ///< the same of all blocks together
   // Work space.
-  std::vector<double> rate_space, derivative_space;
+  std::vector<double> rate_space, derivative_space, channel_space;
 };
 
 class Forces {
@@ -54,6 +59,10 @@ class Forces {
 
   /// Joints with forces.
   std::span<const ForceBlock> blocks() const { return blocks_; }
+
+  /// Pairs of bodies of ForceValues::force_q and force_v: of the blocks, then of applied forces.
+  std::span<const BodyPair> pairs() const { return pairs_; }
+  const AppliedForces& applied() const { return applied_; }
 
   /// All forces where markers, coordinates and motions are. False with Evaluation::fault when a joint or an expression
   /// fails.
@@ -76,6 +85,7 @@ class Forces {
   const Inertia& inertia_;
   double size_;
   std::vector<ForceBlock> blocks_;
+  std::vector<BodyPair> pairs_;
   AppliedForces applied_;
 };
 

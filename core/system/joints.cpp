@@ -69,6 +69,11 @@ Joints::Joints(const Model& model, Variant variant, const Layout& layout, const 
     const bool driven_angle = layout.driver_row(static_cast<int>(d)) >= layout.nc() && r.declares_angle();
     if (!driven_angle) r.coordinate_terms |= term_position | term_force;
   }
+  for_each_motion_formulas(model, [&](const MotionFormulas& formulas) {
+    for (const MotionChannel& channel : formulas.channels) {
+      if (channel.is_of_joint()) records_[at(channel.element)].coordinate_terms |= term_force | term_event;
+    }
+  });
   for (const JointRecord& r : records_) {
     if (r.layout->coordinate == Coordinate::none) continue;
     if (r.declares_coordinate) {

@@ -52,6 +52,9 @@ Layout::Layout(const Model& model, Variant variant, std::span<const planar::Driv
     joints_[j].history = take(nh_, layout.history);
     if (layout.coordinate == Coordinate::angle) joints_[j].turn = take(nh_, 1).offset;
   }
+  int switches = 0;
+  for_each_motion_formulas(model, [&](const MotionFormulas& formulas) { switches += formulas.switches(); });
+  switches_ = take(nh_, switches);
 }
 
 }  // namespace freeplay

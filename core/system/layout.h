@@ -47,6 +47,8 @@ class Layout {
   Slice history(int joint) const { return joints_[static_cast<std::size_t>(joint)].history; }
   /// Where h keeps the last accepted joint coordinate; -1 for a joint without an angle.
   int turn(int joint) const { return joints_[static_cast<std::size_t>(joint)].turn; }
+  /// Where h keeps on which side the switches of formulas of the motion are (StateFormula::Input::sides).
+  Slice switches() const { return switches_; }
   /// Row of a prescribing driver; -1 for one that applies an effort.
   int driver_row(int driver) const { return drivers_[static_cast<std::size_t>(driver)]; }
 
@@ -61,6 +63,7 @@ class Layout {
   std::vector<BodyId> bodies_;  // by place
   std::vector<JointSlices> joints_;
   std::vector<int> drivers_;
+  Slice switches_;  // after all other history
 };
 
 }  // namespace freeplay

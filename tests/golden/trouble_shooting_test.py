@@ -46,6 +46,14 @@ joints: {slide: {type: prismatic, between: [ground, m]}}
 forces: {hit: {type: force, at: m, value: ["1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", 0]}}
 simulation: {end: 2 s, step: 5 ms}
 """
+SIGN = """\
+freeplay: 1
+bodies: {m: {mass: 1 kg, inertia: 1 kg*m^2}}
+joints: {slide: {type: prismatic, between: [ground, m]}}
+forces: {hold: {type: force, at: m, value: ["-5 N*sign(body.m.vx)", 0]}}
+initial: {speeds: {slide: 1 m/s}}
+simulation: {end: 2 s, accuracy: 1 um}
+"""
 # Damped so hard that an explicit method may take steps of some microseconds.
 STIFF = """\
 freeplay: 1
@@ -130,6 +138,10 @@ CASES = {
     "'...' must have 2 items, not 3 [wrong-length]": (3, pendulum("[0.5 m, 0]", "[0.5 m, 0, 0]"), RUN),
     "a ',' cannot stand inside a number [bad-expression]": (3, pendulum("[0.5 m", "['0,5 m'"), RUN),
     "'t' is not allowed here: the value must be constant [time-not-allowed]": (3, pendulum("1 kg,", "1 + t,"), RUN),
+    "'...' is a value of the motion, which is not allowed here [state-not-allowed]":
+        (3, pendulum("1 kg,", "body.rod.x,"), RUN),
+    "unknown channel '...' [unknown-name]":
+        (3, pendulum("initial:", "forces: {f: {type: torque, on: rod, value: 1 N*m*s*body.rod.spin}}\ninitial:"), RUN),
     "not valid YAML: ... [yaml-syntax]": (3, pendulum("[0.5 m, 0]", "[0.5 m, 0"), RUN),
     "'radial_clearance' is not 'bearing_radius' minus 'journal_radius' [conflicting-keys]":
         (3, journal("length: 10 mm", "journal_radius: 5 mm"), RUN),
@@ -243,6 +255,7 @@ CASES = {
     "the events of joint '...' do not end: ... within ... s, the last '...'; ... [event-storm]":
         (4, pendulum("  pivot: {type: revolute, between: [ground, rod]}", "  stop: {type: endless-stop, between: [ground, rod], gap: 0.5 m}").replace("initial: {joints: {pivot: 0 deg}}\n", "").replace("gravity: [0, -9.81]", "gravity: [9.81, 0]")
          .replace("end: 0.1 s", "end: 1 s"), RUN + ["--plugin", "ENDLESS"]),
+    "the formula of force '...' changes its form without end: ... times within ... s; ... [event-storm]": (4, SIGN, RUN),
     # After a run
     "statistics begin at ... s, but the run ends at ... s: ... [no-statistics]":
         (0, pendulum("step: 1 ms", "step: 1 ms, output: {discard: 0.1 s}"), RUN),

@@ -73,5 +73,41 @@ TEST(ForceSection, UnitOfAParameterFollowsAWord) {
   EXPECT_EQ(with("stiffness: 2 N/m, kind: twist"), "4:67 dimension-mismatch ");
 }
 
+TEST(ForceSection, ReadsFormulasOfTheMotion) {
+  const Built built =
+      build(with_rod("joints: {A: {type: pin, between: [ground, rod]}}\n"
+                     "forces:\n"
+                     "  f: {type: force, at: rod, value: [\"-3 N*s/m*body.rod.vx*(1 + t)\", 1 N]}\n"
+                     "  g: {type: force, at: rod, value: [\"2 N/m*frame.tip.x - 1 N/m*frame.rod/tip.y\", 0]}\n"));
+  ASSERT_TRUE(built.model) << built.report;
+  const AppliedForce& force = built.model->forces[0];
+  ASSERT_EQ(force.by_motion.formulas.size(), 2u);
+  ASSERT_EQ(force.by_motion.channels.size(), 1u);
+  EXPECT_EQ(force.by_motion.channels[0].of, MotionChannel::Of::velocity);
+  EXPECT_EQ(force.in_time.size(), 1u);
+  EXPECT_EQ(built.model->forces[1].by_motion.channels.size(), 2u);
+}
+
+TEST(ForceSection, RefusesFormulasThatDoNotFit) {
+  const auto report = [](const std::string& value) {
+    return build(with_rod("joints: {A: {type: pin, between: [ground, rod]}}\n"
+                          "forces:\n  f: {type: force, at: rod, value: [\"" +
+                          value + "\", 0]}\n"))
+        .report;
+  };
+  const auto has = [&](const std::string& value, const std::string& text) {
+    EXPECT_NE(report(value).find(text), std::string::npos) << value << "\n" << report(value);
+  };
+  has("2 N/m*body.rid.x", "6:44: error: unknown channel 'body.rid.x' [unknown-name]");
+  has("2 N/m*body.rid.x", "did you mean 'body.rod.x'?");
+  has("2 N*joint.A.angel", "did you mean 'joint.A.angle'?");
+  has("2 N*frame.rod/tap.x", "did you mean 'frame.rod/tip.x'?");
+  has("2 N*body.rod.vx", "6:38: error: expected force, but this is");
+  has("body.rod.vx + 1 N", "cannot be added or compared [dimension-mismatch]");
+  has("2 N*body.rod.qw", "unknown channel 'body.rod.qw'");
+  const Built constant = build("freeplay: 1\nbodies: {rod: {mass: body.rod.x, inertia: 1}}\n");
+  EXPECT_EQ(constant.places, "2:22 state-not-allowed ");
+}
+
 }  // namespace
 }  // namespace freeplay

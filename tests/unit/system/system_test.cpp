@@ -211,6 +211,94 @@ TEST(ForceDerivatives, OfAJointInContactAreThoseOfTheForces) {
   EXPECT_LE(worst, 1e-7);  // central differences: rounding 1e-16 of forces of 100 N over 1e-7 m, against 1e5 N/m
 }
 
+// --- forces by formulas of the motion --------------------------------------------------------------------------------
+
+/// Largest difference of the derivatives of all forces from central differences, in parts of the largest.
+double worst_derivative(const System& system, const std::vector<double>& q, const std::vector<double>& v) {
+  const std::size_t nv = v.size(), width = static_cast<std::size_t>(system.layout().body_velocities());
+  const std::vector<double> h(static_cast<std::size_t>(system.layout().nh()));
+  const auto force = [&](const std::vector<double>& at_q, const std::vector<double>& at_v) {
+    Evaluation e(system);
+    EXPECT_TRUE(system.evaluate({0.3, at_q, at_v, {}, h}, term_force, e));
+    return e.force;
+  };
+  Evaluation e(system);
+  EXPECT_TRUE(system.evaluate({0.3, q, v, {}, h}, term_force | term_derivative, e));
+  double worst = 0.0;
+  for (const bool position : {true, false}) {
+    const std::vector<double>& given = position ? e.force_q : e.force_v;
+    std::vector<double> table(nv * nv);
+    for (std::size_t p = 0; p < system.forces().pairs().size(); ++p) {
+      const BodyId bodies[2] = {system.forces().pairs()[p].a, system.forces().pairs()[p].b};
+      for (std::size_t r = 0; r < 2 * width; ++r) {
+        for (std::size_t c = 0; c < 2 * width; ++c) {
+          const BodyId row = bodies[r / width], column = bodies[c / width];
+          if (row == ground || column == ground) continue;
+          const std::size_t at = (width * static_cast<std::size_t>(row) + r % width) * nv +
+                                 width * static_cast<std::size_t>(column) + c % width;
+          table[at] += given[4 * width * width * p + 2 * width * r + c];
+        }
+      }
+    }
+    double largest = 0.0;
+    for (const double x : table) largest = std::max(largest, std::abs(x));
+    EXPECT_GT(largest, 0.0);
+    for (std::size_t k = 0; k < nv; ++k) {
+      constexpr double step = 1e-5;
+      std::vector<double> change(nv), low_q = q, high_q = q, low_v = v, high_v = v;
+      change[k] = position ? step : 0.0;
+      system.coordinates().retract(q, change, high_q);
+      change[k] = -change[k];
+      system.coordinates().retract(q, change, low_q);
+      (position ? low_q : low_v)[position ? 0 : k] -= position ? 0.0 : step;
+      (position ? high_q : high_v)[position ? 0 : k] += position ? 0.0 : step;
+      const auto low = force(low_q, low_v), high = force(high_q, high_v);
+      for (std::size_t r = 0; r < nv; ++r) {
+        worst = std::max(worst, std::abs((high[r] - low[r]) / (2.0 * step) - table[r * nv + k]) / largest);
+      }
+    }
+  }
+  return worst;
+}
+
+TEST(ForceDerivatives, OfFormulasOfTheMotionAreThoseOfTheForces) {
+  const auto model = test::load(
+      "freeplay: 1\n"
+      "bodies:\n"
+      "  a: {mass: 1, inertia: 1, com: [0.1, 0.2], frames: {tip: {position: [0.5, 0.3], angle: 0.4}}}\n"
+      "  b: {mass: 1, inertia: 1, frames: {end: [-0.2, 0.7]}}\n"
+      "  c: {mass: 1, inertia: 1}\n"
+      "joints: {pin: {type: revolute, between: [b, c]}}\n"
+      "forces:\n"
+      "  along: {type: force, at: a/tip, axes: frame,\n"
+      "    value: [\"2 N*s/m*frame.b/end.vx*frame.tip.x/1 m\", \"1 N*joint.pin.angle*sin(body.a.angle)\"]}\n"
+      "  across: {type: force, at: a/tip, value: [\"3 N*s*body.c.omega*joint.pin.angle\", \"4 "
+      "N*s/m*frame.a/tip.vy\"]}\n"
+      "  turn: {type: torque, on: b, value: \"-2 N*m*s*joint.pin.speed*body.c.y/1 m\"}\n"
+      "drivers: {motor: {joint: pin, kind: torque, value: \"2 N*body.a.x - 1 N*m*s*joint.pin.speed\"}}\n");
+  const System system(*model);
+  EXPECT_LE(worst_derivative(system, {0.1, 0.2, 0.3, -0.4, 0.5, 0.6, 0.7, -0.8, 0.9},
+                             {1.0, 2.0, 3.0, -4.0, 5.0, 6.0, 7.0, -8.0, 9.0}),
+            1e-8);
+}
+
+TEST(ForceDerivatives, OfFormulasOfTheMotionInSpaceAreThoseOfTheForces) {
+  const auto model = test::load(
+      "freeplay: 1\nspace: spatial\n"
+      "bodies:\n"
+      "  a: {mass: 1, inertia: [1, 1, 1], com: [0.1, 0.2, 0.3], frames: {tip: [0.5, 0.3, -0.2]}}\n"
+      "  b: {mass: 1, inertia: [1, 1, 1], frames: {end: [-0.2, 0.7, 0.4]}}\n"
+      "forces:\n"
+      "  along: {type: force, at: a/tip, axes: frame,\n"
+      "    value: [\"2 N*s/m*frame.b/end.vx*frame.tip.z/1 m\", \"1 N*s*body.b.wy\", \"3 N/m*frame.b/end.y\"]}\n"
+      "  turn: {type: torque, on: b, value: [\"-2 N*s*frame.tip.vz\", 0, \"body.a.wx*1 N*m*s*frame.tip.x/1 m\"]}\n");
+  const System system(*model);
+  const double u = std::sqrt(0.5);
+  EXPECT_LE(worst_derivative(system, {0.1, 0.2, 0.3, u, 0.0, u, 0.0, -0.4, 0.5, 0.6, 0.5, 0.5, -0.5, 0.5},
+                             {1.0, 2.0, 3.0, -4.0, 5.0, 6.0, 7.0, -8.0, 9.0, -1.0, -2.0, 4.0}),
+            1e-8);
+}
+
 TEST(ForcePair, OfAJointInContactHasNoResultant) {
   const auto model = test::load(test::replaced(touching, "gravity: [0, -9.81]\n", ""));
   System system(*model);

@@ -1,0 +1,171 @@
+#include "format/motion_names.h"
+
+#include <algorithm>
+
+namespace freeplay {
+namespace {
+
+using Of = MotionChannel::Of;
+
+struct MarkerQuantity {
+  const char* name;
+  Of of;
+  int component;
+  bool plane, space;
+};
+constexpr MarkerQuantity marker_quantities[] = {
+    {"x", Of::position, 0, true, true},           {"y", Of::position, 1, true, true},
+    {"z", Of::position, 2, false, true},          {"angle", Of::angle, 2, true, false},
+    {"vx", Of::velocity, 0, true, true},          {"vy", Of::velocity, 1, true, true},
+    {"vz", Of::velocity, 2, false, true},         {"omega", Of::angular_velocity, 2, true, false},
+    {"wx", Of::angular_velocity, 0, false, true}, {"wy", Of::angular_velocity, 1, false, true},
+    {"wz", Of::angular_velocity, 2, false, true}};
+
+Dimension dimension_of(const MotionChannel& channel, bool turns) {
+  switch (channel.of) {
+    case Of::position:
+      return dimension::length;
+    case Of::angle:
+      return dimension::angle;
+    case Of::velocity:
+      return dimension::velocity;
+    case Of::angular_velocity:
+      return dimension::angular_velocity;
+    case Of::coordinate:
+      return turns ? dimension::angle : dimension::length;
+    case Of::speed:
+      break;
+  }
+  return turns ? dimension::angular_velocity : dimension::velocity;
+}
+
+}  // namespace
+
+std::optional<MotionNames::Name> MotionNames::split(std::string_view name) {
+  const std::size_t first = name.find('.'), last = name.rfind('.');
+  if (first == std::string_view::npos || first == last) return std::nullopt;
+  return Name{std::string(name.substr(0, first)), std::string(name.substr(first + 1, last - first - 1)),
+              std::string(name.substr(last + 1))};
+}
+
+std::optional<FormulaVariable> MotionNames::find(std::string_view name) const {
+  const std::optional<Name> parts = split(name);
+  if (!parts) return std::nullopt;
+  std::string full;
+  const std::optional<MotionChannel> found = channel(*parts, full);
+  if (!found) {
+    excused_ = excused_ || draft_.excused(parts->element);
+    return std::nullopt;
+  }
+  const std::pair written(std::string(name), parts->kind + "." + full + "." + parts->quantity);
+  if (std::ranges::find(found_, written) == found_.end()) found_.push_back(written);
+  auto place = std::ranges::find(channels_, *found);
+  if (place == channels_.end()) place = channels_.insert(place, *found);
+  const bool turns =
+      found->is_of_joint() &&
+      draft_.model.joints[static_cast<std::size_t>(found->element)].layout.coordinate == Coordinate::angle;
+  return FormulaVariable{static_cast<int>(place - channels_.begin()), DimensionKind::dimensioned,
+                         dimension_of(*found, turns)};
+}
+
+std::optional<MotionChannel> MotionNames::channel(const Name& name, std::string& full) const {
+  if (name.kind == "body") {
+    const std::optional<BodyId> body = draft_.find_body(name.element, part_);
+    if (!body || *body == ground) return std::nullopt;
+    full = draft_.body_name(*body);
+    return of_marker(full + "/com", name.quantity);
+  }
+  if (name.kind == "frame") {
+    const std::optional<std::string> found = frame(name.element);
+    if (!found) return std::nullopt;
+    full = *found;
+    return of_marker(full, name.quantity);
+  }
+  const std::optional<int> joint = name.kind == "joint" ? draft_.find_joint(name.element, part_) : std::nullopt;
+  if (!joint) return std::nullopt;
+  full = draft_.joints.names()[static_cast<std::size_t>(*joint)];
+  return of_joint(*joint, name.quantity);
+}
+
+std::optional<MotionChannel> MotionNames::of_marker(const std::string& marker, const std::string& quantity) const {
+  const bool plane = draft_.model.space == Space::planar;
+  for (const MarkerQuantity& known : marker_quantities) {
+    if (quantity == known.name && (plane ? known.plane : known.space)) {
+      return MotionChannel{known.of, draft_.marker(marker), known.component};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<MotionChannel> MotionNames::of_joint(int joint, const std::string& quantity) const {
+  if (!draft_.joint_usable[static_cast<std::size_t>(joint)]) {
+    excused_ = true;
+    return std::nullopt;
+  }
+  const JointElement& element = draft_.model.joints[static_cast<std::size_t>(joint)];
+  const Coordinate coordinate = element.layout.coordinate;
+  if (coordinate == Coordinate::none || element.gear >= 0) return std::nullopt;
+  if (quantity == (coordinate == Coordinate::angle ? "angle" : "position")) return MotionChannel{Of::coordinate, joint};
+  if (quantity == "speed") return MotionChannel{Of::speed, joint};
+  return std::nullopt;
+}
+
+/// BODY/FRAME in full; the body may be left out where one frame alone has the name.
+std::optional<std::string> MotionNames::frame(const std::string& reference) const {
+  const std::size_t slash = reference.find('/');
+  if (slash == std::string::npos) {
+    const std::string* only = draft_.lone_frame(part_.full(reference));
+    if (only == nullptr) only = draft_.lone_frame(reference);
+    return only == nullptr ? std::nullopt : std::optional(*only);
+  }
+  const std::optional<BodyId> body = draft_.find_body(reference.substr(0, slash), part_);
+  if (!body) return std::nullopt;
+  const std::string stem = draft_.body_name(*body) + "/", own = reference.substr(slash + 1);
+  for (const std::string& name : {stem + part_.full(own), stem + own}) {
+    if (draft_.frames.contains(name)) return name;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> MotionNames::quantities(const Name& name) const {
+  std::vector<std::string> all;
+  if (name.kind == "joint") {
+    for (const char* quantity : {"angle", "position", "speed"}) all.emplace_back(quantity);
+    return all;
+  }
+  const bool plane = draft_.model.space == Space::planar;
+  for (const MarkerQuantity& known : marker_quantities) {
+    if (plane ? known.plane : known.space) all.emplace_back(known.name);
+  }
+  return all;
+}
+
+std::string MotionNames::nearest(std::string_view name) const {
+  const std::optional<Name> parts = split(name);
+  if (!parts) return {};
+  std::vector<std::string> candidates;
+  const auto add = [&](const std::string& kind, const std::string& element) {
+    for (const std::string& quantity : quantities({kind, element, {}})) {
+      if (candidates.size() > most_candidates) return;
+      std::string full;
+      if (channel({kind, element, quantity}, full)) candidates.push_back(kind + "." + element + "." + quantity);
+    }
+  };
+  const auto add_all = [&](const std::string& kind, const std::vector<std::string>& elements) {
+    for (const std::string& element : elements) {
+      if (!part_.prefix.empty() && element.starts_with(part_.prefix)) add(kind, element.substr(part_.prefix.size()));
+      add(kind, element);
+    }
+  };
+  if (parts->kind != "joint" && parts->kind != "frame") add_all("body", draft_.bodies.names());
+  if (parts->kind != "body" && parts->kind != "frame") add_all("joint", draft_.joints.names());
+  if (parts->kind == "frame") {
+    std::vector<std::string> frames;
+    for (const auto& [frame, unused] : draft_.frames) frames.push_back(frame);
+    std::ranges::sort(frames);
+    add_all("frame", frames);
+  }
+  return freeplay::nearest(name, candidates);
+}
+
+}  // namespace freeplay

@@ -1,0 +1,54 @@
+#include "run/load_switches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/index.h"
+
+namespace freeplay {
+
+LoadSwitches::LoadSwitches(const System& system)
+    : system_(system),
+      slots_(system.layout().switches()),
+      events_(at(slots_.size)),
+      room_(system.forces().applied().switch_numbers()),
+      scale_(events_.size()),
+      sides_(events_.size()) {
+  for (Event& event : events_) {
+    event = Event{};
+    event.name = "switch";
+    event.crossing = Crossing::rising;
+    event.locate = 1;
+  }
+}
+
+void LoadSwitches::look_from(const Point& start, const Evaluation& e) {
+  system_.forces().applied().scale(start, system_.size(), e, room_, scale_);
+}
+
+void LoadSwitches::functions(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> g,
+                             std::span<double> rate) {
+  system_.forces().applied().decide(point, a, e, room_, g, rate);
+  for (std::size_t s = 0; s < g.size(); ++s) {
+    const double side = point.h[at(slots_.offset) + s];
+    if (side == 0.0 || scale_[s] == 0.0 || !std::isfinite(g[s]) || !std::isfinite(rate[s])) {
+      g[s] = rate[s] = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    g[s] = -side * g[s] / scale_[s] - band_;
+    rate[s] = -side * rate[s] / scale_[s];
+  }
+}
+
+bool LoadSwitches::renew(State& state, const Evaluation& e) {
+  if (events_.empty()) return false;
+  // The point has the sides that were.
+  const std::span<double> sides = state.h().subspan(at(slots_.offset), events_.size());
+  std::ranges::copy(sides, sides_.begin());
+  const bool changed = system_.forces().applied().take_sides(point(state), state.a(), e, room_, sides_);
+  std::ranges::copy(sides_, sides.begin());
+  return changed;
+}
+
+}  // namespace freeplay
