@@ -1,6 +1,7 @@
 #include "system/applied_forces.h"
 
 #include <algorithm>
+#include <ranges>
 
 #include "base/index.h"
 #include "system/evaluation.h"
@@ -14,7 +15,18 @@ AppliedForces::AppliedForces(const Model& model, const Markers& markers, const J
   }
 }
 
+// Inputs that were set, whatever the time.
+void AppliedForces::take_inputs(const Point& point, Evaluation& e) const {
+  std::size_t place = point.h.size();
+  for (const int d : std::views::reverse(effort_drivers_)) {
+    if (!model_.drivers[at(d)].input) continue;
+    place -= Layout::numbers_of_input;
+    if (point.h[place] != 0.0) e.motion[at(d)] = {point.h[place + 1], 0.0, 0.0};
+  }
+}
+
 bool AppliedForces::add(const Point& point, Evaluation& e) const {
+  take_inputs(point, e);
   for (const int d : effort_drivers_) add_effort(d, e);
   for (std::size_t f = 0; f < model_.forces.size(); ++f) {
     if (!add_force(f, point.t, e)) return false;

@@ -17,6 +17,7 @@ class AppliedForces {
   bool add(const Point& point, Evaluation& e) const;
 
  private:
+  void take_inputs(const Point& point, Evaluation& e) const;
   void add_effort(int driver, Evaluation& e) const;
   bool add_force(std::size_t index, double t, Evaluation& e) const;
 

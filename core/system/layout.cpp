@@ -52,6 +52,7 @@ Layout::Layout(const Model& model, Variant variant, std::span<const planar::Driv
     joints_[j].history = take(nh_, layout.history);
     if (layout.coordinate == Coordinate::angle) joints_[j].turn = take(nh_, 1).offset;
   }
+  for (const Driver& driver : model.drivers) take(nh_, driver.input ? static_cast<int>(numbers_of_input) : 0);
 }
 
 }  // namespace freeplay

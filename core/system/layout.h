@@ -47,6 +47,9 @@ class Layout {
   Slice history(int joint) const { return joints_[static_cast<std::size_t>(joint)].history; }
   /// Where h keeps the last accepted joint coordinate; -1 for a joint without an angle.
   int turn(int joint) const { return joints_[static_cast<std::size_t>(joint)].turn; }
+  /// Efforts of drivers that are inputs stand at the end of h, two numbers each in declaration order: whether it was
+  /// set, and what it is [N, N m].
+  static constexpr std::size_t numbers_of_input = 2;
   /// Row of a prescribing driver; -1 for one that applies an effort.
   int driver_row(int driver) const { return drivers_[static_cast<std::size_t>(driver)]; }
 
