@@ -33,7 +33,7 @@ STANDS_ON = {
     "report": ["results", "load"],
     "study": ["results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
-    "python": ["load", "results", "convert", "drawing", "analysis", "contract"],
+    "python": ["load", "results", "convert", "drawing", "analysis", "contract", "study"],
     "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "study"],
 }
 WITHOUT_SDK = {"base", "linear", "svg"}
