@@ -28,6 +28,7 @@
 #include "cli/verify_run.h"
 #include "cli/verify_table.h"
 #include "load/facts.h"
+#include "load/input_file.h"
 #include "load/load.h"
 #include "results/checkpoints.h"
 #include "results/directory.h"
@@ -64,8 +65,10 @@ class RunJob {
  public:
   /// `from`: where an earlier run ended that this one goes on with, or null.
   RunJob(const LoadedModel& loaded, AssembledModel& assembled, std::filesystem::path path, const RunOptions& options,
-         const CommonOptions& common, RepeatRuns* repeats, TwinRun* twin, const Checkpoint* from)
+         const CommonOptions& common, RepeatRuns* repeats, TwinRun* twin, const Checkpoint* from,
+         const InputCourse& inputs)
       : loaded_(loaded),
+        inputs_(inputs),
         assembled_(assembled),
         options_(options),
         common_(common),
@@ -102,6 +105,7 @@ class RunJob {
     if (checkpoints_.resumed() > 0) note(checkpoints_.resumed_words());
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
     for (const MovedStart& moved : assembled_.start.report.moved) note(sentence(moved));
+    if (!options_.inputs.empty()) recording_.add("inputs.csv", input_text(*loaded_.model, inputs_));
     Outcome outcome = run();
     Ended ended = end();
     if (twin_ != nullptr) compare_with_twin(outcome, ended);
@@ -199,7 +203,7 @@ class RunJob {
       progress.update(t, steps);
       if (!recording_.ok()) stop = 1;
     };
-    return simulation_->run(hooks);
+    return run_with(*simulation_, hooks, inputs_);
   }
 
   /// Nothing is claimed that the files do not hold.
@@ -314,6 +318,7 @@ class RunJob {
   }
 
   const LoadedModel& loaded_;
+  const InputCourse& inputs_;
   AssembledModel& assembled_;
   const RunOptions& options_;
   const CommonOptions& common_;
@@ -385,6 +390,11 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
         Error::Category::usage, "no-clearance",
         "--twin runs the model with every clearance closed alongside, and no joint of this model has a clearance");
   }
+  InputCourse inputs;
+  if (!options.inputs.empty()) {
+    inputs = read_inputs(options.inputs, *loaded.model, loaded.diagnostics, loaded.model->inputs.emplace_back());
+  }
+  if (loaded.diagnostics.has_errors()) return report_failure(loaded.diagnostics, 3, common);
   const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
   if (!options.dry_run) announce_size(*loaded.model, path, from != nullptr ? from->rows() : 0, options, common);
   const auto assembled = assemble_model(loaded);
@@ -401,7 +411,8 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
   require_thread();
-  const int exit_code = RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from).execute();
+  const int exit_code =
+      RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from, inputs).execute();
   if (options.report && exit_code != 6) write_report_of(path, common);
   return exit_code;
 }

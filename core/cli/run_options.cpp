@@ -22,6 +22,7 @@ void each_kept(Options& options, Common& common, Visit&& visit) {
   visit("ideal", options.model_options.ideal);
   visit("verify", options.verify);
   visit("interval", options.interval);
+  visit("inputs", options.inputs);
   visit("channels", options.channels);
   visit("twin", options.twin);
   visit("plugins", options.plugins);
@@ -39,6 +40,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   add_repeatable(app, "--channels", options.channels,
                  "Channels to write, a name or pattern with *, in place of the file's; repeatable", "PATTERN");
   add_option(app, "--integrator", options.integrator, "Integrator, with its default parameters", "NAME");
+  add_file_option(app, "--inputs", options.inputs,
+                  "Efforts of the drivers that are inputs, a table over time: inputs.csv of another run", "FILE");
   add_flag(app, "--verify", options.verify,
            "Run again by a method of another kind and print the observed errors; exit code 7 when both disagree");
   add_option(app, "--repeat", options.repeat, "Run N times, from starts moved in the play: median and range of peaks",
@@ -70,6 +73,11 @@ void refuse_idle_options(const RunOptions& options) {
     throw Error(Error::Category::usage, "usage",
                 fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
   }
+  if (!options.inputs.empty() && (options.verify || !options.repeat.empty())) {
+    throw Error(Error::Category::usage, "usage",
+                fmt::format("--inputs and {} exclude each other: other runs have no inputs",
+                            options.verify ? "--verify" : "--repeat"));
+  }
   if (options.twin && !options.repeat.empty()) {
     throw Error(Error::Category::usage, "usage",
                 "--twin and --repeat exclude each other: a twin without play has one start only");
@@ -93,6 +101,7 @@ Making making(const RunOptions& options, const CommonOptions& common, const Mode
     making.arguments.emplace_back(option);
     making.arguments.push_back(value);
   };
+  add("--inputs", options.inputs);
   add("--repeat", options.repeat);
   add("--seed", options.seed);
   if (!options.repeat.empty()) making.seed = repeat_plan(options.repeat, options.seed).seed;

@@ -13,7 +13,7 @@
 namespace freeplay {
 
 struct RunOptions : RunWords {
-  std::string model, out, repeat, seed, checkpoint, resume;
+  std::string model, out, repeat, seed, checkpoint, resume, inputs;
   // Of a run that goes on: the name of its model, whose copy has none where it was that of the file.
   std::string model_name;
   std::vector<std::string> plugins;  ///< words of --plugin, of the run that goes on where one does

@@ -224,7 +224,7 @@ class ModelWriter {
     } else if (one.table) {
       json["table"] = table(one);
     } else {
-      json["value"] = one.text;
+      json[one.input ? "input" : "value"] = one.text;
     }
     return json;
   }

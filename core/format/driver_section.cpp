@@ -61,9 +61,9 @@ class DriverEntry {
     if (!map_.good()) return;
     if (map_.has("inverse_kinematics")) {
       map_.conflict("joint", "inverse_kinematics");
-      for (const char* key : {"joint", "kind", "value", "table"}) map_.find(key);
+      for (const char* key : {"joint", "kind", "value", "table", "input"}) map_.find(key);
       if (!map_.has("joint")) {
-        for (const char* key : {"value", "table"}) map_.conflict("inverse_kinematics", key);
+        for (const char* key : {"value", "table", "input"}) map_.conflict("inverse_kinematics", key);
       }
       const auto kinematics = map_.find("inverse_kinematics");
       if (kinematics->in_space()) return kinematics->fail_at_key("type-space", "paths work in planar models only");
@@ -106,6 +106,10 @@ class DriverEntry {
     if (prescribes(kind)) claim(*joint, entry_, driver.name);
     if (!value) return;
     const Dimension dimension = dimension_of(kind, coordinate);
+    if (value->key() == "input") {
+      driver.input = read_input(*value, dimension, kind);
+      if (!driver.input) return;
+    }
     if (value->key() == "table") {
       driver.table = read_table(draft_, *value, dimension, &driver.table_source);
       if (!driver.table) return;
@@ -131,8 +135,22 @@ class DriverEntry {
     return true;
   }
 
+  /// Whether it is what an effort begins with that the caller of a run sets.
+  static bool read_input(const CheckedValue& value, const Dimension& dimension, DriverKind kind) {
+    if (!prescribes(kind)) return value.quantity(dimension).has_value();
+    value.fail_at_key("wrong-type",
+                      "'" + value.path() + "' is for a torque or a force: '" +
+                          kind_words[static_cast<std::size_t>(kind)] + "' is prescribed by 'value' or 'table'",
+                      {}, "not in this release");
+    return false;
+  }
+
   /// For the mistakes in it, when the joint is not known.
   void read_alone(const CheckedValue& value, DriverKind kind) const {
+    if (value.key() == "input") {
+      read_input(value, dimension_of(kind, Coordinate::none), kind);
+      return;
+    }
     if (kind == DriverKind::velocity) return;  // its dimension is that of the joint
     const Dimension dimension = dimension_of(kind, Coordinate::none);
     if (value.key() == "table") {
@@ -142,12 +160,14 @@ class DriverEntry {
     }
   }
 
-  /// `value` or `table`, by the key.
+  /// `value`, `table` or `input`, by the key.
   std::optional<CheckedValue> read_function_key() {
-    const auto value = map_.find("value"), table = map_.find("table");
-    if (map_.conflict("value", "table")) return std::nullopt;
-    if (!value && !table) map_.report_missing("value");
-    return value ? value : table;
+    const auto value = map_.find("value"), table = map_.find("table"), input = map_.find("input");
+    if (map_.conflict("value", "table") || map_.conflict("value", "input") || map_.conflict("table", "input")) {
+      return std::nullopt;
+    }
+    if (!value && !table && !input) map_.report_missing("value");
+    return value ? value : table ? table : input;
   }
 
   void add_name() {

@@ -92,9 +92,11 @@ constexpr FormatKey driver[] = {
     {"joint", "name", "", "required unless inverse_kinematics", "The joint that it moves.", "pin"},
     {"kind", "'angle' | 'position' | 'velocity' | 'torque' | 'force'", "", "required unless inverse_kinematics",
      "What is prescribed, or the effort that acts.", "angle"},
-    {"value", "time function", "by kind", "", "Function of t, an effort also of the motion; either this or `table`.",
-     "2*pi*t"},
+    {"value", "time function", "by kind", "",
+     "Function of t, an effort also of the motion; either this, `table` or `input`.", "2*pi*t"},
     {"table", "text | map table", "", "", "Values from a file or a list.", "motor.csv"},
+    {"input", "quantity", "by kind", "", "Of a torque or force that a script sets during a run: what it begins with.",
+     "0 N*m"},
     {"inverse_kinematics", "map inverse_kinematics", "", "", "Instead of all these: a frame follows a path.",
      "{frame: platform, path: {x: 0.1*t}, joints: [A]}"},
     use};

@@ -113,6 +113,7 @@ struct Driver {
   int kinematics = -1;  ///< index into Model::kinematics: motion by inverse kinematics
   int elbow = 1;        ///< working mode of the leg, 1 or -1
   bool elbow_given = false;
+  bool input = false;  ///< an effort that the caller of a run may set: until then it is `value`, which is a constant
 };
 
 /// The frame of an inverse-kinematics entry and its path. Its drivers are neighbours in Model::drivers.

@@ -14,6 +14,13 @@
 
 namespace freeplay {
 
+/// Rows and events of a run up to some instant.
+struct KeptRecord {
+  RecordLayout layout;
+  ColumnBlock block;
+  std::vector<double> events;  ///< numbers of all, as the layout says
+};
+
 class KeptRows : public Sink {
  public:
   /// Throws std::bad_alloc where there is no room for all rows. `model` outlives the run.
@@ -29,8 +36,10 @@ class KeptRows : public Sink {
 
   const RecordLayout& layout() const { return layout_; }
   const ColumnBlock& block() const { return block_; }
-  /// Numbers of all events, as the layout says.
-  const std::vector<double>& events() const { return events_; }
+  /// What there is now; the memory of the rows is shared.
+  KeptRecord record() const { return {layout_, block_, events_}; }
+  /// Places of the kept channels in a whole row.
+  std::span<const std::size_t> picked() const { return picked_; }
   /// `hashes` of a summary.
   Json hashes() const;
 

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include <pybind11/functional.h>
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include "base/caught_error.h"
@@ -22,10 +20,10 @@
 #include "contract/sample_layout.h"
 #include "contract/type_list.h"
 #include "freeplay/plugin.h"
+#include "load/input_file.h"
 #include "load/plugins.h"
 #include "python/asked_analysis.h"
-#include "python/default_arithmetic.h"
-#include "python/kept_run.h"
+#include "python/binding.h"
 #include "python/opened_model.h"
 #include "python/refusal.h"
 #include "python/stored_result.h"
@@ -33,48 +31,7 @@
 namespace freeplay {
 namespace {
 
-namespace py = pybind11;
 using Opened = std::shared_ptr<OpenedModel>;
-using Kept = std::shared_ptr<KeptRun>;
-
-/// While the core works: other threads of Python go on, and numbers are those of the command line.
-struct Away {
-  py::gil_scoped_release released;
-  DefaultArithmetic arithmetic;
-};
-
-/// Signals and the caller's function, between steps. What these raise waits until the core has come back.
-class Pulse {
- public:
-  explicit Pulse(py::object progress) : progress_(std::move(progress)) {}
-
-  bool operator()(double t, long steps) {
-    const py::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0) {
-      raised_.emplace();
-      return false;
-    }
-    if (progress_.is_none()) return true;
-    try {
-      progress_(t, steps);
-    } catch (py::error_already_set& error) {
-      raised_ = std::move(error);
-      return false;
-    }
-    return true;
-  }
-
-  /// Null where nothing was raised.
-  py::object raised() const { return raised_ ? py::object(raised_->value()) : py::object(py::none()); }
-
- private:
-  py::object progress_;
-  std::optional<py::error_already_set> raised_;
-};
-
-py::object python_of(const Json& json) {
-  return py::module_::import("json").attr("loads")(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
 
 /// Raises the class of the exit code, with messages and text.
 void raise(const Refusal& refusal) {
@@ -97,70 +54,6 @@ void translate(std::exception_ptr pointer) {
   } catch (const std::exception& exception) {
     raise(Refusal(error_of(exception)));
   }
-}
-
-/// Read-only, and alive as long as `owner` is needed.
-py::array numbers(const double* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
-                  const py::object& owner) {
-  py::array_t<double> array(std::move(shape), std::move(strides), data, owner);
-  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return array;
-}
-
-py::array block_of(const ColumnBlock& block, const py::object& owner) {
-  constexpr auto size = static_cast<py::ssize_t>(sizeof(double));
-  return numbers(block.data(), {static_cast<py::ssize_t>(block.rows()), static_cast<py::ssize_t>(block.columns())},
-                 {size, size * static_cast<py::ssize_t>(block.room())}, owner);
-}
-
-/// Names, units, words of events.
-py::dict layout_of(const RecordLayout& layout) {
-  py::list names, units, events;
-  for (const RecordColumn& column : layout.columns) {
-    names.append(column.name);
-    units.append(column.unit);
-  }
-  for (const RecordColumn& column : layout.events) events.append(column.name);
-  py::dict out;
-  out["names"] = names;
-  out["units"] = units;
-  out["events"] = events;
-  out["joints"] = layout.joints;
-  out["kinds"] = layout.kinds;
-  return out;
-}
-
-/// (count, columns), read-only.
-py::array events_of(const std::vector<double>& events, const RecordLayout& layout, const py::object& owner) {
-  const auto width = static_cast<py::ssize_t>(layout.events.size());
-  constexpr auto size = static_cast<py::ssize_t>(sizeof(double));
-  const py::ssize_t count = width > 0 ? static_cast<py::ssize_t>(events.size()) / width : 0;
-  return numbers(events.data(), {count, width}, {size * width, size}, owner);
-}
-
-OpenRequest request_of_dict(const py::dict& options) {
-  OpenRequest request;
-  const auto text = [&](const char* name, std::string& to) {
-    if (options.contains(name)) to = options[name].cast<std::string>();
-  };
-  const auto list = [&](const char* name, std::vector<std::string>& to) {
-    if (options.contains(name)) to = options[name].cast<std::vector<std::string>>();
-  };
-  if (options.contains("text")) request.text = options["text"].cast<std::string>();
-  text("file", request.file);
-  text("end", request.words.end);
-  text("step", request.words.step);
-  text("accuracy", request.words.accuracy);
-  text("interval", request.words.interval);
-  text("integrator", request.words.integrator);
-  text("format", request.words.format);
-  list("channels", request.words.channels);
-  list("set", request.words.model_options.set);
-  list("ideal", request.words.model_options.ideal);
-  list("plugins", request.plugins);
-  if (options.contains("strict")) request.strict = options["strict"].cast<bool>();
-  if (options.contains("allow_plugins")) request.allow_plugins = options["allow_plugins"].cast<bool>();
-  return request;
 }
 
 Opened open_model(const py::dict& options) {
@@ -218,6 +111,12 @@ py::dict facts_of(const OpenedModel& opened) {
   }
   out["joints"] = py::tuple(joints);
   out["drivers"] = names(model.drivers);
+  py::list inputs;  // names and units
+  for (const int d : inputs_of(model)) {
+    const Driver& driver = model.drivers[static_cast<std::size_t>(d)];
+    inputs.append(py::make_tuple(driver.name, driver.kind == DriverKind::torque ? "N*m" : "N"));
+  }
+  out["inputs"] = inputs;
   py::dict parameters;
   for (const auto& pair : model.parameters) parameters[py::str(pair.first)] = pair.second.value;
   out["parameters"] = parameters;
@@ -229,29 +128,6 @@ py::dict facts_of(const OpenedModel& opened) {
   out["messages"] = python_of(opened.messages());
   out["remarks"] = opened.remarks();
   return out;
-}
-
-py::tuple run_kept(const Opened& model, const py::object& out, bool force, bool profile, const std::string& call,
-                   const py::object& progress) {
-  RunRequest request{.out = std::nullopt, .force = force, .profile = profile, .call = call};
-  if (!out.is_none()) request.out = out.cast<std::string>();
-  Pulse pulse(progress);
-  Kept run;
-  {
-    const Away away;
-    run = run_model(model, request, [&](double t, long steps) { return pulse(t, steps); });
-  }
-  return py::make_tuple(run, pulse.raised());
-}
-
-void save_kept(const KeptRun& run, const std::string& path, bool force, const std::string& format) {
-  const Away away;
-  const auto found = std::ranges::find(result_formats, format, [](const char* word) { return std::string(word); });
-  if (found == std::end(result_formats)) {
-    throw Error(Error::Category::usage, "bad-value",
-                "bad value '" + format + "' of --format: it must be csv, hdf5 or both");
-  }
-  save_run(run, path, force, static_cast<ResultFormat>(found - std::begin(result_formats)));
 }
 
 py::dict read_stored(const std::string& path, const std::vector<std::string>& channels) {
@@ -340,6 +216,11 @@ py::tuple analyse_words(const Opened& model, const py::dict& options) {
   return py::make_tuple(out, py::none());
 }
 
+/// A quantity of the unit, in SI.
+double quantity_of(const std::string& name, const std::string& text, const std::string& unit) {
+  return signed_quantity(name, text, parse_unit(unit).dimension);
+}
+
 /// What `describe`, `list` and `schema` print, of the built-in types and of installed plugins.
 py::object of_types(const std::function<Json(const Registry&)>& question) {
   Json json;
@@ -388,33 +269,14 @@ PYBIND11_MODULE(_core, module) {
       .def("start", answer(&OpenedModel::start))
       .def("tree", answer(&OpenedModel::tree))
       .def("svg", answer(&OpenedModel::svg));
-  py::class_<KeptRun, Kept>(module, "KeptRun")
-      .def("data", [](const py::object& self) { return block_of(self.cast<const KeptRun&>().rows->block(), self); })
-      .def("event_numbers",
-           [](const py::object& self) {
-             const KeptRows& rows = *self.cast<const KeptRun&>().rows;
-             return events_of(rows.events(), rows.layout(), self);
-           })
-      .def("layout", [](const KeptRun& run) { return layout_of(run.rows->layout()); })
-      .def("summary", [](const KeptRun& run) { return python_of(run.summary); })
-      .def_readonly("status", &KeptRun::status)
-      .def_readonly("reason", &KeptRun::reason)
-      .def_readonly("exit_code", &KeptRun::exit_code)
-      .def_readonly("warnings", &KeptRun::warnings)
-      .def("profile", [](const KeptRun& run) {
-        py::dict out;
-        for (const KeptRun::PhaseTime& time : run.profile) {
-          out[py::str(time.phase)] = py::make_tuple(time.seconds, time.count);
-        }
-        return out;
-      });
+  bind_runs(module);
+  bind_maps(module);
   module.def("open_model", &open_model);
   module.def("check_model", &check_model);
-  module.def("run", &run_kept);
-  module.def("save", &save_kept);
   module.def("read", &read_stored);
   module.def("compare", &compare_stored);
   module.def("analyse", &analyse_words);
+  module.def("quantity", &quantity_of);
   module.def("types", &list_types);
   module.def("describe", &describe_type);
   module.def("schema_of", &schema_of);

@@ -1,5 +1,6 @@
 #include "python/opened_model.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/message_json.h"
@@ -45,6 +46,11 @@ Json OpenedModel::check(OpenRequest request) {
   LoadedModel loaded = read(request, remarks);
   if (loaded.model) assemble_model(loaded);
   return messages_json(loaded.diagnostics, 0);
+}
+
+std::string OpenedModel::unit_of(const std::string& parameter) const {
+  const auto found = std::ranges::find(model().parameters, parameter, &std::pair<std::string, Quantity>::first);
+  return found == model().parameters.end() ? std::string() : si_unit(found->second.dimension);
 }
 
 Json OpenedModel::messages() const { return messages_json(loaded_.diagnostics, 0); }

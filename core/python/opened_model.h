@@ -33,6 +33,9 @@ class OpenedModel {
   const OpenRequest& request() const { return request_; }
   const Model& model() const { return *loaded_.model; }
   const Channels& channels() const { return channels_; }
+  const Document& document() const { return *loaded_.document; }
+  /// Of a parameter, in SI; "" for what is none.
+  std::string unit_of(const std::string& parameter) const;
   /// Warnings of the file.
   Json messages() const;
   /// Remarks that are about no place of the file.

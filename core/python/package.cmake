@@ -13,14 +13,14 @@ file(GLOB sources CONFIGURE_DEPENDS core/python/*.cpp)
 add_library(freeplay_python MODULE ${sources})
 freeplay_compile_together(freeplay_python)
 # Headers of the interpreter take long to compile, and what is there for others must be seen by no other file.
-set_source_files_properties(core/python/module.cpp core/python/outside_data.cpp core/python/outside_format.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+set_source_files_properties(core/python/module.cpp core/python/binding.cpp core/python/run_binding.cpp core/python/map_binding.cpp core/python/outside_data.cpp core/python/outside_format.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 set_target_properties(freeplay_python PROPERTIES PREFIX "" SUFFIX ${extension_suffix} OUTPUT_NAME _core
                                                  LIBRARY_OUTPUT_DIRECTORY ${python_package}
                                                  LINK_DEPENDS ${PROJECT_SOURCE_DIR}/core/python/exported.map)
 target_include_directories(freeplay_python SYSTEM PRIVATE ${PYBIND11_INCLUDE} ${PYTHON_INCLUDE})
 target_compile_definitions(freeplay_python PRIVATE FREEPLAY_BUILD="${CMAKE_BUILD_TYPE}")
 target_compile_options(freeplay_python PRIVATE $<$<CONFIG:Release>:-O1>)
-target_link_libraries(freeplay_python PRIVATE freeplay_load freeplay_results freeplay_convert freeplay_drawing freeplay_analysis
+target_link_libraries(freeplay_python PRIVATE freeplay_load freeplay_results freeplay_convert freeplay_drawing freeplay_analysis freeplay_study
                                               freeplay_contract)
 freeplay_builtins(freeplay_python OFF)
 # It shows nothing but its entry, and binds what it is made of to itself: no other library of the interpreter gets between.

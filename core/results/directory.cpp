@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* own_files[] = {"results.csv", "results.h5",  "summary.json", "events.csv",
-                                     "model.yaml",  "model.urdf",  "inputs",       "checkpoint.bin",
-                                     "run.log",     "report.html", "twin"};
+constexpr const char* own_files[] = {"results.csv",    "results.h5", "summary.json", "events.csv",
+                                     "inputs.csv",     "model.yaml", "model.urdf",   "inputs",
+                                     "checkpoint.bin", "run.log",    "report.html",  "twin"};
 
 [[noreturn]] void fail(std::string message, std::string hint = {}) {
   throw Error(Error::Category::file, "cannot-write", std::move(message), {}, std::move(hint));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -72,6 +73,8 @@ class Recording {
   /// Throws Error{file} unless the directory is there.
   void require_directory() const { directory_.require_there(); }
   RunLog& log() { return log_; }
+  /// One more file of the result, before files(). Throws Error{file}.
+  void add(std::string_view name, std::string_view text) const { directory_.write(name, text); }
   const ContactAdvice& advice() const { return advice_; }
   /// Tables of /bearing, for seal().
   void bearing(const ClearanceStatistics& clearances);

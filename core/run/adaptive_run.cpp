@@ -45,24 +45,33 @@ AdaptiveRun::AdaptiveRun(const RunParts& parts, EventPursuit& pursuit)
               error_power(parts.run.integrator_layout)),
       velocity_allowed_(parts.run.allowed) {}
 
-void AdaptiveRun::run(const RunHooks& hooks) {
+bool AdaptiveRun::advance(const RunHooks& hooks, const RunGoal& goal) {
+  const long steps = run_.outcome.steps, rows = parts_.recorder.next_row();
   while (run_.accepted.t() < run_.settings.end) {
+    if (!(run_.accepted.t() < goal.until) || parts_.recorder.next_row() - rows >= goal.rows ||
+        run_.outcome.steps - steps >= goal.steps) {
+      return true;
+    }
     const long before = run_.outcome.steps;
-    const bool going = step() && parts_.end.check_stop();
+    const bool going = step(goal.until) && parts_.end.check_stop();
     const bool due = run_.accepted.t() >= parts_.recorder.next_row_time();
-    if (run_.outcome.steps > before && (due || !going) && !parts_.recorder.write_row()) return;
-    if (!going) return parts_.recorder.write_held_rows();
+    if (run_.outcome.steps > before && (due || !going) && !parts_.recorder.write_row()) return false;
+    if (!going) {
+      parts_.recorder.write_held_rows();
+      return false;
+    }
     parts_.recorder.pass_rows();
     if (hooks.stepped) hooks.stepped();
     if (parts_.end.check_interrupt(hooks)) continue;
     parts_.recorder.know_row();  // of the summary; rows stay those of the whole run
-    return;
+    return false;
   }
+  return false;
 }
 
-bool AdaptiveRun::step() {
+bool AdaptiveRun::step(double until) {
   Search search;
-  if (!begin_search(search)) return false;
+  if (!begin_search(until, search)) return false;
   for (;;) {
     const Found found = attempt(search);
     if (found == Found::failed) return false;
@@ -70,8 +79,8 @@ bool AdaptiveRun::step() {
   }
 }
 
-// What error control and joints allow, no farther than the next corner and than the event that is to be expected.
-bool AdaptiveRun::begin_search(Search& search) {
+// What error control and joints allow, no farther than `until`, the next corner and the event that is to be expected.
+bool AdaptiveRun::begin_search(double until, Search& search) {
   allow_error(search);
   if (!bounded_step(search.dt, search.limiting)) return false;
   Fault fault;
@@ -86,9 +95,11 @@ bool AdaptiveRun::begin_search(Search& search) {
   }
   double kink = 0.0;
   if (!parts_.corners.next_corner(search.dt, kink)) return false;
-  const bool to_kink = kink <= run_.settings.end;
-  search.goal = to_kink ? Corners::before(kink) : run_.settings.end;
-  if (to_kink) search.kink = kink;
+  search.goal = std::min(run_.settings.end, until);
+  if (kink <= run_.settings.end && !(search.goal < Corners::before(kink))) {
+    search.goal = Corners::before(kink);
+    search.kink = kink;
+  }
   const double proposed = std::min(search.dt, search.goal - run_.accepted.t());
   double reach = proposed;
   if (!parts_.corners.resolve_inputs(reach)) return false;

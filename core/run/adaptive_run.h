@@ -7,6 +7,7 @@
 #include "run/event_bracket.h"
 #include "run/event_pursuit.h"
 #include "run/force_kinks.h"
+#include "run/goal.h"
 #include "run/parts.h"
 #include "run/step_control.h"
 
@@ -16,8 +17,8 @@ class AdaptiveRun {
  public:
   AdaptiveRun(const RunParts& parts, EventPursuit& pursuit);
 
-  /// To the end of the run, from the accepted state.
-  void run(const RunHooks& hooks);
+  /// From the accepted state to `goal`. False once the run is over.
+  bool advance(const RunHooks& hooks, const RunGoal& goal);
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -43,8 +44,8 @@ class AdaptiveRun {
   };
   enum class Found { no, yes, failed };  ///< a step that may stand; failed: the run is over
 
-  bool step();
-  bool begin_search(Search& search);
+  bool step(double until);
+  bool begin_search(double until, Search& search);
   Found attempt(Search& search);
   Found shorten(Search& search, bool converged);
   Found judge(Search& search);

@@ -14,7 +14,10 @@ class EndCheck {
   EndCheck(RunContext& run, Recorder& recorder);
 
   void start_clock() { started_ = Clock::now(); }
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
+  /// While the caller is at work.
+  void pause_clock() { before_ = seconds(); }
+  double spent() const { return before_; }
+  double seconds() const { return before_ + std::chrono::duration<double>(Clock::now() - started_).count(); }
   /// Each returns false when the run is over, with its outcome filled. The second also reports how far the run is.
   bool check_stop();
   bool check_interrupt(const RunHooks& hooks);
@@ -26,7 +29,7 @@ class EndCheck {
   Recorder& recorder_;
   std::vector<int> stop_columns_;
   Clock::time_point started_;
-  double last_progress_ = 0.0;
+  double before_ = 0.0, last_progress_ = 0.0;
 };
 
 }  // namespace freeplay

@@ -8,6 +8,10 @@
 namespace freeplay {
 namespace {
 constexpr double smallest_step = 1e-3;  // of the step asked for
+
+long steps_between(double from, double to, double step) {
+  return std::max(1L, std::lround(std::ceil((to - from) / step - 1e-6)));
+}
 }  // namespace
 
 FixedRun::FixedRun(const RunParts& parts, StepCorners& step_corners)
@@ -21,14 +25,17 @@ bool FixedRun::begin_leg() {
     return parts_.failure.fail(
         4, fmt::format("t = {:.9g} s: a step of {:.3g} s is too small to advance the time", from, run_.settings.step));
   }
-  const long count = std::max(1L, std::lround(std::ceil((target - from) / run_.settings.step - 1e-6)));
-  leg_ = {.from = from, .target = target, .goal = from, .count = count, .steps_before = run_.outcome.steps};
+  leg_ = {.from = from,
+          .target = target,
+          .goal = from,
+          .count = steps_between(from, target, run_.settings.step),
+          .steps_before = run_.outcome.steps};
   return true;
 }
 
 // One accepted step. An attempt that does not converge is made again in half its length, and the rest of the step of
-// full size follows in steps as short.
-bool FixedRun::step() {
+// full size follows in steps as short. A step that would go over `until` ends there, and others of full size follow.
+bool FixedRun::step(double until) {
   // Output instants may be closer than times can separate.
   if (!(run_.accepted.t() < leg_.target)) return true;
   const double smallest = smallest_step * run_.settings.step;
@@ -36,6 +43,12 @@ bool FixedRun::step() {
     ++leg_.step;
     leg_.goal = leg_.step == leg_.count ? leg_.target : leg_.from + static_cast<double>(leg_.step) * run_.settings.step;
     leg_.dt = leg_.goal - run_.accepted.t();
+  }
+  if (until < leg_.goal) {
+    leg_.from = leg_.goal = until;
+    leg_.count = steps_between(until, leg_.target, run_.settings.step);
+    leg_.step = 0;
+    leg_.dt = std::min(leg_.dt, until - run_.accepted.t());
   }
   double& dt = leg_.dt;
   for (;;) {
@@ -80,19 +93,24 @@ bool FixedRun::accept(double corner) {
   return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
 
-void FixedRun::run(const RunHooks& hooks) {
+bool FixedRun::advance(const RunHooks& hooks, const RunGoal& goal) {
+  const long steps = run_.outcome.steps;
+  long rows = 0;
   while (run_.accepted.t() < run_.settings.end) {
-    if (!(run_.accepted.t() < leg_.target) && !begin_leg()) return;
-    const bool going = step() && parts_.end.check_stop();
+    if (!(run_.accepted.t() < goal.until) || rows >= goal.rows || run_.outcome.steps - steps >= goal.steps) return true;
+    if (!(run_.accepted.t() < leg_.target) && !begin_leg()) return false;
+    const bool going = step(goal.until) && parts_.end.check_stop();
     const bool arrived = going && !(run_.accepted.t() < leg_.target);
     // A run that was stopped keeps the state it stopped in.
-    if ((arrived || (!going && run_.outcome.steps > leg_.steps_before)) && !parts_.recorder.write_row()) return;
-    if (!going) return;
+    if ((arrived || (!going && run_.outcome.steps > leg_.steps_before)) && !parts_.recorder.write_row()) return false;
+    if (!going) return false;
+    rows += arrived ? 1 : 0;
     if (hooks.stepped) hooks.stepped();
     if (parts_.end.check_interrupt(hooks)) continue;
     parts_.recorder.know_row();  // of the summary; rows stay those of the whole run
-    return;
+    return false;
   }
+  return false;
 }
 
 }  // namespace freeplay

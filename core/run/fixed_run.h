@@ -1,6 +1,7 @@
 // FixedRun: a run in steps of one size.
 #pragma once
 
+#include "run/goal.h"
 #include "run/parts.h"
 #include "run/step_corners.h"
 
@@ -10,8 +11,8 @@ class FixedRun {
  public:
   FixedRun(const RunParts& parts, StepCorners& step_corners);
 
-  /// To the end of the run, from the accepted state.
-  void run(const RunHooks& hooks);
+  /// From the accepted state to `goal`. False once the run is over.
+  bool advance(const RunHooks& hooks, const RunGoal& goal);
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -19,7 +20,8 @@ class FixedRun {
   }
 
  private:
-  /// On the way to the next output instant: steps of one size, the last of which ends there.
+  /// On the way to the next output instant: steps of one size from an instant that a caller asked for or the output
+  /// instant before, the last of which ends there.
   struct Leg {
     double from = 0.0, target = -unbounded;
     double goal = -unbounded;  ///< where the present step of full size ends [s]
@@ -32,7 +34,7 @@ class FixedRun {
     }
   };
   bool begin_leg();
-  bool step();
+  bool step(double until);
   bool accept(double corner);
 
   const RunParts parts_;

@@ -225,6 +225,13 @@ double Recorder::row_time(long index) const {
   return t > run_.settings.end - 1e-9 * run_.settings.interval ? run_.settings.end : t;
 }
 
+double Recorder::instant_at(double t, double within) const {
+  const double index = std::round((t - run_.settings.start) / run_.settings.interval);
+  if (!(std::abs(index) < 1e15)) return t;
+  const double instant = row_time(static_cast<long>(index));
+  return std::abs(t - instant) <= within ? instant : t;
+}
+
 void Recorder::pass_rows() {
   while (next_row_time() <= run_.accepted.t() && run_.accepted.t() < run_.settings.end) ++next_row_;
 }
@@ -347,6 +354,24 @@ bool Recorder::note_abrupt_end() {
   if (contact_rows_.active()) see_contact_end(row_between_);
   seek_peaks(step);
   if (contact_rows_.active()) seek_contact_peaks(step);
+  return true;
+}
+
+bool Recorder::note_change() {
+  const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
+  forget_row();
+  if (!know_row()) return false;
+  if (!statistics_.counts(run_.accepted.t())) {
+    statistics_.note(row_);
+  } else {
+    statistics_.begin_stretch();
+    statistics_.add(row_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0, 0.0);
+    clearances_.add(row_, run_.e_accepted, run_.energy.joint_loss());
+  }
+  if (run_.adaptive) peaks_.restart(run_.accepted.t(), statistics_.largest().last());
+  if (!contact_rows_.active()) return true;
+  contact_rows_.see_end(row_);
+  contact_peaks_.restart(run_.accepted.t(), contact_rows_.values(row_));
   return true;
 }
 

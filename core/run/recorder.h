@@ -37,6 +37,8 @@ class Recorder {
   /// statistics begin inside.
   bool record_step();
   bool note_abrupt_end();
+  /// What acts changes at the accepted state, which stays: statistics go on from the new values.
+  bool note_change();
   bool begin_statistics_inside();
   /// All steps from now on.
   void feed(StepSink* sink) { feed_.feed(sink); }
@@ -48,6 +50,9 @@ class Recorder {
   double take_next_row() { return row_time(next_row_++); }
   /// Rows up to the accepted state are written.
   void pass_rows();
+  long next_row() const { return next_row_; }
+  /// The output instant at t but for `within`, or t where there is none [s].
+  double instant_at(double t, double within) const;
   bool write_row();
   /// Rows inside of the step that was made, for files and for what looks at all steps.
   bool write_rows_inside();

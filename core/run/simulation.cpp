@@ -2,18 +2,36 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "base/index.h"
 #include "run/adaptive_run.h"
 #include "run/fixed_run.h"
 
 namespace freeplay {
 
+std::vector<int> inputs_of(const Model& model) {
+  std::vector<int> inputs;
+  for (std::size_t d = 0; d < model.drivers.size(); ++d) {
+    if (model.drivers[d].input) inputs.push_back(static_cast<int>(d));
+  }
+  return inputs;
+}
+
 // The parts of a run, each of which knows those above it.
 struct Simulation::Impl {
   Impl(std::shared_ptr<const RunEquations> equations, const Channels& channels, std::span<Sink* const> sinks)
-      : context(std::move(equations), channels), recorder(context, failure, attempt, inside, sinks) {}
+      : context(std::move(equations), channels),
+        inputs(inputs_of(context.model)),
+        recorder(context, failure, attempt, inside, sinks) {}
 
-  Outcome run(const RunHooks& hooks);
+  void begin(const RunHooks& hooks);
+  bool advance(RunGoal goal);
+  bool know_row();
+  bool renew();
+  std::span<double> input(std::size_t index);
+  std::vector<double> acting_efforts();
+  const Outcome& finish();
   RunState save() const;
   EndedMotion motion() const;
   void restore(const RunState& state);
@@ -24,7 +42,11 @@ struct Simulation::Impl {
   }
 
   RunContext context;
-  bool goes_on = false;  // from a saved state
+  const std::vector<int> inputs;    // drivers
+  bool goes_on = false;             // from a saved state
+  const RunHooks* hooks = nullptr;  // from its begin on
+  bool over = false;
+  std::vector<double> efforts;  // that were set, by input; empty: none was
   RunFailure failure{context};
   StepAttempt attempt{context, failure};
   StepInside inside{context, failure, attempt};
@@ -41,22 +63,61 @@ struct Simulation::Impl {
   AdaptiveRun adaptive{parts, pursuit};
 };
 
-Outcome Simulation::Impl::run(const RunHooks& hooks) {
+void Simulation::Impl::begin(const RunHooks& run_hooks) {
+  hooks = &run_hooks;
   end.start_clock();
-  context.evaluations.profile = hooks.profile;
-  if (hooks.profile != nullptr) hooks.profile->start();
-  if (hooks.blind_to_inputs) corners.go_blind();
-  recorder.feed(hooks.steps);
+  context.evaluations.profile = run_hooks.profile;
+  if (run_hooks.profile != nullptr) run_hooks.profile->start();
+  if (run_hooks.blind_to_inputs) corners.go_blind();
+  recorder.feed(run_hooks.steps);
+  context.outcome.time = context.accepted.t();
+  over = !goes_on && !(acceptance.begin() && recorder.write_row());
+  end.pause_clock();
+}
+
+// An instant that is that of a row but for rounding is that very instant.
+bool Simulation::Impl::advance(RunGoal goal) {
+  constexpr double same_instant = 1e-6;  // of a step
+  if (over) return false;
+  end.start_clock();
+  goal.until = recorder.instant_at(goal.until, same_instant * context.settings.step);
+  over = !renew() || !(context.adaptive ? adaptive.advance(*hooks, goal) : fixed.advance(*hooks, goal));
+  end.pause_clock();
+  return !over;
+}
+
+// Other efforts act from the accepted state on, as after an event.
+bool Simulation::Impl::renew() {
+  if (efforts.empty()) return true;
+  bool changed = false;
+  const std::vector<double> acting = acting_efforts();
+  for (std::size_t i = 0; i < efforts.size(); ++i) {
+    if (acting[i] == efforts[i]) continue;
+    changed = true;
+    const std::span<double> kept = input(i);
+    kept[0] = 1.0;
+    kept[1] = efforts[i];
+  }
+  return !changed || (attempt.restart() && recorder.note_change());
+}
+
+bool Simulation::Impl::know_row() {
+  if (!over) over = !renew() || !recorder.know_row();
+  return !over;
+}
+
+const Outcome& Simulation::Impl::finish() {
   Outcome& outcome = context.outcome;
-  outcome.time = context.accepted.t();
-  if (goes_on || (acceptance.begin() && recorder.write_row())) {
-    context.adaptive ? adaptive.run(hooks) : fixed.run(hooks);
+  if (!over && context.accepted.t() < context.settings.end) {
+    outcome.status = RunStatus::stopped;
+    outcome.reason = fmt::format("closed at t = {:.9g} s", context.accepted.t());
+    know_row();  // of the summary
   }
   recorder.write_open_contacts();
-  outcome.wall_seconds = end.seconds();
+  outcome.wall_seconds = end.spent();
   context.watch.note_exchanged(context.energy.exchanged());
   failure.explain_dead_point();
-  if (hooks.profile != nullptr) hooks.profile->stop();
+  if (hooks->profile != nullptr) hooks->profile->stop();
   context.evaluations.profile = nullptr;
   outcome.iterations = context.solver.iterations();
   outcome.factorizations = context.solver.factorizations();
@@ -66,6 +127,21 @@ Outcome Simulation::Impl::run(const RunHooks& hooks) {
   corners.format_jumps();
   corners.format_unresolved();
   return outcome;
+}
+
+// Of an input: whether it was set, and what it is.
+std::span<double> Simulation::Impl::input(std::size_t index) {
+  const std::size_t after = inputs.size() - index, size = Layout::numbers_of_input;
+  return context.accepted.h().last(after * size).first(size);
+}
+
+std::vector<double> Simulation::Impl::acting_efforts() {
+  std::vector<double> acting;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::span<const double> kept = input(i);
+    acting.push_back(kept[0] != 0.0 ? kept[1] : context.model.drivers[at(inputs[i])].value.constant().value);
+  }
+  return acting;
 }
 
 RunState Simulation::Impl::save() const {
@@ -117,7 +193,21 @@ Simulation::Simulation(const System& whole, const Start& start, const Channels& 
 Simulation::~Simulation() = default;
 RunState Simulation::save() const { return impl_->save(); }
 EndedMotion Simulation::motion() const { return impl_->motion(); }
-Outcome Simulation::run(const RunHooks& hooks) { return impl_->run(hooks); }
+Outcome Simulation::run(const RunHooks& hooks) {
+  begin(hooks);
+  advance({});
+  return end();
+}
+void Simulation::begin(const RunHooks& hooks) { impl_->begin(hooks); }
+bool Simulation::advance(const RunGoal& goal) { return impl_->advance(goal); }
+Outcome Simulation::end() { return impl_->finish(); }
+bool Simulation::know_row() { return impl_->know_row(); }
+double Simulation::time() const { return impl_->context.accepted.t(); }
+long Simulation::steps() const { return impl_->context.outcome.steps; }
+void Simulation::set_efforts(std::span<const double> efforts) { impl_->efforts.assign(efforts.begin(), efforts.end()); }
+std::vector<double> Simulation::efforts() const {
+  return impl_->efforts.empty() ? impl_->acting_efforts() : impl_->efforts;
+}
 const Statistics& Simulation::statistics() const { return impl_->recorder.statistics(); }
 const ClearanceStatistics& Simulation::clearances() const { return impl_->recorder.clearances(); }
 const RunExtremes& Simulation::extremes() const { return impl_->context.watch.seen(); }

@@ -10,6 +10,7 @@
 #include "model/channel.h"
 #include "run/clearance_statistics.h"
 #include "run/equations.h"
+#include "run/goal.h"
 #include "run/hooks.h"
 #include "run/outcome.h"
 #include "run/requirements.h"
@@ -19,6 +20,9 @@
 #include "run/watch.h"
 
 namespace freeplay {
+
+/// Drivers of a model whose efforts are inputs, in declaration order.
+std::vector<int> inputs_of(const Model& model);
 
 /// Advances a model from its start to Settings::end and feeds sinks and statistics.
 class Simulation {
@@ -33,6 +37,21 @@ class Simulation {
              const RunState& state);
   ~Simulation();
   Outcome run(const RunHooks& hooks);
+
+  /// The same in parts: begin(), any number of advance(), end(). `hooks` must stay until then.
+  void begin(const RunHooks& hooks);
+  /// Goes on to `goal`. False once the run is over: at its end, stopped, failed or interrupted.
+  bool advance(const RunGoal& goal);
+  /// Before the end of the run the outcome is that it was stopped.
+  Outcome end();
+  double time() const;
+  long steps() const;
+  /// Efforts of drivers that are inputs, in declaration order, from the accepted state on [N, N m].
+  void set_efforts(std::span<const double> efforts);
+  std::vector<double> efforts() const;
+  /// Every channel at the accepted state, with what was set there. False once the run is over.
+  bool know_row();
+
   /// The run as it is while RunHooks::stepped is called.
   RunState save() const;
   /// The last accepted state, of all bodies.

@@ -64,8 +64,7 @@ std::string one_line(std::string text) {
   return printable(text);
 }
 
-BuildOptions build_options(const std::vector<StudySetting>& settings) {
-  BuildOptions options;
+BuildOptions build_options(BuildOptions options, const std::vector<StudySetting>& settings) {
   options.without_study = true;
   for (const StudySetting& setting : settings) options.set.emplace_back(setting.target, setting.text);
   return options;
@@ -108,6 +107,7 @@ struct PointRunner::Impl {
   std::vector<ReducerEntry> entries;
   std::optional<AnalysisWords> analysis;
   ReducerColumns columns{{}, {}};
+  const std::atomic<int>* interrupt = nullptr;  // of the point in hand
 };
 
 void PointRunner::Impl::check(Diagnostics& diagnostics) {
@@ -115,7 +115,8 @@ void PointRunner::Impl::check(Diagnostics& diagnostics) {
   std::vector<const Model*> models;
   if (analysis) require_sense(*analysis);
   for (std::size_t i = 0; i < source.models.size(); ++i) {
-    LoadedModel& one = loaded.emplace_back(load_document(*source.models[i], build_options(source.set), registries[i]));
+    LoadedModel& one =
+        loaded.emplace_back(load_document(*source.models[i], build_options(source.build, source.set), registries[i]));
     for (const Diagnostic& diagnostic : one.diagnostics.sorted()) diagnostics.add(diagnostic);
     if (one.model) models.push_back(one.model.get());
   }
@@ -172,7 +173,7 @@ void PointRunner::Impl::check_summaries(const Model& model, const Channels& chan
 
 void PointRunner::Impl::run_point(const StudyPoint& point, const std::string& state_before, StudyOutcome& outcome) {
   LoadedModel loaded =
-      load_document(*source.models[point.model], build_options(point.settings), registries[point.model]);
+      load_document(*source.models[point.model], build_options(source.build, point.settings), registries[point.model]);
   if (!loaded.model) fail(loaded.diagnostics, loaded.exit_code);
   const Channels channels(*loaded.model);
   Diagnostics diagnostics;
@@ -204,6 +205,7 @@ void PointRunner::Impl::simulate(LoadedModel& loaded, const Channels& channels, 
   Simulation simulation(assembled->system, assembled->start, channels, sinks);
   RunHooks hooks;
   if (reducers.needs_steps()) hooks.steps = &reducers;
+  hooks.interrupt = interrupt;
   const double before = processor_time();
   const Outcome end = simulation.run(hooks);
   outcome.run = processor_time() - before;
@@ -243,7 +245,14 @@ std::vector<std::string> PointRunner::plugin_files() const {
   return {files.begin(), files.end()};
 }
 
-StudyOutcome PointRunner::run(const StudyPoint& point, const std::string& state_before) {
+void PointRunner::try_settings(const StudyPoint& point) const {
+  load_document(*impl_->source.models[point.model], build_options(impl_->source.build, point.settings),
+                impl_->registries[point.model]);
+}
+
+StudyOutcome PointRunner::run(const StudyPoint& point, const std::string& state_before,
+                              const std::atomic<int>* interrupt) {
+  impl_->interrupt = interrupt;
   const auto begin = std::chrono::steady_clock::now();
   const double before = processor_time();
   StudyOutcome outcome;

@@ -1,11 +1,13 @@
 // PointRunner: runs single points of a study.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "format/build_options.h"
 #include "format/document.h"
 #include "load/options.h"
 #include "study/point.h"
@@ -20,6 +22,7 @@ struct PointSource {
   const Node* reducers = nullptr;  ///< a map; null: there are none
   const Node* analysis = nullptr;  ///< the map of `do`; null: points are runs
   bool chained = false;            ///< with `warm_start`
+  BuildOptions build{};            ///< of every point, besides what it sets
 };
 
 /// Made before workers are forked: loads the plugins of every model, and checks `set`, `do` and reducers against every
@@ -39,9 +42,13 @@ class PointRunner {
   /// Of the reducers that give many values, whose number stands in the column of the same name.
   const std::vector<StudyColumn>& sample_columns() const;
 
+  /// Throws Error{usage} where the point sets what its model does not have.
+  void try_settings(const StudyPoint& point) const;
   /// Throws nothing for what is wrong at the point. `state_before`: the state after the point before it in its chain,
   /// empty at the beginning of one and after a failed point.
-  StudyOutcome run(const StudyPoint& point, const std::string& state_before);
+  /// `interrupt`: where it is not zero the step in hand is the last; the exit code is then 130.
+  StudyOutcome run(const StudyPoint& point, const std::string& state_before,
+                   const std::atomic<int>* interrupt = nullptr);
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "base/index.h"
 #include "system/evaluation.h"
@@ -106,7 +107,18 @@ std::string AppliedForces::words_of_switch(int index) const {
   return "driver '" + model_.drivers[at(load.driver)].name + "'";
 }
 
+// Inputs that were set, whatever the time.
+void AppliedForces::take_inputs(const Point& point, Evaluation& e) const {
+  std::size_t place = point.h.size();
+  for (const int d : std::views::reverse(effort_drivers_)) {
+    if (!model_.drivers[at(d)].input) continue;
+    place -= Layout::numbers_of_input;
+    if (point.h[place] != 0.0) e.motion[at(d)] = {point.h[place + 1], 0.0, 0.0};
+  }
+}
+
 bool AppliedForces::add(const Point& point, bool derivatives, Evaluation& e) const {
+  take_inputs(point, e);
   for (const int d : effort_drivers_) {
     if (!add_effort(d, point, e)) return false;
   }

@@ -68,6 +68,7 @@ class AppliedForces {
   void add_derivatives(const Load& load, const Point& point, Evaluation& e) const;
   void add_own_turn(const Load& load, Evaluation& e) const;
   StateFormula::Input input(const Load& load, const Point& point, const Evaluation& e, std::span<double> room) const;
+  void take_inputs(const Point& point, Evaluation& e) const;
 
   const Model& model_;
   const Layout& layout_;

@@ -55,6 +55,7 @@ Layout::Layout(const Model& model, Variant variant, std::span<const planar::Driv
   int switches = 0;
   for_each_motion_formulas(model, [&](const MotionFormulas& formulas) { switches += formulas.switches(); });
   switches_ = take(nh_, switches);
+  for (const Driver& driver : model.drivers) take(nh_, driver.input ? static_cast<int>(numbers_of_input) : 0);
 }
 
 }  // namespace freeplay

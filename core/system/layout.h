@@ -49,6 +49,9 @@ class Layout {
   int turn(int joint) const { return joints_[static_cast<std::size_t>(joint)].turn; }
   /// Where h keeps on which side the switches of formulas of the motion are (StateFormula::Input::sides).
   Slice switches() const { return switches_; }
+  /// Efforts of drivers that are inputs stand at the end of h, two numbers each in declaration order: whether it was
+  /// set, and what it is [N, N m].
+  static constexpr std::size_t numbers_of_input = 2;
   /// Row of a prescribing driver; -1 for one that applies an effort.
   int driver_row(int driver) const { return drivers_[static_cast<std::size_t>(driver)]; }
 

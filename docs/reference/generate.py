@@ -5,6 +5,8 @@ import os
 import subprocess
 import sys
 
+import python_page
+
 HEAD = "<!-- Made by `./dev docs` from the tables that check model files; edit those. -->\n"
 
 
@@ -157,6 +159,7 @@ def pages(program):
                                      "normal force between journal and bearing."),
         "friction-laws.md": type_page(program, kind("friction"), "Friction laws", "Laws for `clearance.friction`: the "
                                       "tangential force between journal and bearing."),
+        "python.md": python_page.page(),
         "integrators.md": type_page(program, kind("integrator"), "Integrators", "Types for `simulation.integrator`."),
     }
 

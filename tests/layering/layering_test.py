@@ -34,7 +34,7 @@ STANDS_ON = {
     "workers": ["base"],
     "study": ["workers", "results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
-    "python": ["load", "results", "convert", "drawing", "analysis", "contract"],
+    "python": ["load", "results", "convert", "drawing", "analysis", "contract", "study"],
     "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "workers", "study"],
 }
 WITHOUT_SDK = {"base", "linear", "svg", "workers"}

@@ -193,7 +193,7 @@ class Models(InFolder):
         pathlib.Path("full/mine.txt").write_text("x")
         for call in (lambda: freeplay.run(SLIDER, end="0.1 ms", out="full"), lambda: freeplay.open("nowhere")):
             self.assertRaises(freeplay.ResultError, call)
-        for call in (lambda: freeplay.load(SLIDER).simulation(), lambda: freeplay.run(SLIDER, verify=True), lambda: freeplay.resume("x")):
+        for call in (lambda: freeplay.load(SLIDER).simulation().checkpoint(), lambda: freeplay.run(SLIDER, verify=True), lambda: freeplay.resume("x")):
             self.assertRaisesRegex(freeplay.UsageError, "not in this release", call)
 
     def test_tables_are_those_of_the_command(self):

@@ -5,7 +5,7 @@ A model is a text, a run is one call, a result is memory that is read only; the 
 from __future__ import annotations
 
 import os
-from typing import Any, Iterable, NoReturn
+from typing import NoReturn
 
 from . import _core
 from ._catalogue import describe, info, schema, types
@@ -14,6 +14,7 @@ from ._errors import (Error, InternalError, Interrupted, Message, ModelError, Mo
 from ._model import Channel, Model, check, load, run
 from ._result import Result, open
 from ._compare import compare
+from ._map import Function, map
 from ._simulation import Simulation
 from ._source import Quantity, Source
 from ._table import Table
@@ -24,26 +25,6 @@ __version__ = _core.version
 def resume(path: str | os.PathLike[str], *, end: Quantity | None = None) -> NoReturn:
     """Goes on with the run of the result directory `path`, up to `end` [s]. Not in this release: `freeplay run --resume` does."""
     not_in_this_release("resume()")
-
-
-def map(source: Source | Model, points: Any = None, **options: Any) -> Table:
-    """Many runs of one model. Not in this release: `freeplay study run` does."""
-    not_in_this_release("map()")
-
-
-class Function:
-    """Numbers of runs as a function of parameters. Not in this release."""
-
-    def __init__(self, source: Source | Model, inputs: Iterable[str], outputs: Any, **options: Any) -> None:
-        not_in_this_release("Function")
-
-    def __call__(self, x: Any) -> Any:
-        """The numbers at one point. Not in this release."""
-        not_in_this_release("Function")
-
-    def sample(self, x: Any) -> Any:
-        """The numbers at many points. Not in this release."""
-        not_in_this_release("Function")
 
 
 __all__ = ["Channel", "Error", "Function", "InternalError", "Interrupted", "Message", "Model", "ModelError", "ModelWarning", "NumericalError",

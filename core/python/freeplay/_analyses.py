@@ -104,7 +104,7 @@ def axes_of(table: Mapping[str, Any]) -> dict[str, Any]:
     return axes if axes and int(np.prod([len(axis) for axis in axes.values()])) == table["rows"] else {}
 
 
-def analyse(model: Model, kind: str, options: Mapping[str, Any]) -> Table:
+def analyse(model: Model, kind: str, options: Mapping[str, Any], force: bool) -> Table:
     table, raised = _core.analyse(model._core, analysis_words(kind, options))
     if raised is not None:
         if isinstance(raised, KeyboardInterrupt):
@@ -114,5 +114,6 @@ def analyse(model: Model, kind: str, options: Mapping[str, Any]) -> Table:
     channels = {channel.name: channel.unit for channel in model.channels}
     columns = dict(zip(table["names"], table["columns"]))
     axes = axes_of(table) if options.get("pose") is None and options.get("time") is None and options.get("input") is None else {}
-    return Table(kind, columns, {name: unit_of(name, channels) for name in columns}, table["summary"], table["warnings"], axes, table["csv"])
+    return Table(kind, columns, {name: unit_of(name, channels) for name in columns}, table["summary"], table["warnings"], axes,
+                 table["csv"], force)
 

@@ -5,7 +5,7 @@ import os
 import warnings
 from typing import Any, Callable, Iterable, Mapping, NamedTuple, TypeVar, Union
 
-from . import _core
+from . import _core, _html
 from ._analyses import analyse
 from ._errors import Error, Message, ModelWarning, message_of, not_in_this_release, usage
 from ._result import Result, raise_failure, result_of
@@ -16,7 +16,7 @@ from ._table import Table
 Progress = Union[bool, Callable[[float, float, int], None], None]
 OF_LOAD = ("set", "ideal", "end", "step", "accuracy", "integrator", "plugins", "strict", "folder", "allow_plugins")
 OF_RUN = ("interval", "channels", "format")
-OF_CALL = ("out", "force", "yes", "profile", "progress")
+OF_CALL = ("out", "force", "yes", "profile", "progress", "inputs")
 LATER = ("colours", "verify", "repeat", "seed", "twin", "report", "checkpoint")
 
 
@@ -52,7 +52,7 @@ class Model:
         self.bodies: tuple[str, ...] = known["bodies"]
         self.joints: tuple[str, ...] = known["joints"]
         self.drivers: tuple[str, ...] = known["drivers"]
-        self.inputs: tuple[str, ...] = ()
+        self.inputs: tuple[str, ...] = tuple(name for name, _ in known["inputs"])
         self.parameters: dict[str, float] = dict(known["parameters"])
         self.channels: tuple[Channel, ...] = tuple(Channel(*one) for one in known["channels"])
         folder = self._options.get("folder")
@@ -107,55 +107,59 @@ class Model:
         return run_model(self, options_of_run)
 
     def simulation(self, **options_of_run: Any) -> Simulation:
-        """Step by step. Not in this release."""
+        """A run step by step, at its start: the options are those of freeplay.run()."""
         return Simulation(self, **options_of_run)
 
     def ik(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None, elbow: Any = None,
-           branches: bool = False) -> Table:
+           branches: bool = False, force: bool = False) -> Table:
         """Drive coordinates for poses of the platform.
 
         frame: the platform. pose [m, rad], grid {axis: (from, to, count)}, time (from, to, count) [s] or input {joint: value}: where.
         elbow: working modes of the legs, 1 or -1. branches: all working modes of a pose.
+        force: save() of the table replaces any file.
         """
-        return self._analysed("ik", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, branches=branches)
+        return self._analysed("ik", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, branches=branches)
 
     def workspace(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, elbow: Any = None,
-                  colours: bool = False) -> Table:
+                  colours: bool = False, force: bool = False) -> Table:
         """What is reachable, and how well conditioned.
 
         frame: the platform. pose [m, rad], grid {axis: (from, to, count)} or time (from, to, count) [s]: where. elbow: working modes.
         colours: of a map, which is not in this release.
         """
         require_release({"colours": colours})
-        return self._analysed("workspace", frame=frame, pose=pose, grid=grid, time=time, elbow=elbow)
+        return self._analysed("workspace", force, frame=frame, pose=pose, grid=grid, time=time, elbow=elbow)
 
     def singularity(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None,
-                    elbow: Any = None) -> Table:
+                    elbow: Any = None, force: bool = False) -> Table:
         """How near poses are to singular ones. The arguments are those of ik()."""
-        return self._analysed("singularity", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow)
+        return self._analysed("singularity", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow)
 
     def error(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None, elbow: Any = None,
-              sensitivity: bool = False, samples: int | None = None, seed: int | None = None, distribution: str | None = None) -> Table:
+              sensitivity: bool = False, samples: int | None = None, seed: int | None = None, distribution: str | None = None, force: bool = False) -> Table:
         """Largest position errors by clearance [m, rad]. Where: as in ik().
 
         sensitivity: a column for each joint. samples, seed, distribution: columns of random play.
         """
-        return self._analysed("error", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, sensitivity=sensitivity,
+        return self._analysed("error", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, sensitivity=sensitivity,
                               samples=samples, seed=seed, distribution=distribution)
 
     def inverse_dynamics(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None,
-                         elbow: Any = None, preload: Quantity | None = None) -> Table:
+                         elbow: Any = None, preload: Quantity | None = None, force: bool = False) -> Table:
         """Efforts of the drivers [N, N m] and forces of the joints along the path. Where: as in ik(). preload: inner tension of redundant drivers."""
-        return self._analysed("inverse-dynamics", frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, preload=preload)
+        return self._analysed("inverse-dynamics", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, preload=preload)
 
-    def _analysed(self, kind: str, **options: Any) -> Table:
+    def _analysed(self, kind: str, force: bool, **options: Any) -> Table:
         try:
-            return analyse(self, kind, options)
+            return analyse(self, kind, options, force)
         except Error as error:
             raise renamed(error, self._options.get("folder")) from None
 
     def _repr_svg_(self) -> str:
         return self.svg()
+
+    def _repr_html_(self) -> str:
+        return _html.page(f"{self.name}: {self.space}", _html.drawing(self.svg()), _html.table((), _html.pairs(self.facts())))
 
 
 def require_known(options: Mapping[str, Any], known: Iterable[str]) -> None:
@@ -201,7 +205,7 @@ def check(source: Source, *, set: Mapping[str, Quantity] | None = None, ideal: s
 def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, force: bool = False, format: str | None = None,
         verify: bool = False, profile: bool = False, channels: str | Iterable[str] | None = None, progress: Progress = None,
         interval: Quantity | None = None, checkpoint: Quantity | None = None, twin: bool = False, report: bool = False,
-        repeat: int | None = None, seed: int | None = None, yes: bool = False, set: Mapping[str, Quantity] | None = None,
+        repeat: int | None = None, seed: int | None = None, yes: bool = False, inputs: str | os.PathLike[str] | None = None, set: Mapping[str, Quantity] | None = None,
         ideal: str | Iterable[str] | None = None, end: Quantity | None = None, step: Quantity | None = None, accuracy: Quantity | None = None,
         integrator: str | None = None, plugins: Iterable[str] | None = None, strict: bool | None = None,
         folder: str | os.PathLike[str] | None = None, allow_plugins: bool | None = None) -> Result:
@@ -210,7 +214,7 @@ def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, fo
     source: as in load(), or a Model. out: result directory; without it nothing is written. force: write beside other files.
     format: of the files, csv, hdf5 or both. profile: count where the time goes. channels: patterns of what is kept and written.
     progress: True prints how far it is; a function gets time [s], end [s] and steps, and what it raises ends the run.
-    interval: between rows [s]. yes: no question is put in any case, as `out` is as large as it is.
+    interval: between rows [s]. inputs: a table of efforts over time, inputs.csv of another run. yes: no question is put in any case.
     set, ideal, end [s], step [s], accuracy [m per s], integrator, plugins, strict, folder, allow_plugins: as in load().
     verify, twin, report, repeat, seed, checkpoint: not in this release.
 
@@ -220,7 +224,7 @@ def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, fo
                              "plugins": plugins, "strict": strict, "folder": folder, "allow_plugins": allow_plugins, "interval": interval,
                              "channels": channels, "format": format}
     called: dict[str, Any] = {"out": out, "force": force, "profile": profile, "progress": progress, "verify": verify, "twin": twin,
-                              "report": report, "repeat": repeat, "seed": seed, "checkpoint": checkpoint}
+                              "report": report, "repeat": repeat, "seed": seed, "checkpoint": checkpoint, "inputs": inputs}
     options = {name: value for name, value in {**given, **called}.items() if value is not None}
     if isinstance(source, Model):
         return run_model(source, options)
@@ -236,7 +240,16 @@ def require_release(options: Mapping[str, Any]) -> None:
             not_in_this_release(f"--{name}")
 
 
-def run_model(model: Model, options: Mapping[str, Any]) -> Result:
+class Call(NamedTuple):
+    """What runs, and what the core needs to know of how."""
+
+    model: Model
+    directory: str | None
+    profiled: bool
+    words: tuple[Any, ...]
+
+
+def call_of(model: Model, options: Mapping[str, Any], name: str) -> Call:
     require_known(options, (*OF_LOAD, *OF_RUN, *OF_CALL, *LATER))
     require_release(options)
     changes = {name: value for name, value in options.items() if name in (*OF_LOAD, *OF_RUN) and value is not None}
@@ -248,14 +261,40 @@ def run_model(model: Model, options: Mapping[str, Any]) -> Result:
     if directory == "":
         raise usage("bad value '' of --out: it must not be empty", message_id="bad-value")
     progress = progress_of(options.get("progress"), float(model._known["end"]))
+    inputs = options.get("inputs")
+    words = (model._core, directory, bool(options.get("force", False)), profiled, name, None if inputs is None else os.fspath(inputs), progress)
+    return Call(model, None if directory is None else os.path.abspath(directory), profiled, words)
+
+
+def run_model(model: Model, options: Mapping[str, Any]) -> Result:
+    call = call_of(model, options, "freeplay.run()")
     try:
-        kept, raised = _core.run(model._core, directory, bool(options.get("force", False)), profiled, "freeplay.run()", progress)
+        kept, raised = _core.run(*call.words)
     except Error as error:
-        raise renamed(error, model._options.get("folder")) from None
-    result = result_of(kept, model, profiled, None if directory is None else os.path.abspath(directory))
+        raise renamed(error, call.model._options.get("folder")) from None
+    result = result_of(kept, call.model, call.profiled, call.directory)
     warn(result.warnings, 4)
     raise_failure(kept, result, raised)
     return result
+
+
+def quiet_run(model: Model) -> Result:
+    """A run without warnings of Python, which a worker has no one to give to."""
+    call = call_of(model, {}, "freeplay.map()")
+    kept, raised = _core.run(*call.words)
+    result = result_of(kept, call.model, False, None)
+    raise_failure(kept, result, raised)
+    return result
+
+
+def begin(model: Model, options: Mapping[str, Any]) -> tuple[Model, _core.SteppedRun, str | None, bool]:
+    if options.get("inputs") is not None:
+        raise usage("simulation(): inputs are set by set(); run() takes a table of them")
+    call = call_of(model, options, "freeplay.Simulation()")
+    try:
+        return call.model, _core.begin(*call.words), call.directory, call.profiled
+    except Error as error:
+        raise renamed(error, call.model._options.get("folder")) from None
 
 
 def progress_of(progress: Progress, end: float) -> Callable[[float, int], None] | None:

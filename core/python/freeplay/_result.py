@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Iterable, Mapping, NoReturn
 
 import numpy as np
 
-from . import _core
-from ._errors import Interrupted, NumericalError, Message, PluginError, ResultError, not_in_this_release, unknown_name
+from . import _core, _html
+from ._errors import Interrupted, NumericalError, Message, PluginError, ResultError, not_in_this_release, unknown_name, usage
 from ._source import names as names_of
 
 if TYPE_CHECKING:
@@ -84,6 +84,12 @@ class Result:
     def __repr__(self) -> str:
         return f"<freeplay.Result {self.status}, {len(self.time)} rows of {len(self.names)} channels>"
 
+    def _repr_html_(self) -> str:
+        parts = [] if self.model is None else [_html.drawing(self.model.svg())]
+        counts = {"rows": len(self.time), "until [s]": float(self.time[-1]) if len(self.time) else 0.0, **(self.summary.get("counts") or {})}
+        parts += [_html.table((), _html.pairs(counts)), _html.joints(self.summary)]
+        return _html.page(f"{self.model.name if self.model else 'result'}: {self.status}", *parts)
+
     def _chosen(self, patterns: Iterable[str]) -> list[str]:
         chosen: dict[str, None] = {}
         for pattern in patterns:
@@ -124,6 +130,8 @@ class Result:
 
         out: the directory. force: write beside other files. format: csv, hdf5 or both (what the model says).
         """
+        if self.status == "unfinished" and self._directory is None:
+            raise usage("save(): the simulation is not over: close() it before")
         if self._kept is None or self.model is None:
             not_in_this_release("save() of a result that was opened")
         path = os.fspath(out)
@@ -150,6 +158,8 @@ def raise_failure(kept: _core.KeptRun, result: Result, raised: BaseException | N
         raise raised
     if kept.exit_code == 0:
         return
+    if kept.exit_code == Interrupted.exit_code:
+        raise Interrupted(kept.reason, result)
     kinds: dict[int, tuple[type[NumericalError] | type[PluginError] | type[ResultError], str]] = {
         4: (NumericalError, "run-failed"), 5: (PluginError, "plugin-failed"), 6: (ResultError, "cannot-write")}
     kind, message_id = kinds.get(kept.exit_code, (NumericalError, "run-failed"))

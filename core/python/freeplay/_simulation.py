@@ -1,45 +1,177 @@
-"""Runs step by step."""
+"""A run that a script takes step by step."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
+from numbers import Integral, Real
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from ._errors import not_in_this_release
+from ._errors import Error, not_in_this_release, unknown_name, usage
+from ._result import Array, Result, raise_failure, result_of
 from ._source import Quantity
+from . import _core
 
 if TYPE_CHECKING:
     from ._model import Model
 
+ALL = 2**63 - 1
+
+
+def number(name: str, value: Quantity, unit: str) -> float:
+    """A finite number of this unit, in SI."""
+    if isinstance(value, str):
+        return _core.quantity(name, value, unit)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name}: a number in SI or a text such as '2 ms' is needed, not {type(value).__name__}")
+    found = float(value)
+    if not math.isfinite(found):
+        raise usage(f"bad value '{found}' of {name}: it must be finite", message_id="bad-value")
+    return found
+
+
+def count_of(name: str, value: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise TypeError(f"{name}: a whole number is needed, not {type(value).__name__}")
+    if value < 1:
+        raise usage(f"bad value '{value}' of {name}: it must be at least 1", message_id="bad-value")
+    return min(int(value), ALL)
+
 
 class Simulation:
-    """A run step by step. Not in this release: making one raises UsageError."""
+    """A run step by step, assembled at its start; `with` closes it. One thread at a time uses it, any may interrupt() it.
 
-    def __init__(self, model: Model, **options: Any) -> None:
-        not_in_this_release("simulation()")
+    model: what runs. names: of the channels that are kept, time [s] first. end: of the run [s].
+    """
+
+    def __init__(self, model: Model, **options_of_run: Any) -> None:
+        from ._model import begin
+
+        self._result: Result | None = None
+        self.model, self._core, self._directory, self._profiled = begin(model, options_of_run)
+        self.names: tuple[str, ...] = tuple(self._core.layout()["names"])
+        self.end: float = float(self.model._known["end"])
+        self._places = {name: place for place, name in enumerate(self.names)}
+        self._units: dict[str, str] = dict(self.model._known["inputs"])
+        self._inputs = {name: place for place, name in enumerate(self._units)}
+        if self._core.ended() is not None:
+            self._over()
 
     def __enter__(self) -> Simulation:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        pass
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        try:
+            self.close()
+        except Error:
+            if kind is None:
+                raise
 
-    def __getitem__(self, name: str) -> float:
-        """The value of a channel now. Not in this release."""
-        not_in_this_release("simulation()")
+    def __repr__(self) -> str:
+        return f"<freeplay.Simulation of '{self.model.name}', {self.status} at {self.time:g} s of {self.end:g} s>"
 
     @property
     def time(self) -> float:
-        """Reached so far [s]. Not in this release."""
-        not_in_this_release("simulation()")
+        """Reached so far [s]."""
+        return self._core.time()
+
+    @property
+    def steps(self) -> int:
+        """Accepted so far."""
+        return self._core.steps()
 
     @property
     def done(self) -> bool:
-        """Whether the end is reached. Not in this release."""
-        not_in_this_release("simulation()")
+        """Whether the run is over: at its end, stopped, failed, interrupted or closed."""
+        return self._core.ended() is not None
 
-    def set(self, name: str, value: Quantity) -> None:
-        """An effort [N, N m] from now on. Not in this release."""
-        not_in_this_release("set()")
+    @property
+    def status(self) -> str:
+        """completed, stopped, failed or interrupted; unfinished before the run is over."""
+        ended = self._core.ended()
+        return "unfinished" if ended is None else ended.status
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """Efforts of the inputs from now on [N, N m]."""
+        return dict(zip(self._inputs, self._core.efforts()))
+
+    @property
+    def row(self) -> Array:
+        """All channels now, (len(names),): a view that every call renews."""
+        return self._core.row()
+
+    def __getitem__(self, name: str) -> float:
+        """The value of one channel now. Raises UnknownName."""
+        place = self._places.get(name)
+        if place is None:
+            raise unknown_name("channel", name, self.names)
+        return self._core.value(place)
 
     def advance(self, until: Quantity | None = None, *, rows: int | None = None) -> float:
-        """Goes on to `until` [s], past `rows` output instants or to the end. Not in this release."""
-        not_in_this_release("advance()")
+        """Goes on, and returns the time that is reached [s].
+
+        until: exactly to this time [s]; beyond the end, to the end. rows: past so many output instants instead. Without either: to the end.
+        Raises what run() raises, UsageError once the run is over, Interrupted after interrupt().
+        """
+        if until is None:
+            time = self._core.advance(math.inf, ALL if rows is None else count_of("rows", rows), ALL)
+        else:
+            if rows is not None:
+                raise usage("advance(): until and rows exclude each other")
+            time = self._core.advance(self._later(until), ALL, ALL)
+        return time if time == time else self._over()
+
+    def _later(self, until: Quantity) -> float:
+        found = number("until", until, "s")
+        if found < self._core.time():
+            raise usage(f"bad value '{until}' of until: the simulation is at {self.time} s already", message_id="bad-value")
+        return found
+
+    def step(self, count: int = 1) -> float:
+        """Goes on by `count` accepted steps, no farther than the end, and returns the time that is reached [s]."""
+        time = self._core.advance(math.inf, ALL, 1 if count == 1 else count_of("count", count))
+        return time if time == time else self._over()
+
+    def set(self, name: str, value: Quantity) -> None:
+        """The effort of an input from now on.
+
+        name: of a driver with `input`. value: its effort [N, N m]. What holds already changes nothing.
+        """
+        place = self._inputs.get(name)
+        if place is None:
+            raise unknown_name("input", name, list(self._inputs))
+        self._core.set(place, number(name, value, self._units[name]))
+
+    def result(self) -> Result:
+        """The rows up to now; before the run is over without a summary."""
+        if self._result is not None:
+            return self._result
+        ended = self._core.ended()
+        if ended is None:
+            record = self._core.record()
+            return Result(record, record["data"], record["event_numbers"], {}, self.model)
+        self._result = result_of(ended, self.model, self._profiled, self._directory)
+        return self._result
+
+    def _over(self) -> float:
+        from ._model import warn
+
+        result, ended = self.result(), self._core.ended()
+        warn(result.warnings, 4)
+        if ended is not None:
+            raise_failure(ended, result, self._core.raised())
+        return self.time
+
+    def interrupt(self) -> None:
+        """From any thread: the step in hand is the last, and the call that makes it raises Interrupted."""
+        self._core.interrupt()
+
+    def close(self) -> None:
+        """Ends the run where it is and seals its directory; before the end `status` is then "stopped". Again it does nothing."""
+        if self._core.ended() is None:
+            self._core.close()
+            self._over()
+
+    def checkpoint(self) -> NoReturn:
+        """What another simulation goes on from. Not in this release."""
+        not_in_this_release("checkpoint()")

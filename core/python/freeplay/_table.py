@@ -8,7 +8,8 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from ._errors import not_in_this_release, unknown_name, usage
+from . import _html
+from ._errors import Message, ResultError, not_in_this_release, unknown_name, usage
 
 Column = np.ndarray[Any, np.dtype[Any]]
 
@@ -24,6 +25,15 @@ def column_of(cells: Sequence[float | str]) -> Column:
     return column
 
 
+def is_replaceable(path: str | os.PathLike[str]) -> bool:
+    """Whether there is no file, or one that begins as a table does: with names between commas."""
+    if not os.path.isfile(path):
+        return True
+    with open(path, "rb") as file:
+        first = file.readline(1 << 20)
+    return not first or (b"," in first and first.isascii() and first.rstrip(b"\r\n").decode().isprintable())
+
+
 class Table:
     """Rows of an analysis or a comparison. Nothing of it changes.
 
@@ -32,7 +42,7 @@ class Table:
     """
 
     def __init__(self, kind: str, columns: Mapping[str, Sequence[float | str]], units: Mapping[str, str], summary: dict[str, Any],
-                 warnings: Sequence[str] = (), axes: Mapping[str, Column] | None = None, csv: str = "") -> None:
+                 warnings: Sequence[str] = (), axes: Mapping[str, Column] | None = None, csv: str = "", force: bool = False) -> None:
         self.kind = kind
         self.columns: tuple[str, ...] = tuple(columns)
         self.units: Mapping[str, str] = MappingProxyType(dict(units))
@@ -41,6 +51,7 @@ class Table:
         self.axes: dict[str, Column] = dict(axes or {})
         self._cells = {name: column_of(cells) for name, cells in columns.items()}
         self._csv = csv
+        self._force = force
 
     def __getitem__(self, column: str) -> Column:
         """The values of one column, (rows,). Raises UnknownName."""
@@ -54,6 +65,13 @@ class Table:
 
     def __repr__(self) -> str:
         return f"<freeplay.Table of {self.kind}, {len(self)} rows of {len(self.columns)} columns>"
+
+    def _repr_html_(self) -> str:
+        shown = min(len(self), _html.MOST_ROWS)
+        head = [f"{name} [{self.units[name]}]" if self.units.get(name) not in (None, "", "1") else name for name in self.columns]
+        cells = [[value.item() for value in self[name][:shown]] for name in self.columns]
+        rest = f"<p>and {len(self) - shown} more rows</p>" if shown < len(self) else ""
+        return _html.page(f"{self.kind}, {len(self)} rows", _html.table(head, list(zip(*cells))), rest)
 
     def grid(self, column: str) -> Column:
         """The values of a column in the shape of `axes`, x first. Raises UsageError for a table that is on no grid."""
@@ -79,7 +97,10 @@ class Table:
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the table as CSV, the bytes of `--out` of the command, to `path`."""
+        """Writes the table as CSV, the bytes of `--out` of the command, to `path`. Raises ResultError for a file that is no table."""
+        if not self._force and not is_replaceable(path):
+            text = f"cannot write '{os.fspath(path)}': it is there already, and no table; make the table with force=True, or choose another name"
+            raise ResultError(text + " [cannot-write]", [Message(None, None, None, "error", "cannot-write", text, None)])
         with open(path, "w", encoding="utf-8", newline="") as file:
             file.write(self._csv)
 
