@@ -10,6 +10,8 @@
 #include "cli/text_table.h"
 #include "cli/window_lines.h"
 #include "results/figure_text.h"
+#include "results/play_noise.h"
+#include "run/figure_noise.h"
 
 namespace freeplay {
 namespace {
@@ -27,28 +29,25 @@ std::string quantity(double value, const char* unit, int digits = 4) {
 struct Figures {
   const RunRecord& record;
 
-  /// `peak`: of PeakValues, where the figure is one.
   std::string operator()(const char* part, const std::string& name, const char* quantity, double value,
-                         const char* unit, std::optional<std::size_t> peak = {}, FigureStyle style = {}) const {
+                         const char* unit, double noise = 0.0, FigureStyle style = {}) const {
     if (const Json* const spread = spread_of(part, name, quantity)) return range_text(*spread, unit);
-    return figure_text(value, unit, peak ? record.statistics.largest().noise().of(*peak) : 0.0, style);
+    return figure_text(value, unit, noise, style);
   }
+  /// Of a value of PeakValues.
+  double noise_of(std::size_t peak) const { return record.statistics.largest().noise().of(peak); }
   /// A number of events of a joint.
   std::string count(int joint, const char* quantity, long value) const {
     const Json* const spread = spread_of("joints", name(joint), quantity);
-    return spread ? range_text(*spread, "") : count_text(value, is_chaotic(joint));
+    return spread ? range_text(*spread, "") : count_text(value, FigureNoise(record.statistics).joint(joint).contacts);
   }
   /// A part of the whole time of a joint, in per cent.
   std::string share(int joint, const char* quantity, double value) const {
     const Json* const spread = spread_of("joints", name(joint), quantity);
-    if (!spread || !(*spread)["median"].is_number()) return share_text(value, is_chaotic(joint));
+    if (!spread || !(*spread)["median"].is_number())
+      return share_text(value, FigureNoise(record.statistics).joint(joint).contact_fraction);
     const auto percent = [&](const char* key) { return 100.0 * (*spread)[key].get<double>(); };
     return fmt::format("{:.1f} % ({:.1f} to {:.1f})", percent("median"), percent("min"), percent("max"));
-  }
-  /// Whether the largest force of a joint has a noise that is shown: its sums and counts are then as uncertain.
-  bool is_chaotic(int joint) const {
-    const std::size_t peak = record.statistics.largest().places().force(joint);
-    return has_shown_noise(record.statistics.joint(joint).max_force, record.statistics.largest().noise().of(peak));
   }
 
  private:
@@ -125,16 +124,16 @@ void add_joints(const RunRecord& record, TextTable& table) {
     const JointStatistics seen = seen_of(i);
     const bool touches = any && has_contact_statistics(record.channels.joints[i]);
     const std::string& name = joints[i].name;
-    std::vector<std::string> row{
-        name, figure("joints", name, "max_force", seen.max_force, "N", peaks.force(static_cast<int>(i)))};
+    std::vector<std::string> row{name, figure("joints", name, "max_force", seen.max_force, "N",
+                                              figure.noise_of(peaks.force(static_cast<int>(i))))};
     row.push_back(touches ? figure.count(static_cast<int>(i), "contacts", seen.contacts) : "-");
     row.push_back(touches ? figure.share(static_cast<int>(i), "contact_fraction", seen.contact_fraction) : "-");
     row.push_back(touches ? figure("joints", name, "max_delta", seen.max_penetration, "m",
-                                   peaks.penetration(static_cast<int>(i)), short_figure)
+                                   figure.noise_of(peaks.penetration(static_cast<int>(i))), short_figure)
                           : "-");
     if (moments) {
       row.push_back(holds_moment(seen) ? figure("joints", name, "max_torque", seen.max_torque, "N*m",
-                                                peaks.torque(static_cast<int>(i)))
+                                                figure.noise_of(peaks.torque(static_cast<int>(i))))
                                        : "-");
     }
     table.add_row(std::move(row));
@@ -147,10 +146,12 @@ void add_play(const RunRecord& record, TextTable& table) {
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     if (!is_listed(record.model.joints[i]) || !record.clearances.has(static_cast<int>(i))) continue;
     const PlayFigures seen = record.clearances.figures(static_cast<int>(i));
-    const bool chaotic = Figures{record}.is_chaotic(static_cast<int>(i));
-    table.add_row({record.model.joints[i].name, share_text(seen.flight, chaotic), share_text(seen.impact, chaotic),
-                   share_text(seen.lasting, chaotic), count_text(seen.impacts, chaotic),
-                   sum_text(seen.sliding, "m", chaotic), sum_text(seen.work, "J", chaotic)});
+    const PlayNoise noise = play_noise(record, static_cast<int>(i));
+    constexpr FigureStyle sum{.digits = 3, .prefixed = true};
+    table.add_row({record.model.joints[i].name, share_text(seen.flight, noise.flight),
+                   share_text(seen.impact, noise.impact), share_text(seen.lasting, noise.lasting),
+                   count_text(seen.impacts, noise.impacts), figure_text(seen.sliding, "m", noise.sliding, sum),
+                   figure_text(seen.work, "J", noise.work, sum)});
   }
 }
 
@@ -187,8 +188,11 @@ void add_gears(const RunRecord& record, TextTable& table) {
     const JointStatistics seen = record.statistics.joint(gear.joint);
     const std::string& name = record.model.joints[static_cast<std::size_t>(gear.joint)].name;
     table.add_row(
-        {name, turns ? "-" : figure("joints", name, "max_force", seen.max_force, "N", peaks.force(gear.joint)),
-         turns ? figure("joints", name, "max_torque", seen.max_torque, "N*m", peaks.torque(gear.joint)) : "-"});
+        {name,
+         turns ? "-"
+               : figure("joints", name, "max_force", seen.max_force, "N", figure.noise_of(peaks.force(gear.joint))),
+         turns ? figure("joints", name, "max_torque", seen.max_torque, "N*m", figure.noise_of(peaks.torque(gear.joint)))
+               : "-"});
   }
 }
 
@@ -200,10 +204,14 @@ void add_forces(const RunRecord& record, TextTable& table) {
     const ForceStatistics seen = record.statistics.force(f);
     const bool pure_force = seen.max_torque == 0.0, pure_torque = seen.max_force == 0.0 && !pure_force;
     const std::string name = force_words(record.model, f).name;
-    table.add_row(
-        {name, pure_torque ? "-" : figure("forces", name, "max_force", seen.max_force, "N", peaks.applied_force(f)),
-         pure_force ? "-" : figure("forces", name, "max_torque", seen.max_torque, "N*m", peaks.applied_torque(f)),
-         figure("forces", name, "work", seen.work, "J")});
+    table.add_row({name,
+                   pure_torque ? "-"
+                               : figure("forces", name, "max_force", seen.max_force, "N",
+                                        figure.noise_of(peaks.applied_force(f))),
+                   pure_force ? "-"
+                              : figure("forces", name, "max_torque", seen.max_torque, "N*m",
+                                       figure.noise_of(peaks.applied_torque(f))),
+                   figure("forces", name, "work", seen.work, "J")});
   }
 }
 
@@ -226,8 +234,10 @@ void add_drivers(const RunRecord& record, TextTable& table) {
     const DriverStatistics seen = record.statistics.driver(static_cast<int>(i));
     const char* unit = is_slide(record.model, drivers[i]) ? "N" : "N*m";
     table.add_row({drivers[i].name,
-                   figure("drivers", drivers[i].name, "max_abs", seen.max_abs, unit, peaks.effort(static_cast<int>(i))),
-                   figure("drivers", drivers[i].name, "rms", seen.rms, unit)});
+                   figure("drivers", drivers[i].name, "max_abs", seen.max_abs, unit,
+                          figure.noise_of(peaks.effort(static_cast<int>(i)))),
+                   figure("drivers", drivers[i].name, "rms", seen.rms, unit,
+                          FigureNoise(record.statistics).rms_of_driver(static_cast<int>(i)))});
   }
 }
 
@@ -237,14 +247,15 @@ void add_paths(const RunRecord& record, TextTable& table) {
   const PeakValues& peaks = record.statistics.largest().places();
   for (std::size_t i = 0; i < record.model.kinematics.size(); ++i) {
     const PathStatistics seen = record.statistics.path(static_cast<int>(i));
+    const FigureNoise::OfPath noise = FigureNoise(record.statistics).path(static_cast<int>(i));
     const std::string& name = record.model.kinematics[i].name;
-    table.add_row(
-        {name,
-         figure("paths", name, "max_position", seen.max_position, "m", peaks.position_error(static_cast<int>(i)),
-                prefixed),
-         figure("paths", name, "rms_position", seen.rms_position, "m", {}, prefixed),
-         figure("paths", name, "max_angle", seen.max_angle, "rad", peaks.angle_error(static_cast<int>(i)), prefixed),
-         figure("paths", name, "rms_angle", seen.rms_angle, "rad", {}, prefixed)});
+    table.add_row({name,
+                   figure("paths", name, "max_position", seen.max_position, "m",
+                          figure.noise_of(peaks.position_error(static_cast<int>(i))), prefixed),
+                   figure("paths", name, "rms_position", seen.rms_position, "m", noise.rms_position, prefixed),
+                   figure("paths", name, "max_angle", seen.max_angle, "rad",
+                          figure.noise_of(peaks.angle_error(static_cast<int>(i))), prefixed),
+                   figure("paths", name, "rms_angle", seen.rms_angle, "rad", noise.rms_angle, prefixed)});
   }
 }
 
@@ -264,11 +275,8 @@ std::string steps_per_impact(const RunRecord& record) {
 /// What a figure with its noise says, where there is one.
 std::string noise_line(const std::string& tables) {
   if (tables.find(" +- ") == std::string::npos) return {};
-  std::string text =
-      "  +-: impacts make the motion chaotic; another step, start or build may change a peak by so much (--repeat N)\n";
-  if (tables.find('~') != std::string::npos)
-    text += "  ~: for the same reason two digits of counts, parts and sums at most\n";
-  return text;
+  return "  +-: impacts make the motion chaotic; another step, start or build may change a figure by so much (--repeat "
+         "N)\n";
 }
 
 /// From which starts the medians and ranges are, and which runs are not among them.

@@ -11,6 +11,7 @@ namespace freeplay {
 namespace {
 
 constexpr double shown_noise = 0.005;  // of the value
+constexpr double shown_of_count = 0.5, shown_of_share = 5e-4;
 constexpr int most_digits = 4, fewest_digits = 3;
 
 /// Power of ten of the first digit; 0 for 0.
@@ -30,24 +31,22 @@ std::string rounded(double value, int decimals) {
   return fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 
+/// One digit of the noise, two where the first is a 1 that rounding would change much.
+std::string with_noise(double value, double noise) {
+  int decimals = -magnitude(noise);
+  if (std::abs(std::stod(rounded(noise, decimals)) - noise) > 0.25 * noise) ++decimals;
+  return fmt::format("{} +- {}", rounded(value, decimals), rounded(noise, decimals));
+}
+
 }  // namespace
 
-bool has_shown_noise(double value, double noise) { return value != 0.0 && std::abs(noise / value) >= shown_noise; }
-
-std::string count_text(long count, bool noisy) {
-  if (!noisy || count == 0) return std::to_string(count);
-  return "~" + rounded(static_cast<double>(count), std::min(0, 1 - magnitude(static_cast<double>(count))));
+std::string count_text(long count, double noise) {
+  return noise < shown_of_count ? std::to_string(count) : with_noise(static_cast<double>(count), noise);
 }
 
-std::string sum_text(double sum, const char* unit, bool noisy) {
-  if (!std::isfinite(sum)) return "-";
-  if (!noisy) return figure_text(sum, unit, 0.0, {.digits = 3, .prefixed = true});
-  const PrefixedUnit to = prefixed_unit(sum, unit);
-  return "~" + with_unit(rounded(sum / to.factor, 1 - magnitude(sum / to.factor)), to.unit);
-}
-
-std::string share_text(double part, bool noisy) {
-  return fmt::format("{}{:.{}f} %", noisy ? "~" : "", 100.0 * part, noisy ? 0 : 1);
+std::string share_text(double part, double noise) {
+  if (noise < shown_of_share) return fmt::format("{:.1f} %", 100.0 * part);
+  return with_noise(100.0 * part, 100.0 * noise) + " %";
 }
 
 std::string figure_text(double value, const char* unit, double noise, FigureStyle style) {
@@ -60,12 +59,7 @@ std::string figure_text(double value, const char* unit, double noise, FigureStyl
     return with_unit(fmt::format("{:.{}g}", value / to.factor, digits), to.unit);
   }
   const PrefixedUnit to = prefixed_unit(value, unit);
-  const double uncertain = noise / to.factor;
-  // One digit of the noise, two where the first is a 1 that rounding would change much.
-  int decimals = -magnitude(uncertain);
-  if (std::abs(std::stod(rounded(uncertain, decimals)) - uncertain) > 0.25 * uncertain) ++decimals;
-  return with_unit(fmt::format("{} +- {}", rounded(value / to.factor, decimals), rounded(uncertain, decimals)),
-                   to.unit);
+  return with_unit(with_noise(value / to.factor, noise / to.factor), to.unit);
 }
 
 std::string range_text(const Json& spread, const char* unit) {

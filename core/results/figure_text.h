@@ -17,14 +17,10 @@ struct FigureStyle {
 /// per cent on the noise itself: "12.9 +- 0.8 kN".
 std::string figure_text(double value, const char* unit, double noise = 0.0, FigureStyle style = {});
 
-/// Whether figure_text() shows this noise of a number.
-bool has_shown_noise(double value, double noise);
-
-/// Of contacts beside a peak with noise: "~160" of 162 of them, "~2.5 mm", "~72 %": two digits at most, of parts whole
-/// per cent. Else as exact as ever: "162", "2.53 mm", "71.7 %".
-std::string count_text(long count, bool noisy);
-std::string sum_text(double sum, const char* unit, bool noisy);
-std::string share_text(double part, bool noisy);
+/// A number of events, "162" or "160 +- 30", and a part of the time, "71.7 %" or "72 +- 6 %"; noise as the number
+/// itself.
+std::string count_text(long count, double noise);
+std::string share_text(double part, double noise);
 
 /// "12.9 kN (12.0 to 15.6 in 8 runs)" of what repeated runs found: median and range, with the digits that the range
 /// leaves, at least three; counts, which have no unit, are whole.

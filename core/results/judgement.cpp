@@ -30,6 +30,7 @@ constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of s
 constexpr double of_reach = 1.1;                  // distance by what the lengths allow
 constexpr Limits of_drives{1e3, 1e6};             // force of a joint by those that drive and move the mechanism
 constexpr double of_beside = 1.5;                 // force close to a singular position by that not quite so close
+constexpr double of_last_step = 0.1;              // smooth change of such a force in a step, by the largest
 constexpr double most_play = 0.1;                 // clearance by the model's size
 constexpr double fewest_impacts = 10.0;           // in a window of statistics without a period
 constexpr double fewest_instants = 10.0, fewest_instants_of_accuracy = 2.0;  // that statistics are of
@@ -139,6 +140,8 @@ void judge_singular(const RunRecord& record, Verdict& verdict) {
   if (inside && !(near.force > of_beside * usual)) usual = seen.row_force;
   if (inside) near = most;
   if (near.joint < 0 || !(near.force > of_beside * usual)) return;
+  // A quotient of roundings is another one at each step: what grows little by little is the force of the motion.
+  if (!inside && seen.near_change < of_last_step * near.force) return;
   const std::string joint = name(record.model.joints[at(near.joint)]);
   verdict.add({.id = "singular-position",
                .level = Trust::doubtful,

@@ -84,7 +84,8 @@ class LoadJudge {
       const double speed = largest(record_.statistics.largest().places().speed(b));
       if (speed > fastest) fastest = speed, body = b;
     }
-    if (body < 0 || !is_on_ground(model_)) return;
+    const auto judged = [](const TrustReason& reason) { return reason.id == "body-speed"; };
+    if (body < 0 || !is_on_ground(model_) || std::ranges::any_of(verdict.reasons(), judged)) return;
     const std::string element = fmt::format("body '{}'", model_.bodies[at(body)].name);
     verdict.add({.id = "body-speed",
                  .level = Trust::doubtful,

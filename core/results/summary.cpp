@@ -10,6 +10,7 @@
 #include "base/sha256.h"
 #include "base/version.h"
 #include "component/joint_roles.h"
+#include "run/figure_noise.h"
 
 namespace freeplay {
 namespace {
@@ -292,7 +293,7 @@ Json statistics_part(const RunRecord& record) {
           {"before", left_out ? std::move(before) : Json(nullptr)}};
 }
 
-/// By how much peaks may differ in another run; null where nothing can touch.
+/// By how much figures may differ in another run; null where nothing can touch.
 Json noise_part(const RunRecord& record) {
   const PeakNoise& noise = record.statistics.largest().noise();
   if (!noise.active()) return nullptr;
@@ -303,23 +304,33 @@ Json noise_part(const RunRecord& record) {
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& joint = model.joints[static_cast<std::size_t>(j)];
     if (joint.is_force) continue;
+    const FigureNoise::OfJoint of = FigureNoise(record.statistics).joint(j);
     append(joints, joint.name,
            {{"max_force", value(peaks.force(j))},
             {"max_torque", value(peaks.torque(j))},
             {"max_fn", value(peaks.normal_force(j))},
             {"max_delta", value(peaks.penetration(j))},
-            {"max_eccentricity", value(peaks.eccentricity(j))}});
+            {"max_eccentricity", value(peaks.eccentricity(j))},
+            {"rms_force", json_number(of.rms_force)},
+            {"contacts", json_number(of.contacts)},
+            {"contact_fraction", json_number(of.contact_fraction)}});
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
-    append(drivers, model.drivers[static_cast<std::size_t>(d)].name, {{"max_abs", value(peaks.effort(d))}});
+    append(
+        drivers, model.drivers[static_cast<std::size_t>(d)].name,
+        {{"max_abs", value(peaks.effort(d))}, {"rms", json_number(FigureNoise(record.statistics).rms_of_driver(d))}});
   }
   for (int f = 0; f < static_cast<int>(model.force_elements.size()); ++f) {
     append(forces, force_words(model, f).name,
            {{"max_force", value(peaks.applied_force(f))}, {"max_torque", value(peaks.applied_torque(f))}});
   }
   for (int p = 0; p < static_cast<int>(model.kinematics.size()); ++p) {
+    const FigureNoise::OfPath of = FigureNoise(record.statistics).path(p);
     append(paths, model.kinematics[static_cast<std::size_t>(p)].name,
-           {{"max_position", value(peaks.position_error(p))}, {"max_angle", value(peaks.angle_error(p))}});
+           {{"max_position", value(peaks.position_error(p))},
+            {"max_angle", value(peaks.angle_error(p))},
+            {"rms_position", json_number(of.rms_position)},
+            {"rms_angle", json_number(of.rms_angle)}});
   }
   return {{"growing_impacts", noise.growing_impacts()},
           {"joints", std::move(joints)},

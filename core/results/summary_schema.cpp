@@ -115,12 +115,12 @@ Json force_part() {
 
 /// Null where nothing in the model can touch.
 Json noise_part() {
-  Json part =
-      record({{"growing_impacts", integer()},
-              {"joints", by_name(numbers({"max_force", "max_torque", "max_fn", "max_delta", "max_eccentricity"}))},
-              {"drivers", by_name(numbers({"max_abs"}))},
-              {"forces", by_name(numbers({"max_force", "max_torque"}))},
-              {"paths", by_name(numbers({"max_position", "max_angle"}))}});
+  Json part = record({{"growing_impacts", integer()},
+                      {"joints", by_name(numbers({"max_force", "max_torque", "max_fn", "max_delta", "max_eccentricity",
+                                                  "rms_force", "contacts", "contact_fraction"}))},
+                      {"drivers", by_name(numbers({"max_abs", "rms"}))},
+                      {"forces", by_name(numbers({"max_force", "max_torque"}))},
+                      {"paths", by_name(numbers({"max_position", "max_angle", "rms_position", "rms_angle"}))}});
   part["type"] = {"object", "null"};
   return part;
 }

@@ -19,6 +19,9 @@ constexpr double widening = 1.5;           // of the scale of the tail
 constexpr double unknown = 0.3;            // of the value, where too little was seen
 constexpr double same_speed = 1.05;        // an approach this much faster than the separation before is driven
 
+/// What impacts make of a small difference, of all that chance can do.
+double grown_by(int impacts) { return std::min(1.0, first_difference * (std::pow(growth, impacts) - 1.0)); }
+
 /// Bodies that joints, gears and springs hold together, as groups: a number each, from 0 on.
 class Groups {
  public:
@@ -160,10 +163,14 @@ bool PeakNoise::repeats(int group) const {
   return true;
 }
 
+double PeakNoise::grown(std::size_t value) const {
+  return active_ && groups_[value] >= 0 ? grown_by(impacts_[at(groups_[value])]) : 0.0;
+}
+
 double PeakNoise::of(std::size_t value) const {
   if (!active_) return 0.0;
   const Peak& peak = peaks_[value];
-  const double grown = std::min(1.0, first_difference * (std::pow(growth, peak.impacts) - 1.0));
+  const double grown = grown_by(peak.impacts);
   if (!(grown > 0.0)) return 0.0;
   if (parts_over_ < 2) return grown * unknown * peak.all;
   const auto x = in_order(peak);

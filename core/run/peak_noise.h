@@ -43,6 +43,14 @@ class PeakNoise {
   bool active() const { return active_; }
   /// By how much the largest value may differ in another run; of its unit.
   double of(std::size_t value) const;
+  /// What has become of a small difference by now, of all that chance can do to a value: g of the class.
+  double grown(std::size_t value) const;
+  /// Whether the loose joints that a value hangs on have the same peaks again and again.
+  bool is_settled(std::size_t value) const { return !active_ || groups_[value] < 0 || repeats(groups_[value]); }
+  /// Whether two values hang on the same impacts.
+  bool share_chance(std::size_t a, std::size_t b) const {
+    return active_ && groups_[a] >= 0 && groups_[a] == groups_[b];
+  }
   /// Impacts that let differences grow, in the joint that has most.
   int growing_impacts() const;
 

@@ -56,7 +56,9 @@ Statistics::Statistics(const Model& model, const Channels& channels, bool long_s
       forces_(model.force_elements.size()),
       drivers_(model.drivers.size()),
       paths_(channels.paths.size()),
-      long_steps_(long_steps) {}
+      long_steps_(long_steps),
+      mean_noise_(discard_until_, model.settings.end,
+                  largest_.noise().active() ? joints_.size() + drivers_.size() + 2 * paths_.size() : 0) {}
 
 // A step that ends a rounding error before the instant belongs to what follows.
 bool Statistics::counts(double t) const {
@@ -98,6 +100,10 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
   velocity_ = std::max(velocity_, velocity);
   energy_ = std::max(energy_, std::abs(value(channels_.energy.residual)));
   add_means(row, dt, first);
+  if (mean_noise_.is_due(t)) {
+    double* to = mean_noise_.note(t).data();
+    each_mean(*this, [&](const Mean& mean, std::size_t) { *to++ = mean.integral; });
+  }
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
     JointSums& sums = joints_[at(j)];
     if (first) sums.loss_start = joint_loss[at(j)];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "run/largest_values.h"
+#include "run/mean_noise.h"
 
 namespace freeplay {
 
@@ -84,10 +85,11 @@ class Statistics {
   static void exchange(Self& self, Archive& archive) {
     archive(self.largest_, self.last_time_, self.duration_);
     archive(self.seen_, self.instants_, self.joints_, self.forces_, self.drivers_, self.paths_, self.contacts_);
-    archive(self.contacts_total_, self.position_, self.velocity_, self.energy_);
+    archive(self.contacts_total_, self.position_, self.velocity_, self.energy_, self.mean_noise_);
   }
 
  private:
+  friend class FigureNoise;
   struct Mean {  // of a square over time
     double integral = 0.0, last = 0.0;
     double before = 0.0, length = 0.0;  ///< the square at the start of the last step, and its length
@@ -164,6 +166,7 @@ class Statistics {
   long contacts_ = 0, contacts_total_ = 0;
   double position_ = 0.0, velocity_ = 0.0, energy_ = 0.0;
   bool long_steps_;
+  MeanNoise mean_noise_;  // of the means, in the order of each_mean()
 };
 
 }  // namespace freeplay

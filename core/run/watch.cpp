@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/whole_mass.h"
 #include "run/reach.h"
 
 namespace freeplay {
@@ -54,6 +55,13 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     if (const double far = reached[at(b)]; far < unbounded && far > 0.0)
       reaches_.push_back({b, channels.bodies[at(b)], 1.0 / (far * far)});
   }
+  for (int b = 0; is_on_ground(model) && b < static_cast<int>(model.bodies.size()); ++b) {
+    const Body& body = model.bodies[at(b)];
+    const double moment = std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
+    const int first = channels.bodies[at(b)];
+    if (body.mass > 0.0)
+      movers_.push_back({b, first + (planar_ ? 3 : 7), first + (planar_ ? 5 : 10), moment / body.mass});
+  }
   seen_.size = system.size();
 }
 
@@ -66,6 +74,7 @@ int RunWatch::add(std::span<const double> row, const Evaluation& e) {
   add_forces(row, part);
   add_drivers(row, e);
   add_places(row);
+  add_speeds(row);
   int found = -1;
   for (Contact& contact : contacts_) {
     const double squared = force_squared(e, contact.joint);
@@ -103,6 +112,19 @@ void RunWatch::add_places(std::span<const double> row) {
   seen_.beyond_reach = std::sqrt(farthest);
 }
 
+double RunWatch::Mover::speed_squared(std::span<const double> row, bool planar) const {
+  const double *v = &row[at(velocity)], *w = &row[at(turn)];
+  const double turns = planar ? w[0] * w[0] : w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
+  return v[0] * v[0] + v[1] * v[1] + (planar ? 0.0 : v[2] * v[2]) + gyration_squared * turns;
+}
+
+void RunWatch::add_speeds(std::span<const double> row) {
+  runaway_ = -1;
+  for (const Mover& mover : movers_) {
+    if (mover.speed_squared(row, planar_) > trust::fastest_matter * trust::fastest_matter) runaway_ = mover.body;
+  }
+}
+
 void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
   const auto squared = [&](int column) {
     const double* f = &row[at(column)];
@@ -124,11 +146,19 @@ void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
   seen_.part_force[part] = std::max(seen_.part_force[part], of_rows);
   NearForce& of = passage_.is_near() ? seen_.near : passage_.is_beside() ? seen_.beside : seen_.away;
   if (of_rows > of.force) of = {of_rows, row[at(channels_.time)], joint};
+  add_change(of_rows);
   if (of_rows > seen_.row_force) {
     seen_.row_force = of_rows;
     seen_.row_force_joint = joint;
     seen_.row_force_time = row[at(channels_.time)];
   }
+}
+
+void RunWatch::add_change(double force) {
+  const bool close = passage_.is_near() || passage_.is_beside();
+  if (close || was_close_) seen_.near_change = std::max(seen_.near_change, std::abs(force - last_force_));
+  last_force_ = force;
+  was_close_ = close;
 }
 
 void RunWatch::add_drivers(std::span<const double> row, const Evaluation& e) {
@@ -176,6 +206,17 @@ TrustReason RunWatch::why(int joint, std::span<const double> row) const {
       "{} at t = {:.9g} s: a force of {:.3g} N presses with more than a tenth of the elastic "
       "modulus E* = {:.3g} Pa, which no material bears",
       reason.element, row[at(channels_.time)], force, layout.contact_modulus);
+  return reason;
+}
+
+TrustReason RunWatch::why_runaway(std::span<const double> row) const {
+  const auto mover = std::ranges::find(movers_, runaway_, &Mover::body);
+  TrustReason reason{.id = "body-speed", .level = Trust::bad, .message = {}};
+  reason.element = fmt::format("body '{}'", system_.model().bodies[at(runaway_)].name);
+  reason.value = std::sqrt(mover->speed_squared(row, planar_)), reason.limit = trust::fastest_matter;
+  reason.message =
+      fmt::format("{} at t = {:.9g} s: it moves with {:.3g} m/s, more than twice the speed of sound in steel",
+                  reason.element, row[at(channels_.time)], reason.value);
   return reason;
 }
 

@@ -20,6 +20,8 @@ namespace trust {
 inline constexpr double radius_by_clearance = 1000.0;
 /// Mean pressure F/(2 R L) by E*: beyond the strength that a perfect crystal would have (Frenkel 1926: about G/2 pi).
 inline constexpr double ideal_strength = 0.1;
+/// Speed of a body that a mechanism on ground moves [m/s]: twice that of sound in steel, as no shock wave in metal has.
+inline constexpr double fastest_matter = 1e4;
 }  // namespace trust
 
 /// The largest force of rows in some part of a motion.
@@ -57,6 +59,7 @@ struct RunExtremes {
   int row_force_joint = -1;
   /// The same where the motion is close to a singular position, not quite so close, and further away.
   NearForce near, beside, away;
+  double near_change = 0.0;    ///< largest change of it from step to step near or beside [N]
   double applied_force = 0.0;  ///< largest force of contacts, springs and applied forces [N]
   double drive_motion = 0.0;   ///< largest of |alpha| L + omega^2 L, or |a| + v^2/L, of a prescribing driver [m/s^2]
   double drive_effort = 0.0;   ///< largest force, or torque by L, of a driver that applies one [N]
@@ -71,7 +74,7 @@ struct RunExtremes {
   static void exchange(Self& self, Archive& archive) {
     archive(self.kinetic, self.potential, self.work, self.dissipated, self.residual, self.residual_time);
     archive(self.part_kinetic, self.part_force, self.row_force, self.row_force_time, self.row_force_joint);
-    archive(self.near, self.beside, self.away);
+    archive(self.near, self.beside, self.away, self.near_change);
     archive(self.applied_force);
     archive(self.drive_motion, self.drive_effort, self.beyond_reach, self.farthest_body, self.size);
     archive(self.least_regularity, self.singular_time, self.passed_at, self.open);
@@ -125,6 +128,10 @@ class RunWatch {
   void add_open(double residual) { seen_.open = std::max(seen_.open, residual); }
   /// Why add() returned this joint: the row is the same. Allocates.
   TrustReason why(int joint, std::span<const double> row) const;
+  /// The body that was faster than any matter in the row of the last add(), by its centre of mass or at its radius of
+  /// gyration, where a joint holds some body to ground; else -1.
+  int runaway() const { return runaway_; }
+  TrustReason why_runaway(std::span<const double> row) const;
 
   /// Whether some journal was deeper in its bearing than its play is wide.
   bool deeper_than_play() const {
@@ -139,7 +146,7 @@ class RunWatch {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.passage_, self.contacts_, self.seen_);
+    archive(self.passage_, self.contacts_, self.seen_, self.last_force_, self.was_close_);
   }
 
  private:
@@ -161,8 +168,10 @@ class RunWatch {
     return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   }
   void add_places(std::span<const double> row);
+  void add_speeds(std::span<const double> row);
   void add_energy(std::span<const double> row, std::size_t part);
   void add_forces(std::span<const double> row, std::size_t part);
+  void add_change(double force);
   void add_drivers(std::span<const double> row, const Evaluation& e);
 
   const System& system_;
@@ -173,8 +182,17 @@ class RunWatch {
     double inverse_squared;  // of the largest distance from the origin [1/m^2]
   };
   std::vector<Reach> reaches_;
+  struct Mover {
+    int body, velocity, turn;  // columns
+    double gyration_squared;   // [m^2]
+    double speed_squared(std::span<const double> row, bool planar) const;
+  };
+  std::vector<Mover> movers_;
+  int runaway_ = -1;
   std::vector<char> has_rows_;  // by joint
   bool planar_;
+  double last_force_ = 0.0;  // of joints' rows, at the last look [N]
+  bool was_close_ = false;   // to a singular position, there
   RunExtremes seen_;
 };
 

@@ -244,6 +244,28 @@ class Digits(ProgramTest):
         for low, high in intervals:
             self.assertGreaterEqual(sum(low <= peak <= high for peak in peaks), 4, (peaks, intervals))
 
+    def test_means_and_counts_of_one_run_cover_those_of_most_others(self):
+        within = {"rms": [], "contacts": [], "contact_fraction": []}
+        for speed in (400, 900, 1300, 2600):
+            self.write("m.yaml", SIX_BAR.replace("600 rpm", "%d rpm" % speed))
+            self.freeplay("run", "m.yaml", "--repeat", "6", "--out", "r", "--force")
+            summary = json.loads(self.read("r", "summary.json"))
+            for part, figures in (("joints", ("rms_force", "contacts", "contact_fraction")), ("drivers", ("rms",))):
+                for name, found in summary["repeat"][part].items():
+                    for figure in figures:
+                        first, *others = found[figure]["values"]
+                        noise = summary["noise"][part][name][figure]
+                        if first is None:
+                            self.assertEqual(0, noise or 0)
+                            continue
+                        within[figure.split("_force")[0]] += [abs(value - first) <= noise for value in others]
+        for figure, least in (("rms", 0.7), ("contacts", 0.5), ("contact_fraction", 0.5)):
+            self.assertGreater(sum(within[figure]) / len(within[figure]), least, figure)
+        self.write("m.yaml", SIX_BAR)
+        out, _ = self.freeplay("run", "m.yaml", "--out", "r", "--force")
+        self.assertRegex(out, r"\n  motor +\S+ \+- \S+ k?N\*m +\S+ \+- \S+ N\*m\n")
+        self.assertRegex(out, r"\n  wrist +\S+ \+- \S+ kN +\d+ \+- \d+ +\S+ \+- \S+ %")
+
     def test_a_model_without_contacts_has_all_digits(self):
         out, _ = self.freeplay("run", mechanism("four-bar"))
         self.assertNotIn("+-", out)

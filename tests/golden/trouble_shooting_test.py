@@ -232,6 +232,8 @@ CASES = {
         (4, journal("E: 207 GPa", "E: 1 Pa").replace("lankarani-nikravesh, restitution: 0.9", "hertz, K: 1e-3").replace("end: 20 ms", "end: 1 s"), RUN),
     "joint '...' at t = ... s: a force of ... N presses with more than a tenth of the elastic modulus ...":
         (4, journal("E: 207 GPa", "E: 207 Pa").replace("end: 20 ms", "end: 1 s"), RUN),
+    "body '...' at t = ... s: it moves with ... m/s, more than twice the speed of sound in steel; likely cause: ...":
+        (4, driven("kind: angle, value: t", "kind: torque, value: 1e7"), RUN),
     "energy would grow by ... J in a step of ... s, more than everything that acts could put in; ...":
         (4, journal("E: 207 GPa", "E: 207e22 GPa").replace("lankarani-nikravesh, restitution: 0.9", "hertz"), RUN),
     "forces and speeds grow beyond all bounds, ...":

@@ -366,7 +366,7 @@ simulation: {end: 1 s, accuracy: 1 um}
                 (moved % (spring + "5e8"), "force 'f'"),
                 (moved % "type: spring-damper, between: [ground/w, ram/t], stiffness: 0, damping: 5e6", "force 'f'"),
                 (moved % "type: joint-friction, between: [ground, ram], friction: 2e6", "force 'f'"),
-                ("drivers: {d: {joint: rail, kind: force, value: 3e6*sin(60*t)}}\nforces: {f: {%s}}" % (spring + "1000"), "driver 'd'")):
+                ("drivers: {d: {joint: rail, kind: force, value: 3e5*sin(60*t)}}\nforces: {f: {%s}}" % (spring + "1000"), "driver 'd'")):
             with self.subTest(part):
                 self.run_model(ram % part)
                 reason = next(r for r in self.trust["reasons"] if r["id"] == "load-size")
@@ -394,11 +394,10 @@ simulation: {end: 1 s, accuracy: 1 um}
         self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())
 
-    def test_counts_and_sums_beside_a_peak_with_noise_have_two_digits(self):
+    def test_counts_and_sums_beside_a_peak_with_noise_have_theirs(self):
         out, _ = self.run_model(SLIDER_CRANK)
-        self.assertRegex(out, r"\n  wrist +\d+ \+- \d+ kN +~\d+ +~\d+ %")
-        self.assertRegex(out, r"\n  wrist( +~\d+ %){3} +~\d+ +~\d+(\.\d)? mm +~\d+(\.\d)? m?J\n")
-        self.assertIn("\n  ~: ", out)
+        self.assertRegex(out, r"\n  wrist +\d+ \+- \d+ kN +\d+ \+- \d+ +\d+ \+- \d+ %")
+        self.assertRegex(out, r"\n  wrist( +\S+ \+- \S+ %){3} +\d+ \+- \d+ +\S+ \+- \S+ mm +\S+ \+- \S+ m?J\n")
 
     def test_no_part_of_the_time_of_a_play_is_below_zero(self):
         """A rotor that never leaves its bearing."""
