@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "cli/interrupt.h"
 #include "cli/options.h"
+#include "format/run_override.h"
 #include "results/summary.h"
 #include "run/play_start.h"
 #include "run/simulation.h"
@@ -73,6 +74,12 @@ RepeatRuns::RepeatRuns(const Model& model, const RepeatPlan& plan, int processes
         Error::Category::usage, "nothing-to-repeat",
         "--repeat moves bodies in the play of their joints, and no joint of this model has play: all runs would "
         "be the same");
+  }
+  if (start_choice(model).repeat != 1) {
+    throw Error(Error::Category::usage, "usage",
+                fmt::format("--repeat begins with the model's own start, and --set repeat={} asks for another: give "
+                            "one of them",
+                            start_choice(model).repeat));
   }
   pool_.start(static_cast<std::size_t>(processes - 1));
   looked_ = {};

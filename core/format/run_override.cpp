@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,8 +14,8 @@
 namespace freeplay {
 namespace {
 
-constexpr std::array run_names = {"simulation.end", "simulation.step", "simulation.accuracy", "simulation.integrator",
-                                  "ideal"};
+constexpr std::array run_names = {
+    "simulation.end", "simulation.step", "simulation.accuracy", "simulation.integrator", "ideal", "repeat", "seed"};
 
 [[noreturn]] void bad_option(const std::string& name, const std::string& text, const std::string& why,
                              const std::string& hint = {}) {
@@ -32,6 +35,22 @@ double positive_number(const std::string& name, const std::string& text, const D
   }
   bad_option(name, text, "it must be > 0");
 }
+
+constexpr double most_whole = 9007199254740992.0;  // up to here all whole numbers have a double
+
+/// Nothing for what is no whole number from `least` on.
+std::optional<std::uint64_t> whole_number_of(const std::string& text, double least) {
+  double value = -1.0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc() || read.ptr != end || value != std::floor(value)) return std::nullopt;
+  if (value < least || value > most_whole) return std::nullopt;
+  return static_cast<std::uint64_t>(value);
+}
+
+double least_of(const std::string& name) { return name == "repeat" ? 1.0 : 0.0; }
+
+bool chooses_start(const std::string& name) { return name == "repeat" || name == "seed"; }
 
 std::vector<std::string> joints_of(const std::string& text, const BuildOptions& options) {
   if (text == "none") return {};
@@ -68,8 +87,21 @@ void apply_run_overrides(BuildOptions& options, const ParameterScope& parameters
       options.integrator = text;
     } else if (name == "ideal" && !has_ideal) {
       options.ideal = joints_of(text, options);
+    } else if (chooses_start(name) && !whole_number_of(text, least_of(name))) {
+      bad_option(name, text, fmt::format("it must be a whole number from {} to 2^53", least_of(name)));
     }
   }
+}
+
+StartChoice start_choice(const Model& model) {
+  StartChoice choice;
+  for (const auto& [name, text] : model.overrides) {
+    const std::string& target = name;
+    const bool parameter = std::ranges::any_of(model.parameters, [&](const auto& one) { return one.first == target; });
+    if (!chooses_start(target) || parameter) continue;
+    (target == "repeat" ? choice.repeat : choice.seed) = whole_number_of(text, least_of(target)).value_or(1);
+  }
+  return choice;
 }
 
 }  // namespace freeplay

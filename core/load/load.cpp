@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 
 #include "format/model_builder.h"
+#include "format/run_override.h"
 #include "load/channel_check.h"
 #include "load/model_file.h"
 #include "load/plugins.h"
+#include "run/play_start.h"
 #include "run/simulation.h"
 #include "yaml/document.h"
 
@@ -108,6 +110,11 @@ void require_planar(const LoadedModel& loaded, const std::string& what) {
 
 namespace {
 
+Start start_of(System& system) {
+  const StartChoice choice = start_choice(system.model());
+  return assemble_in_play(system, choice.seed, choice.repeat - 1);
+}
+
 /// Warns of starts that could as well be others.
 void judge_start(const StartReport& report, Diagnostics& diagnostics) {
   for (const TwinStart& twin : report.twins) {
@@ -117,6 +124,8 @@ void judge_start(const StartReport& report, Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+AssembledModel::AssembledModel(const Model& model) : system(model), start(start_of(system)) {}
 
 std::unique_ptr<AssembledModel> assemble_model(const Model& model, const Document* document, Diagnostics& diagnostics,
                                                int& exit_code) {

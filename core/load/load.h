@@ -41,9 +41,9 @@ LoadedModel load_document(const Document& document, const BuildOptions& build, c
 /// Refuses a spatial model. Throws Error{input} "type-space" with what only works in the plane.
 void require_planar(const LoadedModel& loaded, const std::string& what);
 
-/// A model that is ready to move. The system refers to the model.
+/// A model that is ready to move, from the start that `--set repeat` and `seed` choose. The system refers to the model.
 struct AssembledModel {
-  explicit AssembledModel(const Model& model) : system(model), start(assemble(system)) {}
+  explicit AssembledModel(const Model& model);
 
   System system;
   Start start;

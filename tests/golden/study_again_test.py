@@ -1,4 +1,4 @@
-"""A study's directory as other commands take it: compare, export, reproduce; looked at without plugins."""
+"""A study's directory as other commands take it: compare, export, reproduce; looked at without plugins; starts in the play as an axis."""
 import csv
 import json
 import os
@@ -9,6 +9,18 @@ import unittest
 from program import ProgramTest, mechanism
 from study_command_test import BALL, GRID
 from study_places_test import EXAMPLE, TWISTED
+
+PLAY = """freeplay: 1
+study:
+  models: {crank: %s}
+  set: {simulation.end: 15 ms, simulation.accuracy: 1 um}
+  axes:
+    c: [0.1 mm, 0.3 mm]
+    repeat: {linspace: [1, 4, 4]}
+  reducers: {peak: {summary: joints.wrist.max_force}}
+  plots: {scatter: {kind: line, x: c, y: peak}}
+"""
+
 
 class StudyAgain(ProgramTest):
     def setUp(self):
@@ -165,6 +177,35 @@ class StudyAgain(ProgramTest):
         self.assertIn("angle [mrad]", self.read("t", "plots", "a.svg"))
         for words in (("study", "verify", "t"), ("study", "run", "t"), ("reproduce", "t")):
             self.assertIn("plugin", self.freeplay(*words, code=5)[1])
+
+    # --- starts in the play
+
+    def test_starts_in_the_play_are_an_axis_and_those_of_repeat(self):
+        self.write("play.yaml", PLAY % mechanism("slider-crank"))
+        self.study("run", "play.yaml", "--out", "p")
+        peaks = [float(row["peak"]) for row in self.rows("p")]
+        self.assertEqual(["1", "2", "3", "4"] * 2, [row["repeat"] for row in self.rows("p")])
+        words = ("run", mechanism("slider-crank"), "--end", "15 ms", "--accuracy", "1 um", "--set", "c=0.3 mm")
+        repeat = json.loads(self.freeplay(*words, "--repeat", "4", "--out", "r", "--json")[0])["repeat"]
+        self.assertEqual(repeat["joints"]["wrist"]["max_force"]["values"], peaks[4:])
+        self.assertEqual(4, len(set(peaks[4:])))
+        third = json.loads(self.freeplay(*words, "--set", "repeat=3", "--out", "three", "--json")[0])
+        self.assertEqual(peaks[6], third["joints"]["wrist"]["max_force"])
+        self.freeplay("reproduce", "three")
+        self.assertIn("--set repeat=3", self.study("point", "p", "6")[0])
+        self.freeplay("run", mechanism("slider-crank"), "--end", "15 ms", "--set", "repeat=3", "--set", "seed=2", "--out", "other", "--quiet")
+        self.assertNotEqual(self.read("three", "results.csv"), self.read("other", "results.csv"))
+        picture = self.study("plot", "p") and self.read("p", "plots", "scatter.svg")
+        self.assertEqual(8, len(re.findall(r"data-point=", picture)))
+
+    def test_starts_that_there_are_not_are_refused(self):
+        for words, text in ((("repeat=0",), "from 1 to 2^53"), (("repeat=1.5",), "whole number"), (("repeat=many",), "many"),
+                            (("seed=-1",), "from 0"), (("repeat=2", "--repeat", "3"), "--set repeat=2 asks for another")):
+            self.assertIn(text, self.freeplay("run", mechanism("slider-crank"), "--set", *words, code=2)[1])
+        self.write("play.yaml", PLAY % mechanism("four-bar") + "")
+        text = self.read("play.yaml").replace("c: [0.1 mm, 0.3 mm]\n", "").replace("wrist.max_force", "*.max_force, over: max").replace("x: c", "x: repeat")
+        self.write("play.yaml", text)
+        self.assertIn("no joint has play", self.study("plan", "play.yaml", code=3)[1])
 
 
 if __name__ == "__main__":
