@@ -15,6 +15,7 @@ void SteppedRun::require_going() const {
 }
 
 bool SteppedRun::advance(const RunGoal& goal) {
+  if (ended_) return false;
   require_going();
   known_ = false;
   if (!run_.advance(goal)) {

@@ -30,8 +30,8 @@ class SteppedRun {
     bool good_;
   };
 
-  /// To `goal`; ends the run with its files where it comes to its end. False once it is over. Throws Error{usage} where
-  /// it was over before.
+  /// To `goal`; ends the run with its files where it comes to its end. False once it is over. Throws Error{usage} in a
+  /// process that does not write its files.
   bool advance(const RunGoal& goal);
   /// Ends it where it is, unless it is over.
   void close();

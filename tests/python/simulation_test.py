@@ -57,6 +57,7 @@ class Steps(InFolder):
                     self.assertEqual(whole.summary["counts"], sim.result().summary["counts"])
                     self.assertTrue(same_bits(whole.data[-1], row))
                     self.assertEqual(("completed", 1e-3, 1e-3), (sim.status, sim.time, sim.end))
+                    self.assertEqual((1e-3, 1e-3), (sim.step(), sim.advance()))
 
     def test_a_time_is_reached_exactly_and_rows_stay_at_their_instants(self):
         for options in ({}, {"accuracy": "1 um"}):

@@ -47,6 +47,7 @@ class Simulation:
         from ._model import begin
 
         self._result: Result | None = None
+        self._told = self._cut = False  # what ended it was raised; it was before its end
         self.model, self._core, self._directory, self._profiled = begin(model, options_of_run)
         self.names: tuple[str, ...] = tuple(self._core.layout()["names"])
         self.end: float = float(self.model._known["end"])
@@ -111,7 +112,7 @@ class Simulation:
         """Goes on, and returns the time that is reached [s].
 
         until: exactly to this time [s]; beyond the end, to the end. rows: past so many output instants instead. Without either: to the end.
-        Raises what run() raises, UsageError once the run is over, Interrupted after interrupt().
+        At the end it stays there. Raises what run() raises, Interrupted after interrupt(), UsageError once it was ended before.
         """
         if until is None:
             time = self._core.advance(math.inf, ALL if rows is None else count_of("rows", rows), ALL)
@@ -157,6 +158,11 @@ class Simulation:
         from ._model import warn
 
         result, ended = self.result(), self._core.ended()
+        if self._told:
+            if self._cut:
+                raise usage(f"the simulation is over: it {self.status}")
+            return self.time
+        self._told, self._cut = True, self._cut or self.status in ("failed", "interrupted")
         warn(result.warnings, 4)
         if ended is not None:
             raise_failure(ended, result, self._core.raised())
@@ -170,6 +176,7 @@ class Simulation:
         """Ends the run where it is and seals its directory; before the end `status` is then "stopped". Again it does nothing."""
         if self._core.ended() is None:
             self._core.close()
+            self._cut = True
             self._over()
 
     def checkpoint(self) -> NoReturn:
