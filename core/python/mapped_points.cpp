@@ -72,7 +72,7 @@ void MappedPoints::add_plan() {
   }
   Diagnostics ignored;
   const PointRunner runner(source_, options_, ignored);
-  const MergePlan merge = merge_plan(*plan_, runner);
+  const MergePlan merge = merge_plan(*plan_, {runner.columns(), runner.sample_columns()});
   start_cell_ = merge.start_cell.value_or(0);
   for (const KeyColumn& key : merge.keys) keys_.push_back({key.name, key.unit, key.words});
   for (std::uint64_t index = 0; index < plan_->points(); ++index) merge.cells(index, cells_.emplace_back());

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "python/opened_model.h"
-#include "study/outcome.h"
 #include "study/plan.h"
 #include "study/point_threads.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "load/options.h"
-#include "study/outcome.h"
 #include "study/point.h"
 #include "study/point_runner.h"
+#include "workers/outcome.h"
 
 namespace freeplay {
 
