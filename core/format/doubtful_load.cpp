@@ -26,7 +26,9 @@ class LoadDoubts {
 
   bool any() const { return all_.mass > 0.0; }
 
+  // What depends on the motion is judged by the run.
   void judge(const Driver& driver) const {
+    if (!driver.by_motion.empty()) return;
     const double effort = largest_of(course_of(driver, draft_.model.settings));
     const bool turns = driver.kind == DriverKind::torque;
     if (!is_doubtful(effort, turns)) return;
@@ -35,6 +37,7 @@ class LoadDoubts {
   }
 
   void judge(const AppliedForce& force) const {
+    if (!force.by_motion.empty()) return;
     double squares = 0.0;
     for (const Expression& part : force.value) {
       const double most = largest_of(course_of(part, draft_.model.settings));

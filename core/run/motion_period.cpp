@@ -34,6 +34,7 @@ std::optional<double> motion_period(const Model& model, const Driver& driver, do
     const auto times = driver.table->times();
     return again ? std::optional(times.back() - times.front()) : std::nullopt;
   }
+  if (!driver.by_motion.empty()) return std::nullopt;
   const auto period = period_of(driver.value, driver.kind, from, longest);
   if (!period || *period > 0.0) return period;
   const bool turns = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;

@@ -59,8 +59,7 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     const Body& body = model.bodies[at(b)];
     const double moment = std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
     const int first = channels.bodies[at(b)];
-    if (body.mass > 0.0)
-      movers_.push_back({b, first + (planar_ ? 3 : 7), first + (planar_ ? 5 : 10), moment / body.mass});
+    if (body.mass > 0.0) movers_.push_back({b, first + (planar_ ? 5 : 10), moment / body.mass});
   }
   seen_.size = system.size();
 }
@@ -112,16 +111,15 @@ void RunWatch::add_places(std::span<const double> row) {
   seen_.beyond_reach = std::sqrt(farthest);
 }
 
-double RunWatch::Mover::speed_squared(std::span<const double> row, bool planar) const {
-  const double *v = &row[at(velocity)], *w = &row[at(turn)];
-  const double turns = planar ? w[0] * w[0] : w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-  return v[0] * v[0] + v[1] * v[1] + (planar ? 0.0 : v[2] * v[2]) + gyration_squared * turns;
+double RunWatch::Mover::rim_squared(std::span<const double> row, bool planar) const {
+  const double* w = &row[at(turn)];
+  return gyration_squared * (planar ? w[0] * w[0] : w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
 }
 
 void RunWatch::add_speeds(std::span<const double> row) {
   runaway_ = -1;
   for (const Mover& mover : movers_) {
-    if (mover.speed_squared(row, planar_) > trust::fastest_matter * trust::fastest_matter) runaway_ = mover.body;
+    if (mover.rim_squared(row, planar_) > trust::fastest_rim * trust::fastest_rim) runaway_ = mover.body;
   }
 }
 
@@ -213,10 +211,11 @@ TrustReason RunWatch::why_runaway(std::span<const double> row) const {
   const auto mover = std::ranges::find(movers_, runaway_, &Mover::body);
   TrustReason reason{.id = "body-speed", .level = Trust::bad, .message = {}};
   reason.element = fmt::format("body '{}'", system_.model().bodies[at(runaway_)].name);
-  reason.value = std::sqrt(mover->speed_squared(row, planar_)), reason.limit = trust::fastest_matter;
-  reason.message =
-      fmt::format("{} at t = {:.9g} s: it moves with {:.3g} m/s, more than twice the speed of sound in steel",
-                  reason.element, row[at(channels_.time)], reason.value);
+  reason.value = std::sqrt(mover->rim_squared(row, planar_)), reason.limit = trust::fastest_rim;
+  reason.message = fmt::format(
+      "{} at t = {:.9g} s: it turns with {:.3g} m/s at its radius of gyration, more than twice the speed of sound in "
+      "steel",
+      reason.element, row[at(channels_.time)], reason.value);
   return reason;
 }
 

@@ -20,8 +20,9 @@ namespace trust {
 inline constexpr double radius_by_clearance = 1000.0;
 /// Mean pressure F/(2 R L) by E*: beyond the strength that a perfect crystal would have (Frenkel 1926: about G/2 pi).
 inline constexpr double ideal_strength = 0.1;
-/// Speed of a body that a mechanism on ground moves [m/s]: twice that of sound in steel, as no shock wave in metal has.
-inline constexpr double fastest_matter = 1e4;
+/// Speed at the radius of gyration of a body that turns [m/s]: twice that of sound in steel. What turns so fast bursts:
+/// the stress in a ring is its density times the square of its speed.
+inline constexpr double fastest_rim = 1e4;
 }  // namespace trust
 
 /// The largest force of rows in some part of a motion.
@@ -183,9 +184,9 @@ class RunWatch {
   };
   std::vector<Reach> reaches_;
   struct Mover {
-    int body, velocity, turn;  // columns
-    double gyration_squared;   // [m^2]
-    double speed_squared(std::span<const double> row, bool planar) const;
+    int body, turn;           // a column
+    double gyration_squared;  // [m^2]
+    double rim_squared(std::span<const double> row, bool planar) const;
   };
   std::vector<Mover> movers_;
   int runaway_ = -1;

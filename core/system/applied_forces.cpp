@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include "base/index.h"
 #include "system/evaluation.h"
@@ -110,10 +109,10 @@ std::string AppliedForces::words_of_switch(int index) const {
 // Inputs that were set, whatever the time.
 void AppliedForces::take_inputs(const Point& point, Evaluation& e) const {
   std::size_t place = point.h.size();
-  for (const int d : std::views::reverse(effort_drivers_)) {
-    if (!model_.drivers[at(d)].input) continue;
+  for (auto d = effort_drivers_.rbegin(); d != effort_drivers_.rend(); ++d) {
+    if (!model_.drivers[at(*d)].input) continue;
     place -= Layout::numbers_of_input;
-    if (point.h[place] != 0.0) e.motion[at(d)] = {point.h[place + 1], 0.0, 0.0};
+    if (point.h[place] != 0.0) e.motion[at(*d)] = {point.h[place + 1], 0.0, 0.0};
   }
 }
 

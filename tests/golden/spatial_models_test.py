@@ -391,6 +391,7 @@ class Page(SpatialTest):
     MORE = {"distance": ", length: 1", "bushing": ", stiffness: {x: 1}", "spring-damper": ", stiffness: 1",
             "joint-friction": ", friction: 1", "joint-stop": ", lower: -2, upper: 2, stiffness: 1",
             "revolute-clearance": ", clearance: {radial_clearance: 1 mm, length: 1 cm, contact: {law: hertz, K: 1e8}}",
+            "point-on-line-clearance": ", clearance: {gap: 1 mm, contact: {law: hertz, K: 1e8}}",
             "prismatic-clearance": ", clearance: {gap: 1 mm, length: 20 mm, contact: {law: hertz, K: 1e8}}",
             "spherical-clearance": ", clearance: {radial_clearance: 1 mm, contact: {law: hertz, K: 1e8}}"}
     ROW = re.compile(r"^\| `([-a-z]+)` \| (\d|-)?(?:, (\d|-)|0 in space) \| (angle|position|none) \|", re.M)

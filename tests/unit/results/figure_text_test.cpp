@@ -30,7 +30,7 @@ TEST(FigureText, HasNoMoreDigitsThanTheNoiseLeaves) {
 TEST(FigureText, CountsAndPartsHaveTheirNoise) {
   EXPECT_EQ("162", count_text(162, 0.0));
   EXPECT_EQ("160 +- 30", count_text(162, 26.0));
-  EXPECT_EQ("29 +- 11", count_text(29, 10.8));
+  EXPECT_EQ("30 +- 10", count_text(29, 10.8));
   EXPECT_EQ("0 +- 5", count_text(0, 5.2));
   EXPECT_EQ("71.7 %", share_text(0.7168, 0.0));
   EXPECT_EQ("72 +- 6 %", share_text(0.7168, 0.06));
