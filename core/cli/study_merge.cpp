@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -26,17 +29,30 @@ void require_one_study(const std::vector<std::string>& folders) {
   }
 }
 
-/// Under a name that no other segment has: those of one process count seconds.
-void copy_segments(const StudyFolder& from, const StudyFolder& to) {
-  for (const fs::path& segment : from.segments()) {
-    const fs::path place = to.rows() / segment.filename();
-    std::error_code error;
-    if (fs::equivalent(segment, place, error)) continue;
-    fs::copy_file(segment, place, fs::copy_options::overwrite_existing, error);
-    if (!error) continue;
-    throw Error(Error::Category::file, "cannot-write",
-                fmt::format("cannot copy '{}' to '{}': {}", segment.string(), place.string(), error.message()));
+bool begins_with(const fs::path& longer, const fs::path& part) {
+  std::ifstream all(longer, std::ios::binary), some(part, std::ios::binary);
+  using Bytes = std::istreambuf_iterator<char>;
+  return all && some && std::mismatch(Bytes(some), Bytes(), Bytes(all), Bytes()).first == Bytes();
+}
+
+/// Segments only grow: of two of one name the longer one is kept if it goes on where the other ends. If it does not,
+/// they are of different processes, and the second gets another name: rows that contradict each other are found then.
+void copy_segment(const fs::path& segment, const StudyFolder& to) {
+  fs::path place = to.rows() / segment.filename();
+  for (int again = 2; fs::exists(place); ++again) {
+    if (begins_with(place, segment)) return;
+    if (begins_with(segment, place)) break;
+    place = to.rows() / fmt::format("{}-{}.rows", segment.stem().string(), again);
   }
+  std::error_code error;
+  fs::copy_file(segment, place, fs::copy_options::overwrite_existing, error);
+  if (!error) return;
+  throw Error(Error::Category::file, "cannot-write",
+              fmt::format("cannot copy '{}' to '{}': {}", segment.string(), place.string(), error.message()));
+}
+
+void copy_segments(const StudyFolder& from, const StudyFolder& to) {
+  for (const fs::path& segment : from.segments()) copy_segment(segment, to);
 }
 
 void refuse_gaps(const StudyTable& table, const StudyFolder& folder) {

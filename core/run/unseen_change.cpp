@@ -151,11 +151,13 @@ std::optional<double> UnseenChange::hidden(const Expression& formula, FormulaSid
                                            const FormulaSides::Span& span) const {
   const Interval range = signal(sides.range(span), derivative_);
   if (!window.hides(range.low) && !window.hides(range.high)) return {};
+  const double middle = span.middle();
   double now = 0.0;
-  if (value(formula, span.middle(), now) && window.hides(now)) return span.middle();
-  if (span.high - span.low <= shortest * step_ || sides.work() > enough_work) return {};
-  if (const auto found = hidden(formula, sides, window, {span.low, span.middle()})) return found;
-  return hidden(formula, sides, window, {span.middle(), span.high});
+  if (value(formula, middle, now) && window.hides(now)) return middle;
+  const bool undivided = span.high - span.low <= shortest * step_ || !(span.low < middle && middle < span.high);
+  if (undivided || sides.work() > enough_work) return {};
+  if (const auto found = hidden(formula, sides, window, {span.low, middle})) return found;
+  return hidden(formula, sides, window, {middle, span.high});
 }
 
 std::optional<UnseenChange::Found> UnseenChange::of(const Expression& formula, double from, double to, double step,

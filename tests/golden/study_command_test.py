@@ -176,6 +176,23 @@ class StudyCommand(ProgramTest):
         self.study("run", "other.yaml", "--out", "other", "--only", "0")
         self.assertIn("[study-mixed]", self.study("merge", "half", "other", code=3)[1])
 
+    def test_merging_copies_loses_no_row_and_hides_no_contradiction(self):
+        self.run_json("ball.yaml", "--out", "whole", "--jobs", "1")
+        wanted = self.files("whole")
+        (name,) = os.listdir(self.path("whole", "rows"))
+        shutil.copytree(self.path("whole"), self.path("early"))
+        with open(self.path("early", "rows", name), "rb+") as segment:  # as copied while rows were written
+            segment.truncate(os.path.getsize(segment.name) // 2)
+        for folders in (("whole", "early"), ("early", "whole")):
+            self.study("merge", *folders)
+            self.assertEqual(wanted, self.files(folders[0]))
+        for part, points in (("left", "0-39"), ("right", "40-79")):  # two machines with one name of the host
+            self.run_json("ball.yaml", "--out", part, "--jobs", "1", "--only", points)
+            (segment,) = os.listdir(self.path(part, "rows"))
+            os.rename(self.path(part, "rows", segment), self.path(part, "rows", name))
+        self.study("merge", "left", "right")
+        self.assertEqual(wanted, self.files("left"))
+
     def test_an_empty_list_of_points_is_no_list_of_all(self):
         for words in (("plan", "ball.yaml", "--points"), ("run", "ball.yaml", "--out", "r")):
             _, err = self.study(*words, "--only", "", code=2)

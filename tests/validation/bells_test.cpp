@@ -51,6 +51,16 @@ TEST(Bells, TrainsOfBellsWithoutCornersKeepTheAccuracy) {
   }
 }
 
+// Where the angle jumps, spans of time are halved down to neighbouring numbers and no further.
+TEST(Bells, OncePerTurnOfAnAngleAreMet) {
+  const ModelRun run = under("100*exp(-((atan2(sin(40*pi*t), cos(40*pi*t)) - 1)/0.1)^2)", 1e-6);
+  const auto force = [](double t) {
+    const double turn = 40.0 * M_PI * t, away = (std::atan2(std::sin(turn), std::cos(turn)) - 1.0) / 0.1;
+    return 100.0 * std::exp(-away * away);
+  };
+  EXPECT_LT(std::abs(run.last("body.m.x") - way_under(force, 2.0)), 1e-5);
+}
+
 // What is too short to be looked for is said.
 TEST(Bells, AChangeBelowAMillionthOfTheRunIsDoubted) {
   const auto doubts = [](const char* value) {
