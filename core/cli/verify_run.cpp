@@ -42,6 +42,19 @@ double accuracy_of(const System& system) {
   return accuracy;
 }
 
+/// Its place, and its turn at its radius of gyration: a quaternion changes by half of a small turn.
+void add_positions(const Body& body, const Channels& channels, std::vector<PositionChannel>& positions) {
+  const double moment = std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
+  const double gyration = body.mass > 0.0 ? std::sqrt(moment / body.mass) : 0.0;
+  const auto add = [&](const char* quantity, double lever) {
+    std::string name = fmt::format("body.{}.{}", body.name, quantity);
+    if (channels.find(name) >= 0) positions.push_back({std::move(name), lever});
+  };
+  for (const char* place : {"x", "y", "z"}) add(place, 1.0);
+  add("angle", gyration);
+  for (const char* part : {"qw", "qx", "qy", "qz"}) add(part, 2.0 * gyration);
+}
+
 /// A run to its end, with its rows.
 struct OtherRun {
   LoadedModel loaded;
@@ -159,12 +172,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   rules.limit = std::max(least_agreement, both_errors * settings.accuracy);
   rules.size = run.system.size();
   rules.fixed = settings.accuracy == 0.0;
-  for (const Body& body : model.bodies) {
-    for (const char* quantity : {"x", "y", "z"}) {
-      const std::string name = fmt::format("body.{}.{}", body.name, quantity);
-      if (second.channels->find(name) >= 0) rules.positions.push_back(name);
-    }
-  }
+  for (const Body& body : model.bodies) add_positions(body, *second.channels, rules.positions);
   const RunResult first{&run.rows, peaks_of(model, run.statistics)};
   Verification result = compare_runs(first, second.result(), rules);
   result.method = words(second.loaded.model->settings, second_explicit);

@@ -44,11 +44,12 @@ std::size_t common_rows(const ResultTable& a, const ResultTable& b) {
 /// Largest difference of the positions, by row.
 std::vector<double> differences(const ResultTable& a, const ResultTable& b, const VerificationRules& rules) {
   std::vector<double> largest(common_rows(a, b), 0.0);
-  for (const std::string& name : rules.positions) {
-    const int i = a.find(name), k = b.find(name);
+  for (const PositionChannel& position : rules.positions) {
+    const int i = a.find(position.name), k = b.find(position.name);
     if (i < 0 || k < 0) continue;
+    const std::vector<double>&x = a.values[static_cast<std::size_t>(i)], &y = b.values[static_cast<std::size_t>(k)];
     for (std::size_t r = 0; r < largest.size(); ++r) {
-      const double off = std::abs(a.values[static_cast<std::size_t>(i)][r] - b.values[static_cast<std::size_t>(k)][r]);
+      const double off = position.lever * std::abs(x[r] - y[r]);
       if (off > largest[r]) largest[r] = off;
     }
   }
@@ -62,11 +63,11 @@ double limit_at(const ResultTable& table, std::size_t row, const VerificationRul
 /// How far the body that goes farthest does, in one direction.
 double farthest_way(const ResultTable& table, const VerificationRules& rules) {
   double way = 0.0;
-  for (const std::string& name : rules.positions) {
-    const int i = table.find(name);
+  for (const PositionChannel& position : rules.positions) {
+    const int i = table.find(position.name);
     if (i < 0 || table.time().empty()) continue;
     const auto [low, high] = std::ranges::minmax_element(table.values[static_cast<std::size_t>(i)]);
-    way = std::max(way, *high - *low);
+    way = std::max(way, position.lever * (*high - *low));
   }
   return way;
 }

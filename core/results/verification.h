@@ -43,8 +43,14 @@ enum class Agreement {
   disagree,  ///< the first run differs from the second by far more than runs of the second method among themselves
 };
 
+/// A channel that decides, of bodies' places and turns.
+struct PositionChannel {
+  std::string name;
+  double lever = 1.0;  ///< what a difference of it counts [m], of a place 1
+};
+
 struct VerificationRules {
-  std::vector<std::string> positions;  ///< names of the channels that decide; in metres
+  std::vector<PositionChannel> positions;
   /// Difference of positions that counts as agreement in the first second, and in each second after it [m].
   double limit = 1e-6;
   bool fixed = false;  ///< the first run takes fixed steps: nothing is promised of its error

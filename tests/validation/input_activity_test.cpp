@@ -104,7 +104,7 @@ TEST(InputActivity, ASecondRunByAnotherKindFindsABlindOne) {
   const ResultTable first = table("dopri5", 1e-6, {}), second = table("bathe", 5e-7, 2e-3),
                     third = table("bathe", 5e-6, 2e-3);
   const RunResult a{&first, {}}, b{&second, {}}, c{&third, {}};
-  const VerificationRules rules{{"body.m.x"}, 3e-6, false};
+  const VerificationRules rules{{{"body.m.x"}}, 3e-6, false};
   Verification v = compare_runs(a, b, rules);
   EXPECT_NEAR(v.agree_until, 0.5, 2.1e-3);
   judge(v, a, b, c, rules);

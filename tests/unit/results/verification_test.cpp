@@ -21,7 +21,7 @@ ResultTable moving(const std::function<double(double)>& x) {
   return t;
 }
 
-VerificationRules rules(double limit, bool fixed = false) { return {{"body.a.x"}, limit, fixed}; }
+VerificationRules rules(double limit, bool fixed = false) { return {{{"body.a.x"}}, limit, fixed}; }
 
 Agreement judged(const ResultTable& first, const ResultTable& second, const ResultTable& third,
                  const VerificationRules& by) {
@@ -54,6 +54,19 @@ TEST(Verification, RunsThatDriftByLessThanTheLimitInEachSecondAgree) {
   const ResultTable a = moving(smooth_motion), b = moving([](double t) { return smooth_motion(t) + 0.9e-6 * t; });
   EXPECT_EQ(compare_runs({&a, {}}, {&b, {}}, rules(1e-6)).agreement, Agreement::agree);
   EXPECT_EQ(compare_runs({&a, {}}, {&b, {}}, rules(0.5e-6)).agreement, Agreement::err);
+}
+
+TEST(Verification, TurnsCountAtTheRadiusOfGyration) {
+  ResultTable a = moving(smooth_motion), b = moving([](double t) { return smooth_motion(t) + 4e-6; });
+  a.names[1] = b.names[1] = "body.a.angle";
+  VerificationRules turning;
+  turning.limit = 1e-6;
+  turning.positions = {{"body.a.angle", 0.2}};
+  EXPECT_EQ(compare_runs({&a, {}}, {&b, {}}, turning).agreement, Agreement::agree);
+  turning.positions = {{"body.a.angle", 0.3}};
+  const Verification v = compare_runs({&a, {}}, {&b, {}}, turning);
+  EXPECT_EQ(v.agreement, Agreement::err);
+  EXPECT_NEAR(v.largest, 1.2e-6, 1e-12);
 }
 
 TEST(Verification, ARunThatOverlookedALoadDisagrees) {
