@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <string_view>
 #include <system_error>
 
@@ -16,6 +14,7 @@
 #include "base/whole_file.h"
 #include "cli/commands.h"
 #include "cli/loading.h"
+#include "cli/scratch_folder.h"
 #include "cli/terminal.h"
 #include "component/library.h"
 #include "load/plugins.h"
@@ -33,17 +32,6 @@ constexpr std::array forbidden{"--out",    "--svg",           "--force", "--yes"
 [[noreturn]] void refuse_record(const MadeFile& made, const std::string& why) {
   throw Error(Error::Category::file, "no-provenance",
               fmt::format("'{}' has a record that cannot be followed: {}", made.path.string(), why));
-}
-
-fs::path new_scratch_folder() {
-  std::error_code error;
-  fs::path folder = fs::temp_directory_path(error);
-  std::string name = (folder / "freeplay-XXXXXX").string();
-  if (error || ::mkdtemp(name.data()) == nullptr) {
-    throw Error(Error::Category::file, "cannot-write",
-                fmt::format("cannot make a folder in '{}': {}", folder.string(), std::strerror(errno)));
-  }
-  return name;
 }
 
 /// Words of a command line, --plugin and its value left out: whoever makes it again says which are to be trusted.

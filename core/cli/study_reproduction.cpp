@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <system_error>
 #include <vector>
@@ -15,6 +12,7 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 #include "cli/own_program.h"
+#include "cli/scratch_folder.h"
 #include "cli/study_options.h"
 #include "cli/study_table.h"
 #include "cli/terminal.h"
@@ -46,13 +44,7 @@ class MadeFolder {
                   fmt::format("'{}' is there already, and not empty", path.string()), {},
                   "choose another directory with --out");
     }
-    if (kept_) return;
-    std::string name = (fs::temp_directory_path() / "freeplay-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw Error(Error::Category::file, "cannot-write",
-                  fmt::format("cannot make a folder '{}': {}", name, std::strerror(errno)));
-    }
-    path = name;
+    if (!kept_) path = new_scratch_folder();
   }
   ~MadeFolder() {
     std::error_code ignored;

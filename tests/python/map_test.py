@@ -4,19 +4,15 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
-import warnings
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 
 import freeplay
+from in_folder import InFolder, PROGRAM, SLIDER, same_bits
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["FREEPLAY"]
-SLIDER = str(ROOT / "mechanisms/slider-crank.yaml")
 POINTS = {"c": [0.1e-3, 0.2e-3, 0.3e-3, 0.4e-3, 0.5e-3]}
 REDUCE = {"peak": ("joint.wrist.fn", "max"), "last": ("body.slider.x", "final", 0.1e-3)}
 STUDY = """freeplay: 1
@@ -28,18 +24,7 @@ study:
 """
 
 
-def same_bits(a, b):
-    return np.asarray(a, dtype=float).tobytes() == np.asarray(b, dtype=float).tobytes()
-
-
-class Map(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-        warnings.simplefilter("ignore", freeplay.ModelWarning)
-
+class Map(InFolder):
     def test_workers_and_executors_give_one_table(self):
         options = {"end": "0.4 ms", "reduce": REDUCE}
         one = freeplay.map(SLIDER, POINTS, workers=1, **options)

@@ -1,6 +1,5 @@
 """The package `freeplay` against the command line: the same bits, files, messages, tables."""
 import json
-import os
 import pathlib
 import pickle
 import subprocess
@@ -13,10 +12,8 @@ import warnings
 import numpy as np
 
 import freeplay
+from in_folder import InFolder, PROGRAM, ROOT, SLIDER, same_bits
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["FREEPLAY"]
-SLIDER = str(ROOT / "mechanisms/slider-crank.yaml")
 FAILS = """freeplay: 1
 name: fails
 gravity: [0, -9.81]
@@ -31,19 +28,6 @@ def command(*words, code=0):
     done = subprocess.run([PROGRAM, *words], capture_output=True, text=True)
     assert done.returncode == code, (words, done.returncode, done.stderr)
     return done
-
-
-def same_bits(a, b):
-    return np.asarray(a, dtype=float).tobytes() == np.asarray(b, dtype=float).tobytes()
-
-
-class InFolder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
-        warnings.simplefilter("ignore", freeplay.ModelWarning)
 
 
 class Runs(InFolder):

@@ -4,19 +4,15 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
-import warnings
 
 import numpy as np
 
 import freeplay
+from in_folder import InFolder, PROGRAM, ROOT, SLIDER, same_bits
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["FREEPLAY"]
-SLIDER = str(ROOT / "mechanisms/slider-crank.yaml")
 ROD = """freeplay: 1
 name: held-rod
 gravity: [0, -9.81]
@@ -28,21 +24,13 @@ simulation: {end: 0.2 s, step: 1 ms, output: {interval: 10 ms}}
 """
 
 
-def same_bits(a, b):
-    return np.asarray(a, dtype=float).tobytes() == np.asarray(b, dtype=float).tobytes()
-
-
-class InFolder(unittest.TestCase):
+class WithRod(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
+        super().setUp()
         pathlib.Path("rod.yaml").write_text(ROD)
-        warnings.simplefilter("ignore", freeplay.ModelWarning)
 
 
-class Steps(InFolder):
+class Steps(WithRod):
     def test_halts_change_no_bit(self):
         for options in ({}, {"accuracy": "1 um"}):
             model = freeplay.load(SLIDER, end="1 ms", **options)
@@ -117,7 +105,7 @@ class Steps(InFolder):
         self.assertEqual(0.02, sim.time)
 
 
-class Inputs(InFolder):
+class Inputs(WithRod):
     def controlled(self, go_on, out, **options):
         with freeplay.load("rod.yaml", **options).simulation(out=out, force=True) as sim:
             while not sim.done:
@@ -167,7 +155,7 @@ class Inputs(InFolder):
         self.assertFalse(same_bits(sim.result().data, again.result().data))
 
 
-class Threads(InFolder):
+class Threads(WithRod):
     def test_another_thread_may_interrupt_and_do_nothing_else(self):
         sim = freeplay.load("rod.yaml", end="100000 s").simulation(out="r")
         raised = []

@@ -1,0 +1,27 @@
+"""What tests of the package share: the program, a model, bits, a folder for each test."""
+import os
+import pathlib
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import freeplay
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["FREEPLAY"]
+SLIDER = str(ROOT / "mechanisms/slider-crank.yaml")
+
+
+def same_bits(a, b):
+    return np.asarray(a, dtype=float).tobytes() == np.asarray(b, dtype=float).tobytes()
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+        warnings.simplefilter("ignore", freeplay.ModelWarning)
