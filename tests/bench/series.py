@@ -35,15 +35,22 @@ def of_page(text, release, revision):
     return row
 
 
+def revision_of(table, root=ROOT):
+    """That which wrote this table into docs/performance.md: commits of the words around it measured nothing."""
+    page = os.path.relpath(PAGE, ROOT)
+    done = subprocess.run(["git", "-C", root, "log", "-1", "--format=%h", "-S", table, "--", page], capture_output=True, text=True)
+    if done.returncode != 0 or not done.stdout.strip():
+        raise Failed("git does not tell which revision wrote the table of docs/performance.md")
+    return done.stdout.strip()
+
+
 def append(release, path=FILE):
-    """Adds what the page says now; the revision is that which the page was written at last."""
+    """Adds what the page says now, by the revision that measured its first table."""
     if any(row["release"] == release for row in read(path)):
         raise Failed("series.csv has a line of '%s' already" % release)
-    done = subprocess.run(["git", "-C", ROOT, "log", "-1", "--format=%h", "--", PAGE], capture_output=True, text=True)
-    if done.returncode != 0 or not done.stdout.strip():
-        raise Failed("git does not tell the revision of docs/performance.md")
     with open(PAGE, encoding="utf-8") as file:
-        row = of_page(file.read(), release, done.stdout.strip())
+        text = file.read()
+    row = of_page(text, release, revision_of(BLOCK.search(text)[0]))
     with open(path, "a", encoding="utf-8", newline="") as file:
         csv.DictWriter(file, COLUMNS, lineterminator="\n").writerow(row)
 

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import types
 import unittest
 
@@ -123,6 +124,22 @@ class Bench(ProgramTest):
             row = series.of_page(file.read(), "9.9", "abc")
         self.assertEqual(set(series.COLUMNS), set(row))
         self.assertLess(1.0, float(row["4-rrr bathe"]))
+
+    def test_a_release_has_the_revision_that_measured_not_that_of_later_words(self):
+        import series
+        with tempfile.TemporaryDirectory() as root:
+            git = ["git", "-C", root, "-c", "user.name=a", "-c", "user.email=a@b"]
+            subprocess.run(git + ["init", "-q"], check=True)
+            os.mkdir(os.path.join(root, "docs"))
+            revisions = []
+            for text in ("words\n4.1\n4.2\n", "words\n4.3\n4.2\n", "other words\n4.3\n4.2\n"):
+                with open(os.path.join(root, "docs", "performance.md"), "w", encoding="utf-8") as file:
+                    file.write(text)
+                subprocess.run(git + ["add", "docs"], check=True)
+                subprocess.run(git + ["commit", "-q", "-m", text], check=True)
+                done = subprocess.run(git + ["log", "-1", "--format=%h"], check=True, capture_output=True, text=True)
+                revisions.append(done.stdout.strip())
+            self.assertEqual(revisions[1], series.revision_of("4.3\n4.2", root))
 
     def test_numbers_of_the_tables(self):
         import timing
