@@ -162,6 +162,13 @@ class Layering(unittest.TestCase):
                     if (include := INCLUDE.match(line))}
         self.assertEqual(set(), set(LIBRARIES) - included)
 
+    def test_the_page_on_architecture_names_files_that_are_there(self):
+        paths = [os.path.join(folder, name) for top in ("core", "tests", *PLUGIN_FOLDERS)
+                 for folder, _, names in os.walk(os.path.join(ROOT, top)) for name in names]
+        named = re.findall(r"`([a-z0-9_./]+\.(?:h|cpp|py|list))`", read("docs/architecture.md"))
+        self.assertGreater(len(named), 100)
+        self.assertEqual([], [name for name in named if not any(path.endswith("/" + name) for path in paths)])
+
     def test_no_file_repeats_the_name_of_its_folder(self):
         found = []
         for path in sources("core"):
