@@ -11,7 +11,7 @@ namespace {
 
 enum class Colour { red, green };
 
-struct Part {
+struct ArchivedPart {
   double x = 0.0;
   int n = 0;
   template <class Self, class Archive>
@@ -26,10 +26,10 @@ struct Whole {
   Colour colour = Colour::red;
   std::uint64_t bits = 0;
   std::vector<double> fixed{0.0, 0.0};
-  std::vector<Part> parts{{}, {}}, list{};
+  std::vector<ArchivedPart> parts{{}, {}}, list{};
   std::array<char, 2> letters{};
   double plain[2] = {};
-  std::optional<Part> there, missing;
+  std::optional<ArchivedPart> there, missing;
   std::string text;
 
   template <class Self, class Archive>
@@ -51,7 +51,7 @@ Whole some_whole() {
   out.list = {{7.0, 8}};
   out.letters = {'a', '\0'};
   out.plain[1] = 9.0;
-  out.there = Part{3.0, 1};
+  out.there = ArchivedPart{3.0, 1};
   out.text = "words";
   return out;
 }
@@ -66,7 +66,7 @@ Archive written(const Whole& whole) {
 TEST(Archive, GivesBackWhatWasWritten) {
   const Archive first = written(some_whole());
   Whole copy;
-  copy.missing = Part{};
+  copy.missing = ArchivedPart{};
   copy.list = {{}, {}, {}};
   ArchiveReader read(first);
   read(copy);

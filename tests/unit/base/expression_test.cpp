@@ -11,7 +11,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-class Parameters : public Scope {
+class KnownParameters : public Scope {
  public:
   const Quantity* find(std::string_view name) const override {
     const auto found = values_.find(name);
@@ -31,8 +31,8 @@ class Parameters : public Scope {
   };
 };
 
-Expression compiled(std::string_view text) { return Expression::compile(text, Parameters(), true); }
-double value(std::string_view text) { return Expression::compile(text, Parameters(), false).constant().value; }
+Expression compiled(std::string_view text) { return Expression::compile(text, KnownParameters(), true); }
+double value(std::string_view text) { return Expression::compile(text, KnownParameters(), false).constant().value; }
 
 Jet at(std::string_view text, double t) {
   Jet jet;
@@ -50,7 +50,7 @@ EvaluationFailure failure_at(std::string_view text, double t) {
 
 ExpressionError error_of(std::string_view text, bool time_allowed = true) {
   try {
-    Expression::compile(text, Parameters(), time_allowed);
+    Expression::compile(text, KnownParameters(), time_allowed);
   } catch (const ExpressionError& error) {
     return error;
   }

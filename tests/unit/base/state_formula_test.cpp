@@ -10,7 +10,7 @@ namespace freeplay {
 namespace {
 
 /// body.a.x [m], body.a.vx [m/s] and body.a-b.x [m].
-class Channels final : public FormulaVariables {
+class BodyChannels final : public FormulaVariables {
  public:
   std::optional<FormulaVariable> find(std::string_view name) const override {
     if (name == "body.a.x") return FormulaVariable{0, DimensionKind::dimensioned, dimension::length};
@@ -22,7 +22,7 @@ class Channels final : public FormulaVariables {
   std::string nearest(std::string_view) const override { return "body.a.x"; }
 };
 
-Expression compiled(std::string_view text) { return Expression::compile(text, EmptyScope(), true, Channels()); }
+Expression formula_of(std::string_view text) { return Expression::compile(text, EmptyScope(), true, BodyChannels()); }
 
 struct Numbers {
   double x = 0.0, v = 0.0, other = 0.0, t = 0.0;
@@ -30,7 +30,7 @@ struct Numbers {
 };
 
 double value(const std::string& text, const Numbers& at) {
-  const StateFormula formula(compiled(text));
+  const StateFormula formula(formula_of(text));
   const std::vector<double> variables = {at.x, at.v, at.other};
   double out = std::nan("");
   EvaluationFailure failure;
@@ -41,13 +41,13 @@ double value(const std::string& text, const Numbers& at) {
 
 double rate(const std::string& text, const Numbers& at, const std::vector<double>& rates, double time_rate = 0.0) {
   const std::vector<double> variables = {at.x, at.v, at.other};
-  return StateFormula(compiled(text))
+  return StateFormula(formula_of(text))
       .rate({at.t, variables, at.sides.empty() ? nullptr : at.sides.data()}, rates, time_rate);
 }
 
-std::string error_of(std::string_view text) {
+std::string formula_error(std::string_view text) {
   try {
-    compiled(text);
+    formula_of(text);
   } catch (const ExpressionError& error) {
     return error.id + " " + std::to_string(error.offset) + "+" + std::to_string(error.length);
   }
@@ -59,14 +59,14 @@ TEST(StateFormula, NamesChannelsAndChecksTheirUnits) {
   EXPECT_EQ(value("body.a.x-body.a-b.x", {.x = 1.0, .other = 0.25}), 0.75);
   EXPECT_EQ(value("body.a-b.x/2", {.other = 0.5}), 0.25);
   EXPECT_EQ(value("[body.a.x]*2", {.x = 0.5}), 1.0);
-  EXPECT_EQ(compiled("3 N*s/m*body.a.vx").dimension(), dimension::force);
-  EXPECT_EQ(error_of("body.a.x + body.a.vx"), "dimension-mismatch 0+20");
-  EXPECT_EQ(error_of("2*body.a.y"), "unknown-name 2+8");
-  EXPECT_EQ(error_of("2*body.a-b.y-body.a.x"), "unknown-name 2+10");
-  EXPECT_EQ(error_of("if(body.a.x, 1, 2)"), "bad-expression 3+8");
-  EXPECT_EQ(error_of("if(body.a.x > 1, 2)"), "bad-expression 0+18");
-  EXPECT_EQ(error_of("if(body.a.x > 1 s, 2, 3)"), "dimension-mismatch 3+14");
-  EXPECT_EQ(error_of("body.a.x > 1"), "bad-expression 9+1");
+  EXPECT_EQ(formula_of("3 N*s/m*body.a.vx").dimension(), dimension::force);
+  EXPECT_EQ(formula_error("body.a.x + body.a.vx"), "dimension-mismatch 0+20");
+  EXPECT_EQ(formula_error("2*body.a.y"), "unknown-name 2+8");
+  EXPECT_EQ(formula_error("2*body.a-b.y-body.a.x"), "unknown-name 2+10");
+  EXPECT_EQ(formula_error("if(body.a.x, 1, 2)"), "bad-expression 3+8");
+  EXPECT_EQ(formula_error("if(body.a.x > 1, 2)"), "bad-expression 0+18");
+  EXPECT_EQ(formula_error("if(body.a.x > 1 s, 2, 3)"), "dimension-mismatch 3+14");
+  EXPECT_EQ(formula_error("body.a.x > 1"), "bad-expression 9+1");
 }
 
 TEST(StateFormula, ChoosesAndNeedsNoValueOfWhatIsLeftOut) {
@@ -81,14 +81,14 @@ TEST(StateFormula, ChoosesAndNeedsNoValueOfWhatIsLeftOut) {
   double out = 0.0;
   EvaluationFailure failure;
   const std::vector<double> variables = {-4.0, 0.0, 0.0};
-  const StateFormula formula(compiled("2 + sqrt(body.a.x)"));
+  const StateFormula formula(formula_of("2 + sqrt(body.a.x)"));
   EXPECT_FALSE(formula.value({0.0, variables, nullptr}, out, failure));
   EXPECT_STREQ(failure.reason, "square root of a negative number");
   EXPECT_EQ(failure.offset, 4);
 }
 
 TEST(StateFormula, KeepsTheSideThatItIsGiven) {
-  EXPECT_EQ(StateFormula(compiled("abs(body.a.x) + sign(body.a.vx) + abs(t)")).switches(), 2);
+  EXPECT_EQ(StateFormula(formula_of("abs(body.a.x) + sign(body.a.vx) + abs(t)")).switches(), 2);
   EXPECT_EQ(value("abs(body.a.x)", {.x = -2.0, .sides = {1.0}}), -2.0);
   EXPECT_EQ(value("sign(body.a.vx)", {.v = -2.0, .sides = {1.0}}), 1.0);
   EXPECT_EQ(value("min(body.a.x, 1 m)", {.x = 3.0, .sides = {-1.0}}), 3.0);
@@ -108,7 +108,7 @@ TEST(StateFormula, HasExactRates) {
 }
 
 TEST(StateFormula, SaysWhatDecidesItsForm) {
-  const StateFormula formula(compiled("if(body.a.x > 2 m, max(body.a.vx, 1 m/s), 0)"));
+  const StateFormula formula(formula_of("if(body.a.x > 2 m, max(body.a.vx, 1 m/s), 0)"));
   const std::vector<double> variables = {5.0, 0.25, 0.0}, rates = {0.5, 4.0, 0.0};
   std::vector<double> values(2), changes(2);
   formula.decide({0.0, variables, nullptr}, rates, 1.0, values, changes);
@@ -119,9 +119,9 @@ TEST(StateFormula, SaysWhatDecidesItsForm) {
 }
 
 TEST(TimeParts, AreTheLargestPartsWithoutChannels) {
-  EXPECT_EQ(compiled("sin(t) + abs(t - 1)").time_parts().size(), 1u);
-  EXPECT_EQ(compiled("body.a.x*2").time_parts().size(), 0u);
-  const auto parts = compiled("abs(t - 1)*body.a.x + min(body.a.vx*1 s, 2*t + 1)").time_parts();
+  EXPECT_EQ(formula_of("sin(t) + abs(t - 1)").time_parts().size(), 1u);
+  EXPECT_EQ(formula_of("body.a.x*2").time_parts().size(), 0u);
+  const auto parts = formula_of("abs(t - 1)*body.a.x + min(body.a.vx*1 s, 2*t + 1)").time_parts();
   ASSERT_EQ(parts.size(), 2u);
   Jet out;
   EvaluationFailure failure;

@@ -1,13 +1,13 @@
 #include "base/unit.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "base/expression_error.h"
 
 namespace freeplay {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 void expect_unit(const char* text, double factor, const Dimension& dimension) {
   const Unit unit = parse_unit(text);
@@ -29,9 +29,9 @@ TEST(Unit, KnowsEveryNameOfTheModelFormat) {
   expect_unit("\u00b5m", 1e-6, dimension::length);
   expect_unit("lb", 0.45359237, dimension::mass);
   expect_unit("\u00b5s", 1e-6, dimension::time);
-  expect_unit("deg", pi / 180.0, dimension::angle);
-  expect_unit("arcsec", pi / 180.0 / 3600.0, dimension::angle);
-  expect_unit("rpm", 2.0 * pi / 60.0, dimension::angular_velocity);
+  expect_unit("deg", M_PI / 180.0, dimension::angle);
+  expect_unit("arcsec", M_PI / 180.0 / 3600.0, dimension::angle);
+  expect_unit("rpm", 2.0 * M_PI / 60.0, dimension::angular_velocity);
   expect_unit("lbf", 0.45359237 * 9.80665, dimension::force);
   expect_unit("mNm", 1e-3, dimension::torque);
   expect_unit("GPa", 1e9, dimension::pressure);

@@ -6,14 +6,14 @@
 namespace freeplay::test {
 namespace {
 
-const Numbers numbers = {{"mu_s", 0.15},  {"mu_k", 0.1},    {"v_stribeck", 0.01},
-                         {"sigma0", 1e5}, {"sigma1", 10.0}, {"sigma2", 0.02}};
+const Numbers lugre_numbers = {{"mu_s", 0.15},  {"mu_k", 0.1},    {"v_stribeck", 0.01},
+                               {"sigma0", 1e5}, {"sigma1", 10.0}, {"sigma2", 0.02}};
 
-struct Sample {
+struct LugreSample {
   FrictionForce force;
   double rate;
 };
-Sample evaluate(const FrictionUnderTest& friction, double normal, double slip, double z) {
+LugreSample evaluate(const FrictionUnderTest& friction, double normal, double slip, double z) {
   double rate = 0.0;
   const FrictionForce f = friction.law.evaluate({normal, slip, {&z, 1}}, {&rate, 1});
   return {f, rate};
@@ -21,7 +21,7 @@ Sample evaluate(const FrictionUnderTest& friction, double normal, double slip, d
 
 // z and z' of the exact solution at constant slip; 13 digits of z leave 1e-13 of sigma0 |v|/g z in z'.
 TEST(Lugre, CoefficientAndRateAreThoseOfTheFormula) {
-  const FrictionUnderTest friction("lugre", numbers);
+  const FrictionUnderTest friction("lugre", lugre_numbers);
   EXPECT_EQ(friction.law.internal_variables(), 1);
   const struct {
     double slip, z, rate, coefficient;
@@ -30,7 +30,7 @@ TEST(Lugre, CoefficientAndRateAreThoseOfTheFormula) {
                {-0.05, 2.1306131942675e-07, -0.0606530659713, -0.58622452777},
                {0.3, 1e-06, 2.47333620598e-18, 0.106}};
   for (const auto& c : cases) {
-    const Sample s = evaluate(friction, 200.0, c.slip, c.z);
+    const LugreSample s = evaluate(friction, 200.0, c.slip, c.z);
     EXPECT_NEAR(s.rate, c.rate, 2e-13);
     EXPECT_NEAR(s.force.tangential, -200.0 * c.coefficient, 1e-9);
     EXPECT_NEAR(s.force.d_normal, -c.coefficient, 5e-12);
@@ -39,7 +39,7 @@ TEST(Lugre, CoefficientAndRateAreThoseOfTheFormula) {
 
 // The bristle follows z_s + (z_0 - z_s) exp(-sigma0 |v| t/g) from z_0 over the time t.
 TEST(Lugre, BristleRelaxesAsTheExactSolution) {
-  const FrictionUnderTest friction("lugre", numbers);
+  const FrictionUnderTest friction("lugre", lugre_numbers);
   const struct {
     double slip, start, time, end;
   } cases[] = {{0.001, 0.0, 0.0001, 9.6728911594214e-08},
@@ -60,10 +60,10 @@ TEST(Lugre, BristleRelaxesAsTheExactSolution) {
 }
 
 TEST(Lugre, SteadySlipIsDissipative) {
-  const FrictionUnderTest friction("lugre", numbers);
+  const FrictionUnderTest friction("lugre", lugre_numbers);
   for (const double slip : {-0.3, -0.01, -1e-5, 1e-5, 0.01, 0.3}) {
     const double g = 0.1 + 0.05 * std::exp(-slip * slip / 1e-4);
-    const Sample s = evaluate(friction, 1.0, slip, std::copysign(g / 1e5, slip));
+    const LugreSample s = evaluate(friction, 1.0, slip, std::copysign(g / 1e5, slip));
     EXPECT_NEAR(s.rate, 0.0, 1e-15);
     EXPECT_NEAR(s.force.tangential, -std::copysign(g, slip) - 0.02 * slip, 1e-13);
     EXPECT_LT(s.force.tangential * slip, 0.0);
@@ -71,7 +71,7 @@ TEST(Lugre, SteadySlipIsDissipative) {
 }
 
 TEST(Lugre, SlopeAgreesWithDifferences) {
-  const FrictionUnderTest friction("lugre", numbers);
+  const FrictionUnderTest friction("lugre", lugre_numbers);
   for (const double z : {-1e-6, 0.0, 4e-7})
     for (const double slip : {-0.2, -0.01, 1e-4, 0.003, 0.3}) {
       const double h = 1e-4 * std::abs(slip);
@@ -101,7 +101,7 @@ TEST(Lugre, TableBoundsItsParameters) {
 }
 
 TEST(Lugre, DeclaresTheKinkOfItsRateAtRest) {
-  const FrictionUnderTest friction("lugre", numbers);
+  const FrictionUnderTest friction("lugre", lugre_numbers);
   EXPECT_TRUE(std::ranges::equal(friction.law.kinks(), std::initializer_list<double>{0.0}));
   const auto slope = [&](double slip) {
     const double h = 0.1 * slip;

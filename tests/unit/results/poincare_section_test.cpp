@@ -7,7 +7,7 @@
 namespace freeplay {
 namespace {
 
-struct Rows {
+struct PoincareRows {
   std::vector<double> time, x;
   PoincareSection section(double phase, double period) const {
     const std::span<const double> column(x);
@@ -15,8 +15,8 @@ struct Rows {
   }
 };
 
-Rows circle() {
-  Rows rows;
+PoincareRows circle() {
+  PoincareRows rows;
   for (int i = 0; i <= 1000; ++i) {
     rows.time.push_back(1e-2 * i);
     rows.x.push_back(std::cos(2.0 * M_PI * rows.time.back() / 0.77));
@@ -42,14 +42,14 @@ TEST(PoincareSection, ToldUncertaintyIsThatOfTheChord) {
 }
 
 TEST(PoincareSection, TakesRowsThatItMeets) {
-  const Rows rows{{0.0, 1.0, 2.0, 3.0}, {1.0, 4.0, std::nan(""), 7.0}};
+  const PoincareRows rows{{0.0, 1.0, 2.0, 3.0}, {1.0, 4.0, std::nan(""), 7.0}};
   const PoincareSection s = rows.section(1.0, 2.0);
   EXPECT_EQ(s.time, (std::vector{1.0, 3.0}));
   EXPECT_EQ(s.values[0], (std::vector{4.0, 7.0}));
 }
 
 TEST(PoincareSection, HoldsOnlyInstantsThatRowsReach) {
-  const Rows rows{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
+  const PoincareRows rows{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
   EXPECT_EQ(rows.section(0.25, 0.5).time, (std::vector{1.25, 1.75, 2.25, 2.75}));
   EXPECT_EQ(rows.section(0.25, 0.5).values[0], (std::vector{12.5, 17.5, 22.5, 27.5}));
   EXPECT_TRUE(rows.section(3.5, 1.0).time.empty());

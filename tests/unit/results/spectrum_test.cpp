@@ -11,7 +11,7 @@
 namespace freeplay {
 namespace {
 
-RowGrid grid_of(std::size_t rows, double interval) {
+RowGrid spectrum_grid(std::size_t rows, double interval) {
   RowGrid grid{.interval = interval, .rows = {}};
   for (std::size_t i = 0; i < rows; ++i) grid.rows.push_back(i);
   return grid;
@@ -27,7 +27,7 @@ TEST(Spectrum, OfASineOnALineIsItsAmplitudeThere) {
   std::vector<double> x;
   for (std::size_t i = 0; i < n; ++i)
     x.push_back(5.0 + 3.0 * std::sin(2.0 * M_PI * 12.0 * static_cast<double>(i) / 120.0));
-  const Spectrum s = of(grid_of(n, 1e-3), x);
+  const Spectrum s = of(spectrum_grid(n, 1e-3), x);
   ASSERT_EQ(s.frequency.size(), 61u);
   EXPECT_NEAR(s.frequency[12], 100.0, 1e-12);
   const std::vector<double>& a = s.amplitudes[0];
@@ -47,7 +47,7 @@ TEST(Spectrum, IsTheSumThatDefinesItForEverySmoothNumberOfRows) {
     std::vector<double> x;
     for (std::size_t i = 0; i < n; ++i)
       x.push_back(std::cos(0.7 * static_cast<double>(i * i)) + 0.01 * static_cast<double>(i));
-    const Spectrum s = of(grid_of(n, 0.5), x);
+    const Spectrum s = of(spectrum_grid(n, 0.5), x);
     ASSERT_EQ(s.amplitudes[0].size(), n / 2 + 1);
     double mean = 0.0, weights = 0.0;
     for (const double value : x) mean += value / static_cast<double>(n);
@@ -68,20 +68,20 @@ TEST(Spectrum, IsTheSumThatDefinesItForEverySmoothNumberOfRows) {
 TEST(Spectrum, TakesTheLastRowsOfASmoothNumber) {
   std::vector<double> x(19, 0.0);
   x[0] = 1e9;  // 18 rows are taken
-  EXPECT_NEAR(of(grid_of(19, 1.0), x).amplitudes[0][1], 0.0, 0.0);
-  EXPECT_EQ(of(grid_of(19, 1.0), x).frequency.size(), 10u);
+  EXPECT_NEAR(of(spectrum_grid(19, 1.0), x).amplitudes[0][1], 0.0, 0.0);
+  EXPECT_EQ(of(spectrum_grid(19, 1.0), x).frequency.size(), 10u);
 }
 
 TEST(Spectrum, OfAChannelWithoutANumberIsNone) {
   std::vector<double> x(16, 1.0);
   x[3] = std::numeric_limits<double>::quiet_NaN();
-  const Spectrum s = of(grid_of(16, 1.0), x);
+  const Spectrum s = of(spectrum_grid(16, 1.0), x);
   for (const double a : s.amplitudes[0]) EXPECT_TRUE(std::isnan(a));
 }
 
 TEST(Spectrum, RefusesTooFewRows) {
   try {
-    of(grid_of(15, 1.0), std::vector<double>(15, 1.0));
+    of(spectrum_grid(15, 1.0), std::vector<double>(15, 1.0));
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.exit_code(), 4);
