@@ -12,8 +12,13 @@ set(python_package ${CMAKE_BINARY_DIR}/python/freeplay)
 file(GLOB sources CONFIGURE_DEPENDS core/python/*.cpp)
 add_library(freeplay_python MODULE ${sources})
 freeplay_compile_together(freeplay_python)
-# Headers of the interpreter take long to compile, and what is there for others must be seen by no other file.
-set_source_files_properties(core/python/module.cpp core/python/binding.cpp core/python/run_binding.cpp core/python/map_binding.cpp core/python/outside_data.cpp core/python/outside_format.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+# Headers of the interpreter take long to compile: what needs them makes one unit, all else another. What is there for
+# others must be seen by no other file.
+list(FILTER sources EXCLUDE REGEX "/outside_[a-z]*\\.cpp$")
+set_target_properties(freeplay_python PROPERTIES UNITY_BUILD_MODE GROUP)
+set_source_files_properties(${sources} PROPERTIES UNITY_GROUP rest)
+set_source_files_properties(core/python/module.cpp core/python/binding.cpp core/python/run_binding.cpp core/python/map_binding.cpp
+                            PROPERTIES UNITY_GROUP binding)
 set_target_properties(freeplay_python PROPERTIES PREFIX "" SUFFIX ${extension_suffix} OUTPUT_NAME _core
                                                  LIBRARY_OUTPUT_DIRECTORY ${python_package}
                                                  LINK_DEPENDS ${PROJECT_SOURCE_DIR}/core/python/exported.map)

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/index.h"
 #include "model/channel.h"
 
 namespace freeplay {
@@ -32,7 +33,6 @@ class PeakValues {
   std::size_t applied_torque(int index) const { return applied_force(index) + 1; }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   /// Length of the vector from a column on, in the plane of two numbers.
   double length(std::span<const double> row, int column) const;
   /// Length of the moment of the wrench that begins at a column.

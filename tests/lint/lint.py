@@ -80,7 +80,7 @@ class Units:
     a room that are compiled together, several at a time, make one unit."""
 
     INCLUDE = re.compile(r'^#include "(.*)"$', re.M)
-    TOGETHER = re.compile(r"/(?P<room>\w+)\.dir/Unity/unity_\d+_cxx\.cxx$")
+    TOGETHER = re.compile(r"/(?P<room>\w+)\.dir/Unity/unity_\w+_cxx\.cxx$")
 
     def __init__(self, build):
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:

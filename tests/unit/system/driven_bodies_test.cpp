@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 
+#include "base/index.h"
 #include "stage/newton_stage_solver.h"
 #include "validation/run_model.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<std::string> driven_in(const std::string& text) {
   const auto model = test::load(text);
