@@ -107,7 +107,7 @@ class Lint(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             batches = os.path.join(folder, "base.dir", "Unity")
             os.makedirs(batches)
-            parts = [os.path.join(batches, "unity_%d_cxx.cxx" % i) for i in range(2)]
+            parts = [os.path.join(batches, "unity_%s_cxx.cxx" % group) for group in ("0", "rest")]
             for part, source in zip(parts, ("unit", "expression")):
                 lint.write(part, '#include "%s/core/base/%s.cpp"\n' % (lint.ROOT, source))
             single = os.path.join(lint.ROOT, "joints", "revolute.cpp")
