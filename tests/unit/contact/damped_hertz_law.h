@@ -51,7 +51,7 @@ inline void expect_smooth_without_tension(const std::string& name) {
   EXPECT_NEAR(damped_law(name, 1.0).law.evaluate({1e-6, 0.3, 0.1}).normal, 75.0621044644181, 1e-11);
 }
 
-/// The law tells of a restitution below `lowest` (0: of none) and of a penetration beyond a tenth of the clearance.
+/// The law reports a restitution below `lowest` (0: none) and a penetration beyond a tenth of the clearance.
 inline void expect_range(const std::string& name, double lowest) {
   for (const double restitution : {0.05, 0.35, 0.45, 0.6, 0.89, 0.95}) {
     const bool outside = damped_law(name, restitution).law.outside_range({1e-6, 0.0, 0.1}) != nullptr;
