@@ -24,6 +24,8 @@ FORCE = "  w: {type: force, at: bob, value: [1, 0]}"
 PIN = "  B: {type: revolute, between: [rod/tip, bob]}"
 MOTOR = "  m: {joint: A, kind: angle, value: 3*t}"
 
+IN_SPACE = "freeplay: 1\nspace: spatial\nbodies: {a: {mass: 1, inertia: %s}}\n"
+
 # What is replaced (None: the whole file), by what; id, line, column and the suggestion, where there is one.
 MISTAKES = [
     ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: [1]}, reducers: {r: {channel: joint.A.angel, reduce: max}}}', 'unknown-name', 2, 49, 'joint.A.angle'),
@@ -165,6 +167,48 @@ MISTAKES = [
     (None, 'freeplay: 1\n---\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 2, 1),
     (None, 'freeplay: 1\n...\nbodies: {a: {mass: 1, inertia: 1}}\n', 'yaml-feature', 3, 1),
     (FORCE, '  w: {type: gear, of: [A, B], ratio: 2}', 'unknown-type', 12, 13),
+    (FORCE, '  w: {type: revolute, between: [rod, bob]}', 'unknown-type', 12, 13),
+    (PIN, '  B: {type: spring-damper, between: [rod/tip, bob]}', 'wrong-type', 13, 20),
+    (MOTOR, '  m: {joint: A, kind: angle, input: 3}', 'wrong-type', 10, 30),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 1, y: 0}, joints: [A, B], elbow: [0, 1]}}', 'out-of-range', 10, 84),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 1}, joints: [z*]}}', 'unknown-name', 10, 63),
+    (MOTOR, '  m: {inverse_kinematics: {frame: bob, path: {x: 1}, joints: []}}', 'wrong-length', 10, 62),
+    ('end: 2', 'start: 3, end: 2', 'out-of-range', 14, 29),
+    ('step: 1 ms', 'step: {size: 1 ms, adaptive: true, min: 2 ms}', 'out-of-range', 14, 62),
+    ('step: 1 ms', 'step: {size: 1 ms, adaptive: true, max: 0.1 ms}', 'out-of-range', 14, 62),
+    ('parameters: {a: 1}', 'parameters: {a: 1, "": 2}', 'bad-name', 2, 20),
+    ('freeplay: 1', 'freeplay: 1\nframes: {ground/2x: [0, 0]}', 'bad-name', 2, 10),
+    (None, 'freeplay: 1\npresets: {p: {use: q}, q: {use: p}}\nbodies: {a: {use: p, mass: 1, inertia: 1}}\n', 'cyclic-preset', 2, 33),
+    ('freeplay: 1', 'freeplay: 1\npresets: {2p: {mass: 1}}', 'bad-name', 2, 11),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, count: 2, with: {l: 1}}, x1: {template: leg, with: {l: 1}}}', 'duplicate-name', 3, 57),
+    ('freeplay: 1', LEG + 'instances: {x: {template: leg, count: 100000000, with: {l: 1}}}', 'too-large', 3, 39),
+    (None, IN_SPACE % '[[1, 0.1, 0], [0.2, 1, 0], [0, 0, 1]]', 'out-of-range', 3, 32),
+    (None, IN_SPACE % '[1, 1, 1, 2, 2, 2]', 'out-of-range', 3, 32),
+    (None, IN_SPACE % '[1, 2]', 'wrong-type', 3, 32),
+    (None, IN_SPACE % '[1, 1, 1], pose: {quaternion: [0, 0, 0, 0]}', 'out-of-range', 3, 62),
+    (None, IN_SPACE % '[1, 1, 1], pose: {rpy: [0, 0, 0], quaternion: [1, 0, 0, 0]}', 'conflicting-keys', 3, 66),
+]
+
+# Studies, from column 9 of line 2 on; id, column and a part of the message.
+STUDIES = [
+    ('axes: {a: []}', 'wrong-length', 19, 'must have at least 1 item'),
+    ('axes: {a: {cases: {}}}', 'wrong-length', 27, 'there is no case'),
+    ('axes: {x: {cases: {"a,b": {a: 1}}}}', 'bad-name', 28, "'a,b' cannot stand in a table"),
+    ('axes: {a: {uniform: [2, 1]}}', 'out-of-range', 33, 'the high end must be above the low one'),
+    ('axes: {a: {triangular: [3, 2, 1]}}', 'out-of-range', 36, '[low, mode, high], in this order'),
+    ('axes: {a: {linspace: [0, 1, 1000000000]}}', 'too-large', 37, 'at most 10^8 points'),
+    ('axes: {a: {uniform: [1, 2]}}', 'missing-key', 16, 'is random: the study needs `sample`'),
+    ('axes: {a: {uniform: [1, 2]}}, combine: star, sample: {method: sobol, points: 2, seed: 1}', 'conflicting-keys', 48,
+     'random axes have no values to take one at a time'),
+    ('axes: {a: [1, 2]}, combine: star, zip: [[a, b]]', 'conflicting-keys', 43, '`combine` is no grid'),
+    ('axes: {a: [1, 2], bodies.bob.mass: [1, 2], bodies.rod.mass: [1, 2]}, zip: [[a, bodies.bob.mass], [a, bodies.rod.mass]]',
+     'duplicate-name', 107, "'a' goes side by side with others already"),
+    ('axes: {a: [1, 2]}, zip: [[a, b]]', 'unknown-name', 38, "unknown axis 'b'"),
+    ('axes: {a: {uniform: [1, 2]}}, sample: {method: sobol, points: 2, seed: 1}, warm_start: {along: a}', 'conflicting-keys', 104,
+     'no order to go along'),
+    ('axes: {a: [1, 2]}, combine: star, warm_start: {along: a}', 'conflicting-keys', 63, 'no way along an axis'),
+    ('axes: {a: [1, 2]}, warm_start: {along: b}', 'unknown-name', 48, "unknown axis 'b'"),
+    ('axes: {a: [1, 2]}, stop: {reducer: r, of: mean, half_width: 1}', 'conflicting-keys', 28, 'no samples to end'),
 ]
 
 # Mistakes of one file, all found at once: result columns are judged although other keys are wrong.
@@ -204,6 +248,14 @@ class Mistakes(ProgramTest):
                 messages = json.loads(out)["messages"]
                 found = [[m["id"], m["line"], m["column"], m["suggestion"]][:len(expected)] for m in messages]
                 self.assertIn(expected, found)
+
+    def test_every_mistake_of_a_study_is_said_at_its_place(self):
+        for text, *expected in STUDIES:
+            with self.subTest(text):
+                self.write("m.yaml", SOUND.replace("freeplay: 1", "freeplay: 1\nstudy: {%s}" % text, 1))
+                out, _ = self.freeplay("validate", "m.yaml", "--json", code=3)
+                found = [[m["id"], m["line"], m["column"]] for m in json.loads(out)["messages"] if expected[2] in m["message"]]
+                self.assertEqual([[expected[0], 2, expected[1]]], found)
 
     def test_result_columns_are_judged_beside_other_mistakes(self):
         self.write("m.yaml", TOGETHER)
