@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -32,7 +33,7 @@ class LoadSwitches {
   /// Takes the sides of this state into its history. Returns whether other forces act from here on.
   bool renew(State& state, const Evaluation& e);
   void change(int which, State& state) const {
-    double& side = state.h()[static_cast<std::size_t>(slots_.offset + which)];
+    double& side = state.h()[at(slots_.offset + which)];
     side = -side;
   }
 
