@@ -35,15 +35,6 @@ double triangular_quantile(const Distribution& of, double u) {
   return of.c - std::sqrt((1.0 - u) * width * (of.c - of.b));
 }
 
-/// The zone of a hole or shaft, cut.
-Distribution zone(bool normal, double low, double high, double cut_low, double cut_high) {
-  Distribution made{Distribution::Kind::uniform, low, high};
-  if (normal) made = {Distribution::Kind::normal, (low + high) / 2, (high - low) / 6};
-  made.low = std::max(low, cut_low);
-  made.high = std::min(high, cut_high);
-  return made;
-}
-
 }  // namespace
 
 double quantile(const Distribution& of, double u) {
@@ -64,16 +55,6 @@ double quantile(const Distribution& of, double u) {
     }
   }
   return std::clamp(x, of.low, of.high);
-}
-
-// The hole is drawn among those that some shaft of the fit suits, then the shaft among those that suit the hole.
-double clearance_of(const StudyFit& of, double hole, double shaft) {
-  const IsoFit& fit = of.limits;
-  const double size = quantile(
-      zone(of.normal, fit.hole_low, fit.hole_high, fit.shaft_low + 2 * of.low, fit.shaft_high + 2 * of.high), hole);
-  const double pin =
-      quantile(zone(of.normal, fit.shaft_low, fit.shaft_high, size - 2 * of.high, size - 2 * of.low), shaft);
-  return std::clamp((size - pin) / 2, of.low, of.high);
 }
 
 }  // namespace freeplay

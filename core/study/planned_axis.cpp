@@ -26,7 +26,8 @@ PlannedAxis::PlannedAxis(const StudyAxis& source, std::string name, std::string 
       target_(std::move(target)),
       table_(std::move(table)),
       first_draw_(first_draw),
-      size_(size_of(source, table_)) {
+      size_(size_of(source, table_)),
+      clearances_(source.fits.begin(), source.fits.end()) {
   if (table_) {
     for (std::size_t i = 0; i < table_->targets().size(); ++i) {
       columns_.push_back({table_->targets()[i], "", table_->words(i)});
@@ -34,7 +35,8 @@ PlannedAxis::PlannedAxis(const StudyAxis& source, std::string name, std::string 
     return;
   }
   const bool words = !source.list.empty() || !source.cases.empty() || chooses_fit();
-  columns_.push_back({name_, source.dimension && !words ? si_unit(*source.dimension) : "", words});
+  const bool random = source.random() && !chooses_fit();
+  columns_.push_back({name_, source.dimension && !words ? si_unit(*source.dimension) : "", words, random});
 }
 
 std::vector<std::string> PlannedAxis::targets() const {
@@ -56,8 +58,7 @@ AxisValue PlannedAxis::value(std::uint64_t place, std::span<const double> draws)
   if (source_->distribution) {
     return AxisValue::of(quantile(*source_->distribution, draws[first_draw_]), source_->dimension);
   }
-  return AxisValue::of(clearance_of(source_->fits[place], draws[first_draw_], draws[first_draw_ + 1]),
-                       source_->dimension);
+  return AxisValue::of(clearances_[place].at(draws[first_draw_], draws[first_draw_ + 1]), source_->dimension);
 }
 
 void PlannedAxis::add(std::uint64_t place, std::span<const double> draws, std::vector<PlannedSetting>& settings,

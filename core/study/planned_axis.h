@@ -11,6 +11,7 @@
 #include "format/study_axis.h"
 #include "study/axis_value.h"
 #include "study/design_table.h"
+#include "study/fit_clearance.h"
 
 namespace freeplay {
 
@@ -23,7 +24,8 @@ struct PlannedSetting {
 /// A column of the table.
 struct AxisColumn {
   std::string name, unit;
-  bool words = false;  ///< texts, not numbers
+  bool words = false;   ///< texts, not numbers
+  bool random = false;  ///< drawn, not listed
 };
 
 class PlannedAxis {
@@ -65,6 +67,7 @@ class PlannedAxis {
   std::size_t first_draw_;
   std::uint64_t size_ = 1;
   std::vector<AxisColumn> columns_;
+  std::vector<FitClearance> clearances_;  // of the fits
 };
 
 }  // namespace freeplay

@@ -90,38 +90,5 @@ TEST(IsoFit, KnowsNoOtherCodesAndSizes) {
   EXPECT_FALSE(iso_fit("H7/g6", 0.501));
 }
 
-// Annex B of the contract: mean 8.5 um, deviation 1.4382 um for normal zones and 2.5249 um for uniform ones.
-TEST(ClearanceOf, AFitHasTheMomentsOfItsZones) {
-  for (const bool normal : {true, false}) {
-    const IsoFit limits = *iso_fit("H7/g6", 0.010);
-    const StudyFit fit{limits, normal, limits.smallest_clearance(), limits.largest_clearance()};
-    constexpr int count = 400;
-    double sum = 0.0, squares = 0.0;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        const double c = 1e6 * clearance_of(fit, (i + 0.5) / count, (j + 0.5) / count);
-        EXPECT_GE(c, 2.5 - 1e-9);
-        EXPECT_LE(c, 14.5 + 1e-9);
-        sum += c;
-        squares += c * c;
-      }
-    }
-    const double mean = sum / (count * count);
-    EXPECT_NEAR(mean, 8.5, 1e-6);
-    EXPECT_NEAR(std::sqrt(squares / (count * count) - mean * mean), normal ? 1.4382 : 2.5249, 1e-3);
-  }
-}
-
-TEST(ClearanceOf, AFitIsCutWhereItIsToBe) {
-  const IsoFit limits = *iso_fit("H7/h6", 0.010);
-  const StudyFit fit{limits, true, 3e-6, 4e-6};
-  for (double u = 0.05; u < 1.0; u += 0.1) {
-    for (double v = 0.05; v < 1.0; v += 0.1) {
-      EXPECT_GT(clearance_of(fit, u, v), 3e-6);  // not moved to an end, which would heap values there
-      EXPECT_LT(clearance_of(fit, u, v), 4e-6);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace freeplay
