@@ -180,6 +180,10 @@ void WorkerPool::blame(StudyTask task, std::uint64_t point, int status, const Ta
   if (is_crash(status)) {
     const std::string name = fmt::format("SIG{}", ::sigabbrev_np(WTERMSIG(status)));
     outcome = {.exit_code = 5, .error = "crash-" + name, .message = fmt::format("its process ended with {}", name)};
+  } else if (WIFEXITED(status)) {
+    outcome = {.exit_code = 5,
+               .error = "crash-exit",
+               .message = fmt::format("code of a plugin ended its process, with exit code {}", WEXITSTATUS(status))};
   } else if (killed_once_.insert(point).second) {
     return put_back(std::move(task));
   }

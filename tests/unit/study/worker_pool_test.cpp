@@ -100,13 +100,18 @@ TEST(WorkerPool, CrashCostsOnePoint) {
   work.before([](std::uint64_t point) {
     if (point == 17) std::raise(SIGSEGV);
     if (point == 90) std::raise(SIGABRT);
+    if (point == 91) std::_Exit(3);
   });
   const Found found = run_all(work, {.jobs = 2});
+  const std::map<std::uint64_t, std::string> errors = {
+      {17, "crash-SIGSEGV"}, {90, "crash-SIGABRT"}, {91, "crash-exit"}};
   for (const auto& [point, outcome] : found.outcomes) {
-    EXPECT_EQ(point == 17 ? "crash-SIGSEGV" : point == 90 ? "crash-SIGABRT" : "", outcome.error) << point;
-    EXPECT_EQ(point == 17 || point == 90 ? 5 : 0, outcome.exit_code) << point;
+    const auto error = errors.find(point);
+    EXPECT_EQ(error == errors.end() ? "" : error->second, outcome.error) << point;
+    EXPECT_EQ(error == errors.end() ? 0 : 5, outcome.exit_code) << point;
   }
-  EXPECT_EQ(2u, found.lost);
+  EXPECT_EQ("code of a plugin ended its process, with exit code 3", found.outcomes.at(91).message);
+  EXPECT_EQ(3u, found.lost);
 }
 
 TEST(WorkerPool, ChainGoesOnColdAfterACrash) {
