@@ -5,13 +5,13 @@
 #include <cmath>
 #include <ctime>
 #include <deque>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "base/text.h"
 #include "format/parameter_scope.h"
 #include "load/load.h"
 #include "load/plugins.h"
@@ -21,6 +21,7 @@
 #include "run/simulation.h"
 #include "study/chain_state.h"
 #include "study/point_analysis.h"
+#include "study/point_message.h"
 #include "study/point_reducers.h"
 #include "study/reducer_entry.h"
 #include "study/summary_numbers.h"
@@ -58,12 +59,6 @@ PointFailure failure_of(const Outcome& outcome) {
   return {outcome.exit_code, outcome.exit_code == 5 ? "plugin-failed" : "numerical", outcome.reason};
 }
 
-/// Texts of points stand in lines.
-std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  return printable(text);
-}
-
 BuildOptions build_options(BuildOptions options, const std::vector<StudySetting>& settings) {
   options.without_study = true;
   for (const StudySetting& setting : settings) options.set.emplace_back(setting.target, setting.text);
@@ -76,6 +71,7 @@ struct PointRunner::Impl {
   Impl(PointSource source_of_all, const LoadOptions& options, Diagnostics& diagnostics)
       : source(std::move(source_of_all)) {
     reading.diagnostics = &diagnostics;
+    const int before = diagnostics.errors();
     for (const Document* document : source.models) registries.push_back(load_registry(options, document));
     if (source.reducers != nullptr) {
       entries = read_reducers(CheckedValue(reading, *source.reducers, nullptr, "reducers"), source.analysis != nullptr);
@@ -83,9 +79,17 @@ struct PointRunner::Impl {
     if (source.analysis != nullptr) {
       analysis = read_analysis_words(CheckedValue(reading, *source.analysis, nullptr, "do"));
     }
-    if (!diagnostics.has_errors()) check(diagnostics);
+    if (diagnostics.errors() == before) check(diagnostics);
   }
 
+  /// Of the models.
+  std::vector<std::string> folders() const {
+    std::vector<std::string> folders;
+    for (const Document* document : source.models) {
+      folders.push_back(std::filesystem::path(document->file_name()).parent_path().string());
+    }
+    return folders;
+  }
   void check(Diagnostics& diagnostics);
   void check_summaries(const Model& model, const Channels& channels);
   PointReducers bind(const Model& model, const Channels& channels, PointReducers::Lacking lacking) {
@@ -259,7 +263,7 @@ StudyOutcome PointRunner::run(const StudyPoint& point, const std::string& state_
   const auto fail_with = [&](const PointFailure& failure) {
     outcome.exit_code = failure.exit_code;
     outcome.error = failure.id;
-    outcome.message = one_line(failure.message);
+    outcome.message = point_message(failure.message, impl_->folders());
   };
   try {
     impl_->run_point(point, state_before, outcome);
