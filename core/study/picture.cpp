@@ -12,8 +12,8 @@
 #include "base/number_text.h"
 #include "study/percentile_ranks.h"
 #include "study/picture_page.h"
-#include "study/rank_correlation.h"
 #include "study/table_columns.h"
+#include "study/tornado.h"
 
 namespace freeplay {
 namespace {
@@ -302,60 +302,7 @@ class Drawing {
 
   std::string tornado() const {
     const std::string& value = needed(request_.value.empty() ? request_.y : request_.value, "value");
-    std::vector<std::string> names{value};
-    for (const AxisColumn& column : study_.plan().axis_columns()) names.push_back(column.name);
-    if (study_.plan().has_model_column()) names.emplace_back("model");
-    const TableColumns columns = table(names);
-    const std::vector<double> values = columns.numbers(value);
-    const bool random = study_.plan().has_sample_column();
-    struct Bar {
-      std::string name;
-      double from, until;
-    };
-    std::vector<Bar> bars;
-    std::vector<std::string> combinations(values.size());  // of words: correlations are within them
-    for (const std::string& name : names) {
-      for (std::size_t i = 0; has_words(name) && i < values.size(); ++i) {
-        combinations[i] += columns.words(name)[i] + ",";
-      }
-    }
-    for (const AxisColumn& column : study_.plan().axis_columns()) {
-      if (random && column.words) continue;
-      if (random) {
-        const double rank = rank_correlation(columns.numbers(column.name), values, combinations);
-        bars.push_back({column.name, std::min(0.0, rank), std::max(0.0, rank)});
-      } else {
-        std::map<std::string, std::pair<double, double>> means;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          const std::string& word = columns.words(column.name)[i];
-          if (!std::isfinite(values[i]) || word.empty()) continue;
-          means[word].first += values[i];
-          means[word].second += 1.0;
-        }
-        Bar bar{column.name, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-        for (const auto& entry : means) {
-          bar.from = std::min(bar.from, entry.second.first / entry.second.second);
-          bar.until = std::max(bar.until, entry.second.first / entry.second.second);
-        }
-        if (bar.until >= bar.from) bars.push_back(bar);
-      }
-    }
-    std::ranges::stable_sort(bars, {}, [](const Bar& bar) { return bar.until - bar.from; });
-    std::vector<double> ends;
-    std::vector<std::string> words;
-    for (const Bar& bar : bars) {
-      ends.insert(ends.end(), {bar.from, bar.until});
-      words.push_back(bar.name);
-    }
-    PicturePage page(title(random ? "rank correlation with " + value : "range of the means of " + value),
-                     PictureScale(value, ends, random ? "" : unit_of(value), svg::Fit::round),
-                     PictureScale("axis", words));
-    for (std::size_t i = 0; i < bars.size(); ++i) {
-      const auto at = static_cast<double>(i);
-      page.tile(bars[i].from, bars[i].until, at - 0.35, at + 0.35, 0, PicturePage::colour(0),
-                fmt::format("{} {} to {}", bars[i].name, number_text(bars[i].from), number_text(bars[i].until)));
-    }
-    return page.text();
+    return tornado_picture(study_.plan(), folder_ / "study.csv", value, unit_of(value));
   }
 
   const OpenStudy& study_;

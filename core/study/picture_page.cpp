@@ -135,4 +135,17 @@ std::string PicturePage::text() const {
   return out + "</svg>\n";
 }
 
+std::string PicturePage::stacked(const std::vector<PicturePage>& pages) {
+  if (pages.size() == 1) return pages.front().text();
+  const double whole = height * static_cast<double>(pages.size());
+  std::string out =
+      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n",
+                  width, whole);
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    out += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", px(height * static_cast<double>(i)),
+                       pages[i].text());
+  }
+  return out + "</svg>\n";
+}
+
 }  // namespace freeplay

@@ -49,6 +49,8 @@ class PicturePage {
   void shade(double from_x, double until_x);
 
   std::string text() const;
+  /// One picture of several, one below the other.
+  static std::string stacked(const std::vector<PicturePage>& pages);
 
  private:
   double px_x(double x) const;
