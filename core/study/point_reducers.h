@@ -128,6 +128,7 @@ class PointReducers final : public StepSink {
   void bind_course(const ReducerEntry& entry, std::size_t index);
   void bind_section(const ReducerEntry& entry, std::size_t index, Course course);
   void bind_events(const ReducerEntry& entry, std::size_t index);
+  void refuse_events(const ReducerEntry& entry, const std::vector<std::string>& names) const;
   void bind_of(const ReducerEntry& entry, std::size_t index);
   std::optional<Course> course_of(const ReducerEntry& entry, std::string& unit) const;
   int channel_of(const CheckedValue& name) const;

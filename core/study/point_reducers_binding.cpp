@@ -7,6 +7,7 @@
 #include "base/name_pattern.h"
 #include "load/channel_check.h"
 #include "study/point_reducers.h"
+#include "study/summary_unit.h"
 
 namespace freeplay {
 namespace {
@@ -113,6 +114,7 @@ void PointReducers::bind(const ReducerEntry& entry, std::size_t index) {
       return;
     case ReducerEntry::Source::summary:
       needs_summary_ = true;
+      columns_.set_unit(columns_.first(index), summary_unit(entry.text(), model_, channels_));
       return;
     case ReducerEntry::Source::set:
       return;
@@ -207,8 +209,9 @@ void PointReducers::bind_events(const ReducerEntry& entry, std::size_t index) {
     of.joints[j] = matches(pattern, names.back()) ? 1 : 0;
   }
   if (std::ranges::find(of.joints, 1) == of.joints.end()) {
-    if (lacking_ == Lacking::no_value) return;
-    entry.subject.fail("unknown-name", fmt::format("no joint with events fits '{}'", pattern), nearest(pattern, names));
+    if (is_pattern(pattern)) of_events_.push_back(std::move(of));  // of no joint there are no events
+    if (lacking_ == Lacking::mistake && !is_pattern(pattern)) refuse_events(entry, names);
+    return;
   }
   const auto kind = std::ranges::find(event_layout_.kinds, entry.kind);
   if (kind == event_layout_.kinds.end()) {
@@ -232,6 +235,16 @@ void PointReducers::bind_events(const ReducerEntry& entry, std::size_t index) {
   }
   columns_.set_unit(columns_.first(index), has_unit_of_values(entry.reduction) ? unit : "1");
   of_events_.push_back(std::move(of));
+}
+
+void PointReducers::refuse_events(const ReducerEntry& entry, const std::vector<std::string>& names) const {
+  const std::string name = entry.text();
+  if (std::ranges::find(model_.joints, name, &JointElement::name) != model_.joints.end()) {
+    entry.subject.fail("unknown-name", fmt::format("joint '{}' has no events: nothing in it touches", name),
+                       nearest(name, names));
+  } else {
+    entry.subject.fail("unknown-name", fmt::format("there is no joint '{}'", name), nearest(name, names));
+  }
 }
 
 void PointReducers::bind_of(const ReducerEntry& entry, std::size_t index) {
