@@ -110,7 +110,9 @@ int tell(const Comparison& comparison, const Words& words, const CompareOptions&
   } else {
     print(table_text(comparison, common.verbose || !options.channels.empty(), words));
   }
-  for (const std::string& text : comparison.missing) print_messages("freeplay: note: " + text + "\n", common.no_color);
+  for (const std::vector<std::string>* texts : {&comparison.missing, &comparison.aside}) {
+    for (const std::string& text : *texts) print_messages("freeplay: note: " + text + "\n", common.no_color);
+  }
   return comparison.agree() ? 0 : 7;
 }
 

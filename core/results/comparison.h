@@ -36,6 +36,7 @@ struct Comparison {
   std::vector<std::string> missing;  ///< sentences: channels or rows that only one of them has
   std::size_t rows = 0;              ///< compared
   bool interpolated = false;         ///< instants differ: b was interpolated linearly
+  std::vector<std::string> aside{};  ///< sentences: what is not compared, and is no difference
 
   bool agree() const;
 };

@@ -47,7 +47,7 @@ class TableComparer {
     while (first.next()) go_on(first, second);
     note_alone(alone_, first_alone_, a_, b_);
     note_alone(places_.size(), std::nullopt, b_, a_);
-    if (result_.rows == 0) result_.missing.emplace_back("no point of one is a point of the other");
+    if (result_.rows == 0) refuse_nothing();
     judge();
     return std::move(result_);
   }
@@ -124,8 +124,15 @@ class TableComparer {
   void note_alone(std::size_t points, const std::optional<std::uint64_t>& first, const ComparedStudy& in,
                   const ComparedStudy& other) {
     if (points == 0) return;
-    result_.missing.push_back(fmt::format("{} points of {}{} are not in {}", points, in.folder.string(),
-                                          first ? fmt::format(" (first {})", *first) : "", other.folder.string()));
+    result_.aside.push_back(fmt::format("{} points of {}{} are not in {}", points, in.folder.string(),
+                                        first ? fmt::format(" (first {})", *first) : "", other.folder.string()));
+  }
+
+  [[noreturn]] void refuse_nothing() const {
+    throw Error(Error::Category::input, "nothing-in-common",
+                fmt::format("no point of '{}' is a point of '{}': nothing can be compared", a_.folder.string(),
+                            b_.folder.string()),
+                {}, "a point is the same where its model, the files that this reads and all settings are");
   }
 
   void judge() {
