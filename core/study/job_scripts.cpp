@@ -77,12 +77,28 @@ class Writer {
   JobScripts made_;
 };
 
+/// Slurm fills in what stands after a percent sign in a name of a log.
+fs::path slurm_pattern(const fs::path& folder) {
+  std::string doubled;
+  for (const char c : folder.string()) doubled += c == '%' ? "%%" : std::string(1, c);
+  return doubled;
+}
+
+/// GNU parallel fills in {}, {1}, {/.} and others wherever they stand, and nothing turns that off.
+void refuse_replaced(const std::string& path) {
+  static const std::regex form(R"(\{[-+\d.#%/]*\})");
+  if (!std::regex_search(path, form)) return;
+  throw Error(Error::Category::usage, "bad-value",
+              fmt::format("GNU parallel would put the number of a task into the braces of '{}'", path), {},
+              "another --out");
+}
+
 // %A and %a in the name of the log are the numbers of array and task. `exec`: the signal before the limit reaches the
 // program, which ends with all rows written; --requeue starts it again, where it goes on.
 JobScripts slurm(const JobRequest& request, const JobPlan& plan) {
   Writer writer(request);
   const Words& words = writer.words();
-  std::string log = (words.jobs / "%A_%a.log").string(), name = request.name;
+  std::string log = (slurm_pattern(words.jobs) / "%A_%a.log").string(), name = request.name;
   std::ranges::replace_if(
       name, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_' && c != '.'; }, '-');
   writer.put(
@@ -92,10 +108,10 @@ JobScripts slurm(const JobRequest& request, const JobPlan& plan) {
                   "#SBATCH --output={}\nexec {}\n",
                   shell, name, plan.tasks, request.cores, plan.time, shell_word(log),
                   words.shard("\"$SLURM_ARRAY_TASK_ID\"", plan.tasks, "\"$SLURM_CPUS_PER_TASK\"")));
-  writer.put("merge.sh",
-             fmt::format("{}#SBATCH --job-name={}-merge\n#SBATCH --ntasks=1\n#SBATCH --time={}\n"
-                         "#SBATCH --open-mode=append\n#SBATCH --output={}\nexec {}\n",
-                         shell, name, plan.time, shell_word((words.jobs / "merge.log").string()), words.merge()));
+  writer.put("merge.sh", fmt::format("{}#SBATCH --job-name={}-merge\n#SBATCH --ntasks=1\n#SBATCH --time={}\n"
+                                     "#SBATCH --open-mode=append\n#SBATCH --output={}\nexec {}\n",
+                                     shell, name, plan.time,
+                                     shell_word((slurm_pattern(words.jobs) / "merge.log").string()), words.merge()));
   writer.put("submit.sh",
              fmt::format("{}set -eu\narray=$(sbatch --parsable {})\n"
                          "sbatch --dependency=afterany:\"${{array%%;*}}\" {}\n"
@@ -107,6 +123,8 @@ JobScripts slurm(const JobRequest& request, const JobPlan& plan) {
 JobScripts gnu_parallel(const JobRequest& request, const JobPlan& plan) {
   Writer writer(request);
   const Words& words = writer.words();
+  refuse_replaced(words.folder);
+  refuse_replaced(words.program);
   // Each job gets its processors; on hosts of a list parallel counts them there.
   const std::string where =
       request.hosts.empty() ? std::string() : fmt::format(" --sshloginfile {}", shell_word(request.hosts.string()));
@@ -119,6 +137,7 @@ JobScripts gnu_parallel(const JobRequest& request, const JobPlan& plan) {
 }
 
 // A shard has no file of its own that would say that it is done, so each leaves a mark. JSON's strings are Python's.
+// Names of files are patterns there, in which braces of a folder would be wildcards: they are given from the folder.
 JobScripts snakemake(const JobRequest& request, const JobPlan& plan) {
   Writer writer(request);
   const Words& words = writer.words();
@@ -128,16 +147,15 @@ JobScripts snakemake(const JobRequest& request, const JobPlan& plan) {
     for (const char c : value) doubled += c == '{' || c == '}' ? std::string(2, c) : std::string(1, c);
     return doubled;
   };
-  const std::string table = (request.folder / "study.csv").string();
   const std::string shard =
       fmt::format("{} study run {} --shard {{wildcards.part}}/{} --jobs {{threads}} --allow-failed --quiet{}",
                   braces(words.program), braces(words.folder), plan.tasks, braces(words.options));
-  writer.put("Snakefile",
-             fmt::format("MARKS = {}\nTABLE = {}\n\nrule merge:\n    input: expand(MARKS, part=range(1, {} + 1))\n"
-                         "    output: TABLE\n    shell: {}\n\nrule shard:\n    output: touch(MARKS)\n    threads: {}\n"
-                         "    shell: {}\n",
-                         text((words.jobs / "shard-{part}.done").string()), text(table), plan.tasks,
-                         text(braces(words.merge())), request.cores, text(shard)));
+  writer.put(
+      "Snakefile",
+      fmt::format("workdir: {}\n\nrule merge:\n    input: expand(\"jobs/shard-{{part}}.done\", part=range(1, {} + 1))\n"
+                  "    output: \"study.csv\"\n    shell: {}\n\n"
+                  "rule shard:\n    output: touch(\"jobs/shard-{{part}}.done\")\n    threads: {}\n    shell: {}\n",
+                  text(request.folder.string()), plan.tasks, text(braces(words.merge())), request.cores, text(shard)));
   return writer.finish(fmt::format("snakemake -s {} --cores {} --forceall", words.in_jobs("Snakefile"), request.cores));
 }
 

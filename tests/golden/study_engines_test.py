@@ -10,6 +10,7 @@ from program import ProgramTest
 
 # Set by `./dev test --all`, which installs them; ./dev test says which are missing.
 NEEDS_ENGINES = "FREEPLAY_NEEDS_ENGINES" in os.environ
+FOLDER = "a {study} of {x}"  # blanks and braces in every path of the scripts
 TABLES = ("study.csv", "samples.csv", "failures.jsonl", "study.h5")
 PENDULUM = """freeplay: 1
 gravity: [0, -9.81]
@@ -29,7 +30,7 @@ study:
 class StudyOnEngines(ProgramTest):
     def setUp(self):
         super().setUp()
-        os.mkdir(self.path("a study"))  # a blank in every path of the scripts
+        os.mkdir(self.path(FOLDER))
         self.write("pendulum.yaml", PENDULUM)
 
     def need(self, engine, package, missing):
@@ -58,7 +59,7 @@ class StudyOnEngines(ProgramTest):
         self.need("Slurm", "slurm-wlm munge", slurm_box.missing())
         box = slurm_box.SlurmBox()
         self.addCleanup(box.stop)
-        out = os.path.join("a study", "slurm")
+        out = os.path.join(FOLDER, "slurm")
         idle = lambda: not box.run("squeue", "-h").stdout.strip()
         self.submit("slurm", out, box.environment)
         box.wait(idle)
@@ -75,14 +76,14 @@ class StudyOnEngines(ProgramTest):
 
     def test_gnu_parallel(self):
         self.need("GNU parallel", "parallel", shutil.which("parallel") is None)
-        out = os.path.join("a study", "parallel")
+        out = os.path.join(FOLDER, "parallel")
         self.submit("gnu-parallel", out)
         self.assertEqual(3, len(self.segments(out)))
         self.assert_same_as_undisturbed(out)
 
     def test_snakemake(self):
         self.need("Snakemake", "snakemake", shutil.which("snakemake") is None)
-        out = os.path.join("a study", "snakemake")
+        out = os.path.join(FOLDER, "snakemake")
         self.submit("snakemake", out, {**os.environ, "XDG_CACHE_HOME": self.path("cache")})
         self.assertEqual(3, len(self.segments(out)))
         self.assert_same_as_undisturbed(out)

@@ -68,6 +68,17 @@ TEST(JobScripts, WordsOfScriptsAreQuoted) {
   EXPECT_NE(std::string::npos, array.find("it'\\''s a study' --shard \"$SLURM_ARRAY_TASK_ID\"/4")) << array;
 }
 
+TEST(JobScripts, SignsThatEnginesFillInStayAsTheyAre) {
+  JobRequest request = request_of(100, 60.0);
+  request.folder = request.folder.parent_path() / "50 %a of {x}";
+  EXPECT_NE(std::string::npos,
+            text_of(write_job_scripts(request, plan_jobs(request)).files[0]).find("50 %%a of {x}/jobs/%A_%a.log'"));
+  request.engine = JobEngine::gnu_parallel;
+  write_job_scripts(request, plan_jobs(request));
+  request.folder = request.folder.parent_path() / "{1}";
+  EXPECT_THROW(write_job_scripts(request, plan_jobs(request)), Error);
+}
+
 TEST(JobScripts, ATimeThatIsNoneIsRefused) {
   JobRequest request = request_of(1, 1.0);
   request.time = "1h";
