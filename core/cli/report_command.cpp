@@ -1,5 +1,6 @@
 #include "cli/report_command.h"
 
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -16,6 +17,8 @@
 
 namespace freeplay {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct ReportOptions {
   std::vector<std::string> results, channels, pictures;
@@ -36,13 +39,20 @@ std::vector<std::string> arguments_of(const ReportOptions& options) {
   return arguments;
 }
 
+/// A folder as the page `file` sees it; empty in it.
+fs::path seen_from(const fs::path& file, const fs::path& folder) {
+  const fs::path seen =
+      fs::weakly_canonical(folder).lexically_relative(fs::weakly_canonical(fs::absolute(file).parent_path()));
+  return seen == "." ? fs::path() : seen;
+}
+
 /// Of a study's directory: its pictures and its table.
 int report_study(const std::string& folder, const ReportOptions& options, const CommonOptions& common) {
   const StudyInFolder opened = open_kept(folder, StudyUse::look, common);
   if (!opened.study) return opened.exit_code;
   const std::string file = options.out.empty() ? (opened.folder.path() / "report.html").string() : options.out;
   require_no_other_file(file, own_page, options.force);
-  const std::string page = study_page(*opened.study, folder);
+  const std::string page = study_page(*opened.study, folder, seen_from(file, folder));
   write_whole_file(file, page);
   if (common.json) {
     print_json(Json{{"file", file}, {"bytes", page.size()}});

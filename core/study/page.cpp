@@ -34,6 +34,9 @@ td,th{{border:1px solid #ccc;padding:2px 8px;text-align:right}}pre{{background:#
 constexpr std::string_view script = R"(<script>
 const data = JSON.parse(document.getElementById('freeplay-study').textContent);
 const place = document.getElementById('point');
+// The folder of the study as a shell takes it, where the page is read from a disk.
+const here = decodeURIComponent(location.pathname).replace(/\/[^/]*$/, '') + (data.folder ? '/' + data.folder : '');
+const folder = location.protocol !== 'file:' ? 'DIR' : /^[\w\/.+-]+$/.test(here) ? here : "'" + here.replaceAll("'", "'\\''") + "'";
 function show(index) {
   const point = data.points[index];
   place.textContent = '';
@@ -48,13 +51,13 @@ function show(index) {
     place.append(note);
   }
   const command = document.createElement('pre'), button = document.createElement('button');
-  command.textContent = point.command;
+  command.textContent = point.command.replaceAll(' DIR/', ' ' + folder + '/');
   button.textContent = 'copy';
   button.onclick = () => navigator.clipboard.writeText(command.textContent);
   place.append(command, button);
   if (point.kept) {
     const link = document.createElement('a');
-    link.href = point.kept;
+    link.href = (data.folder ? data.folder + '/' : '') + point.kept;
     link.textContent = ' its result';
     place.append(link);
   }
@@ -74,9 +77,10 @@ std::string table_row(const Cells& cells, const char* tag) {
   return row + "</tr>\n";
 }
 
-std::string command_of(const StudyPlan& plan, const std::filesystem::path& folder, std::uint64_t index) {
+/// DIR stands for the folder of the study.
+std::string command_of(const StudyPlan& plan, std::uint64_t index) {
   std::string command = "freeplay";
-  for (const std::string& word : point_words(plan, folder, plan.point(index))) command += " " + shell_word(word);
+  for (const std::string& word : point_words(plan, "DIR", plan.point(index))) command += " " + shell_word(word);
   return command;
 }
 
@@ -84,7 +88,7 @@ std::string command_of(const StudyPlan& plan, const std::filesystem::path& folde
 Json point_of(const StudyPlan& plan, const std::filesystem::path& folder, const TableRows& row) {
   const std::uint64_t index = row.index();
   Json point = {{"row", std::vector<std::string>(row.cells().begin(), row.cells().end())},
-                {"command", command_of(plan, folder, index)}};
+                {"command", command_of(plan, index)}};
   const UnitPlace at = plan.place_of(index);
   if (plan.chained() && at.place > 0) point["before"] = plan.unit_point(at.unit, at.place - 1);
   const std::string kept = fmt::format("kept/{:04}/{}", index / 1000, index);
@@ -97,13 +101,12 @@ std::size_t bytes_of(const std::string& index, const Json& point) { return index
 
 }  // namespace
 
-std::string study_page(const OpenStudy& study, const std::filesystem::path& given) {
+std::string study_page(const OpenStudy& study, const std::filesystem::path& folder, const std::filesystem::path& seen) {
   const StudyPlan& plan = study.plan();
-  const std::filesystem::path folder = std::filesystem::absolute(given).lexically_normal();
-  TableRows first(given);
+  TableRows first(folder);
   std::string body;
   for (const PictureRequest& request : picture_requests(plan)) {
-    body += fmt::format("<h2>{}</h2>\n{}", svg::escaped(request.name), study_picture(study, given, request));
+    body += fmt::format("<h2>{}</h2>\n{}", svg::escaped(request.name), study_picture(study, folder, request));
   }
   std::string rows = table_row(first.columns(), "th");
   std::size_t listed = 0, listed_bytes = 0;
@@ -122,7 +125,7 @@ std::string study_page(const OpenStudy& study, const std::filesystem::path& give
       std::max((plan.points() - 1) / most_shown + 1, static_cast<std::uint64_t>(std::ceil(std::min(share, 1e15))));
   Json points = Json::object();
   std::size_t bytes = 0, count = 0, left_out = 0;
-  for (TableRows table(given); table.next(); ++count) {
+  for (TableRows table(folder); table.next(); ++count) {
     Json point = count % every == 0 ? point_of(plan, folder, table) : Json();
     const std::size_t size = point.is_null() ? 0 : bytes_of(std::string(table.cells().front()), point);
     if (point.is_null() || bytes + size > room) {
@@ -135,9 +138,12 @@ std::string study_page(const OpenStudy& study, const std::filesystem::path& give
   const std::string note = left_out == 0 ? "" : fmt::format(", of which {} are not on this page", left_out);
   const std::string name = svg::escaped(plan.name());
   std::string page = fmt::format(fmt::runtime(head), name, name, count, note) + body +
-                     "<div id=\"point\"><p>A click on a mark shows its point.</p></div>\n<h2>Table</h2>\n";
+                     "<div id=\"point\"><p>A click on a mark shows its point and its command; DIR is the folder of the "
+                     "study.</p></div>\n"
+                     "<h2>Table</h2>\n";
   if (count > listed_rows) page += fmt::format("<p>The first {} rows; all are in study.csv.</p>\n", listed_rows);
-  std::string data = Json{{"columns", first.columns()}, {"points", std::move(points)}}.dump();
+  std::string data =
+      Json{{"folder", seen.generic_string()}, {"columns", first.columns()}, {"points", std::move(points)}}.dump();
   for (std::size_t at = data.find("</"); at != data.npos; at = data.find("</", at + 3)) data.insert(at + 1, "\\");
   return page + "<div class=\"wide\"><table>" + rows +
          "</table></div>\n<script type=\"application/json\" id=\"freeplay-study\">" + data + "</script>\n" +
