@@ -1,5 +1,6 @@
 #include "base/kept_input.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -41,6 +42,23 @@ std::string kept_input(const std::string& model_file, const std::string& path, c
   if (!fs::exists(copy, ignored)) return path;
   if (fs::exists(folder / only_copies, ignored)) return copy.string();
   return !fs::exists(path, ignored) && is_result(folder) ? copy.string() : path;
+}
+
+bool is_kept_copy(const std::string& model_file) {
+  std::error_code ignored;
+  return fs::exists(fs::path(model_file).parent_path() / only_copies, ignored);
+}
+
+std::vector<std::string> kept_libraries(const std::string& model_file) {
+  std::vector<std::string> files;
+  if (!is_kept_copy(model_file)) return files;
+  std::error_code none;
+  const fs::path folder = fs::path(model_file).parent_path() / libraries_folder;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
+    if (entry.path().extension() == ".so") files.push_back(entry.path().string());
+  }
+  std::ranges::sort(files);
+  return files;
 }
 
 std::string kept_model_name(const std::string& model_file) {

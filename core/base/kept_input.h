@@ -14,6 +14,14 @@ std::string kept_input(const std::string& model_file, const std::string& path, c
 /// Marks a folder whose model is to read the copies, whatever stands at the places that it names.
 inline constexpr const char* only_copies = "inputs/.only";
 
+/// Does the model stand in a folder with `only_copies`?
+bool is_kept_copy(const std::string& model_file);
+
+/// Libraries that stand beside the copy of a model: those that it was made with, sorted.
+std::vector<std::string> kept_libraries(const std::string& model_file);
+/// Where they stand, from the folder of the model.
+inline constexpr const char* libraries_folder = "plugins";
+
 /// Name of the model whose copy, model.yaml or model.urdf, stands in the result of a run; empty for another file.
 std::string kept_model_name(const std::string& model_file);
 

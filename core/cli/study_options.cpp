@@ -61,7 +61,22 @@ StudyInFolder open_study(const std::string& given, StudyPlanOptions options, con
   return opened;
 }
 
+void require_as_begun(const StudyInFolder& opened) {
+  if (!opened.study || opened.folder.record()["study"] == opened.study->plan().identity()) return;
+  throw Error(Error::Category::input, "study-changed", edited_text(opened.folder), {},
+              fmt::format("put back what it was; to change the study edit its own file, and "
+                          "freeplay study run FILE --out {} --extend keeps the points that stay",
+                          opened.folder.path().string()));
+}
+
 }  // namespace
+
+std::string edited_text(const StudyFolder& folder) {
+  const std::vector<std::string> copies = folder.changed_copies();
+  return fmt::format(
+      "the study of '{}' is not the one that it was begun with: {}", folder.path().string(),
+      copies.empty() ? "a copy in it was edited" : fmt::format("its copy {} was edited", fmt::join(copies, ", ")));
+}
 
 StudyInFolder open_in_folder(const std::string& given, const StudyOptions& options, const CommonOptions& common) {
   StudyPlanOptions plan;
@@ -80,13 +95,15 @@ StudyInFolder open_in_folder(const std::string& given, const StudyOptions& optio
   return open_study(folder.file().string(), plan, folder, "", common);
 }
 
-StudyInFolder open_kept(const std::string& given, StudyUse use, const CommonOptions& common) {
+StudyInFolder open_kept(const std::string& given, StudyUse use, const CommonOptions& common, bool edited) {
   const StudyFolder folder(given);
   folder.record();
   StudyPlanOptions plan;
   plan.kept = plan.many_points = true;
   plan.look = use == StudyUse::look;
-  return open_study(folder.file().string(), plan, folder, "", common);
+  StudyInFolder opened = open_study(folder.file().string(), plan, folder, "", common);
+  if (!edited) require_as_begun(opened);
+  return opened;
 }
 
 const std::string& only_study(const StudyOptions& options, const char* command, const char* kind) {

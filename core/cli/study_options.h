@@ -39,8 +39,11 @@ struct StudyInFolder {
 StudyInFolder open_in_folder(const std::string& given, const StudyOptions& options, const CommonOptions& common);
 /// What a command does with the directory of a study.
 enum class StudyUse { look, run_points };
-/// The same for a command that takes a DIR alone. Who only looks at it needs no plugins of its models.
-StudyInFolder open_kept(const std::string& given, StudyUse use, const CommonOptions& common);
+/// The same for a command that takes a DIR alone. Who only looks at it needs no plugins of its models. Throws
+/// Error{input} "study-changed" where a copy in it was edited, unless `edited` ones are welcome.
+StudyInFolder open_kept(const std::string& given, StudyUse use, const CommonOptions& common, bool edited = false);
+/// What was edited in the directory of a study that its rows are not of.
+std::string edited_text(const StudyFolder& folder);
 
 /// The only one that is named. Throws Error{usage} "missing-argument".
 const std::string& only_study(const StudyOptions& options, const char* command, const char* kind);

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include "base/shell_word.h"
+#include "cli/loading.h"
 #include "cli/own_program.h"
 #include "cli/study_views.h"
 #include "cli/terminal.h"
+#include "load/plugins.h"
 #include "study/plan.h"
 #include "study/point_words.h"
 
 namespace freeplay {
+
+namespace fs = std::filesystem;
 
 int study_point(const StudyOptions& options, const CommonOptions& common) {
   if (options.studies.size() != 2) {
@@ -23,9 +27,8 @@ int study_point(const StudyOptions& options, const CommonOptions& common) {
   if (ranges.size() != 1 || ranges[0].first != ranges[0].second)
     bad_value("INDEX", options.studies[1], "it must be one point");
   const StudyPoint point = plan.point(ranges[0].first);
-  std::vector<std::string> words =
-      point_words(plan, std::filesystem::absolute(opened.folder.path()).lexically_normal(), point);
-  for (const std::string& plugin : common.plugins) words.insert(words.end(), {"--plugin", plugin});
+  const fs::path folder = fs::absolute(opened.folder.path()).lexically_normal();
+  std::vector<std::string> words = point_words(plan, folder, point, common.plugins);
   if (common.allow_plugins) words.emplace_back("--allow-plugins");
   // In a chain the point goes on from the end of that before it, which no command of a single run knows.
   const UnitPlace place = plan.place_of(point.index);
@@ -39,6 +42,10 @@ int study_point(const StudyOptions& options, const CommonOptions& common) {
         common.no_color);
   }
   if (options.run_point) {
+    // Who types the command trusts what it names.
+    for (const std::string& copy : plugins_from_copies(plan, folder, point, common.plugins)) {
+      require_plugin_allowed(copy, loading(common));
+    }
     if (!options.out.empty()) words.insert(words.end(), {"--out", options.out});
     if (common.quiet) words.emplace_back("--quiet");
     if (common.json) words.emplace_back("--json");

@@ -170,7 +170,10 @@ int tell(const fs::path& path, const Json& record, const Json& rerun, const std:
 class StudyReproduction {
  public:
   StudyReproduction(const fs::path& path, const fs::path& folder, const CommonOptions& common)
-      : path_(path), folder_(folder), common_(common), opened_(open_kept(folder.string(), StudyUse::look, common)) {}
+      : path_(path),
+        folder_(folder),
+        common_(common),
+        opened_(open_kept(folder.string(), StudyUse::look, common, true)) {}
 
   int execute(const fs::path& out) {
     if (!opened_.study) return opened_.exit_code;

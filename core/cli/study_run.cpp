@@ -19,28 +19,18 @@
 #include "base/text.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
-#include "cli/own_program.h"
+#include "cli/study_keep.h"
 #include "cli/study_progress.h"
 #include "cli/study_table.h"
 #include "cli/terminal.h"
 #include "study/old_rows.h"
-#include "study/point_words.h"
 
 namespace freeplay {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_kept = 10'000;  // result directories without --yes
 constexpr std::size_t most_listed_failures = 10;
-
-enum class Keep { nothing, failed, all };
-
-Keep keep_of(const std::string& text) {
-  if (text.empty() || text == "none") return Keep::nothing;
-  require_word("--keep", text, {"none", "failed", "all"});
-  return text == "all" ? Keep::all : Keep::failed;
-}
 
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -77,17 +67,19 @@ class StudyRun {
         study_(*opened.study),
         plan_(study_.plan()),
         folder_(opened.folder),
+        by_folder_(opened.kept),
         began_(std::chrono::steady_clock::now()),
         mark_(study_.mark()) {
     read_options();
+    results_.emplace(options_, common_, study_, folder_);
     open_folder();
     table_.emplace(study_, folder_);
     table_->look(mark_, schedule_.only ? Shard{} : schedule_.shard, warn_of_damage(common));
   }
 
   int run() {
-    if (keep_ != Keep::nothing) keep_results();
     compute();
+    if (interrupts_ == 0) keep();
     const bool interrupted = interrupts_ != 0;
     const bool whole = options_.shard.empty() && !interrupted && table_->done() >= table_->wanted();
     if (whole && (report_.ran > 0 || !folder_.is_merged())) table_->merge();
@@ -102,7 +94,7 @@ class StudyRun {
   void open_folder();
   void refuse_changed();
   void extend();
-  void keep_results();
+  void keep();
   void compute();
   void tell(bool whole) const;
   void warn_of_stop() const;
@@ -120,13 +112,14 @@ class StudyRun {
   OpenStudy& study_;
   const StudyPlan& plan_;
   const StudyFolder& folder_;
+  bool by_folder_;  ///< DIR was given, not FILE
   std::chrono::steady_clock::time_point began_;
   StudyMark mark_;
   PoolOptions pool_;
-  Keep keep_ = Keep::nothing;
   ScheduleOptions schedule_;
   double sync_ = 1.0, running_ = 0.0;
   std::optional<StudyTable> table_;
+  std::optional<KeptResults> results_;
   std::uint64_t shard_points_ = 0;
   EngineReport report_;
   const std::atomic<int>& interrupts_ = watch_interrupts();
@@ -143,7 +136,6 @@ void StudyRun::read_options() {
   } else if (options_.sync == "0") {
     sync_ = 0.0;
   }
-  keep_ = keep_of(options_.keep);
   if (!options_.shard.empty()) schedule_.shard = shard_of(options_.shard);
   if (options_.only) schedule_.only = point_ranges("--only", *options_.only, plan_.points());
   schedule_.retry_failed = options_.retry_failed;
@@ -172,11 +164,15 @@ void StudyRun::refuse_changed() {
   const std::vector<fs::path> segments = folder_.segments();
   const bool same_columns = folder_.record()["rows"] == mark_.columns;
   const OldRows rows(same_columns ? segments : std::vector<fs::path>{}, study_.layout(), warn_of_damage(common_));
+  const bool other_columns = folder_.record()["study"] == mark_.study;
+  const std::string what = other_columns ? "its table has other columns" : difference(plan_, folder_);
   throw Error(Error::Category::input, "study-changed",
-              fmt::format("the study is not the one of '{}': {}", folder_.path().string(), difference(plan_, folder_)),
+              by_folder_ && !other_columns
+                  ? edited_text(folder_)
+                  : fmt::format("the study is not the one of '{}': {}", folder_.path().string(), what),
               {},
-              fmt::format("--extend keeps {} of {} points, --restart none, and another --out both", rows.kept(plan_),
-                          plan_.points()));
+              fmt::format("{}--extend keeps {} of {} points, --restart none{}", by_folder_ ? "put it back; " : "",
+                          rows.kept(plan_), plan_.points(), by_folder_ ? "" : ", and another --out both"));
 }
 
 // The rows that stay are whole on the disk before anything is moved, so that a kill loses none; those of a call that
@@ -206,25 +202,12 @@ void StudyRun::extend() {
   folder_.set_aside();
 }
 
-// Each is made by the command of its point, beside the run that the row is of.
-void StudyRun::keep_results() {
-  if (plan_.chained() || plan_.section().analysis != nullptr) {
-    throw Error(Error::Category::usage, "bad-value",
-                "--keep is for points that are runs of their own, not for chains or analyses");
-  }
-  if (keep_ == Keep::all && plan_.points() > most_kept && !options_.yes) {
-    throw Error(Error::Category::usage, "too-large",
-                fmt::format("--keep all would make {} result directories", plan_.points()), {}, "--yes makes them");
-  }
-  study_.work().after_each([this](const StudyPoint& point, const StudyOutcome& outcome) {
-    if (keep_ == Keep::failed && outcome.exit_code == 0) return;
-    std::vector<std::string> words = point_words(plan_, fs::absolute(folder_.path()), point);
-    const fs::path place =
-        folder_.path() / "kept" / fmt::format("{:04}", point.index / 1000) / fmt::format("{}", point.index);
-    for (const std::string& plugin : common_.plugins) words.insert(words.end(), {"--plugin", plugin});
-    words.insert(words.end(), {"--quiet", "--allow-plugins", "--force", "--out", place.string()});
-    run_own_program(words, false);
-  });
+void StudyRun::keep() {
+  const auto has_row = [&](std::uint64_t point) {
+    return table_->is_wanted(point) && table_->scan().done().has(point) && !table_->scan().killed().has(point);
+  };
+  const auto failed = [&](std::uint64_t point) { return table_->scan().failed().has(point); };
+  results_->make(schedule_, has_row, failed, pool_, interrupts_);
 }
 
 void StudyRun::compute() {
@@ -270,6 +253,7 @@ void StudyRun::tell(bool whole) const {
     for (const auto& [point, error] : failures) text += fmt::format("  {:>4} {}", point, error);
     text += "\n";
   }
+  text += results_->told();
   if (whole) text += fmt::format("  table      {}\n", folder_.table().string());
   print(text);
 }

@@ -80,8 +80,9 @@ int study_script(const StudyOptions& options, const CommonOptions& common) {
   opened.folder.require_room();
   if (opened.folder.holds_study() && opened.folder.record()["study"] != mark.study) {
     throw Error(Error::Category::input, "study-changed",
-                fmt::format("the study is not the one of '{}'", opened.folder.path().string()), {},
-                "freeplay study run FILE --extend or --restart, or another --out");
+                opened.kept ? edited_text(opened.folder)
+                            : fmt::format("the study is not the one of '{}'", opened.folder.path().string()),
+                {}, "freeplay study run FILE --extend or --restart, or another --out");
   }
   opened.folder.begin(study.plan(), mark, study_record(study.plan(), mark, study.columns()));
   StudyTable table(study, opened.folder);

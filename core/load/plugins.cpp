@@ -43,6 +43,17 @@ bool lies_in_plugin_folder(const fs::path& file) {
   });
 }
 
+/// Files of that name in the folders for plugins.
+std::vector<std::string> installed(const std::string& word) {
+  std::vector<std::string> files;
+  for (const fs::path& folder : plugin_folders()) {
+    std::error_code ignored;
+    const fs::path file = folder / name_of(word);
+    if (fs::is_regular_file(file, ignored)) files.push_back(file.string());
+  }
+  return files;
+}
+
 /// The libraries of one command, in the order in which they are looked for.
 class Loader {
  public:
@@ -80,19 +91,35 @@ class Loader {
     }
   }
 
+  /// Those that a model names, and those of options of then. What is installed is loaded from there.
+  void load_copies(const Document& document) {
+    for (const std::string& file : kept_libraries(document.file_name())) {
+      if (stands_in_options(file) || !installed(file).empty()) continue;
+      require_plugin_allowed(file, options_);
+      load_plugin(registry, file);
+    }
+  }
+
   Registry registry = Registry::with_builtins();
 
  private:
+  bool stands_in_options(const std::string& file) const {
+    return std::ranges::any_of(options_.plugins,
+                               [&](const std::string& other) { return name_of(other) == name_of(file); });
+  }
+
   void load_named(const std::string& word, const std::string& model_file) {
     fs::path file;
     const auto same_name = [&](const std::string& other) { return name_of(other) == name_of(word); };
-    const bool option_stands_for_it = std::ranges::any_of(options_.plugins, same_name);
+    const bool option_stands_for_it = stands_in_options(word);
+    if (std::ranges::any_of(kept_libraries(model_file), same_name)) return;  // load_copies() takes it
     try {
       file = find_plugin(word, fs::path(model_file).parent_path());
       if (option_stands_for_it && lies_in_plugin_folder(file)) return;
     } catch (const Error&) {
       if (option_stands_for_it) return;
-      const std::vector<std::string> kept = kept_plugins(model_file);
+      // A copy of a model names paths from where the model was.
+      const auto kept = is_kept_copy(model_file) ? installed(word) : kept_plugins(model_file);
       const auto there = std::ranges::find_if(kept, same_name);
       std::error_code ignored;
       if (there == kept.end() || !fs::is_regular_file(*there, ignored)) throw;
@@ -127,9 +154,20 @@ void require_plugin_allowed(const fs::path& file, const LoadOptions& options) {
               {}, fmt::format("if you trust it, add --allow-plugins, or --plugin {}", file.string()));
 }
 
+std::vector<std::string> own_plugins(const Registry& registry) {
+  std::vector<std::string> files;
+  for (const RegisteredLibrary& library : registry.libraries()) {
+    if (library.path != "built-in" && !lies_in_plugin_folder(library.path)) files.push_back(library.path);
+  }
+  return files;
+}
+
 Registry load_registry(const LoadOptions& options, const Document* document) {
   Loader loader(options);
-  if (document != nullptr) loader.load_named(*document);
+  if (document != nullptr) {
+    loader.load_named(*document);
+    loader.load_copies(*document);
+  }
   loader.load_options();
   loader.load_recorded();
   Registry& registry = loader.registry;

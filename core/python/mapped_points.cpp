@@ -6,6 +6,7 @@
 #include "python/refusal.h"
 #include "study/axis_value.h"
 #include "study/planned_work.h"
+#include "study/point_source.h"
 #include "yaml/document.h"
 
 namespace freeplay {
@@ -59,7 +60,7 @@ MappedPoints::MappedPoints(const OpenRequest& request, const std::string& reduce
   for (const auto& [target, text] : build_options(request.words).set) options.set.emplace_back(target, text);
   plan_ = StudyPlan::read(request.file, options, diagnostics);
   if (!plan_) throw Refusal(diagnostics, exit_input);
-  source_ = point_source(*plan_);
+  source_ = point_source(plan_->file());
   source_.build = common_options(request);
   if (!reducers.empty()) read_reducers(reducers);
   add_plan();

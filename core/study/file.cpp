@@ -21,6 +21,7 @@
 #include "format/path_override.h"
 #include "load/model_file.h"
 #include "study/document_json.h"
+#include "study/reducer_entry.h"
 #include "yaml/document.h"
 
 namespace freeplay {
@@ -97,9 +98,8 @@ std::unique_ptr<StudyFile> StudyFile::read(const std::string& file, const KeptSt
   study->combine_set(set);
   if (!study->read_models(options, diagnostics)) return nullptr;
   study->plan_axes();
-  if (!diagnostics.has_errors()) study->check_targets(options);
-  if (!diagnostics.has_errors()) study->check_columns();
-  if (diagnostics.has_errors()) return nullptr;
+  study->check_targets(options);
+  study->check_columns();
   return study;
 }
 
@@ -117,7 +117,10 @@ bool StudyFile::read_section(Diagnostics& diagnostics) {
     version->fail("bad-version", fmt::format("schema version {} is not known", version->node().text));
   }
   if (study) section_ = read_study(*study, in_model_);
-  if (!section_ || diagnostics.has_errors()) return false;
+  if (!section_ || diagnostics.has_errors()) {
+    if (study) check_reducers(*study);
+    return false;
+  }
   const std::string stem = fs::path(document_.file_name()).stem().string();
   name_ = section_->name.empty() ? stem : section_->name;
   if (kept_) {
@@ -126,6 +129,14 @@ bool StudyFile::read_section(Diagnostics& diagnostics) {
     name_ = record_["name"].get<std::string>();
   }
   return true;
+}
+
+/// What they look like, where the rest of the section is wrong.
+void StudyFile::check_reducers(const CheckedValue& section) const {
+  const Node* reducers = section.node().is_map() ? section.node().find("reducers") : nullptr;
+  if (reducers == nullptr || !reducers->is_map()) return;
+  const Node* points = section.node().find("do");
+  read_reducers(CheckedValue(reading_, *reducers, nullptr, "reducers"), points != nullptr && points->is_map());
 }
 
 // The last one of a target counts; those of the command line come after the file's.
@@ -350,6 +361,28 @@ void StudyFile::check_columns() const {
 
 std::string StudyFile::copy_of(std::size_t model) const { return model_copy(model, models_[model].file); }
 
+std::vector<std::string> StudyFile::plugin_copies(std::size_t model) const {
+  std::vector<std::string> copies;
+  const fs::path folder = fs::path(copy_of(model)).parent_path() / libraries_folder;
+  for (const InputFile& plugin : models_[model].plugins) {
+    fs::path copy = folder / plugin.name;
+    for (int again = 2; std::ranges::find(copies, copy.string()) != copies.end(); ++again) {
+      copy = folder / fmt::format("{}-{}.so", fs::path(plugin.name).stem().string(), again);
+    }
+    copies.push_back(copy.string());
+  }
+  return copies;
+}
+
+bool StudyFile::keep_input(std::size_t model, const InputFile& input) {
+  StudyModel& of = models_[model];
+  const auto there = std::ranges::find(of.inputs, input.name, &InputFile::name);
+  if (there != of.inputs.end()) return there->text == input.text;
+  of.inputs.push_back(input);
+  of.sha256 = fingerprint(*of.document, of.inputs);
+  return true;
+}
+
 /// Those that axes speak of; with these the points are known.
 std::vector<std::string> StudyFile::named_addresses(const StudyModel& model) const {
   std::vector<std::string> named;
@@ -375,8 +408,10 @@ std::vector<KeptFile> StudyFile::kept_files() const {
         {{"name", model.name}, {"file", model.file}, {"play", model.has_play}, {"addresses", named_addresses(model)}});
     const std::string copy = model_copy(i, model.file), folder = copy.substr(0, copy.rfind('/') + 1);
     files.push_back({copy, model.document->text()});
-    if (!model.inputs.empty()) files.push_back({folder + only_copies, ""});
+    files.push_back({folder + only_copies, ""});
     for (const InputFile& input : model.inputs) files.push_back({folder + "inputs/" + input.name, input.text});
+    const std::vector<std::string> plugins = plugin_copies(i);
+    for (std::size_t k = 0; k < plugins.size(); ++k) files.push_back({plugins[k], model.plugins[k].text});
   }
   for (const PlannedAxis& axis : axes_) {
     const auto number = static_cast<std::size_t>(&axis.source() - section_->axes.data());

@@ -35,7 +35,8 @@ struct KeptStudy {
 class StudyFile {
  public:
   /// `file`: a study file or a model with a section `study`; or, kept, study.yaml in the folder of a study, whose
-  /// models are read from the copies there. `set`: of the command line; it wins over the file's. Null after errors.
+  /// models are read from the copies there. `set`: of the command line; it wins over the file's. Null after errors in
+  /// the section or the models; after those in axes all that is good is there.
   /// Throws Error{usage} for what `set` asks for and a model does not have, and what loading plugins throws.
   static std::unique_ptr<StudyFile> read(const std::string& file, const KeptStudy& kept, const TargetTexts& set,
                                          const LoadOptions& options, Diagnostics& diagnostics);
@@ -55,12 +56,17 @@ class StudyFile {
   std::vector<KeptFile> kept_files() const;
   /// Where the copy of a model is among them.
   std::string copy_of(std::size_t model) const;
+  /// Those of the libraries that it is made with.
+  std::vector<std::string> plugin_copies(std::size_t model) const;
+  /// A file that a model reads at some point. False where another one of the name is there.
+  bool keep_input(std::size_t model, const InputFile& input);
   /// SHA-256 of all that the points follow from.
   std::string identity() const;
 
  private:
   StudyFile(Document document, Diagnostics& diagnostics);
   bool read_section(Diagnostics& diagnostics);
+  void check_reducers(const CheckedValue& section) const;
   void combine_set(const TargetTexts& set);
   std::optional<StudyModel> read_one_model(std::size_t number, const std::string& place, const std::string& written,
                                            const LoadOptions& options, Diagnostics& diagnostics,

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "base/whole_file.h"
 #include "study/segment_reader.h"
 
@@ -205,6 +206,17 @@ void StudyFolder::set_aside() const {
   for (const char* name : {"study.yaml", "inputs", record_name}) move(path_ / name, place / name);
 }
 
+std::vector<std::string> StudyFolder::changed_copies() const {
+  std::vector<std::string> changed;
+  const Json copies = record().value("copies", Json::object());
+  for (const auto& [path, digits] : copies.items()) {
+    std::error_code ignored;
+    const bool there = fs::is_regular_file(path_ / path, ignored);
+    if (!there || sha256_of_file((path_ / path).string()) != digits) changed.push_back(path);
+  }
+  return changed;
+}
+
 StudyColumns StudyFolder::columns() const {
   const Json all = record();
   StudyColumns columns;
@@ -230,6 +242,8 @@ Json study_record(const StudyPlan& plan, const StudyMark& mark, const StudyColum
   }
   for (const StudyColumn& column : columns.samples) samples.push_back({{"name", column.name}, {"unit", column.unit}});
   for (const AxisColumn& column : plan.axis_columns()) axes.push_back({{"name", column.name}, {"unit", column.unit}});
+  Json copies = Json::object();
+  for (const KeptFile& file : plan.kept_files()) copies[file.path] = sha256(file.bytes);
   for (const StudyModel& model : plan.models()) {
     models.push_back({{"name", model.name}, {"file", model.file}, {"sha256", model.sha256}});
   }
@@ -244,7 +258,8 @@ Json study_record(const StudyPlan& plan, const StudyMark& mark, const StudyColum
           {"columns", std::move(names)},
           {"units", std::move(units)},
           {"samples", std::move(samples)},
-          {"models", models}};
+          {"models", models},
+          {"copies", std::move(copies)}};
 }
 
 void require_same(const SegmentHeader& header, const fs::path& segment, const StudyMark& mark) {

@@ -39,6 +39,8 @@ class StudyFolder {
   void require_room() const;
   /// study.json. Throws Error{input} "file-not-found" where there is none.
   Json record() const;
+  /// Those of its copies that are not as they were when it began, or are gone.
+  std::vector<std::string> changed_copies() const;
   /// That study.json names. Throws Error{input} "file-not-found" where it names none.
   StudyColumns columns() const;
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "base/error.h"
 #include "base/input_text.h"
+#include "base/kept_input.h"
 #include "base/name_pattern.h"
 #include "base/sha256.h"
 #include "format/model_builder.h"
@@ -50,6 +53,18 @@ std::set<std::string> parameters_of(const Document& document) {
   return names;
 }
 
+std::vector<InputFile> libraries(const std::vector<std::string>& files) {
+  std::vector<InputFile> libraries;
+  for (const std::string& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    libraries.push_back(
+        {std::filesystem::path(file).filename().string(), {std::istreambuf_iterator<char>(stream), {}}});
+  }
+  return libraries;
+}
+
+}  // namespace
+
 std::string fingerprint(const Document& document, std::vector<InputFile> inputs) {
   constexpr std::array<std::string_view, 1> without = {"study"};
   std::ranges::sort(inputs, {}, &InputFile::name);
@@ -59,8 +74,6 @@ std::string fingerprint(const Document& document, std::vector<InputFile> inputs)
   for (const InputFile& input : inputs) hash.add(input.text.data(), input.text.size());
   return hash.digits();
 }
-
-}  // namespace
 
 bool StudyModel::has(const std::string& target) const {
   if (parameters.contains(target)) return true;
@@ -118,6 +131,7 @@ std::optional<StudyModel> read_study_model(const std::string& place, const std::
   made.parameters = parameters_of(*made.document);
   made.has_play = built.model->clearance_joints() > 0 || !built.model->ideal.empty();
   made.inputs = built.model->inputs;
+  made.plugins = libraries(own_plugins(probe.registry()));
   made.name = built.model->name;
   made.sha256 = fingerprint(*made.document, made.inputs);
   return made;
@@ -138,6 +152,7 @@ std::optional<StudyModel> read_kept_model(const std::string& place, const std::s
       made.inputs.push_back(std::move(input));
     }
   }
+  made.plugins = libraries(kept_libraries(place));
   made.sha256 = fingerprint(*made.document, made.inputs);
   return made;
 }

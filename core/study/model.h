@@ -23,7 +23,8 @@ struct StudyModel {
   std::string file;    ///< as the study names it
   std::string sha256;  ///< of what it says, apart from a study, and of the files that it reads
   std::unique_ptr<const Document> document;
-  std::vector<InputFile> inputs;  ///< files that it reads
+  std::vector<InputFile> inputs;   ///< files that it reads
+  std::vector<InputFile> plugins;  ///< libraries that it is made with, but for installed ones
   std::set<std::string> parameters;
   bool has_play = false;               ///< a joint of it can have play
   std::vector<std::string> addresses;  ///< paths of the expanded model, sorted, each once
@@ -31,6 +32,9 @@ struct StudyModel {
   /// Is there something that a value of this target takes the place of?
   bool has(const std::string& target) const;
 };
+
+/// SHA-256 of a model: of what it says, apart from a study, and of the files that it reads.
+std::string fingerprint(const Document& document, std::vector<InputFile> inputs);
 
 /// Builds a model with values of targets, to see what is wrong with them.
 class ModelProbe {
@@ -45,6 +49,7 @@ class ModelProbe {
   };
   /// `addresses` may be null.
   Result build(const TargetTexts& set, std::vector<std::string>* addresses) const;
+  const Registry& registry() const { return registry_; }
 
  private:
   const Document& document_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "base/unit.h"
 #include "base/version.h"
 #include "study/document_json.h"
+#include "study/point_source.h"
 
 namespace freeplay {
 namespace {
@@ -47,7 +49,7 @@ std::unique_ptr<OpenStudy> OpenStudy::open(const std::string& file, const StudyP
   study->plan_ = StudyPlan::read(file, options, diagnostics);
   if (!study->plan_) return nullptr;
   if (study->plan_->has_models()) {
-    study->runner_ = std::make_unique<PointRunner>(point_source(*study->plan_), options.load, diagnostics);
+    study->runner_ = std::make_unique<PointRunner>(point_source(study->plan_->file()), options.load, diagnostics);
     study->columns_ = {study->runner_->columns(), study->runner_->sample_columns()};
   } else {
     study->columns_ = StudyFolder(std::filesystem::path(file).parent_path()).columns();
@@ -69,7 +71,9 @@ std::unique_ptr<OpenStudy> OpenStudy::open(const std::string& file, const StudyP
 
 StudyMark OpenStudy::mark() const {
   std::string program = sha256_of_file("/proc/self/exe");
-  for (const std::string& file : runner_->plugin_files()) program += "\n" + sha256_of_file(file);
+  std::set<std::string> plugins;  // wherever they lie
+  for (const std::string& file : runner_->plugin_files()) plugins.insert(sha256_of_file(file));
+  for (const std::string& digits : plugins) program += "\n" + digits;
   const auto text_of = [](const Node* node) { return node == nullptr ? std::string() : document_json(*node); };
   std::string columns = text_of(plan_->section().reducers) + "\n" + text_of(plan_->section().analysis);
   for (const StudyColumn& column : layout_.columns) columns += "\n" + column.name;

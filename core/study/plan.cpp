@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "base/sha256.h"
+#include "study/idle_axes.h"
+#include "study/point_source.h"
 #include "study/value_check.h"
 
 namespace freeplay {
@@ -29,21 +31,28 @@ bool within_sobol(const StudyFile& file) {
 
 }  // namespace
 
+// A mistake in the axes leaves those of the reducers to be found.
 std::unique_ptr<StudyPlan> StudyPlan::read(const std::string& file, const StudyPlanOptions& options,
                                            Diagnostics& diagnostics) {
   std::unique_ptr<StudyFile> read =
       StudyFile::read(file, {options.kept, options.look}, options.set, options.load, diagnostics);
-  if (!read || !within_sobol(*read)) return nullptr;
+  if (!read) return nullptr;
   std::unique_ptr<StudyPlan> plan(new StudyPlan(std::move(read)));
-  plan->layout_ = std::make_unique<const StudyLayout>(plan->section(), plan->file_->axes(), plan->models().size(),
-                                                      options.many_points);
-  if (diagnostics.has_errors()) return nullptr;
-  if (plan->has_models()) check_values(*plan->file_, options.load);
-  if (diagnostics.has_errors()) return nullptr;
-  return plan;
+  if (!diagnostics.has_errors() && within_sobol(*plan->file_)) plan->lay_out(options, diagnostics);
+  if (!diagnostics.has_errors()) return plan;
+  if (plan->has_models()) PointRunner(point_source(*plan->file_), options.load, diagnostics);
+  return nullptr;
 }
 
-StudyPlan::StudyPlan(std::unique_ptr<StudyFile> file) : file_(std::move(file)), draws_(draws_of(*file_)) {
+void StudyPlan::lay_out(const StudyPlanOptions& options, Diagnostics& diagnostics) {
+  layout_ = std::make_unique<const StudyLayout>(section(), file_->axes(), models().size(), options.many_points);
+  draws_ = draws_of(*file_);
+  if (diagnostics.has_errors() || !has_models()) return;
+  check_values(*file_, options.load);
+  if (!diagnostics.has_errors()) doubt_idle_axes(*file_, options.load);
+}
+
+StudyPlan::StudyPlan(std::unique_ptr<StudyFile> file) : file_(std::move(file)) {
   for (const PlannedAxis& axis : file_->axes()) {
     columns_.insert(columns_.end(), axis.columns().begin(), axis.columns().end());
   }

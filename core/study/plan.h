@@ -33,6 +33,7 @@ class StudyPlan {
   static std::unique_ptr<StudyPlan> read(const std::string& file, const StudyPlanOptions& options,
                                          Diagnostics& diagnostics);
 
+  const StudyFile& file() const { return *file_; }
   const std::string& name() const { return file_->name(); }
   const StudySection& section() const { return file_->section(); }
   const std::vector<StudyModel>& models() const { return file_->models(); }
@@ -46,6 +47,8 @@ class StudyPlan {
   std::vector<KeptFile> kept_files() const { return file_->kept_files(); }
   /// Where the copy of a model is among them.
   std::string model_copy(std::size_t model) const { return file_->copy_of(model); }
+  /// And of the libraries that it is made with.
+  std::vector<std::string> plugin_copies(std::size_t model) const { return file_->plugin_copies(model); }
 
   const std::vector<AxisColumn>& axis_columns() const { return columns_; }
   bool has_model_column() const { return models().size() > 1; }
@@ -68,11 +71,12 @@ class StudyPlan {
 
  private:
   explicit StudyPlan(std::unique_ptr<StudyFile> file);
+  void lay_out(const StudyPlanOptions& options, Diagnostics& diagnostics);
   PlacedPoint settings_of(std::uint64_t index, std::vector<PlannedSetting>& settings,
                           std::vector<std::string>& cells) const;
   std::string own_hash(std::uint64_t index, const std::string& before) const;
 
-  std::unique_ptr<const StudyFile> file_;
+  std::unique_ptr<StudyFile> file_;
   std::unique_ptr<const StudyLayout> layout_;
   std::unique_ptr<const Draws> draws_;
   std::vector<AxisColumn> columns_;

@@ -6,16 +6,6 @@
 
 namespace freeplay {
 
-PointSource point_source(const StudyPlan& plan) {
-  PointSource source;
-  for (const StudyModel& model : plan.models()) source.models.push_back(model.document.get());
-  source.set = plan.set();
-  source.reducers = plan.section().reducers;
-  source.analysis = plan.section().analysis;
-  source.chained = plan.chained();
-  return source;
-}
-
 RowLayout row_layout(const StudyPlan& plan, const StudyColumns& columns) {
   RowLayout layout{columns.table, {}, plan.chained()};
   for (const StudyColumn& column : columns.samples) layout.samples.push_back(column.name);

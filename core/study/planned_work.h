@@ -30,21 +30,17 @@ class PlannedWork final : public StudyWork {
   std::string hash(std::uint64_t point) const override { return plan_.hash(point); }
   StudyOutcome run(std::uint64_t index, const std::string& state_before) override {
     const StudyPoint point = plan_.point(index);
-    StudyOutcome outcome = runner_->run(point, state_before);
-    if (after_) after_(point, outcome);
-    return outcome;
+    return instead_ ? instead_(point) : runner_->run(point, state_before);
   }
-  /// Called in the worker after each point.
-  void after_each(std::function<void(const StudyPoint&, const StudyOutcome&)> act) { after_ = std::move(act); }
+  /// What workers do at a point from now on.
+  void do_instead(std::function<StudyOutcome(const StudyPoint&)> act) { instead_ = std::move(act); }
 
  private:
   const StudyPlan& plan_;
   PointRunner* runner_;
-  std::function<void(const StudyPoint&, const StudyOutcome&)> after_;
+  std::function<StudyOutcome(const StudyPoint&)> instead_;
 };
 
-/// What a runner needs of a plan, which outlives it.
-PointSource point_source(const StudyPlan& plan);
 RowLayout row_layout(const StudyPlan& plan, const StudyColumns& columns);
 /// The table of a plan's rows: what merge_rows() wants. The plan outlives it.
 MergePlan merge_plan(const StudyPlan& plan, const StudyColumns& columns);

@@ -1,5 +1,7 @@
 #include "study/point_words.h"
 
+#include <algorithm>
+
 namespace freeplay {
 namespace {
 
@@ -20,8 +22,19 @@ std::string option_text(const Node& node) {
 
 }  // namespace
 
+std::vector<std::string> plugins_from_copies(const StudyPlan& plan, const std::filesystem::path& folder,
+                                             const StudyPoint& point, const std::vector<std::string>& plugins) {
+  std::vector<std::string> copies;
+  for (const std::string& copy : plan.plugin_copies(point.model)) {
+    const auto name = std::filesystem::path(copy).filename();
+    const auto stands_for_it = [&](const std::filesystem::path& plugin) { return plugin.filename() == name; };
+    if (std::ranges::none_of(plugins, stands_for_it)) copies.push_back((folder / copy).string());
+  }
+  return copies;
+}
+
 std::vector<std::string> point_words(const StudyPlan& plan, const std::filesystem::path& folder,
-                                     const StudyPoint& point) {
+                                     const StudyPoint& point, const std::vector<std::string>& plugins) {
   const Node* analysis = plan.section().analysis;
   std::vector<std::string> words;
   if (analysis == nullptr) {
@@ -34,11 +47,15 @@ std::vector<std::string> point_words(const StudyPlan& plan, const std::filesyste
     words.emplace_back("--set");
     words.push_back(setting.target + "=" + setting.text);
   }
-  if (analysis == nullptr) return words;
-  for (const Node::Entry& entry : analysis->entries) {
+  for (std::size_t i = 0; analysis != nullptr && i < analysis->entries.size(); ++i) {
+    const Node::Entry& entry = analysis->entries[i];
     if (entry.key->text == "analyze") continue;
     words.push_back("--" + entry.key->text);
     words.push_back(option_text(*entry.value));
+  }
+  for (const std::string& plugin : plugins) words.insert(words.end(), {"--plugin", plugin});
+  for (const std::string& copy : plugins_from_copies(plan, folder, point, plugins)) {
+    words.insert(words.end(), {"--plugin", copy});
   }
   return words;
 }

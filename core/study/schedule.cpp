@@ -54,6 +54,11 @@ PointRanges point_ranges(const std::string& option, const std::string& text, std
   return apart;
 }
 
+bool holds(const PointRanges& ranges, std::uint64_t point) {
+  const auto after = std::ranges::upper_bound(ranges, point, {}, [](const auto& range) { return range.first; });
+  return after != ranges.begin() && point <= std::prev(after)->second;
+}
+
 Schedule::Schedule(const StudyWork& work, const RowScan& scan, ScheduleOptions options)
     : work_(work), scan_(scan), options_(std::move(options)), next_unit_(options_.shard.part - 1) {
   const Shard& shard = options_.shard;
@@ -77,11 +82,7 @@ Schedule::Schedule(const StudyWork& work, const RowScan& scan, ScheduleOptions o
   units_->erase(std::unique(units_->begin(), units_->end()), units_->end());
 }
 
-bool Schedule::named(std::uint64_t point) const {
-  if (!options_.only) return true;
-  const auto after = std::ranges::upper_bound(*options_.only, point, {}, [](const auto& range) { return range.first; });
-  return after != options_.only->begin() && point <= std::prev(after)->second;
-}
+bool Schedule::named(std::uint64_t point) const { return !options_.only || holds(*options_.only, point); }
 
 bool Schedule::open(std::uint64_t point) const {
   return !scan_.done().has(point) || scan_.killed().has(point) || (options_.retry_failed && scan_.failed().has(point));

@@ -21,6 +21,9 @@ using PointRanges = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
 /// "0-9,12" as ranges below `points`. Throws Error{usage} "bad-value".
 PointRanges point_ranges(const std::string& option, const std::string& text, std::uint64_t points);
 
+/// Is the point in one of them?
+bool holds(const PointRanges& ranges, std::uint64_t point);
+
 struct ScheduleOptions {
   Shard shard{};
   std::optional<PointRanges> only{};

@@ -112,7 +112,11 @@ void give_study_json(const TableExport& of, const Json& provenance, const std::f
 
 Json study_provenance(const OpenStudy& study, const StudyFolder& folder) {
   Json files = Json::array();
-  for (const KeptFile& file : study.plan().kept_files()) files.push_back({{"path", file.path}, {"text", file.bytes}});
+  for (const KeptFile& file : study.plan().kept_files()) {
+    if (std::filesystem::path(file.path).extension() != ".so") {
+      files.push_back({{"path", file.path}, {"text", file.bytes}});
+    }
+  }
   return {{"study", folder.record()}, {"files", std::move(files)}};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
 namespace freeplay {
 namespace {
 
@@ -19,7 +21,7 @@ const Diagnostic* fault_in(const ModelProbe::Result& result) {
 
 class ValueCheck {
  public:
-  ValueCheck(const StudyFile& study, std::size_t model, const LoadOptions& options)
+  ValueCheck(StudyFile& study, std::size_t model, const LoadOptions& options)
       : study_(study), model_(model), probe_(*study.models()[model].document, options) {
     for (const PlannedAxis& axis : study.axes()) kinds_.push_back(axis.kinds());
   }
@@ -31,12 +33,25 @@ class ValueCheck {
     for (std::size_t round = 0; round < rounds; ++round) {
       std::vector<PlannedSetting> settings;
       for (std::size_t axis = 0; axis < kinds_.size(); ++axis) add(axis, round, settings);
-      if (settings.empty() || fault_in(tried(settings)) == nullptr) continue;
-      for (std::size_t axis = 0; axis < kinds_.size(); ++axis) check_alone(axis, round);
+      if (settings.empty()) continue;
+      const ModelProbe::Result result = tried(settings);
+      if (result.model) take_inputs(*result.model);
+      for (std::size_t axis = 0; axis < kinds_.size() && fault_in(result) != nullptr; ++axis) check_alone(axis, round);
     }
   }
 
  private:
+  // All stand in one folder of copies, where a point finds its own by the name.
+  void take_inputs(const Model& model) {
+    for (const InputFile& input : model.inputs) {
+      if (study_.keep_input(model_, input)) continue;
+      study_.section().section.fail_at_key(
+          "duplicate-name",
+          fmt::format("the points of '{}' read different files that are called '{}': give them names of their own",
+                      study_.models()[model_].name, input.name));
+    }
+  }
+
   void add(std::size_t number, std::size_t round, std::vector<PlannedSetting>& settings) const {
     const PlannedAxis& axis = study_.axes()[number];
     if (!axis.present[model_] || round >= kinds_[number].size()) return;
@@ -64,7 +79,7 @@ class ValueCheck {
               fault->suggestion, fault->hint);
   }
 
-  const StudyFile& study_;
+  StudyFile& study_;
   std::size_t model_;
   ModelProbe probe_;
   std::vector<std::vector<std::uint64_t>> kinds_;
@@ -72,7 +87,7 @@ class ValueCheck {
 
 }  // namespace
 
-void check_values(const StudyFile& study, const LoadOptions& options) {
+void check_values(StudyFile& study, const LoadOptions& options) {
   for (std::size_t model = 0; model < study.models().size(); ++model) ValueCheck(study, model, options).check();
 }
 

@@ -48,7 +48,7 @@ class StudyAgain(ProgramTest):
     def test_the_same_points_are_compared_whatever_their_numbers(self):
         self.run_ball("a")
         self.run_ball("b", BALL + GRID.replace("[1, 2, 40]", "[1, 3, 79]").replace("[-2 m/s, 1 m/s]", "[1 m/s, -2 m/s]"))
-        out, err = self.freeplay("compare", "a", "b", code=7)
+        out, err = self.freeplay("compare", "a", "b")
         self.assertIn("column,max_abs,max_rel,rms,at_point,ok\n", out)
         rows = {line.split(",")[0]: line.split(",") for line in out.splitlines()[1:] if line[0] != "#"}
         self.assertEqual({"y", "section", "exit_code"}, set(rows))
@@ -78,6 +78,8 @@ class StudyAgain(ProgramTest):
 
     def test_what_cannot_be_compared_is_refused(self):
         self.run_ball("a")
+        self.run_ball("b", BALL.replace("0.1 s", "0.2 s") + GRID)
+        self.assertIn("no point of 'a' is a point of 'b': nothing can be compared", self.freeplay("compare", "a", "b", code=3)[1])
         self.freeplay("run", "ball.yaml", "--out", "run", "--quiet")
         for words, text in ((("a", "run"), "'a' is the directory of a study, and 'run' is none"), (("run", "a"), "'run' is none"),
                             (("a", "a", "--from", "1 ms"), "no times"), (("a", "a", "--channels", "yy"), "did you mean 'y'?")):

@@ -1,5 +1,6 @@
 """freeplay study: many starters of one directory, scripts, and what is said where a study ends without its interval."""
 import csv
+import json
 import os
 import re
 import subprocess
@@ -104,6 +105,55 @@ class StudyPlaces(ProgramTest):
         self.assertEqual(["", "", ""], [closed[name] for name in ("force", "ratio", "turns")])
         self.assertNotIn("", [loose[name] for name in ("force", "ratio", "place")])
         self.assertNotEqual("", closed["place"])
+
+    def test_a_model_without_play_has_no_events(self):
+        section = ("study:\n  axes: {g: [1, 2]}\n  reducers: {hits: {events: '%s', reduce: count}, "
+                   "hardest: {events: '%s', field: speed, reduce: max}}\n")
+        self.write("ball.yaml", BALL + section % ("*", "a*"))
+        self.study("run", "ball.yaml", "--out", "r")
+        with open(self.path("r", "study.csv"), encoding="utf-8") as file:
+            self.assertEqual([("0", "")] * 2, [(row["hits"], row["hardest"]) for row in csv.DictReader(file)])
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            self.write("crank.yaml", file.read() + section.replace("g: [1, 2]", "c: [0.1 mm, 0.2 mm]") % ("crankpin", "wirst"))
+        _, err = self.study("plan", "crank.yaml", code=3)
+        self.assertIn("joint 'crankpin' has no events: nothing in it touches", err)
+        self.assertIn("there is no joint 'wirst'", err)
+
+    def test_mistakes_of_axes_and_reducers_are_told_at_once(self):
+        self.write("ball.yaml", BALL + "study:\n  axes: {gg: [1, 2]}\n  reducers: {y: {channel: body.bal.y, reduce: final}}\n")
+        _, err = self.study("plan", "ball.yaml", code=3)
+        for word in ("did you mean 'g'?", "did you mean 'body.ball.y'?"):
+            self.assertIn(word, err)
+        self.write("ball.yaml", BALL + "study:\n  axis: {g: [1, 2]}\n  reducers: {y: {channel: body.ball.y, reduce: finnal}}\n")
+        _, err = self.study("plan", "ball.yaml", code=3)
+        for word in ("did you mean 'axes'?", "did you mean 'final'?"):
+            self.assertIn(word, err)
+
+    def test_an_axis_that_changes_nothing_is_told(self):
+        warning = "'%s' changes nothing: the model is the same at all its values"
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            self.write("crank.yaml", file.read() + "study:\n  axes: {c: [0.1 mm, 0.2 mm], speed: [500 rpm, 600 rpm]}\n"
+                       "  reducers: {place: {channel: body.slider.x, reduce: max}}\n")
+        self.assertEqual("", self.study("plan", "crank.yaml", "--probe", "0")[1])
+        _, err = self.study("plan", "crank.yaml", "--probe", "0", "--ideal", "all")
+        self.assertIn(warning % "c", err)
+        self.assertNotIn(warning % "speed", err)
+        _, err = self.study("plan", "crank.yaml", "--probe", "0", "--set", "joints.wrist.clearance.radial_clearance=0.3 mm")
+        self.assertIn(warning % "c", err)
+        self.assertIn("have put something else in the place of what it sets", err)
+        self.assertIn("'c' is set by", self.study("plan", "crank.yaml", "--probe", "0", "--set", "c=0.3 mm", code=3)[1])
+
+    def test_figures_of_a_summary_have_their_units(self):
+        reducers = {"joints.wrist.max_fn": "N", "joints.*.max_torque, over: max": "N*m", "joints.wrist.max_delta": "m", "joints.wrist.dissipated": "J",
+                    "joints.wrist.contacts": "1", "joints.wrist.play.max_impulse": "N*s", "bodies.slider.max_speed": "m/s",
+                    "drivers.motor.rms": "N*m", "noise.joints.wrist.max_fn": "N", "energy.kinetic": "J", "time.reached": "s"}
+        with open(mechanism("slider-crank"), encoding="utf-8") as file:
+            self.write("crank.yaml", file.read() + "study:\n  axes: {c: [0.1 mm, 0.2 mm]}\n  reducers:\n" + "".join(
+                "    r%d: {summary: %s}\n" % (i, path.replace("joints.*.max_torque", '"joints.*.max_torque"')) for i, path in enumerate(reducers)))
+        self.study("script", "crank.yaml", "--out", "r", "--engine", "gnu-parallel", "--set", "simulation.end=1 ms", "--probe", "1")
+        record = json.loads(self.read("r", "study.json"))
+        self.assertEqual(dict(zip(["r%d" % i for i in range(len(reducers))], reducers.values())),
+                         dict(zip(record["columns"], record["units"])))
 
     def test_an_interval_that_was_not_reached_is_said(self):
         self.write("stop.yaml", BALL + """study:

@@ -223,6 +223,35 @@ TEST_F(StudyPlanning, ACopyIsTheSameStudy) {
   EXPECT_EQ(copy->point(0).settings[0].target, "v");
 }
 
+TEST_F(StudyPlanning, FilesThatAnAxisNamesAreKept) {
+  const std::string moved =
+      "freeplay: 1\nname: moved\nbodies: {a: {mass: 1 kg, inertia: 1 kg*m^2}}\n"
+      "joints: {j: {type: revolute, between: [ground, a]}}\n"
+      "drivers: {d: {joint: j, kind: angle, table: {file: one.csv}}}\n"
+      "simulation: {end: 1 ms, step: 1 ms}\n"
+      "study:\n  axes: {drivers.d.table.file: [";
+  write("one.csv", "t,x\n0,0\n1,1\n");
+  write("two.csv", "t,x\n0,0\n1,2\n");
+  write("other/one.csv", "t,x\n0,0\n1,3\n");
+  write("m.yaml", moved + "one.csv, two.csv]}\n");
+  const auto plan = read("m.yaml", {});
+  ASSERT_TRUE(plan) << messages_;
+  for (const KeptFile& file : plan->kept_files()) write("dir/" + file.path, file.bytes);
+  for (const char* gone : {"m.yaml", "one.csv", "two.csv"}) std::filesystem::remove(folder_.file(gone));
+  StudyPlanOptions options;
+  options.kept = true;
+  for (const bool look : {false, true}) {
+    options.look = look;
+    const auto copy = read("dir/study.yaml", options);
+    ASSERT_TRUE(copy) << messages_;
+    EXPECT_EQ(copy->identity(), plan->identity());
+  }
+  write("one.csv", "t,x\n0,0\n1,1\n");
+  write("m.yaml", moved + "one.csv, other/one.csv]}\n");
+  EXPECT_FALSE(read("m.yaml", {}));
+  EXPECT_NE(messages_.find("different files that are called 'one.csv'"), std::string::npos) << messages_;
+}
+
 TEST_F(StudyPlanning, ACopyThatIsDamagedIsNone) {
   const auto plan = of_ball("  axes: {g: [1]}\n");
   for (const KeptFile& file : plan->kept_files()) write(file.path, file.bytes);
