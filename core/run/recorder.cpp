@@ -266,6 +266,7 @@ bool Recorder::write_row_at(double t) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::output);
   if (!see_at(t, row_between_)) return false;
   maxima_.see(row_between_);
+  feed_.see_inside(row_between_);
   if (contact_rows_.active()) {
     if (!contact_rows_.idle()) {
       statistics_.note(row_between_);
@@ -386,6 +387,7 @@ bool Recorder::begin_statistics_inside() {
   statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,
                   0.0);
   clearances_.add(row_between_, run_.e_between, run_.energy.joint_loss());
+  feed_.see_inside(row_between_);
   if (contact_rows_.active()) contact_rows_.see_inside(row_between_, false);
   return true;
 }
