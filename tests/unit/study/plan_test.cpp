@@ -229,11 +229,11 @@ TEST_F(StudyPlanning, FilesThatAnAxisNamesAreKept) {
       "joints: {j: {type: revolute, between: [ground, a]}}\n"
       "drivers: {d: {joint: j, kind: angle, table: {file: one.csv}}}\n"
       "simulation: {end: 1 ms, step: 1 ms}\n"
-      "study:\n  axes: {drivers.d.table.file: [";
+      "study:\n  axes: ";
   write("one.csv", "t,x\n0,0\n1,1\n");
   write("two.csv", "t,x\n0,0\n1,2\n");
   write("other/one.csv", "t,x\n0,0\n1,3\n");
-  write("m.yaml", moved + "one.csv, two.csv]}\n");
+  write("m.yaml", moved + "{drivers.d.table.file: [one.csv, two.csv]}\n");
   const auto plan = read("m.yaml", {});
   ASSERT_TRUE(plan) << messages_;
   for (const KeptFile& file : plan->kept_files()) write("dir/" + file.path, file.bytes);
@@ -247,7 +247,8 @@ TEST_F(StudyPlanning, FilesThatAnAxisNamesAreKept) {
     EXPECT_EQ(copy->identity(), plan->identity());
   }
   write("one.csv", "t,x\n0,0\n1,1\n");
-  write("m.yaml", moved + "one.csv, other/one.csv]}\n");
+  write("m.yaml",
+        moved + "{f: {cases: {a: {drivers.d.table.file: one.csv}, b: {drivers.d.table.file: other/one.csv}}}}\n");
   EXPECT_FALSE(read("m.yaml", {}));
   EXPECT_NE(messages_.find("different files that are called 'one.csv'"), std::string::npos) << messages_;
 }
