@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_kept = 10'000;  // result directories without --yes
-constexpr int cannot_write = 6;              // exit code
+constexpr int code_of_unwritten = 6;         // exit code
 
 }  // namespace
 
@@ -96,7 +96,7 @@ void KeptResults::make(const ScheduleOptions& schedule, const Question& has_row,
       [&](std::uint64_t point, const StudyOutcome& outcome) {
         ++ended;
         ++(is_there(point) ? there_ : fruitless_);
-        if (outcome.exit_code == cannot_write && unwritten.empty()) unwritten = outcome.message + " ";
+        if (outcome.exit_code == code_of_unwritten && unwritten.empty()) unwritten = outcome.message + " ";
       },
       [&] {
         progress.update(ended, 0);
