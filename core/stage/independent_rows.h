@@ -29,11 +29,13 @@ class IndependentRows {
   void keep_all() { rank_ = jacobian_.layout().nc(); }
   /// Makes the choice anew from Phi_q of `e`. Returns whether it is another one than before.
   bool find(const ConstraintValues& e);
-  /// The same, but only a rank that is larger than before counts. `error`: see RowRank::analyse().
+  /// The same, but only a rank that is larger than before counts, and on the constraints another choice of as many
+  /// rows that is far more independent: what is kept may come to depend on each other as the mechanism moves on.
+  /// `error`: see RowRank::analyse().
   void find_more(const ConstraintValues& e, double error);
   /// Multipliers of least norm for the same forces on the bodies: efforts of drivers first, then reactions. Phi_q is
   /// that of the last find_more().
-  void least_norm(std::span<double> lambda) { rank_of_.least_norm(lambda, jacobian_.layout().first_driver_row()); }
+  void least_norm(std::span<double> lambda);
   /// Row that comes closest to depending on the others, or -1. Slow.
   int weakest(const ConstraintValues& e);
 
@@ -59,6 +61,8 @@ class IndependentRows {
 
  private:
   bool adopt();
+  LeftOutRows express();
+  void exchange_rows(LeftOutRows now);
 
   const ConstraintJacobian& jacobian_;
   RowRank rank_of_;
@@ -67,6 +71,8 @@ class IndependentRows {
   bool any_dependent_ = false;
   int rank_ = -1;  // of the rows that are kept; -1 before the first choice
   int choice_ = 0;
+  int expressed_choice_ = -1;  // by which rank_of_ expresses what is left out
+  double error_ = 0.0;         // of the last find_more()
   double largest_pivot_ = 0.0, regularity_ = 1.0, last_regularity_ = 1.0;
 };
 

@@ -97,6 +97,7 @@ void expect_least_norm(const RowMajor& j, int first_driver, unsigned seed) {
   const int rows = static_cast<int>(j.rows());
   RowRank rank(rows, static_cast<int>(j.cols()));
   rank.analyse(entries(j));
+  rank.express(entries(j), rank.dependent());
   const Eigen::VectorXd before = random_matrix(rows, 1, seed);
   Eigen::VectorXd after = before;
   rank.least_norm({after.data(), static_cast<std::size_t>(rows)}, first_driver);
@@ -126,6 +127,7 @@ TEST(LeastNorm, WithoutDriversJointsAloneAreLeast) {
   const RowMajor j = of_rank(2, 4, 3, 16);
   RowRank rank(4, 3);
   rank.analyse(entries(j));
+  rank.express(entries(j), rank.dependent());
   Eigen::VectorXd lambda = random_matrix(4, 1, 17);
   const Eigen::VectorXd want =
       Eigen::MatrixXd(j.transpose()).completeOrthogonalDecomposition().solve(Eigen::VectorXd(j.transpose() * lambda));
@@ -136,9 +138,48 @@ TEST(LeastNorm, WithoutDriversJointsAloneAreLeast) {
 TEST(LeastNorm, FullRankIsLeftAlone) {
   RowRank rank(3, 5);
   rank.analyse(entries(random_matrix(3, 5, 18)));
+  rank.express(entries(random_matrix(3, 5, 18)), rank.dependent());
   std::vector<double> lambda{1.0, -2.0, 3.0};
   rank.least_norm(lambda, 2);
   EXPECT_EQ(lambda, (std::vector<double>{1.0, -2.0, 3.0}));
+}
+
+// In a stage that is off the constraints by s no row depends exactly on others any more: multipliers go on smoothly
+// from those on the constraints, and their resultant with them.
+TEST(LeastNorm, GoesOnSmoothlyOffTheConstraints) {
+  constexpr int rows = 7, columns = 9, first_driver = 5;
+  RowMajor on = random_matrix(rows, columns, 20);
+  on.row(3) = 2.0 * on.row(0) - on.row(1);  // joints alone, so that drivers have no part in it
+  const RowMajor off = random_matrix(rows, columns, 21);
+  const Eigen::VectorXd before = random_matrix(rows, 1, 22);
+  RowRank rank(rows, columns);
+  ASSERT_EQ(rank.analyse(entries(on)), 6);
+  const std::vector<char> left_out(rank.dependent().begin(), rank.dependent().end());
+  const auto least = [&](double s) {
+    Eigen::VectorXd lambda = before;
+    rank.express(entries(RowMajor(on + s * off)), left_out, 10.0 * s);
+    rank.least_norm({lambda.data(), rows}, first_driver);
+    return lambda;
+  };
+  const Eigen::VectorXd here = least(0.0);
+  for (const double s : {1e-2, 1e-4, 1e-6}) {
+    const Eigen::VectorXd near = least(0.5 * s), far = least(s);
+    EXPECT_LT((far - here).norm(), 20.0 * s);
+    EXPECT_LT((far - 2.0 * near + here).norm(), 100.0 * s * s + 1e-14);
+    EXPECT_LT((on.transpose() * (far - before)).norm(), 20.0 * s);
+  }
+}
+
+TEST(RowRank, SaysWhichOtherChoiceOfRowsIsMoreIndependent) {
+  RowMajor j(3, 2);
+  j << 1.0, 0.0, 1.0, 0.01, 0.0, 1.0;
+  RowRank rank(3, 2);
+  const LeftOutRows narrow = rank.express(entries(j), std::vector<char>{0, 0, 1});
+  EXPECT_NEAR(narrow.largest, 100.0, 1e-10);  // [0 1] = 100 ([1 0.01] - [1 0])
+  EXPECT_EQ(narrow.left_out, 2);
+  EXPECT_LT(narrow.rest, 1e-12);
+  EXPECT_NEAR(rank.express(entries(j), std::vector<char>{0, 1, 0}).largest, 1.0, 1e-12);
+  EXPECT_NEAR(rank.express(entries(j), std::vector<char>{0, 1, 1}).rest, 1.0, 1e-12);
 }
 
 }  // namespace
