@@ -24,17 +24,17 @@ class FreeMotions {
     const MatrixXd rows = held_by_drivers(), spins = idle_spins(rows);
     found.bodies = moving_in(rows, spins, &found.motions);
     if (found.motions <= 0) found.bodies.clear();
-    if (!found.bodies.empty()) judge(rows, spins, found);
+    if (!found.bodies.empty()) judge(rows, found);
     if (found.doubt.empty()) find_idle(spins, found);
     return found;
   }
 
  private:
   /// Is it said where the free bodies start, and does anything act on them? Pendulums and loads are given a start.
-  void judge(const MatrixXd& held, const MatrixXd& spins, LeftFree& found) const {
+  void judge(const MatrixXd& held, LeftFree& found) const {
     const auto is_moving = [&](BodyId body) { return std::ranges::count(found.bodies, body) > 0; };
     const bool acts = acts_on(is_moving);
-    const std::vector<int> unrestrained = acts ? without_start(is_moving, held, spins) : found.bodies;
+    const std::vector<int> unrestrained = acts ? without_start(is_moving, held) : found.bodies;
     if (unrestrained.empty()) return;
     std::string names;
     for (const int b : unrestrained)
@@ -188,10 +188,11 @@ class FreeMotions {
 
   /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
   /// what springs alone hold, on a slide or free, or a spring about an axis. A pose may be a guess for a loop: it does
-  /// not count where some frame that a loop may have closed on is used by nothing, nor for what hangs on the body and
-  /// may turn about its own centre of mass unnoticed, as a slider without its guide does.
+  /// not count where some frame that a loop may have closed on is used by nothing, nor as a position without an angle
+  /// of a body on a pin, nor for a body that may turn about its own centre of mass unnoticed, as a slider without its
+  /// guide does.
   template <class IsMoving>
-  std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held, const MatrixXd& spins) const {
+  std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held) const {
     std::vector<char> jointed(model_.bodies.size(), 0);
     MatrixXd given = held;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
@@ -218,11 +219,14 @@ class FreeMotions {
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));
     }
-    std::vector<int> candidates = moving_in(given, idle_spins(given));
+    const MatrixXd idle = idle_spins(given);
+    std::vector<int> candidates = moving_in(given, idle);
     if (has_unused_frame(is_moving)) return candidates;
+    // Robots start as their file draws them.
+    const auto of_robot = [&](int b) { return model_.bodies[at(b)].location.file != model_.file; };
     const auto posed = [&](int b) {
-      const Body& body = model_.bodies[at(b)];  // robots start as their file draws them
-      return body.angle || body.rotation || body.position || body.location.file != model_.file;
+      const Body& body = model_.bodies[at(b)];
+      return body.angle || body.rotation || (body.position && !jointed[at(b)]) || of_robot(b);
     };
     for (const int b : candidates) {
       if (posed(b)) given = stacked(given, body_rates(b));
@@ -230,8 +234,8 @@ class FreeMotions {
     std::vector<int> unrestrained = moving_in(given, idle_spins(given));
     const int width = closed_.layout().body_velocities();
     for (const int b : candidates) {
-      const bool turns_unnoticed = spins.middleRows(width * b, width).norm() > counts_as_motion;
-      if (turns_unnoticed && !posed(b) && std::ranges::count(unrestrained, b) == 0) unrestrained.push_back(b);
+      const bool turns_unnoticed = idle.middleRows(width * b, width).norm() > counts_as_motion;
+      if (turns_unnoticed && !of_robot(b) && std::ranges::count(unrestrained, b) == 0) unrestrained.push_back(b);
     }
     std::ranges::sort(unrestrained);
     return unrestrained;
