@@ -289,8 +289,10 @@ void StartBranches::count_turns_as_guessed() {
   if (!mechanism_.holds(mechanism_.position_rows())) std::ranges::copy(before, q.begin());
 }
 
-void StartBranches::take_nearest() {
-  std::ranges::copy(nearest().q, mechanism_.state.q().begin());
+void StartBranches::take_nearest() { take(static_cast<std::size_t>(&nearest() - found_.data())); }
+
+void StartBranches::take(std::size_t i) {
+  std::ranges::copy(found_[i].q, mechanism_.state.q().begin());
   count_turns_as_guessed();
   mechanism_.evaluate(term_position | term_velocity);
 }
@@ -315,6 +317,7 @@ bool StartBranches::joined(const Position& a, const Position& b) const {
               missed <= (1.0 + equally_near) * std::max(a.from_given, b.from_given) + same_place;
   }
   std::ranges::copy(before, q.begin());
+  mechanism_.position_rows();  // what is evaluated is again what stands there
   return as_near;
 }
 

@@ -25,6 +25,9 @@ class StartBranches {
   void search();
 
   bool any() const { return !found_.empty(); }
+  std::size_t count() const { return found_.size(); }
+  /// Puts the i-th position that was found into the state.
+  void take(std::size_t i);
   /// Whether a position keeps all given poses, to rounding.
   static bool keeps(const GivenPoses& given, std::span<const double> q);
   /// Puts the nearest position into the state.

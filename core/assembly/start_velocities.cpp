@@ -25,6 +25,7 @@ constexpr double of_racing = 0.1;       // of velocities: less by this is worth 
 constexpr double share_in_play = 1e-2;  // share of a journal's motion that constraints must leave to it
 constexpr double part_free = 1e-6;      // of a direction of unit length: less is rounding
 constexpr double kept_part = 1e-9;      // of the largest velocity: a given one that differs by less is kept
+constexpr double noticed_way = 1e-9;    // in the whole run, in rad or over the size of the model: less is no speed
 
 class Velocities {
  public:
@@ -228,11 +229,20 @@ class Velocities {
       if (rows.lead[i] < 0) continue;
       of_joints.push_back(index);
       if ((all.row(index) * free).norm() <= kept_part * all.row(index).norm()) continue;
-      if (std::abs(rows.residual[index]) <= kept_part * velocities().lpNorm<Eigen::Infinity>()) continue;
+      const bool turns = model_.joints[at(rows.lead[i])].ideal_layout.coordinate == Coordinate::angle;
+      if (std::abs(rows.residual[index]) <= least_speed(turns)) continue;
       out.push_back({.joint = rows.lead[i], .speed = rows.residual[index]});
     }
     add_bodies(free - free_by(all(of_joints, Eigen::all), free), out);
     return out;
+  }
+
+  // Speeds that are not more than rounding, [rad/s] or [m/s].
+  double least_speed(bool turns) const {
+    const Settings& settings = model_.settings;
+    const double unit = turns ? 1.0 : system_.size();
+    return std::max(kept_part * velocities().lpNorm<Eigen::Infinity>(),
+                    noticed_way * unit / (settings.end - settings.start));
   }
 
   // The part of the columns of `free` that speeds of `rows` determine.
@@ -246,14 +256,13 @@ class Velocities {
   void add_bodies(const MatrixXd& free, std::vector<ChosenSpeed>& out) const {
     const VectorXd v = velocities();
     const int width = system_.layout().body_velocities(), lengths = width == 3 ? 2 : 3;
-    const double least = kept_part * v.lpNorm<Eigen::Infinity>();
     // Zero where the file gives it, or where it is zero.
-    const auto open = [&](int first, int count) {
+    const auto open = [&](int first, int count, bool turns) {
       const double speed = v.segment(first, count).norm();
-      return speed > least && free.middleRows(first, count).norm() > part_free ? speed : 0.0;
+      return speed > least_speed(turns) && free.middleRows(first, count).norm() > part_free ? speed : 0.0;
     };
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
-      const double speed = open(width * b, lengths), turn = open(width * b + lengths, width - lengths);
+      const double speed = open(width * b, lengths, false), turn = open(width * b + lengths, width - lengths, true);
       if (speed > 0.0 || turn > 0.0) out.push_back({.body = b, .speed = speed, .angular_speed = turn});
     }
   }

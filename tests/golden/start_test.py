@@ -404,6 +404,65 @@ initial: {joints: {A: 180 deg}}
         self.assertIn("can turn from -%.4g deg to %.4g deg" % (limit, limit), err)
         self.assertIn("assembly-failed", err)
 
+    def test_a_mechanism_that_closes_in_one_place_alone_says_where_nearest_to_the_start(self):
+        """A triangle of 3, 4 and 5: it closes with the crank at 53.13 degrees to either side, and is locked there."""
+        text = """freeplay: 1
+bodies:
+  crank: {mass: 1, inertia: 0.01, com: [0.15, 0], frames: {tip: [0.3, 0]}}
+  strut: {mass: 1, inertia: 0.01, com: [-0.2, 0], frames: {foot: [-0.4, 0]}}
+frames: {ground/D: [0.5, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, strut]}
+  D: {type: revolute, between: [ground/D, strut/foot]}
+drivers: {motor: {joint: A, kind: angle, value: START deg}}
+"""
+        for start, place in ((60, "53.13"), (-60, "-53.13"), (20, "53.13"), (-75, "-53.13")):
+            _, err = self.freeplay("validate", self.write("m.yaml", text.replace("START", str(start))), code=3)
+            self.assertIn("it closes with joint 'A' at %s deg, where it is locked" % place, err)
+            self.assertNotIn("can turn", err)
+
+    def test_a_speed_of_rounding_is_not_said(self):
+        text = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  cart: {mass: 1, inertia: 0.01}
+  pole: {mass: 0.2, inertia: 0.002, com: [0.15, 0]}
+joints:
+  rail: {type: prismatic, between: [ground, cart]}
+  hinge: {type: revolute, between: [cart, pole]}
+drivers: {motor: {joint: rail, kind: position, value: "0.1 m*exp(-((t - 1 s)/(WIDTH s))^2)"}}
+initial: {joints: {hinge: -1.2}}
+simulation: {end: 2, step: 1e-3}
+"""
+        for width, said in ((0.1, False), (0.5, True)):  # the cart starts at 7e-43 m/s and at 0.015 m/s
+            out, _ = self.freeplay("validate", self.write("m.yaml", text.replace("WIDTH", str(width))))
+            self.assertEqual(said, "joint 'hinge' starts at" in out, out)
+
+    def test_a_speed_driver_without_a_start_begins_where_the_mechanism_was_put_together(self):
+        """Two positions are equally near, and the one that was compared last is not the one that was taken."""
+        planar = """freeplay: 1
+bodies:
+  crank: {mass: 0.3, inertia: 3e-4, com: [0.05, 0], frames: {tip: [0.1, 0]}}
+  coupler: {mass: 0.5, inertia: 3e-3, com: [0.15, 0], frames: {tip: [0.3, 0]}}
+  rocker: {mass: 0.4, inertia: 2e-3, com: [0.1, 0], frames: {tip: [0.2, 0]}}
+frames: {ground/D: [0.3, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, coupler]}
+  C: {type: revolute, between: [coupler/tip, rocker/tip]}
+  D: {type: revolute, between: [ground/D, rocker]}
+drivers: {motor: {joint: A, kind: velocity, value: 20}}
+simulation: {end: 0.5, accuracy: 1 um}
+"""
+        spatial = planar.replace("freeplay: 1\n", "freeplay: 1\nspace: spatial\n").replace("0]", "0, 0]")
+        for moment in ("3e-4", "3e-3", "2e-3"):
+            spatial = spatial.replace("inertia: %s" % moment, "inertia: [1e-4, %s, %s]" % (moment, moment))
+        for text in (planar, spatial):
+            out, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force")
+            self.assertIn("ambiguous-start", err)
+            self.assertIn("completed, 0.5 s", out)
+
 
 if __name__ == "__main__":
     unittest.main()
