@@ -24,10 +24,11 @@ double largest_move(const System& system, std::span<const double> from, std::spa
 
 }  // namespace
 
-bool follow(ClosedMechanism& mechanism, const std::function<void()>& prescribe) {
+bool follow(ClosedMechanism& mechanism, const std::function<void()>& prescribe, std::span<const double> ahead) {
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   const std::vector<double> h(mechanism.state.h().begin(), mechanism.state.h().end());
   prescribe();
+  if (!ahead.empty()) mechanism.system.coordinates().retract(q, ahead, mechanism.state.q());
   if (mechanism.holds(mechanism.converge()) && largest_move(mechanism.system, q, mechanism.state.q()) <= longest_move) {
     for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
       const int turn = mechanism.system.layout().turn(j);

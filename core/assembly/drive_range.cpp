@@ -19,37 +19,105 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // In rad, and over the size of the model.
 constexpr double longest_step = 0.1, shortest_step = 1e-7;
+constexpr double watched_step = 1e-6;          // around what is watched
+constexpr double steady_step = 1e-3;           // a way of this length says where it leads, ...
+constexpr double told_step = 1e-5;             // ... and of this one how fast the mechanism moves
+constexpr double much_faster = 2.0;            // than in steady steps: at the end of a way speeds grow without bound
+constexpr double leaps[] = {0.01, 0.03, 0.1};  // over a singular position on the way
+constexpr double closed_range = 1e-5;          // less is no range
+constexpr std::size_t most_branches = 8;       // that are looked at
 
-// The last coordinate of the way in one direction, +-infinity where it does not end.
-double limit(ClosedMechanism& mechanism, double sign) {
-  ClosedMechanism::Lead& lead = mechanism.leads.back();
-  const bool turns = mechanism.system.joints().layout(lead.joint).coordinate == Coordinate::angle;
-  const double unit = turns ? 1.0 : mechanism.system.size();
-  const double whole = turns ? 2.0 * std::numbers::pi : 3.0 * unit, start = lead.value;
-  double step = first_drive_step * unit;
-  while (std::abs(lead.value - start) < whole) {
-    const double before = lead.value;
-    if (follow(mechanism, [&] { lead.value = before + sign * step; })) {
-      step = std::min(1.5 * step, longest_step * unit);
-      continue;
+// The way of the last lead of a mechanism in one direction.
+class Way {
+ public:
+  Way(ClosedMechanism& mechanism, double sign, double watched)
+      : mechanism_(mechanism),
+        lead_(mechanism.leads.back()),
+        sign_(sign),
+        watched_(watched),
+        turns_(mechanism.system.joints().layout(lead_.joint).coordinate == Coordinate::angle),
+        unit_(turns_ ? 1.0 : mechanism.system.size()),
+        ahead_(at(mechanism.system.layout().nv())) {}
+
+  // Its last coordinate, +-infinity where it does not end.
+  double end() {
+    const double whole = turns_ ? 2.0 * std::numbers::pi : 3.0 * unit_, start = lead_.value;
+    double step = first_drive_step * unit_;
+    while (std::abs(lead_.value - start) < whole) {
+      step = std::min(step, std::max(0.5 * to_watched(), watched_step * unit_));
+      if (go(step)) {
+        step = std::min(1.5 * step, longest_step * unit_);
+        continue;
+      }
+      step *= 0.5;
+      if (step >= shortest_step * unit_) continue;
+      const bool leaves = lead_.value == start ? leave_dead_point(mechanism_, sign_) : leap();
+      if (!leaves) return lead_.value;
+      step = first_drive_step * unit_;
     }
-    lead.value = before;
-    step *= 0.5;
-    if (step >= shortest_step * unit) continue;
-    if (before != start || !leave_dead_point(mechanism, sign)) return before;
-    step = first_drive_step * unit;
+    return sign_ * infinite;
   }
-  return sign * infinite;
-}
+
+ private:
+  double to_watched() const {
+    if (!std::isfinite(watched_)) return infinite;
+    return std::abs(turns_ ? std::remainder(watched_ - lead_.value, 2.0 * std::numbers::pi) : watched_ - lead_.value);
+  }
+
+  bool go(double step) {
+    const double before = lead_.value;
+    const std::vector<double> q(mechanism_.state.q().begin(), mechanism_.state.q().end());
+    if (!follow(
+            mechanism_, [&] { lead_.value = before + sign_ * step; }, ahead(step))) {
+      lead_.value = before;
+      return false;
+    }
+    if (step < told_step * unit_) return true;
+    mechanism_.system.coordinates().difference(q, mechanism_.state.q(), ahead_);
+    speed_ = largest(ahead_) / step;
+    if (step < steady_step * unit_) return true;
+    way_ = ahead_;
+    length_ = step;
+    return true;
+  }
+
+  static double largest(std::span<const double> increment) {
+    double size = 0.0;
+    for (const double part : increment) size = std::max(size, std::abs(part));
+    return size;
+  }
+
+  // Straight on by as much.
+  std::span<const double> ahead(double step) {
+    if (way_.empty()) return {};
+    for (std::size_t i = 0; i < way_.size(); ++i) ahead_[i] = step / length_ * way_[i];
+    return ahead_;
+  }
+
+  // Newton's method fails in singular positions that a mechanism passes, as a parallelogram does when it lies flat.
+  bool leap() {
+    if (way_.empty() || speed_ > much_faster * largest(way_) / length_) return false;
+    return std::ranges::any_of(leaps, [&](double part) { return go(part * unit_); });
+  }
+
+  ClosedMechanism& mechanism_;
+  ClosedMechanism::Lead& lead_;
+  double sign_, watched_;
+  bool turns_;
+  double unit_;
+  std::vector<double> ahead_, way_;  // of bodies; of the last steady step
+  double length_ = 0.0;              // of the lead in that step
+  double speed_ = 0.0;               // of the fastest part of a body, by that of the lead
+};
 
 }  // namespace
 
-DriveRange drive_range(ClosedMechanism& mechanism) {
+DriveRange drive_range(ClosedMechanism& mechanism, double watched) {
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   const std::vector<double> h(mechanism.state.h().begin(), mechanism.state.h().end());
   const double value = mechanism.leads.back().value;
   const auto go = [&](double sign) {
-    const double end = limit(mechanism, sign);
+    const double end = Way(mechanism, sign, watched).end();
     mechanism.leads.back().value = value;
     std::ranges::copy(q, mechanism.state.q().begin());
     std::ranges::copy(h, mechanism.state.h().begin());
@@ -74,39 +142,68 @@ std::string words(const DriveRange& range, Coordinate coordinate) {
   return fmt::format("{} from {} to {}", verb, words(range.from, coordinate), words(range.to, coordinate));
 }
 
+namespace {
+
+// How far a coordinate is beyond a range.
+double beyond(const DriveRange& range, double value, bool turns) {
+  double least = infinite;
+  const double turn = 2.0 * std::numbers::pi;
+  for (const double round : {0.0, turn, -turn}) {
+    if (round != 0.0 && !turns) break;
+    least = std::min(least, std::max({0.0, value + round - range.to, range.from - value - round}));
+  }
+  return least;
+}
+
+// With the joint leading in place of what held it at `asked`, at whatever makes the mechanism close: of the ways in
+// which it can be put together the one on which the joint comes nearest to that.
+std::optional<std::string> closes_with(ClosedMechanism& mechanism, int joint, double asked) {
+  const Model& model = mechanism.model();
+  const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
+  StartBranches branches(mechanism, q);
+  branches.search();
+  const Coordinate coordinate = model.joints[at(joint)].ideal_layout.coordinate;
+  const bool turns = coordinate == Coordinate::angle;
+  double closed = 0.0, least = infinite;
+  DriveRange range;
+  for (std::size_t i = 0; i < std::min(branches.count(), most_branches); ++i) {
+    branches.take(i);
+    const double here = mechanism.e.coordinate[at(joint)];
+    mechanism.leads.push_back({joint, here});
+    const DriveRange own = drive_range(mechanism);
+    mechanism.leads.pop_back();
+    const double away = beyond(own, asked, turns);
+    if (away < least) least = away, closed = here, range = own;
+  }
+  std::ranges::copy(q, mechanism.state.q().begin());
+  if (!(least < infinite)) return std::nullopt;
+  const std::string at_value =
+      fmt::format("it closes with joint '{}' at {}", model.joints[at(joint)].name, words(closed, coordinate));
+  if (!range.limited()) return at_value;
+  const double unit = turns ? 1.0 : mechanism.system.size();
+  if (range.to - range.from <= closed_range * unit) return at_value + ", where it is locked";
+  return at_value + fmt::format(", which can {}", words(range, coordinate));
+}
+
+}  // namespace
+
 std::optional<std::string> closes_elsewhere(ClosedMechanism& mechanism) {
   const Model& model = mechanism.model();
   if (mechanism.system.layout().nv() > most_followed_velocities) return std::nullopt;
-  const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
-  // With the joint leading in place of what held it, at whatever makes the mechanism close.
-  const auto try_joint = [&](int joint) -> std::optional<std::string> {
-    std::ranges::copy(q, mechanism.state.q().begin());
-    StartBranches branches(mechanism, q);
-    branches.search();
-    if (!branches.any()) return std::nullopt;
-    branches.take_nearest();
-    const Coordinate coordinate = model.joints[at(joint)].ideal_layout.coordinate;
-    const double closed = mechanism.e.coordinate[at(joint)];
-    mechanism.leads.push_back({joint, closed});
-    const DriveRange range = drive_range(mechanism);
-    mechanism.leads.pop_back();
-    std::string text =
-        fmt::format("it closes with joint '{}' at {}", model.joints[at(joint)].name, words(closed, coordinate));
-    if (range.limited()) text += fmt::format(", which can {}", words(range, coordinate));
-    return text;
-  };
   for (std::size_t i = 0; i < mechanism.leads.size(); ++i) {
     const ClosedMechanism::Lead lead = mechanism.leads[i];
     mechanism.leads.erase(mechanism.leads.begin() + static_cast<std::ptrdiff_t>(i));
-    auto text = try_joint(lead.joint);
+    auto text = closes_with(mechanism, lead.joint, lead.value);
     mechanism.leads.insert(mechanism.leads.begin() + static_cast<std::ptrdiff_t>(i), lead);
     if (text) return text;
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int row = mechanism.system.layout().driver_row(d);
     if (row < 0 || model.drivers[at(d)].kinematics >= 0 || !mechanism.held_row[at(row)]) continue;
+    mechanism.evaluate(term_position);
+    const double asked = mechanism.e.motion[at(d)].value;
     mechanism.held_row[at(row)] = 0;
-    auto text = try_joint(model.drivers[at(d)].joint);
+    auto text = closes_with(mechanism, model.drivers[at(d)].joint, asked);
     mechanism.held_row[at(row)] = 1;
     if (text) return text;
   }

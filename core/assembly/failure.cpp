@@ -62,7 +62,8 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     consider(gap, fmt::format("driver '{}' misses its value by {:.6g}", model.drivers[at(d)].name, gap),
              model.drivers[at(d)].location);
   }
-  if (const std::optional<LoopGap> gap = loop_gap(mechanism)) {
+  // A gap of rounding says that there is a position, which the start does not lead to.
+  if (const std::optional<LoopGap> gap = loop_gap(mechanism); gap && gap->size > model.settings.assembly_tolerance) {
     const JointElement& joint = model.joints[at(gap->joint)];
     text = fmt::format("joint '{}' stays open by {:.6g} m with all others closed", joint.name, gap->size);
     location = joint.location;

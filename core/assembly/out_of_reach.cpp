@@ -21,6 +21,7 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double locked = 1e-5;         // range of a mechanism that moves nowhere, in rad or over the size of the model
 constexpr double close_to_limit = 0.1;  // of a run that ends before it: forces grow without bound there
+constexpr double noise = 1e-9;          // of a gap of a loop, by the size of the model
 constexpr int instants = 4000;          // of a run that are looked at
 constexpr int most_pieces = 4000;       // of the way of several drivers
 
@@ -177,7 +178,7 @@ class Reach {
     mechanism_.position_rows();
     mechanism_.held_row[at(row)] = 0;
     mechanism_.leads.push_back({joint, mechanism_.e.coordinate[at(joint)]});
-    const DriveRange range = drive_range(mechanism_);
+    const DriveRange range = drive_range(mechanism_, value(d, t_));
     if (range.limited()) use(range);
     mechanism_.leads.pop_back();
     mechanism_.held_row[at(row)] = 1;
@@ -211,10 +212,12 @@ class Reach {
         "point "
         "at {}",
         t_, driver.name, model_.joints[at(driver.joint)].name, words(end, kind));
-    if (most) {
+    if (most && most->gap.size > noise * mechanism_.system.size()) {
       text += fmt::format(", and at {} joint '{}' would stay open by {:.4g} m",
                           words(end + (exit.up ? most->out : -most->out), kind),
                           model_.joints[at(most->gap.joint)].name, most->gap.size);
+    } else if (most) {
+      text += ", beyond which its loops close only where it would have to leap to";
     }
     return text +
            fmt::format("; it can {}: keep the driver within, or check the lengths [dead-point]", words(range, kind));

@@ -73,6 +73,7 @@ DRIVER
 initial: {joints: {A: %(start)g deg}}
 simulation: {end: 1.3 s, accuracy: 1 um}
 """
+EXACT = re.sub(r"\((crank|bar|rocker|base)\)g", r"(\1).12g", FOLDS)
 PARALLELOGRAM = FOLDS % {"crank": 0.1, "bar": 0.3, "rocker": 0.1, "base": 0.3, "start": 60, "end": 60}
 RHOMBUS = FOLDS % {"crank": 0.2, "bar": 0.2, "rocker": 0.2, "base": 0.2, "start": 50, "end": 50}
 
@@ -166,6 +167,44 @@ class DeadPoint(ProgramTest):
             for steps in ("step: 20 us", "accuracy: 1 um"):
                 line = self.reason(FOUR_BAR % (crank, PLAY, SPEED, "A: 40 deg", steps))
                 self.assert_names(line, math.degrees(math.acos(cosine)), crank)
+
+    def test_links_that_are_nearly_long_enough_are_named(self):
+        """Parallelograms but for 0.01 mm or less: the way that is missing is as short as a step, and is not leapt over."""
+        links = {"crank": 0.1, "bar": 0.25, "rocker": 0.1, "base": 0.25}
+        for name, by in (("bar", 1e-5), ("bar", -1e-5), ("rocker", -1e-5), ("crank", 1e-5), ("base", 1e-5), ("bar", -1e-7)):
+            a, b, c, d = [links[link] + by * (link == name) for link in links]
+            cosine, at, gap = (a**2 + d**2 - (b + c)**2) / (2 * a * d), 180, a + d - b - c
+            if not gap > 1e-12:
+                cosine, at, gap = (a**2 + d**2 - (b - c)**2) / (2 * a * d), 360, b - c - d + a
+            limit = math.degrees(math.acos(cosine)) if at == 180 else 360 - math.degrees(math.acos(cosine))
+            text = EXACT % {"crank": a, "bar": b, "rocker": c, "base": d, "start": 60, "end": 60}
+            text = text.replace("DRIVER", "drivers: {m: {joint: A, kind: velocity, value: 10}}")
+            for steps in ("accuracy: 1 um", "step: 1 ms"):
+                with self.subTest(f"{name} {by} {steps}"):
+                    line = self.reason(text.replace("accuracy: 1 um", steps))
+                    self.assertAlmostEqual(limit, float(re.search(r"comes to a dead point at ([0-9.]+) deg", line)[1]), delta=0.06)
+                    said = re.search(r"and at (\S+) deg joint '[BCD]' would stay open by (\S+) m", line)
+                    if said is None and at == 360:  # folded links: no gap was found
+                        continue
+                    self.assertAlmostEqual(at, float(said[1]), delta=0.6)
+                    self.assertAlmostEqual(gap, float(said[2]), delta=0.02 * gap)
+
+    def test_a_position_that_is_nearly_singular_is_passed(self):
+        """A crank-rocker that is a parallelogram but for 0.01 mm or 0.1 um, twice a turn, by the closed form."""
+        for by in (1e-5, 1e-7):
+            a, b, c, d = 0.1, 0.25, 0.1 + by, 0.25
+            text = EXACT % {"crank": a, "bar": b, "rocker": c, "base": d, "start": 60, "end": 60}
+            text = text.replace("DRIVER", "drivers: {m: {joint: A, kind: velocity, value: 10}}")
+            out, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force")
+            self.assertNotIn("smaller step", out + err)
+            worst = 0.0
+            with open(self.path("r", "results.csv"), encoding="utf-8") as file:
+                for row in csv.DictReader(file):
+                    x, y = a * math.cos(float(row["body.crank.angle"])) - d, a * math.sin(float(row["body.crank.angle"]))
+                    far = math.hypot(x, y)
+                    rocker = math.atan2(y, x) - math.acos((c**2 + far**2 - b**2) / (2 * c * far))
+                    worst = max(worst, abs(math.remainder(float(row["body.rocker.angle"]) - rocker, 2 * math.pi)))
+            self.assertLess(worst, 1e-9)
 
     def test_a_motion_that_turns_back_in_time_is_left_alone(self):
         value = "angle, value: 60 deg + 10 deg*sin(2*pi*t)"
