@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "assembly/continuation.h"
@@ -19,22 +20,25 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // In rad, and over the size of the model.
 constexpr double longest_step = 0.1, shortest_step = 1e-7;
-constexpr double watched_step = 1e-6;          // around what is watched
-constexpr double steady_step = 1e-3;           // a way of this length says where it leads, ...
-constexpr double told_step = 1e-5;             // ... and of this one how fast the mechanism moves
-constexpr double much_faster = 2.0;            // than in steady steps: at the end of a way speeds grow without bound
-constexpr double leaps[] = {0.01, 0.03, 0.1};  // over a singular position on the way
-constexpr double closed_range = 1e-5;          // less is no range
-constexpr std::size_t most_branches = 8;       // that are looked at
+constexpr double finest_step = 1e-6;   // beside a singular position that is passed
+constexpr double of_regularity = 0.3;  // a step by the regularity of the rows, which falls as the way to one does
+constexpr double independent = 1e-7;   // pivot by the largest: rows with less follow from the others
+constexpr double steady_step = 1e-3;   // a way of this length says where it leads, ...
+constexpr double told_step = 1e-5;     // ... and of this one how fast the mechanism moves
+constexpr double much_faster = 2.0;    // than in steady steps: at the end of a way speeds grow without bound
+constexpr double leaps[] = {0.01, 0.03, 0.1};               // over a singular position on the way
+constexpr double closed_range = 1e-5;                       // less is no range
+constexpr std::size_t most_branches = 8, few_branches = 2;  // that are looked at; each is followed both ways
+constexpr int many_velocities = 45;
 
 // The way of the last lead of a mechanism in one direction.
 class Way {
  public:
-  Way(ClosedMechanism& mechanism, double sign, double watched)
+  Way(ClosedMechanism& mechanism, double sign, double& best)
       : mechanism_(mechanism),
         lead_(mechanism.leads.back()),
         sign_(sign),
-        watched_(watched),
+        best_(best),
         turns_(mechanism.system.joints().layout(lead_.joint).coordinate == Coordinate::angle),
         unit_(turns_ ? 1.0 : mechanism.system.size()),
         ahead_(at(mechanism.system.layout().nv())) {}
@@ -44,7 +48,7 @@ class Way {
     const double whole = turns_ ? 2.0 * std::numbers::pi : 3.0 * unit_, start = lead_.value;
     double step = first_drive_step * unit_;
     while (std::abs(lead_.value - start) < whole) {
-      step = std::min(step, std::max(0.5 * to_watched(), watched_step * unit_));
+      step = std::min(step, std::max(of_regularity * regularity(), finest_step) * unit_);
       if (go(step)) {
         step = std::min(1.5 * step, longest_step * unit_);
         continue;
@@ -59,9 +63,17 @@ class Way {
   }
 
  private:
-  double to_watched() const {
-    if (!std::isfinite(watched_)) return infinite;
-    return std::abs(turns_ ? std::remainder(watched_ - lead_.value, 2.0 * std::numbers::pi) : watched_ - lead_.value);
+  // Smallest pivot of the rows that are independent, by the largest that it had.
+  double regularity() {
+    const Eigen::MatrixXd columns = Eigen::MatrixXd(mechanism_.position_rows().matrix).transpose();
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+    const Eigen::VectorXd pivots = qr.matrixR().diagonal().cwiseAbs();
+    double smallest = infinite;
+    for (const double pivot : pivots) {
+      if (pivot > independent * pivots[0]) smallest = std::min(smallest, pivot);
+    }
+    best_ = std::max(best_, smallest);
+    return smallest / best_;
   }
 
   bool go(double step) {
@@ -102,7 +114,8 @@ class Way {
 
   ClosedMechanism& mechanism_;
   ClosedMechanism::Lead& lead_;
-  double sign_, watched_;
+  double sign_;
+  double& best_;  // pivot
   bool turns_;
   double unit_;
   std::vector<double> ahead_, way_;  // of bodies; of the last steady step
@@ -112,12 +125,13 @@ class Way {
 
 }  // namespace
 
-DriveRange drive_range(ClosedMechanism& mechanism, double watched) {
+DriveRange drive_range(ClosedMechanism& mechanism) {
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   const std::vector<double> h(mechanism.state.h().begin(), mechanism.state.h().end());
   const double value = mechanism.leads.back().value;
+  double best = 0.0;
   const auto go = [&](double sign) {
-    const double end = Way(mechanism, sign, watched).end();
+    const double end = Way(mechanism, sign, best).end();
     mechanism.leads.back().value = value;
     std::ranges::copy(q, mechanism.state.q().begin());
     std::ranges::copy(h, mechanism.state.h().begin());
@@ -126,7 +140,9 @@ DriveRange drive_range(ClosedMechanism& mechanism, double watched) {
   };
   DriveRange range;
   range.to = go(1.0);
+  const double known = best;
   range.from = go(-1.0);
+  if (best > known) range.to = go(1.0);  // how regular it can be was not known yet
   return range;
 }
 
@@ -166,7 +182,8 @@ std::optional<std::string> closes_with(ClosedMechanism& mechanism, int joint, do
   const bool turns = coordinate == Coordinate::angle;
   double closed = 0.0, least = infinite;
   DriveRange range;
-  for (std::size_t i = 0; i < std::min(branches.count(), most_branches); ++i) {
+  const std::size_t most = mechanism.system.layout().nv() > many_velocities ? few_branches : most_branches;
+  for (std::size_t i = 0; i < std::min(branches.count(), most); ++i) {
     branches.take(i);
     const double here = mechanism.e.coordinate[at(joint)];
     mechanism.leads.push_back({joint, here});

@@ -17,10 +17,10 @@ struct DriveRange {
 };
 
 /// Follows the mechanism from its state, where its rows hold with `joint` leading (the last of the leads), both ways
-/// in small steps up to where it cannot follow any more, to 1e-6 of a radian or of the model's size. Around the
-/// coordinate `watched` steps become as short as that: a way of links that are nearly long enough is not leapt over.
-/// The state stays.
-DriveRange drive_range(ClosedMechanism& mechanism, double watched = std::numeric_limits<double>::infinity());
+/// up to where it cannot follow any more, to 1e-6 of a radian or of the model's size. Steps become as short as that
+/// where the rows come close to depending on each other, so that a gap in the way, as of links that are nearly long
+/// enough, is not leapt over. The state stays.
+DriveRange drive_range(ClosedMechanism& mechanism);
 
 /// "turn from -97.2 deg to 97.2 deg", "move up to 0.12 m": of a joint of the coordinate.
 std::string words(const DriveRange& range, Coordinate coordinate);

@@ -157,7 +157,10 @@ class Reach {
     };
     constexpr int pieces = 12;
     for (int i = 1; i <= pieces; ++i) look(way * i / pieces);
-    for (double step = 0.5 * way / pieces; best && step > 1e-3 * way; step *= 0.5) {
+    // The gap may be narrow, and the mechanism close again behind it, where it cannot come to.
+    for (double out = 0.5 * way / pieces; out > locked * (comes_round ? 1.0 : way); out *= 0.5) look(out);
+    const double close = best ? best->out : 0.0;
+    for (double step = std::min(0.5 * way / pieces, 0.5 * close); best && step > 1e-3 * close; step *= 0.5) {
       const double from = best->out;
       for (const double out : {from - step, from + step}) {
         if (out > 0.0 && out <= way) look(out);
@@ -178,7 +181,7 @@ class Reach {
     mechanism_.position_rows();
     mechanism_.held_row[at(row)] = 0;
     mechanism_.leads.push_back({joint, mechanism_.e.coordinate[at(joint)]});
-    const DriveRange range = drive_range(mechanism_, value(d, t_));
+    const DriveRange range = drive_range(mechanism_);
     if (range.limited()) use(range);
     mechanism_.leads.pop_back();
     mechanism_.held_row[at(row)] = 1;

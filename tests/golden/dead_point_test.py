@@ -189,6 +189,16 @@ class DeadPoint(ProgramTest):
                     self.assertAlmostEqual(at, float(said[1]), delta=0.6)
                     self.assertAlmostEqual(gap, float(said[2]), delta=0.02 * gap)
 
+    def test_both_ends_of_a_way_with_narrow_gaps_are_named(self):
+        """A connecting rod that is 0.01 mm or 0.1 um too short for its crank to go through upright."""
+        for short in (1e-5, 1e-7):
+            text = CRANK.replace("[50 mm, 0]", "[100 mm, 0]").replace("[120 mm, 0]", "[%.12g, 0]" % (0.1 - short))
+            text = text.replace("forces: {p: {type: force, at: slider, value: FORCE}}", "drivers: {m: {joint: main, kind: velocity, value: 10}}")
+            line = self.reason(text.replace("main: 0", "main: 30 deg").replace("STEPS", "accuracy: 1 um"))
+            limit = math.degrees(math.asin(1 - short / 0.1))
+            self.assertIn("joint 'main' comes to a dead point at %.4g deg, and at 90 deg" % limit, line)
+            self.assertIn("would stay open by %.4g m; it can turn from -%.4g deg to %.4g deg" % (short, limit, limit), line)
+
     def test_a_position_that_is_nearly_singular_is_passed(self):
         """A crank-rocker that is a parallelogram but for 0.01 mm or 0.1 um, twice a turn, by the closed form."""
         for by in (1e-5, 1e-7):
@@ -329,6 +339,24 @@ class DeadPoint(ProgramTest):
         _, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", code=4)
         self.assertRegex(err, r"driver 'motor' cannot move joint 'A' beyond the play: joints 'B', 'C' hold it at \S+ deg; .*\[locked\]")
         self.assertNotIn("dead", err)
+
+    def test_a_mechanism_that_closes_in_one_place_alone_says_where_nearest_to_the_start(self):
+        """A triangle of 3, 4 and 5: it closes with the crank at 53.13 degrees to either side, and is locked there."""
+        text = """freeplay: 1
+bodies:
+  crank: {mass: 1, inertia: 0.01, com: [0.15, 0], frames: {tip: [0.3, 0]}}
+  strut: {mass: 1, inertia: 0.01, com: [-0.2, 0], frames: {foot: [-0.4, 0]}}
+frames: {ground/D: [0.5, 0]}
+joints:
+  A: {type: revolute, between: [ground, crank]}
+  B: {type: revolute, between: [crank/tip, strut]}
+  D: {type: revolute, between: [ground/D, strut/foot]}
+drivers: {motor: {joint: A, kind: angle, value: START deg}}
+"""
+        for start, place in ((60, "53.13"), (-60, "-53.13"), (20, "53.13"), (-75, "-53.13")):
+            _, err = self.freeplay("validate", self.write("m.yaml", text.replace("START", str(start))), code=3)
+            self.assertIn("it closes with joint 'A' at %s deg, where it is locked" % place, err)
+            self.assertNotIn("can turn", err)
 
     def test_two_drivers(self):
         text = FOUR_BAR % (0.2, "", SPEED, "A: 40 deg", "step: 1 ms")

@@ -404,24 +404,6 @@ initial: {joints: {A: 180 deg}}
         self.assertIn("can turn from -%.4g deg to %.4g deg" % (limit, limit), err)
         self.assertIn("assembly-failed", err)
 
-    def test_a_mechanism_that_closes_in_one_place_alone_says_where_nearest_to_the_start(self):
-        """A triangle of 3, 4 and 5: it closes with the crank at 53.13 degrees to either side, and is locked there."""
-        text = """freeplay: 1
-bodies:
-  crank: {mass: 1, inertia: 0.01, com: [0.15, 0], frames: {tip: [0.3, 0]}}
-  strut: {mass: 1, inertia: 0.01, com: [-0.2, 0], frames: {foot: [-0.4, 0]}}
-frames: {ground/D: [0.5, 0]}
-joints:
-  A: {type: revolute, between: [ground, crank]}
-  B: {type: revolute, between: [crank/tip, strut]}
-  D: {type: revolute, between: [ground/D, strut/foot]}
-drivers: {motor: {joint: A, kind: angle, value: START deg}}
-"""
-        for start, place in ((60, "53.13"), (-60, "-53.13"), (20, "53.13"), (-75, "-53.13")):
-            _, err = self.freeplay("validate", self.write("m.yaml", text.replace("START", str(start))), code=3)
-            self.assertIn("it closes with joint 'A' at %s deg, where it is locked" % place, err)
-            self.assertNotIn("can turn", err)
-
     def test_a_speed_of_rounding_is_not_said(self):
         text = """freeplay: 1
 gravity: [0, -9.81]
