@@ -24,20 +24,35 @@ Component threlfall();
 Component bengisu_akay();
 Component stribeck();
 Component lugre();
+Component expression_contact();
+Component expression_friction();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(contact) {
   using namespace freeplay;
-  static const Component components[] = {hertz(),         kelvin_voigt(),
-                                         hunt_crossley(), herbert_mcwhannell(),
-                                         lee_wang(),      lankarani_nikravesh(),
-                                         gonthier(),      flores(),
-                                         hu_guo(),        zhiying_qishao(),
-                                         johnson(),       radzimovsky(),
-                                         esdu_78035(),    no_friction(),
-                                         coulomb_tanh(),  coulomb_linear(),
-                                         coulomb_atan(),  ambrosio(),
-                                         threlfall(),     bengisu_akay(),
-                                         stribeck(),      lugre()};
+  static const Component components[] = {hertz(),
+                                         kelvin_voigt(),
+                                         hunt_crossley(),
+                                         herbert_mcwhannell(),
+                                         lee_wang(),
+                                         lankarani_nikravesh(),
+                                         gonthier(),
+                                         flores(),
+                                         hu_guo(),
+                                         zhiying_qishao(),
+                                         johnson(),
+                                         radzimovsky(),
+                                         esdu_78035(),
+                                         no_friction(),
+                                         coulomb_tanh(),
+                                         coulomb_linear(),
+                                         coulomb_atan(),
+                                         ambrosio(),
+                                         threlfall(),
+                                         bengisu_akay(),
+                                         stribeck(),
+                                         lugre(),
+                                         expression_contact(),
+                                         expression_friction()};
   return publish(*host, *manifest, "contact", "0.1.0", components);
 }

@@ -90,7 +90,7 @@ class RevoluteClearance final : public Joint {
     surfaces_.declare(layout);
     layout.events = contact_events;
     layout.event_roles = begin_and_end;
-    layout.kinks = count_kinks(friction_law_);
+    layout.kinks = count_kinks(contact_law_, friction_law_);
     layout.channels = plane_gap_channels;
     layout.channel_roles = plane_gap_roles;
   }
@@ -179,7 +179,9 @@ class RevoluteClearance final : public Joint {
     return std::max(0.0, radii_.clearance - (position(*in.b) - position(*in.a)).norm());
   }
   void kinks(const JointInput& in, Span<double> g) const override {
-    if (in.history[phase] != flight && reaches(in)) write_kinks(friction_law_, Gap(in, radii_).slip, g);
+    if (in.history[phase] == flight || !reaches(in)) return;
+    const Gap gap(in, radii_);
+    write_kinks(contact_law_, friction_law_, gap, gap.slip, in, g);
   }
   const char* warning(const JointInput& in) const override {
     if (in.history[phase] == flight || !reaches(in)) return nullptr;

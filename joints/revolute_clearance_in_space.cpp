@@ -60,7 +60,7 @@ class RevoluteClearanceInSpace final : public Joint {
     play_.surfaces.declare(layout);
     layout.events = end_events;
     layout.event_roles = contact_roles;
-    layout.kinks = play_.slides ? ends * count_kinks(play_.friction) : 0;
+    layout.kinks = ends * play_.count_kinks();
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
   }
@@ -196,10 +196,12 @@ class RevoluteClearanceInSpace final : public Joint {
       if (!is_end(i)) continue;
       const Span<double> own = g.part(each * end++, each);
       const JointInput one = contact_input(in, i);
-      if (one.history[phase] == flight || !touches(one, gap(motion, i))) continue;
+      const Approach here = gap(motion, i);
+      if (one.history[phase] == flight || !touches(one, here)) continue;
       const EndGap<double> there = bearing_.end(motion, i, play_);
       const double speed = std::sqrt(dot(there.slip, there.slip));
-      write_kinks(play_.friction, std::copysign(speed, along_turn(there, there.slip)), own);
+      const double slip = std::copysign(speed, along_turn(there, there.slip));
+      play_.write_kinks(here, slip, one, own);
     }
   }
   /// In flight no part of the journal moves by more than the clearance; beside a contact, not towards the bearing.

@@ -40,6 +40,12 @@ struct SpatialPlay {
     require_radii(radii, friction);
     slides = radii.known() && !is_inert(friction);
   }
+  /// Of one contact: where its laws have kinks. Without sliding the law of friction is not asked.
+  std::int32_t count_kinks() const { return slides ? play::count_kinks(contact, friction) : contact.switches(); }
+  void write_kinks(const Approach& gap, double slip, const JointInput& in, Span<double> g) const {
+    if (slides) return play::write_kinks(contact, friction, gap, slip, in, g);
+    contact.decide({gap.penetration, gap.rate, in.history[approach_speed]}, g);
+  }
   double radius_a() const { return radii.known() ? radii.bearing : 0.0; }
   double radius_b() const { return radii.known() ? radii.journal : 0.0; }
 

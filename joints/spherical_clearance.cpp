@@ -41,7 +41,7 @@ class SphericalClearance final : public Joint {
     play_.surfaces.declare(layout);
     layout.events = ball_events;
     layout.event_roles = begin_and_end;
-    layout.kinks = play_.slides ? count_kinks(play_.friction) : 0;
+    layout.kinks = play_.count_kinks();
     layout.channels = gap_channels;
     layout.channel_roles = gap_roles;
   }
@@ -126,7 +126,8 @@ class SphericalClearance final : public Joint {
     if (in.history[phase] == flight) return;
     const PairInFirstAxes pair = seen_from_a(in);
     const Gap<double> gap(pair.numbers(), play_);
-    if (touches(in, gap.approach())) write_kinks(play_.friction, std::sqrt(dot(gap.slip, gap.slip)), g);
+    const Approach here = gap.approach();
+    if (touches(in, here)) play_.write_kinks(here, std::sqrt(dot(gap.slip, gap.slip)), in, g);
   }
   /// In flight the ball moves by no more than the clearance.
   double step_limit(const JointInput& in) const override {

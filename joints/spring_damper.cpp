@@ -1,4 +1,5 @@
 #include "axis_force.h"
+#include "freeplay/kit/integral_from_zero.h"
 #include "freeplay/kit/planar_marker.h"
 
 namespace freeplay {
@@ -10,25 +11,62 @@ enum Kind { linear, rotational };
 
 constexpr double smallest_length = 1e-12;  // [m]; below it the direction of the force means nothing
 
-/// What both classes read: stiffness k, damping c, preload p, and the length or angle at which the spring is slack.
+/// Pull at a stretch and its rate.
+struct Effort {
+  double value, by_stretch, by_rate;
+  double restoring;  ///< the part that the stretch alone decides
+};
+
+/// What both classes read: stiffness k, damping c, preload p, the length or angle at which the spring is slack, and
+/// what formulas add.
 struct Spring {
   explicit Spring(const Parameters& parameters)
       : kind(static_cast<Kind>(parameters.word("kind"))),
         stiffness(parameters.number("stiffness")),
         damping(parameters.number("damping")),
         free(parameters.number(kind == linear ? "free_length" : "free_angle")),
-        preload(parameters.number("preload")) {
+        preload(parameters.number("preload")),
+        spring(parameters.formula("spring")),
+        damper(parameters.formula("damper")) {
+    if (spring) store_spring();
     const char* other = kind == linear ? "free_angle" : "free_length";
     if (!parameters.given(other)) return;
     throw BadParameter(
         other, "conflicting-keys",
         std::string("a ") + (kind == linear ? "linear" : "rotational") + " spring has no '" + other + "'");
   }
-  double restoring(double stretch) const { return stiffness * stretch + preload; }
-  double effort(double stretch, double rate) const { return restoring(stretch) + damping * rate; }
-  double stored(double stretch) const { return (0.5 * stiffness * stretch + preload) * stretch; }
+  Effort effort(double stretch, double rate) const {
+    Effort e{0.0, stiffness, damping, stiffness * stretch + preload};
+    if (spring) {
+      double slope[1];
+      e.restoring += spring.at({&stretch, 1}, slope);
+      e.by_stretch += slope[0];
+    }
+    e.value = e.restoring + damping * rate;
+    if (damper) {
+      const double at[] = {rate, stretch};
+      double slopes[2];
+      e.value += damper.at(at, slopes);
+      e.by_rate += slopes[0];
+      e.by_stretch += slopes[1];
+    }
+    return e;
+  }
+  double stored(double stretch) const {
+    const double linear = (0.5 * stiffness * stretch + preload) * stretch;
+    if (!spring) return linear;
+    return linear + (stretch < 0.0 ? pressed.at(stretch) : pulled.at(stretch));
+  }
+  /// Where a formula changes its form.
+  void write_kinks(double stretch, double rate, Span<double> g) const {
+    const std::size_t own = spring ? static_cast<std::size_t>(spring.switches()) : 0;
+    if (own > 0) spring.decide({&stretch, 1}, g.part(0, own));
+    const double at[] = {rate, stretch};
+    if (g.size > own) damper.decide(at, g.part(own, g.size - own));
+  }
 
   void declare(JointLayout& layout) const {
+    layout.kinks = (spring ? spring.switches() : 0) + (damper ? damper.switches() : 0);
     layout.time_scale = unbounded;
     static const Channel length[] = {{"length", "m"}};
     layout.forces = 1;
@@ -42,19 +80,31 @@ struct Spring {
 
   Kind kind;
   double stiffness, damping, free, preload;
+  Formula spring, damper;
+
+ private:
+  void store_spring() {
+    const auto force = [formula = spring](double stretch) { return formula.at({&stretch, 1}); };
+    pulled = IntegralFromZero(force, smallest_stretch, largest_stretch);
+    pressed = IntegralFromZero(force, smallest_stretch, -largest_stretch);
+  }
+  static constexpr double smallest_stretch = 0x1p-20, largest_stretch = 0x1p10;  // [m or rad]
+  IntegralFromZero pulled, pressed;
 };
 
-/// Spring, damper and constant preload side by side, with stiffness k, damping c and preload p.
+/// Spring, damper and constant preload side by side, with stiffness k, damping c and preload p, and with a spring s(x)
+/// and a damper d(x, x') that formulas give, of the stretch x: L - L_0 or phi - phi_0.
 ///
 /// Linear, with d = P_b - P_a [m], L = |d|, u = d/L, L' = u.d' and free length L_0:
 ///
-///   force on b: -f u,  f = k (L - L_0) + c L' + p        stored: k (L - L_0)^2/2 + p (L - L_0)
-///   df/dd = k u + c (d' - L' u)/L        df/dd' = c u        du/dd = (1 - u u^T)/L
+///   force on b: -f u,  f = k x + c L' + p + s + d        stored: k x^2/2 + p x + integral of s from 0 to x
+///   df/dd = f_x u + f_v (d' - L' u)/L    df/dd' = f_v u      du/dd = (1 - u u^T)/L
+///   with f_x = k + s' + d_x and f_v = c + d_x'
 ///
 /// Rotational, with phi the angle of marker b relative to marker a (the coordinate, counted over turns), and free angle
 /// phi_0:
 ///
-///   torque on b: -(k (phi - phi_0) + c phi' + p)        stored: k (phi - phi_0)^2/2 + p (phi - phi_0)
+///   torque on b: -(k x + c phi' + p + s + d), stored as above
 class SpringDamper final : public Joint {
  public:
   explicit SpringDamper(const Parameters& parameters) : spring_(parameters) {}
@@ -67,6 +117,14 @@ class SpringDamper final : public Joint {
   }
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     if (spring_.kind == linear) channels[0] = (position(*in.b) - position(*in.a)).norm();
+  }
+  void kinks(const JointInput& in, Span<double> g) const override {
+    if (spring_.kind == rotational) {
+      const double rate = angular_velocity(*in.b) - angular_velocity(*in.a);
+      return spring_.write_kinks(in.coordinate - spring_.free, rate, g);
+    }
+    const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
+    if (d.norm() >= smallest_length) spring_.write_kinks(d.norm() - spring_.free, d.dot(rate) / d.norm(), g);
   }
   void apply(const JointInput& in, JointForces& out) const override {
     if (spring_.kind == linear) {
@@ -84,17 +142,18 @@ class SpringDamper final : public Joint {
     out.potential_rate = 0.0;
     if (length < smallest_length) return;
     const Eigen::Vector2d u = d / length;
-    const double f = spring_.effort(length - spring_.free, u.dot(rate));
-    out.potential_rate = spring_.restoring(length - spring_.free) * u.dot(rate);
+    const Effort effort = spring_.effort(length - spring_.free, u.dot(rate));
+    const double f = effort.value;
+    out.potential_rate = effort.restoring * u.dot(rate);
     for (int i = 0; i < 2; ++i) {
       out.wrench_a[i] = f * u[i];
       out.wrench_b[i] = -f * u[i];
     }
     if (out.derivatives.size == 0) return;
-    const Eigen::Vector2d slope = spring_.stiffness * u + spring_.damping / length * (rate - u.dot(rate) * u);
+    const Eigen::Vector2d slope = effort.by_stretch * u + effort.by_rate / length * (rate - u.dot(rate) * u);
     const Eigen::Matrix2d by_distance =
         u * slope.transpose() + f / length * (Eigen::Matrix2d::Identity() - u * u.transpose());
-    const Eigen::Matrix2d by_rate = spring_.damping * u * u.transpose();
+    const Eigen::Matrix2d by_rate = effort.by_rate * u * u.transpose();
     for (int r = 0; r < 2; ++r) {
       for (int c = 0; c < 2; ++c) {
         set_pair(out, r, c, by_distance(r, c));
@@ -105,14 +164,15 @@ class SpringDamper final : public Joint {
 
   void twist(const JointInput& in, JointForces& out) const {
     const double stretch = in.coordinate - spring_.free;
-    const double rate = angular_velocity(*in.b) - angular_velocity(*in.a), torque = spring_.effort(stretch, rate);
+    const double rate = angular_velocity(*in.b) - angular_velocity(*in.a);
+    const Effort torque = spring_.effort(stretch, rate);
     out.potential = spring_.stored(stretch);
-    out.potential_rate = spring_.restoring(stretch) * rate;
-    out.wrench_a[5] = torque;
-    out.wrench_b[5] = -torque;
+    out.potential_rate = torque.restoring * rate;
+    out.wrench_a[5] = torque.value;
+    out.wrench_b[5] = -torque.value;
     if (out.derivatives.size == 0) return;
-    set_pair(out, 5, 5, spring_.stiffness);
-    set_pair(out, 5, twists + 5, spring_.damping);
+    set_pair(out, 5, 5, torque.by_stretch);
+    set_pair(out, 5, twists + 5, torque.by_rate);
   }
 
   static constexpr int columns = 24, twists = 12;  // of the derivatives; first column of the twists
@@ -131,7 +191,7 @@ class SpringDamper final : public Joint {
 
 /// The same in space. Linear: the formulas above with vectors of three components. Rotational: phi is the angle of b
 /// about z_a, whose rate is u.(w_b - w_a) with u = z_a where the z axes agree (`spatial_marker.h`); the torque on b is
-/// -(k (phi - phi_0) + c phi' + p) u, so that work and stored energy agree exactly.
+/// -(k x + c phi' + p + s + d) u, so that work and stored energy agree exactly.
 class SpatialSpringDamper final : public Joint {
  public:
   explicit SpatialSpringDamper(const Parameters& parameters) : spring_(parameters) {}
@@ -144,15 +204,19 @@ class SpatialSpringDamper final : public Joint {
     if (spring_.kind == linear) channels[0] = (space::position(*in.b) - space::position(*in.a)).norm();
   }
   void apply(const JointInput& in, JointForces& out) const override {
-    const bool along = spring_.kind == linear;
-    const Pair pair = along ? Pair(in, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()) : Pair::with_axis(in, 0);
+    const Pair pair = pair_of(in);
     const State<double> now = state(pair.numbers(), in.coordinate);
     out.potential = spring_.stored(now.stretch);
     out.potential_rate = 0.0;
-    if (along && now.stretch + spring_.free < smallest_length) return;
-    out.potential_rate = spring_.restoring(now.stretch) * now.rate;
-    pair.write(force(now), out);
-    if (!out.derivatives.empty()) pair.write_derivatives(force(state(pair.duals(), in.coordinate)), 24, out);
+    if (has_no_direction(now)) return;
+    const Effort effort = spring_.effort(now.stretch, now.rate);
+    out.potential_rate = effort.restoring * now.rate;
+    pair.write(force(now, effort), out);
+    if (!out.derivatives.empty()) pair.write_derivatives(force(state(pair.duals(), in.coordinate), effort), 24, out);
+  }
+  void kinks(const JointInput& in, Span<double> g) const override {
+    const State<double> now = state(pair_of(in).numbers(), in.coordinate);
+    if (!has_no_direction(now)) spring_.write_kinks(now.stretch, now.rate, g);
   }
 
  private:
@@ -168,6 +232,14 @@ class SpatialSpringDamper final : public Joint {
     Vec<T> u;
   };
 
+  Pair pair_of(const JointInput& in) const {
+    if (spring_.kind == rotational) return Pair::with_axis(in, 0);
+    return Pair(in, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero());
+  }
+  bool has_no_direction(const State<double>& now) const {
+    return spring_.kind == linear && now.stretch + spring_.free < smallest_length;
+  }
+
   template <class T>
   State<T> state(const Motion<T>& x, double angle) const {
     using std::sqrt;
@@ -181,8 +253,8 @@ class SpatialSpringDamper final : public Joint {
   }
 
   template <class T>
-  space::RelativeForce<T> force(const State<T>& now) const {
-    const T effort = T(spring_.stiffness) * now.stretch + T(spring_.preload) + T(spring_.damping) * now.rate;
+  space::RelativeForce<T> force(const State<T>& now, const Effort& e) const {
+    const T effort = space::chained(e.value, e.by_stretch, now.stretch, e.by_rate, now.rate);
     const Vec<T> pull = -(effort * now.u);
     if (spring_.kind == linear) return {pull, {}, {}};
     return {{}, -pull, pull};
@@ -218,7 +290,19 @@ constexpr Parameter spring_damper_parameters[] = {
     {.name = "preload",
      .unit = "kind: N | N*m",
      .default_value = 0.0,
-     .summary = "Constant part that pulls the ends together, or turns the second body clockwise."}};
+     .summary = "Constant part that pulls the ends together, or turns the second body clockwise."},
+    {.name = "spring",
+     .kind = ParameterKind::formula,
+     .unit = "kind: N | N*m",
+     .default_value = optional,
+     .summary = "Pull of a further spring at the stretch x, length - free_length or angle - free_angle.",
+     .variables = "x: kind: m | rad"},
+    {.name = "damper",
+     .kind = ParameterKind::formula,
+     .unit = "kind: N | N*m",
+     .default_value = optional,
+     .summary = "Pull of a further damper at the stretch x and its rate v.",
+     .variables = "v: kind: m/s | rad/s; x: kind: m | rad"}};
 
 }  // namespace
 
@@ -229,9 +313,11 @@ Component spring_damper() {
        .summary =
            "Force element: spring, damper and preload between two frames, along their line or about their angle.",
        .formula =
-           "linear: pull = stiffness (L - free_length) + damping dL/dt + preload, L the distance of the origins, "
+           "linear: pull = stiffness (L - free_length) + damping dL/dt + preload + spring + damper, L the distance of "
+           "the origins, "
            "no force below 1e-12 m; rotational: torque on the second body = -(stiffness (angle - free_angle) + "
-           "damping dangle/dt + preload), in space about z of the first frame, angle counted over turns; at the start "
+           "damping dangle/dt + preload + spring + damper), in space about z of the first frame, angle counted over "
+           "turns; at the start "
            "as by a joint "
            "between the same bodies, else from (-pi, pi].",
        .parameters = spring_damper_parameters,

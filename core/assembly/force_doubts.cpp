@@ -60,6 +60,7 @@ class ForceDoubts {
     for (const Parameter& parameter : joint.parameters->component->description.parameters) {
       if (parameter.kind == ParameterKind::choice) continue;
       const auto value = joint.parameters->values.find(std::string_view(parameter.name));
+      if (parameter.kind == ParameterKind::formula && !value->second.given) continue;
       if (parameter.kind != ParameterKind::number || value == joint.parameters->values.end()) return false;
       const std::string_view unit = parameter.unit;
       if (unit == "m" || unit == "rad") continue;
@@ -132,6 +133,7 @@ class ForceDoubts {
       const JointElement& joint = model_.joints[at(j)];
       if (joint.gear >= 0 && couples(joint.gear, body)) return;
       if (joint.gear >= 0 || (body_of(joint.marker_a) != body && body_of(joint.marker_b) != body)) continue;
+      if (joint.is_force && joint.parameters && has_formula(*joint.parameters)) return;
       const double k = joint.is_force && joint.parameters ? number(joint, "stiffness") : std::nan("");
       if (joint.is_force && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
         const auto [x, y, z] = apart(joint);
@@ -156,6 +158,10 @@ class ForceDoubts {
                     first->name, model_.bodies[at(body)].name, along * model_.bodies[at(body)].mass / stiffness,
                     system_.size()),
         *first);
+  }
+
+  static bool has_formula(const ParameterBlock& block) {
+    return std::ranges::any_of(block.values, [](const auto& entry) { return static_cast<bool>(entry.second.formula); });
   }
 
   bool on_ground(const JointElement& joint) const {

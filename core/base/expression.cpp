@@ -100,6 +100,9 @@ inline const char* Expression::apply_function(const Instruction& instruction, Je
       if (a.value <= 0.0) outside = "logarithm of a number that is not positive";
       a = log(a);
       break;
+    case Operation::hyperbolic_tangent:
+      a = tanh(a);
+      break;
     case Operation::arctangent2:
       if (a.value == 0.0 && b->value == 0.0) outside = "atan2(0, 0) has no value";
       a = atan2(a, *b);

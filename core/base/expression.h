@@ -62,8 +62,12 @@ class FormulaVariables {
  public:
   virtual ~FormulaVariables() = default;
   virtual std::optional<FormulaVariable> find(std::string_view name) const = 0;
+  /// Whether they also stand without brackets, as plain words.
+  virtual bool plain() const { return false; }
   /// What one of them is called in messages, such as "channel".
   virtual std::string word() const = 0;
+  /// What there is, for a hint where no name is near; or empty.
+  virtual std::string known() const { return {}; }
   /// The name that was probably meant, or empty.
   virtual std::string nearest(std::string_view name) const = 0;
 };
@@ -164,6 +168,7 @@ class Expression {
     root,
     exponential,
     logarithm,
+    hyperbolic_tangent,
     absolute,
     sign,
     arctangent2,
@@ -204,6 +209,9 @@ class Expression {
   DimensionKind kind_ = DimensionKind::plain;
   Dimension dimension_;
 };
+
+/// Whether a word of formulas is one of theirs: a function, `t` or `pi`.
+bool is_formula_word(std::string_view word);
 
 /// Names of the parameters that `text` refers to, each once, in order. Reads no values and tolerates errors: it serves
 /// to order parameters and to find cycles before anything is compiled.

@@ -13,17 +13,17 @@
 #include <fmt/format.h>
 
 #include "base/expression.h"
-#include "base/expression_operands.h"
+#include "base/expression_names.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/token.h"
 
 namespace freeplay {
 
-class ExpressionCompiler : ExpressionOperands {
+class ExpressionCompiler : ExpressionNames {
  public:
   ExpressionCompiler(std::string_view text, const Scope& scope, bool time_allowed, const FormulaVariables* variables)
-      : ExpressionOperands(text), scope_(scope), time_allowed_(time_allowed), variables_(variables) {}
+      : ExpressionNames(text, scope, variables), time_allowed_(time_allowed) {}
 
   Expression compile() {
     expression_.characters_ = character_count(text_);
@@ -112,7 +112,7 @@ class ExpressionCompiler : ExpressionOperands {
     const char c = peek();
     if (c == '(') return group();
     if (c == '$') return without_unit(parameter());
-    if (c == '[' && variables_ != nullptr) return without_unit(variable());
+    if (c == '[' && variables_ != nullptr) return without_unit(bracket());
     if (word_end(text_, begin) > begin) return without_unit(word());
     if (c == '.') fail_if_not_finite_word(begin + 1, begin);
     fail_at_rest();
@@ -169,6 +169,21 @@ class ExpressionCompiler : ExpressionOperands {
     return operand;
   }
 
+  /// [name], or [number]: a number that fits any unit, as a parameter without one does.
+  Operand bracket() {
+    const std::size_t begin = position_, first = skip_blanks(text_, begin + 1), end = number_end(text_, first);
+    if (end == first || skip_blanks(text_, end) == text_.size() || text_[skip_blanks(text_, end)] != ']') {
+      return variable();
+    }
+    position_ = skip_blanks(text_, end) + 1;
+    Operand operand;
+    operand.kind = DimensionKind::free;
+    operand.begin = begin;
+    operand.end = position_;
+    push(number_value(text_.substr(first, end - first)), begin, position_);
+    return operand;
+  }
+
   Operand variable() {
     const std::size_t begin = position_, close = text_.find(']', begin);
     if (close == std::string_view::npos) fail("bad-expression", begin, begin + 1, "this '[' has no ']'");
@@ -179,9 +194,13 @@ class ExpressionCompiler : ExpressionOperands {
       fail("unknown-name", begin + 1, close, fmt::format("unknown {} '{}'", variables_->word(), name),
            variables_->nearest(name));
     }
-    const Operand operand{found->kind, found->dimension, true, begin, position_};
+    return push_variable(*found, begin);
+  }
+  /// The variable whose name ends at position_.
+  Operand push_variable(const FormulaVariable& variable, std::size_t begin) {
     expression_.depends_on_variables_ = true;
-    return emit(Operation::push_variable, operand, begin, position_, found->index);
+    const Operand operand{variable.kind, variable.dimension, true, begin, position_};
+    return emit(Operation::push_variable, operand, begin, position_, variable.index);
   }
 
   /// A name with dots, such as body.ram.vx.
@@ -223,9 +242,7 @@ class ExpressionCompiler : ExpressionOperands {
            variables_->nearest(name));
     }
     position_ = last;
-    expression_.depends_on_variables_ = true;
-    const Operand operand{found->kind, found->dimension, true, begin, position_};
-    return emit(Operation::push_variable, operand, begin, position_, found->index);
+    return push_variable(*found, begin);
   }
 
   /// if(l > r, a, b)
@@ -277,8 +294,12 @@ class ExpressionCompiler : ExpressionOperands {
       push(3.14159265358979323846, begin, end);
       return operand;
     }
+    if (const auto known = plain_variable(name)) return push_variable(*known, begin);
     if (name != "t") fail_at_word(name, begin, end);
-    if (!time_allowed_) fail("time-not-allowed", begin, end, "'t' is not allowed here: the value must be constant");
+    if (!time_allowed_) {
+      fail("time-not-allowed", begin, end,
+           variables_ == nullptr ? "'t' is not allowed here: the value must be constant" : "'t' is not allowed here");
+    }
     operand.kind = DimensionKind::free;
     operand.depends_on_time = true;
     return emit(Operation::push_time, operand, begin, end);
@@ -398,37 +419,12 @@ class ExpressionCompiler : ExpressionOperands {
     expression_.stack_depth_ = std::max(expression_.stack_depth_, depth_);
   }
 
-  // --- errors
-
-  /// A word that is no value: says what is missing around it.
-  [[noreturn]] void fail_at_word(std::string_view name, std::size_t begin, std::size_t end) {
-    fail_if_not_finite_word(begin, begin);
-    const bool called = peek() == '(';
-    if (find_function(name)) {
-      fail("bad-expression", begin, end, fmt::format("'{}' needs its arguments in parentheses", name));
-    }
-    if (is_unit_name(name) && !called) {
-      fail("bad-expression", begin, end, fmt::format("the unit '{}' needs a number before it", name), {},
-           fmt::format("write '1 {}'", name));
-    }
-    if (scope_.find(name) && !called) {
-      fail("bad-expression", begin, end, fmt::format("'{}' is not a number", name), {},
-           fmt::format("write '${}' for the parameter", name));
-    }
-    std::vector<std::string> known;
-    for (const Function& function : functions) known.emplace_back(function.name);
-    if (!called) known.emplace_back("pi");
-    fail("bad-expression", begin, end,
-         called ? fmt::format("unknown function '{}'", name) : fmt::format("'{}' is not a number", name),
-         suggestion(name, known).value_or(""));
-  }
-
-  const Scope& scope_;
   bool time_allowed_;
-  const FormulaVariables* variables_;  // null: there are none
   int depth_ = 0;
   Expression expression_;
 };
+
+bool is_formula_word(std::string_view word) { return ExpressionNames::is_word(word); }
 
 Expression Expression::compile(std::string_view text, const Scope& scope, bool time_allowed) {
   return ExpressionCompiler(text, scope, time_allowed, nullptr).compile();

@@ -36,7 +36,7 @@ class ExpressionOperands : protected ExpressionText {
   };
 
   static constexpr int any_number = 1 << 20;
-  static constexpr std::array<Function, 15> functions = {{
+  static constexpr std::array<Function, 16> functions = {{
       {"sin", Operation::sine, 1, 1},
       {"cos", Operation::cosine, 1, 1},
       {"tan", Operation::tangent, 1, 1},
@@ -45,6 +45,7 @@ class ExpressionOperands : protected ExpressionText {
       {"sqrt", Operation::root, 1, 1},
       {"exp", Operation::exponential, 1, 1},
       {"log", Operation::logarithm, 1, 1},
+      {"tanh", Operation::hyperbolic_tangent, 1, 1},
       {"abs", Operation::absolute, 1, 1},
       {"sign", Operation::sign, 1, 1},
       {"if", Operation::choose, 3, 3},

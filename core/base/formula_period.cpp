@@ -91,6 +91,8 @@ IntervalJet FormulaCourse::PeriodFinder::range_of(const Expression::Instruction&
       return cos(x[0].range);
     case Operation::exponential:
       return exp(x[0].range);
+    case Operation::hyperbolic_tangent:
+      return tanh(x[0].range);
     case Operation::smooth:
       return smooth(x[0].range, x[1].range, x[2].range);
     default:

@@ -257,6 +257,8 @@ IntervalJet FormulaSides::range_of(const Expression::Instruction& instruction, c
       return exp(x[0]);
     case Operation::logarithm:
       return log(x[0]);
+    case Operation::hyperbolic_tangent:
+      return tanh(x[0]);
     default:
       return unknown_jet();
   }

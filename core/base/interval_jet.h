@@ -29,6 +29,10 @@ inline IntervalJet tan(const IntervalJet& x) {
   const Interval g{std::tan(x.value.low), std::tan(x.value.high)}, g1 = Interval::at(1.0) + square(g);
   return chain(g, g1, 2.0 * (g * g1), x);
 }
+inline IntervalJet tanh(const IntervalJet& x) {
+  const Interval g{std::tanh(x.value.low), std::tanh(x.value.high)}, g1 = Interval::at(1.0) - square(g);
+  return chain(g, g1, -2.0 * (g * g1), x);
+}
 /// The derivatives of asin, by which acos falls.
 inline IntervalJet asin_like(const Interval& g, double sign, const IntervalJet& x) {
   const Interval w{std::max(x.value.low, -1.0), std::min(x.value.high, 1.0)};

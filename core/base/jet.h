@@ -106,6 +106,11 @@ inline Jet tan(const Jet& x) {
   const double g = std::tan(x.value), g1 = 1.0 + g * g;
   return chain(g, g1, 2.0 * g * g1, x);
 }
+/// tanh' = 1 - tanh^2, tanh'' = -2 tanh (1 - tanh^2).
+inline Jet tanh(const Jet& x) {
+  const double g = std::tanh(x.value), g1 = 1.0 - g * g;
+  return chain(g, g1, -2.0 * g * g1, x);
+}
 inline Jet asin(const Jet& x) {
   const double w = (1.0 - x.value) * (1.0 + x.value), g1 = 1.0 / std::sqrt(w);
   return chain(std::asin(x.value), g1, x.value * g1 / w, x);

@@ -1,9 +1,12 @@
 #include "base/state_formula.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+
+#include "base/partials.h"
 
 namespace freeplay {
 namespace {
@@ -12,8 +15,14 @@ constexpr int shallow = 16, deepest = 5004;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double value_of(double x) { return x; }
-double value_of(const Jet& x) { return x.value; }
-double rate_of(double) { return 0.0; }
+template <class Number>
+double value_of(const Number& x) {
+  return x.value;
+}
+template <class Number>
+double rate_of(const Number&) {
+  return 0.0;
+}
 double rate_of(const Jet& x) { return x.rate; }
 
 template <class Number>
@@ -25,14 +34,19 @@ Number constant(double x) {
   }
 }
 
+/// Variable `index`, or time where there is none.
 template <class Number>
-Number changing(double x, double rate) {
+Number changing(double x, double rate, std::size_t index) {
   if constexpr (std::is_same_v<Number, double>) {
     return x;
-  } else {
+  } else if constexpr (std::is_same_v<Number, Jet>) {
     return {x, rate, 0.0};
+  } else {
+    return Number::variable(x, index);
   }
 }
+
+constexpr std::size_t no_variable = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
@@ -75,11 +89,31 @@ double StateFormula::rate(const Input& in, std::span<const double> rates, double
   return run(in, {rates, time_rate}, {}, out, failure) && std::isfinite(out.rate) ? out.rate : 0.0;
 }
 
+bool StateFormula::slopes(const Input& in, double& out, std::span<double> slopes,
+                          EvaluationFailure& failure) const noexcept {
+  const auto take = [&]<class Number>(Number found) {
+    if (!run(in, {}, {}, found, failure)) return false;
+    out = found.value;
+    for (std::size_t k = 0; k < slopes.size(); ++k) slopes[k] = std::isfinite(found.slope[k]) ? found.slope[k] : 0.0;
+    return true;
+  };
+  if (slopes.empty()) return take(Partials<0>{});
+  if (slopes.size() == 1) return take(Partials<1>{});
+  return slopes.size() == 2 ? take(Partials<2>{}) : take(Partials<most_slopes>{});
+}
+
 void StateFormula::decide(const Input& in, std::span<const double> rates, double time_rate, std::span<double> values,
                           std::span<double> rate) const noexcept {
   Jet out;
   EvaluationFailure failure;
   run(in, {rates, time_rate}, {values.data(), rate.data()}, out, failure);
+}
+
+void StateFormula::decide(const Input& in, std::span<double> values) const noexcept {
+  double out = 0.0;
+  EvaluationFailure failure;
+  std::ranges::fill(values, nan);
+  run(in, {}, {values.data(), nullptr}, out, failure);
 }
 
 double StateFormula::side_at_zero(int index, double rate) const {
@@ -108,11 +142,11 @@ bool StateFormula::run_in(const Input& in, const Change& change, const Decided& 
     const Expression::Instruction& instruction = program[i];
     switch (instruction.operation) {
       case Operation::push_time:
-        *top++ = changing<Number>(in.t, change.time_rate);
+        *top++ = changing<Number>(in.t, change.time_rate, no_variable);
         continue;
       case Operation::push_variable: {
         const auto k = static_cast<std::size_t>(instruction.constant);
-        *top++ = changing<Number>(in.variables[k], change.rates.empty() ? 0.0 : change.rates[k]);
+        *top++ = changing<Number>(in.variables[k], change.rates.empty() ? 0.0 : change.rates[k], k);
         continue;
       }
       case Operation::push_constant:
@@ -157,9 +191,34 @@ void StateFormula::apply(const Expression::Instruction& instruction, Number* ope
     Jet jets[4];
     for (int k = 0; k < Expression::operand_count(instruction.operation); ++k) jets[k] = Jet::constant(operands[k]);
     operands[0] = expression_.apply_or_lack(instruction, jets, failure) ? jets[0].value : nan;
+  } else if constexpr (!std::is_same_v<Number, Jet>) {
+    if (instruction.operation == Operation::divide && operands[1].value != 0.0) {
+      operands[0] = operands[0] / operands[1];
+    } else if (instruction.operation == Operation::power_constant && operands[0].value > 0.0) {
+      operands[0] = pow(operands[0], instruction.constant);
+    } else {
+      differentiate(instruction, operands, failure);
+    }
   } else {
     if (!expression_.apply_or_lack(instruction, operands, failure)) operands[0] = constant<Number>(nan);
   }
+}
+
+// By one jet along each operand.
+template <class Number>
+void StateFormula::differentiate(const Expression::Instruction& instruction, Number* operands,
+                                 EvaluationFailure& failure) const noexcept {
+  const int count = Expression::operand_count(instruction.operation);
+  Number out = constant<Number>(nan);
+  for (int along = 0; along < count; ++along) {
+    if (along > 0 && !operands[along].changes()) continue;
+    Jet jets[4];
+    for (int k = 0; k < count; ++k) jets[k] = {operands[k].value, k == along ? 1.0 : 0.0, 0.0};
+    if (!expression_.apply_or_lack(instruction, jets, failure)) break;
+    if (along == 0) out = constant<Number>(jets[0].value);
+    out = out + Number::chain(0.0, jets[0].rate, operands[along]);
+  }
+  operands[0] = out;
 }
 
 template <class Number>
@@ -173,7 +232,7 @@ void StateFormula::apply_switch(std::size_t instruction, const Input& in, const 
   const double here = value_of(decides);
   if (decided.values != nullptr) {
     decided.values[index] = here;
-    decided.rates[index] = rate_of(decides);
+    if (decided.rates != nullptr) decided.rates[index] = rate_of(decides);
   }
   double side = in.sides == nullptr ? 0.0 : in.sides[index];
   if (side == 0.0) side = here > 0.0 ? 1.0 : here < 0.0 ? -1.0 : 0.0;

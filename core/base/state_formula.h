@@ -28,10 +28,17 @@ class StateFormula {
   /// Its rate where variables change at `rates` and time at `time_rate`; 0 where it has none.
   double rate(const Input& in, std::span<const double> rates, double time_rate) const noexcept;
 
+  static constexpr std::size_t most_slopes = 4;
+  /// The value and the partial derivatives by the first variables, as many as `slopes` has, at most most_slopes; 0
+  /// where one has no number.
+  bool slopes(const Input& in, double& out, std::span<double> slopes, EvaluationFailure& failure) const noexcept;
+
   int switches() const { return switches_; }
   /// What decides each switch, and its rate as above; NaN where it has none.
   void decide(const Input& in, std::span<const double> rates, double time_rate, std::span<double> values,
               std::span<double> rate) const noexcept;
+  /// What decides each switch alone.
+  void decide(const Input& in, std::span<double> values) const noexcept;
   /// The side on which a switch is where what decides it is zero and changes at `rate`.
   double side_at_zero(int index, double rate) const;
 
@@ -55,6 +62,9 @@ class StateFormula {
               EvaluationFailure& failure) const noexcept;
   template <class Number>
   void apply(const Expression::Instruction& instruction, Number* operands, EvaluationFailure& failure) const noexcept;
+  template <class Number>
+  void differentiate(const Expression::Instruction& instruction, Number* operands,
+                     EvaluationFailure& failure) const noexcept;
   template <class Number>
   void apply_switch(std::size_t instruction, const Input& in, const Decided& decided, Number* operands) const noexcept;
 

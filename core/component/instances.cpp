@@ -36,7 +36,7 @@ struct NamedLaw {
     const auto& me = *static_cast<const NamedLaw*>(self);
     const Status status = abi::guarded(message, [&] { body(me.law); });
     if (status == Status::ok) return status;
-    Message text;
+    Message text = *message;
     const std::size_t length = std::min(me.name.size(), sizeof text.text / 2);
     std::memcpy(text.text, me.name.data(), length);
     std::memcpy(text.text + length, ": ", 2);
@@ -51,7 +51,8 @@ void require_finite(bool finite) {
 }
 
 constexpr abi::ContactLawTable named_contact_law{
-    sizeof(abi::ContactLawTable), nullptr,
+    sizeof(abi::ContactLawTable),
+    nullptr,
     [](const void* self, const ContactState* in, ContactForce* out, Message* m) noexcept {
       return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) {
         *out = law.evaluate(*in);
@@ -60,10 +61,17 @@ constexpr abi::ContactLawTable named_contact_law{
     },
     [](const void* self, const ContactState* in, const char** why, Message* m) noexcept {
       return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { *why = law.outside_range(*in); });
+    },
+    [](const void* self, std::int32_t* count, Message* m) noexcept {
+      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { *count = law.switches(); });
+    },
+    [](const void* self, const ContactState* in, Span<double> values, Message* m) noexcept {
+      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { law.decide(*in, values); });
     }};
 
 constexpr abi::FrictionLawTable named_friction_law{
-    sizeof(abi::FrictionLawTable), nullptr,
+    sizeof(abi::FrictionLawTable),
+    nullptr,
     [](const void* self, std::int32_t* count, Message* m) noexcept {
       return NamedLaw<FrictionLawRef>::call(self, m,
                                             [&](const FrictionLawRef& law) { *count = law.internal_variables(); });
@@ -76,6 +84,12 @@ constexpr abi::FrictionLawTable named_friction_law{
     },
     [](const void* self, Span<const double>* speeds, Message* m) noexcept {
       return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { *speeds = law.kinks(); });
+    },
+    [](const void* self, std::int32_t* count, Message* m) noexcept {
+      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { *count = law.switches(); });
+    },
+    [](const void* self, const FrictionState* in, Span<double> values, Message* m) noexcept {
+      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { law.decide(*in, values); });
     }};
 
 CreationFault fault_of(const Component& component, Status status, const Message& message) {
@@ -141,6 +155,9 @@ abi::ParameterTable Instances::Server::table() const {
   };
   table.function = [](const void* self, const char* name, TimeFunction* out, Message* m) noexcept {
     return abi::guarded(m, [&] { *out = of(self).value(name).function; });
+  };
+  table.formula = [](const void* self, const char* name, Formula* out, Message* m) noexcept {
+    return abi::guarded(m, [&] { *out = of(self).value(name).formula; });
   };
   table.contact_law = [](const void* self, const char* name, const ContactPair* pair, ContactLawRef* law,
                          Message* m) noexcept {

@@ -20,7 +20,8 @@ struct ParameterValue {
   int word = -1;
   std::array<double, 3> vector{};
   TimeFunction function;
-  std::shared_ptr<const void> function_owner;  ///< keeps what `function` points at
+  Formula formula;
+  std::shared_ptr<const void> function_owner;  ///< keeps what `function` or `formula` points at
   std::shared_ptr<const ParameterBlock> law;   ///< contact_law, friction_law
 };
 

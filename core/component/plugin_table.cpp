@@ -51,6 +51,22 @@ abi::JointTable defaults<abi::JointTable>() {
   table.kinks = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
   return table;
 }
+// A law without switches.
+template <class Table, class State>
+void has_no_switches(Table& table) {
+  table.switches = [](const void*, std::int32_t* count, Message*) noexcept {
+    *count = 0;
+    return Status::ok;
+  };
+  table.decide = [](const void*, const State*, Span<double>, Message*) noexcept { return Status::ok; };
+}
+template <>
+abi::ContactLawTable defaults<abi::ContactLawTable>() {
+  abi::ContactLawTable table{};
+  table.size = sizeof table;
+  has_no_switches<abi::ContactLawTable, ContactState>(table);
+  return table;
+}
 template <>
 abi::FrictionLawTable defaults<abi::FrictionLawTable>() {
   abi::FrictionLawTable table{};
@@ -59,6 +75,7 @@ abi::FrictionLawTable defaults<abi::FrictionLawTable>() {
     *speeds = {};
     return Status::ok;
   };
+  has_no_switches<abi::FrictionLawTable, FrictionState>(table);
   return table;
 }
 
@@ -205,7 +222,8 @@ void PluginTable::check_parameters(const Component& row) const {
     const std::string named = std::string("publishes '") + row.description.name + "' with ";
     if (p.name == nullptr || *p.name == '\0' || p.unit == nullptr) refuse(named + "a parameter without name or unit");
     const std::string parameter = "parameter '" + std::string(p.name) + "' ";
-    if (p.kind > ParameterKind::friction_law) refuse(named + parameter + "of an unknown kind");
+    if (p.kind > ParameterKind::formula) refuse(named + parameter + "of an unknown kind");
+    if (p.kind == ParameterKind::formula && p.variables == nullptr) refuse(named + parameter + "without variables");
     if (!names.insert(p.name).second) refuse(named + "two parameters called '" + p.name + "'");
     if (p.minimum > p.maximum) refuse(named + parameter + "whose bounds leave nothing");
     const bool has_default = !std::isnan(p.default_value) && p.default_value != optional;

@@ -10,6 +10,7 @@
 
 #include "base/number_text.h"
 #include "format/key_table.h"
+#include "format/parameter_tree.h"
 
 namespace freeplay {
 namespace {
@@ -45,6 +46,8 @@ const char* kind_word(ParameterKind kind) {
       return "vector";
     case ParameterKind::function:
       return "function";
+    case ParameterKind::formula:
+      return "formula";
     case ParameterKind::contact_law:
       return "contact law";
     case ParameterKind::friction_law:
@@ -66,6 +69,8 @@ Json default_json(const Parameter& parameter, const std::vector<std::string>& ch
 
 Json parameter_json(const Parameter& parameter, const Registry& registry) {
   const std::vector<std::string> choices = words(parameter.choices);
+  Json variables = Json::array();
+  for (const VariableRow& row : variables_of(parameter)) variables.push_back({{"name", row.name}, {"unit", row.unit}});
   return {{"name", parameter.name},
           {"kind", kind_word(parameter.kind)},
           {"unit", parameter.unit},
@@ -76,6 +81,7 @@ Json parameter_json(const Parameter& parameter, const Registry& registry) {
           {"exclusive_minimum", is_open(parameter, Open::minimum)},
           {"exclusive_maximum", is_open(parameter, Open::maximum)},
           {"choices", choices},
+          {"variables", variables},
           {"summary", parameter.summary}};
 }
 
@@ -151,6 +157,7 @@ Json core_entry(const char* name, const char* kind, const FormatMap& map) {
                           {"exclusive_minimum", false},
                           {"exclusive_maximum", false},
                           {"choices", words_in(key.value)},
+                          {"variables", Json::array()},
                           {"summary", key.meaning}});
   }
   return {{"name", name},         {"kind", kind},           {"space", "both"},
@@ -199,6 +206,14 @@ std::string range_text(const Json& parameter) {
   } else {
     if (from) text = (above ? "> " : ">= ") + number_or_word(parameter["minimum"]);
     if (to) text += (from ? ", " : "") + std::string(below ? "< " : "<= ") + number_or_word(parameter["maximum"]);
+  }
+  if (!parameter["variables"].empty()) {
+    std::vector<std::string> names;
+    for (const Json& one : parameter["variables"]) {
+      const auto name = one["name"].get<std::string>(), unit = one["unit"].get<std::string>();
+      names.push_back(unit == "1" ? name : fmt::format("{} [{}]", name, unit));
+    }
+    return fmt::format("formula in {}", fmt::join(names, ", "));
   }
   const auto choices = parameter["choices"].get<std::vector<std::string>>();
   if (!choices.empty()) {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/expression_error.h"
+#include "base/expression.h"
 #include "base/unit.h"
 #include "format/key_table.h"
 #include "format/parameter_tree.h"
@@ -135,6 +135,23 @@ void check_value(const Parameter& p, Findings& findings) {
   findings.expect("parameter-defaults", good, [&] { return fmt::format("'{}' has the default {}", p.name, given); });
 }
 
+/// What is wrong with the variables of a formula.
+std::optional<std::string> variables_fault(const Parameter& p, Span<const Parameter> table) {
+  const std::vector<VariableRow> rows = variables_of(p);
+  if (p.kind != ParameterKind::formula)
+    return rows.empty() ? std::nullopt : std::optional<std::string>("is no formula");
+  if (rows.empty() || rows.size() > Formula::most_variables) return fmt::format("has {} variables", rows.size());
+  std::set<std::string> names;
+  for (const VariableRow& row : rows) {
+    if (!is_path(row.name) || row.name.find('.') != std::string::npos) return fmt::format("'{}'", row.name);
+    if (!names.insert(row.name).second) return fmt::format("'{}' stands twice", row.name);
+    if (is_unit_name(row.name) || is_formula_word(row.name)) return fmt::format("'{}' means something else", row.name);
+    if (const auto fault = unit_fault(row.unit.c_str(), table))
+      return fmt::format("unit of '{}': {}", row.name, *fault);
+  }
+  return std::nullopt;
+}
+
 /// Does a joint, or a force where it may stand as one, have a column `name` without the type's doing?
 bool is_column(const JointLayout& layout, const char* name) {
   Model model;
@@ -173,6 +190,8 @@ Findings check_description(const Component& component) {
                     [&] { return fmt::format("that of parameter '{}' is empty", p.name); });
     const std::optional<std::string> fault = unit_fault(p.unit, d.parameters);
     findings.expect("parameter-units", !fault, [&] { return fmt::format("of '{}': {}", p.name, *fault); });
+    const std::optional<std::string> variables = variables_fault(p, d.parameters);
+    findings.expect("parameter-variables", !variables, [&] { return fmt::format("'{}': {}", p.name, *variables); });
     check_value(p, findings);
   }
   return findings;

@@ -27,6 +27,9 @@ constexpr Rule rules[] = {
      "Units are those of the model format; an exponent names a number of the table, alternatives have a choice in "
      "front "
      "and one unit for each of its words."},
+    {"parameter-variables", all,
+     "A formula has one to four variables with units, such as \"delta: m; rate: m/s\"; none is called like another, a "
+     "unit, a function, `t` or `pi`. What is no formula has none."},
     {"accepts-parameters", all,
      "The constructor accepts some block that its own table allows. Look at the checks in the constructor and at the "
      "bounds in the table."},

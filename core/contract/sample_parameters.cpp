@@ -44,6 +44,18 @@ Status evaluate_sample(const void* self, double t, TimeValue* out, Message*) noe
   return Status::ok;
 }
 
+/// f(x, ...) = c x: a formula that rises with its first variable alone.
+constexpr abi::FormulaTable sample_formula{
+    sizeof(abi::FormulaTable),
+    [](const void* self, Span<const double> variables, double* value, Span<double> slopes, Message*) noexcept {
+      const double c = static_cast<const SampleFunction*>(self)->size;
+      for (std::size_t i = 0; i < slopes.size; ++i) slopes[i] = i == 0 ? c : 0.0;
+      *value = c * variables[0];
+      return Status::ok;
+    },
+    [](const void*) noexcept { return std::int32_t{0}; },
+    [](const void*, Span<const double>, Span<double>) noexcept {}};
+
 /// A size that occurs in mechanisms [SI].
 double usual_size(const Dimension& d) {
   const struct {
@@ -104,7 +116,8 @@ class Sampler {
  private:
   const Span<const Parameter>& table() const { return component_.description.parameters; }
 
-  std::optional<Unit> unit_of(const Parameter& p, const ParameterBlock& block) const {
+  static std::optional<Unit> unit_of(const Parameter& p, const ParameterBlock& block) { return unit_of(p.unit, block); }
+  static std::optional<Unit> unit_of(const std::string& unit, const ParameterBlock& block) {
     const auto exponent = [&](std::string_view name) -> std::optional<double> {
       const auto found = block.values.find(name);
       if (found == block.values.end()) return std::nullopt;
@@ -113,7 +126,7 @@ class Sampler {
       return found->second.number;
     };
     try {
-      return parse_unit(p.unit, exponent);
+      return parse_unit(unit, exponent);
     } catch (const ExpressionError&) {
       return std::nullopt;
     }
@@ -125,7 +138,7 @@ class Sampler {
     for (const Parameter& p : table()) block->values[p.name];
     // Words choose among units.
     for (const Parameter& p : table()) {
-      if (p.kind == ParameterKind::choice) fill(p, Unit{}, plan, 0, block->values[p.name]);
+      if (p.kind == ParameterKind::choice) fill(p, Unit{}, plan, 0, *block);
     }
     // Exponents are dimensionless: they come first, and the units that name them after.
     for (const bool last : {false, true}) {
@@ -134,14 +147,15 @@ class Sampler {
         const std::optional<Unit> unit = unit_of(p, *block);
         if (unit && std::string_view(p.unit).find('^') == std::string_view::npos) ++same_unit;
         if (!unit && !last) continue;
-        fill(p, unit.value_or(Unit{}), plan, same_unit, block->values[p.name]);
+        fill(p, unit.value_or(Unit{}), plan, same_unit, *block);
       }
     }
     mark_branches(*block);
     return block;
   }
 
-  void fill(const Parameter& p, const Unit& unit, const Plan& plan, int place, ParameterValue& value) const {
+  void fill(const Parameter& p, const Unit& unit, const Plan& plan, int place, ParameterBlock& block) const {
+    ParameterValue& value = block.values[p.name];
     value.given = is_required(p) || plan.given.contains(p.name) || plan.words.contains(p.name) ||
                   plan.numbers.contains(p.name) || plan.laws.contains(p.name);
     if (is_law(p)) {
@@ -165,6 +179,12 @@ class Sampler {
     } else if (p.kind == ParameterKind::function) {
       const auto function = std::make_shared<const SampleFunction>(SampleFunction{size});
       value.function = {&evaluate_sample, function.get()};
+      value.function_owner = function;
+    } else if (p.kind == ParameterKind::formula) {
+      const std::vector<VariableRow> variables = variables_of(p);
+      const Unit first = variables.empty() ? Unit{} : unit_of(variables.front().unit, block).value_or(Unit{});
+      const auto function = std::make_shared<const SampleFunction>(SampleFunction{size / usual_size(first.dimension)});
+      value.formula = Formula(sample_formula, function.get());
       value.function_owner = function;
     } else {
       const auto number = plan.numbers.find(p.name);

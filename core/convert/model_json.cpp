@@ -135,6 +135,8 @@ class ModelWriter {
       }
       case ParameterKind::function:
         return value.given ? Json("function of time") : Json(nullptr);
+      case ParameterKind::formula:
+        return value.given ? Json("formula") : Json(nullptr);
       case ParameterKind::number:
       case ParameterKind::integer:
         break;

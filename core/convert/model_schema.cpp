@@ -132,6 +132,7 @@ Json leaf_schema(const Parameter& p) {
     case ParameterKind::number:
     case ParameterKind::integer:
     case ParameterKind::function:
+    case ParameterKind::formula:
       alternatives.push_back(reference("quantity"));
       break;
     case ParameterKind::vector:

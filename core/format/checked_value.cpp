@@ -71,6 +71,25 @@ std::optional<Expression> CheckedValue::formula(const FormulaVariables& variable
   return compile(*node_, node_->text, 0, true, &variables);
 }
 
+std::optional<Expression> CheckedValue::formula(const FormulaVariables& variables, const Dimension& dimension) const {
+  if (!node_->is_scalar()) {
+    wrong_type("a formula");
+    return std::nullopt;
+  }
+  std::optional<Expression> expression = compile(*node_, node_->text, 0, false, &variables);
+  if (!expression) return std::nullopt;
+  try {
+    expression->require(dimension);
+  } catch (const ExpressionError& error) {
+    fail_inside(*node_, error, 0);
+    return std::nullopt;
+  }
+  if (reading_->readout != nullptr) {
+    reading_->readout->note_formula(reading_->instance, *node_, *reading_->scope);
+  }
+  return expression;
+}
+
 std::optional<Quantity> CheckedValue::any_quantity() const {
   if (!node_->is_scalar()) {
     wrong_type("a quantity");

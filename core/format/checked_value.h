@@ -38,6 +38,8 @@ class CheckedValue : public LocatedValue {
                                           const ChannelNames* channels = nullptr) const;
   /// A function of time and of `variables`, of whatever dimension.
   std::optional<Expression> formula(const FormulaVariables& variables) const;
+  /// A function of `variables` alone, of this dimension.
+  std::optional<Expression> formula(const FormulaVariables& variables, const Dimension& dimension) const;
   std::optional<long> integer(long minimum, long maximum) const;
   std::optional<bool> boolean() const;
   /// Any scalar, as it is.

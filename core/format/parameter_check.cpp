@@ -8,8 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "format/parameter_tree.h"
+#include "format/table_variables.h"
 #include "model/time_function.h"
+#include "model/written_formula.h"
 
 namespace freeplay {
 namespace {
@@ -108,14 +112,21 @@ class ParameterCheck {
     return true;
   }
 
+  /// A unit of the table, where all that it may name is known.
+  Unit unit_in_table(const std::string& text) const {
+    return parse_unit(text, [&](std::string_view name) { return exponent(name, true); });
+  }
+
+  std::optional<double> exponent(std::string_view name, bool last) const {
+    const auto found = block_.values.find(name);
+    if (found != block_.values.end() && std::isfinite(found->second.number)) return found->second.number;
+    if (found != block_.values.end() && found->second.word >= 0) return found->second.word;
+    // The exponent itself was in error: its unit is a guess, but the mistake has been reported.
+    return last && !good_ ? std::optional<double>(1.0) : std::nullopt;
+  }
+
   std::optional<Unit> unit_of(const Parameter& parameter, bool last) const {
-    const auto exponent = [&](std::string_view name) -> std::optional<double> {
-      const auto found = block_.values.find(name);
-      if (found != block_.values.end() && std::isfinite(found->second.number)) return found->second.number;
-      if (found != block_.values.end() && found->second.word >= 0) return found->second.word;
-      // The exponent itself was in error: its unit is a guess, but the mistake has been reported.
-      return last && !good_ ? std::optional<double>(1.0) : std::nullopt;
-    };
+    const auto exponent = [&](std::string_view name) { return this->exponent(name, last); };
     try {
       return parse_unit(parameter.unit, exponent);
     } catch (const ExpressionError& error) {
@@ -138,6 +149,8 @@ class ParameterCheck {
       return;
     } else if (parameter.kind == ParameterKind::choice) {
       value.word = static_cast<int>(given);
+    } else if (parameter.kind == ParameterKind::formula) {
+      set_formula(value, Expression::compile(fmt::format("{}", given * unit.factor), EmptyScope(), false), {}, false);
     } else if (parameter.kind == ParameterKind::function) {
       set_function(value, given * unit.factor);
     } else {
@@ -157,6 +170,8 @@ class ParameterCheck {
         return read_vector(unit, written, value);
       case ParameterKind::function:
         return read_function(unit, written, value);
+      case ParameterKind::formula:
+        return read_formula(parameter, unit, written, value);
       case ParameterKind::contact_law:
       case ParameterKind::friction_law:
         return read_law_block(parameter, written, value);
@@ -219,6 +234,15 @@ class ParameterCheck {
     std::optional<Expression> expression = written.time_function(unit.dimension);
     if (!expression) return false;
     set_function(value, std::move(*expression), written.node().location_at(0), written.node().verbatim);
+    return true;
+  }
+
+  bool read_formula(const Parameter& parameter, const Unit& unit, const CheckedValue& written, ParameterValue& value) {
+    TableVariables variables;
+    for (const VariableRow& row : variables_of(parameter)) variables.add(row.name, unit_in_table(row.unit).dimension);
+    const std::optional<Expression> expression = written.formula(variables, unit.dimension);
+    if (!expression) return false;
+    set_formula(value, *expression, written.node().location_at(0), written.node().verbatim);
     return true;
   }
 

@@ -1,5 +1,6 @@
 #include "format/parameter_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -35,6 +36,23 @@ bool ParameterTree::is_required() const {
     if (child.is_required()) return true;
   }
   return false;
+}
+
+std::vector<VariableRow> variables_of(const Parameter& parameter) {
+  const auto trimmed = [](std::string_view text) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return std::string(text);
+  };
+  std::vector<VariableRow> rows;
+  std::string_view rest = parameter.variables == nullptr ? "" : parameter.variables;
+  while (!rest.empty()) {
+    const std::string_view row = rest.substr(0, rest.find(';'));
+    rest.remove_prefix(std::min(row.size() + 1, rest.size()));
+    const std::size_t colon = std::min(row.find(':'), row.size());
+    rows.push_back({trimmed(row.substr(0, colon)), colon < row.size() ? trimmed(row.substr(colon + 1)) : "1"});
+  }
+  return rows;
 }
 
 std::vector<std::string> words_of(const Parameter& parameter) {

@@ -25,6 +25,12 @@ struct ParameterTree {
   void insert(std::string_view path, const Parameter& parameter);
 };
 
+/// A variable of a formula, and its unit as written in the table.
+struct VariableRow {
+  std::string name, unit;
+};
+std::vector<VariableRow> variables_of(const Parameter& parameter);
+
 /// The words of a choice, or those accepted in the place of a number.
 std::vector<std::string> words_of(const Parameter& parameter);
 

@@ -45,6 +45,22 @@ std::string with_names(std::string_view text, const NamesInFull& names) {
   return full;
 }
 
+/// The text with `written` of each parameter in its place.
+template <class Written>
+std::string with_values(std::string_view rest, const Scope& scope, const Written& written) {
+  std::string text;
+  while (!rest.empty()) {
+    const std::size_t dollar = rest.find('$');
+    text += rest.substr(0, dollar);
+    if (dollar == std::string_view::npos) break;
+    rest.remove_prefix(dollar);
+    const std::string name = referenced_parameters(rest).front();
+    text += written(*scope.find(name));
+    rest.remove_prefix(reference_length(rest, name));
+  }
+  return text;
+}
+
 }  // namespace
 
 void Readout::note_number(const std::string& instance, const Node& node, double value) {
@@ -54,17 +70,7 @@ void Readout::note_number(const std::string& instance, const Node& node, double 
 void Readout::note_function(const std::string& instance, const Node& node, const Expression& expression,
                             const Scope& scope, const NamesInFull& channels) {
   if (instance.empty()) return;
-  const std::string written = with_names(node.text, channels);
-  std::string text;
-  for (std::string_view rest = written; !rest.empty();) {
-    const std::size_t dollar = rest.find('$');
-    text += rest.substr(0, dollar);
-    if (dollar == std::string_view::npos) break;
-    rest.remove_prefix(dollar);
-    const std::string name = referenced_parameters(rest).front();
-    text += factor(*scope.find(name));
-    rest.remove_prefix(reference_length(rest, name));
-  }
+  std::string text = with_values(with_names(node.text, channels), scope, factor);
   // A parameter without a unit fits anywhere, a number in its place may not: what depends on t fits anywhere, too.
   if (expression.kind() == DimensionKind::free &&
       (expression.depends_on_variables() ||
@@ -72,6 +78,16 @@ void Readout::note_function(const std::string& instance, const Node& node, const
     text = "(1 + 0*t)*(" + text + ")";
   }
   texts_[{instance, &node}] = {std::move(text)};
+}
+
+void Readout::note_formula(const std::string& instance, const Node& node, const Scope& scope) {
+  if (instance.empty()) return;
+  // A negative number has no brackets of its own.
+  const auto written = [](const Quantity& q) {
+    if (q.kind == DimensionKind::dimensioned) return factor(q);
+    return q.value < 0.0 ? fmt::format("(-[{}])", -q.value) : fmt::format("[{}]", q.value);
+  };
+  texts_[{instance, &node}] = {with_values(node.text, scope, written)};
 }
 
 void Readout::note_names(const std::string& instance, const Node& node, std::vector<std::string> names) {

@@ -31,6 +31,8 @@ class Readout {
   /// A function of time: its text with the values of its parameters, in SI, and the full names of channels.
   void note_function(const std::string& instance, const Node& node, const Expression& expression, const Scope& scope,
                      const NamesInFull& channels);
+  /// A formula of a component: its text with the values of its parameters.
+  void note_formula(const std::string& instance, const Node& node, const Scope& scope);
   /// Full names that a reference stands for; several for a pattern. `node` may be a key.
   void note_names(const std::string& instance, const Node& node, std::vector<std::string> names);
 

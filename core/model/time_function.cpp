@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include <fmt/format.h>
+#include "model/written_formula.h"
 
 namespace freeplay {
 namespace {
@@ -22,12 +22,7 @@ Status evaluate_written(const void* self, double t, TimeValue* out, Message* mes
     *out = {jet.value, jet.rate, jet.acceleration};
     return Status::ok;
   }
-  const int column = function.begin.column + (function.places_inside ? failure.offset : 0);
-  const auto end = fmt::format_to_n(message->text, sizeof message->text - 1, "{}:{}:{}: {}", function.begin.file,
-                                    function.begin.line, column, failure.reason);
-  *end.out = '\0';
-  abi::copy_text(message->id, sizeof message->id, failure.id);
-  return Status::bad_parameter;
+  return tell_failure(function.begin, function.places_inside, failure, *message);
 }
 
 Status evaluate_constant(const void* self, double, TimeValue* out, Message*) noexcept {

@@ -103,6 +103,9 @@ def choice_section(name, definition):
 
 def limits(parameter):
     low, high = parameter.get("minimum"), parameter.get("maximum")
+    if parameter.get("variables"):
+        return "formula in " + ", ".join(
+            code(one["name"]) + ("" if one["unit"] == "1" else " [%s]" % one["unit"]) for one in parameter["variables"])
     if parameter.get("choices"):
         return ", ".join(code(word) for word in parameter["choices"])
     words = []

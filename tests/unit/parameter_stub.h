@@ -45,13 +45,15 @@ class ParameterStub {
 
   std::map<std::string, double> numbers;
   std::map<std::string, std::vector<double>> vectors;
+  std::map<std::string, Formula> formulas;
   std::map<std::string, int> words;       ///< index of the word; -1: something else was written
   std::shared_ptr<ContactLaw> contact;    ///< FunctionContact
   std::shared_ptr<FrictionLaw> friction;  ///< FunctionFriction; absent: no force
   mutable ContactPair pair{};             ///< what the joint handed to its contact law
 
   abi::ParameterTable table() const {
-    return {sizeof(abi::ParameterTable), this, number, vector, word, given, function, contact_law, friction_law};
+    return {
+        sizeof(abi::ParameterTable), this, number, vector, word, given, function, contact_law, friction_law, formula};
   }
 
  private:
@@ -97,6 +99,13 @@ class ParameterStub {
     });
   }
   static Status function(const void*, const char*, TimeFunction*, Message*) noexcept { return Status::failed; }
+  static Status formula(const void* s, const char* name, Formula* out, Message* m) noexcept {
+    return abi::guarded(m, [&] {
+      self(s).find(name);
+      const auto found = self(s).formulas.find(name);
+      if (found != self(s).formulas.end()) *out = found->second;
+    });
+  }
   static Status contact_law(const void* s, const char* name, const ContactPair* pair, ContactLawRef* law,
                             Message* m) noexcept {
     return abi::guarded(m, [&] {

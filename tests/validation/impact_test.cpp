@@ -56,6 +56,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Drop{"hertz_fast", 0.2, 1.0, "hertz", 2.56452955791166e-05, 7.54811620726858e-05, 1.0},
                       Drop{"hertz_heavy", 1.0, 0.1, "hertz", 7.73741178636057e-06, 0.000227733321016965, 1.0},
                       Drop{"lankarani_nikravesh", 0.2, 0.1, "{law: lankarani-nikravesh, restitution: 0.9}",
+                           3.92110659514316e-06, 0.000120812390093, 0.913176677805581},
+                      Drop{"lankarani_nikravesh_as_a_formula", 0.2, 0.1,
+                           "{law: expression, force: \"75062104464.4181 N/m^1.5*delta^1.5*(1 + 0.1425*rate/v0)\"}",
                            3.92110659514316e-06, 0.000120812390093, 0.913176677805581}),
     [](const auto& made) { return std::string(made.param.name); });
 

@@ -46,6 +46,11 @@ class ContactLaw {
   virtual ContactForce evaluate(const ContactState& state) const = 0;
   /// A static sentence when `state` lies outside the law's range of validity, else null.
   virtual const char* outside_range(const ContactState& /*state*/) const { return nullptr; }
+  /// How many functions decide() fills: those that pass zero where the force has a kink besides the one where it ends.
+  virtual std::int32_t switches() const { return 0; }
+  /// NaN: none is near. Runs with error control end a step there: beside a kink it errs by more than its estimate
+  /// shows.
+  virtual void decide(const ContactState& /*state*/, Span<double> /*values*/) const {}
 };
 
 namespace abi {
@@ -54,16 +59,26 @@ struct ContactLawTable {
   void (*destroy)(void* self) noexcept;
   Status (*evaluate)(const void* self, const ContactState*, ContactForce*, Message*) noexcept;
   Status (*outside_range)(const void* self, const ContactState*, const char** why, Message*) noexcept;
+  // Appended.
+  Status (*switches)(const void* self, std::int32_t* count, Message*) noexcept;
+  Status (*decide)(const void* self, const ContactState*, Span<double> values, Message*) noexcept;
 };
 
 template <class Law>
 inline constexpr ContactLawTable contact_law_table{
-    sizeof(ContactLawTable), [](void* self) noexcept { delete static_cast<Law*>(self); },
+    sizeof(ContactLawTable),
+    [](void* self) noexcept { delete static_cast<Law*>(self); },
     [](const void* self, const ContactState* in, ContactForce* out, Message* m) noexcept {
       return guarded(m, [&] { *out = static_cast<const Law*>(self)->evaluate(*in); });
     },
     [](const void* self, const ContactState* in, const char** why, Message* m) noexcept {
       return guarded(m, [&] { *why = static_cast<const Law*>(self)->outside_range(*in); });
+    },
+    [](const void* self, std::int32_t* count, Message* m) noexcept {
+      return guarded(m, [&] { *count = static_cast<const Law*>(self)->switches(); });
+    },
+    [](const void* self, const ContactState* in, Span<double> values, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const Law*>(self)->decide(*in, values); });
     }};
 
 template <class Law>
@@ -89,6 +104,16 @@ class ContactLawRef {
     Message message;
     abi::require(table_->outside_range(self_, &state, &why, &message), message);
     return why;
+  }
+  std::int32_t switches() const {
+    std::int32_t count = 0;
+    Message message;
+    abi::require(table_->switches(self_, &count, &message), message);
+    return count;
+  }
+  void decide(const ContactState& state, Span<double> values) const {
+    Message message;
+    abi::require(table_->decide(self_, &state, values, &message), message);
   }
 
  private:

@@ -30,6 +30,9 @@ class FrictionLaw {
   /// Slip speeds >= 0 [m/s] at which the force or a rate has a kink, in both directions of slip. Runs with error
   /// control end a step there: beside a kink a step errs by more than its estimate shows.
   virtual Span<const double> kinks() const { return {}; }
+  /// The same where kinks do not stand at fixed speeds: how many functions decide() fills, which pass zero there.
+  virtual std::int32_t switches() const { return 0; }
+  virtual void decide(const FrictionState& /*state*/, Span<double> /*values*/) const {}
 };
 
 namespace abi {
@@ -39,11 +42,14 @@ struct FrictionLawTable {
   Status (*internal_variables)(const void* self, std::int32_t* count, Message*) noexcept;
   Status (*evaluate)(const void* self, const FrictionState*, Span<double>, FrictionForce*, Message*) noexcept;
   Status (*kinks)(const void* self, Span<const double>* speeds, Message*) noexcept;
+  Status (*switches)(const void* self, std::int32_t* count, Message*) noexcept;
+  Status (*decide)(const void* self, const FrictionState*, Span<double> values, Message*) noexcept;
 };
 
 template <class Law>
 inline constexpr FrictionLawTable friction_law_table{
-    sizeof(FrictionLawTable), [](void* self) noexcept { delete static_cast<Law*>(self); },
+    sizeof(FrictionLawTable),
+    [](void* self) noexcept { delete static_cast<Law*>(self); },
     [](const void* self, std::int32_t* count, Message* m) noexcept {
       return guarded(m, [&] { *count = static_cast<const Law*>(self)->internal_variables(); });
     },
@@ -52,6 +58,12 @@ inline constexpr FrictionLawTable friction_law_table{
     },
     [](const void* self, Span<const double>* speeds, Message* m) noexcept {
       return guarded(m, [&] { *speeds = static_cast<const Law*>(self)->kinks(); });
+    },
+    [](const void* self, std::int32_t* count, Message* m) noexcept {
+      return guarded(m, [&] { *count = static_cast<const Law*>(self)->switches(); });
+    },
+    [](const void* self, const FrictionState* in, Span<double> values, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const Law*>(self)->decide(*in, values); });
     }};
 
 template <class Law>
@@ -84,6 +96,16 @@ class FrictionLawRef {
     Message message;
     abi::require(table_->kinks(self_, &speeds, &message), message);
     return speeds;
+  }
+  std::int32_t switches() const {
+    std::int32_t count = 0;
+    Message message;
+    abi::require(table_->switches(self_, &count, &message), message);
+    return count;
+  }
+  void decide(const FrictionState& state, Span<double> values) const {
+    Message message;
+    abi::require(table_->decide(self_, &state, values, &message), message);
   }
 
  private:

@@ -30,7 +30,16 @@ inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double optional = -std::numeric_limits<double>::infinity();
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-enum class ParameterKind : std::uint32_t { number, integer, choice, vector, function, contact_law, friction_law };
+enum class ParameterKind : std::uint32_t {
+  number,
+  integer,
+  choice,
+  vector,
+  function,
+  contact_law,
+  friction_law,
+  formula
+};
 
 /// Which ends of a parameter's range do not belong to it.
 enum class Open : std::uint32_t { none = 0, minimum = 1, maximum = 2, both = 3 };
@@ -52,6 +61,9 @@ struct Parameter {
   Open open = Open::none;
   const char* choices = nullptr;  ///< words separated by '|'; of a number: words accepted in its place
   const char* summary = "";       ///< one sentence for the manual
+  // Appended.
+  /// Of a formula: its variables and their units, "delta: m; rate: m/s", at most Formula::most_variables.
+  const char* variables = nullptr;
 };
 
 /// A function of time and its exact first and second derivative.
@@ -64,6 +76,42 @@ struct TimeFunction {
   Status (*evaluate)(const void* self, double t, TimeValue*, Message*) noexcept = nullptr;
   const void* self = nullptr;
   TimeValue at(double t) const;
+};
+
+namespace abi {
+/// How the host serves a formula; functions are only ever appended.
+struct FormulaTable {
+  std::uint32_t size;
+  Status (*evaluate)(const void* self, Span<const double> variables, double* value, Span<double> slopes,
+                     Message*) noexcept;
+  std::int32_t (*switches)(const void* self) noexcept;
+  void (*decide)(const void* self, Span<const double> variables, Span<double> values) noexcept;
+};
+}  // namespace abi
+
+/// A formula that the model file gives for a parameter, in the variables that the parameter's row names; SI. The host
+/// evaluates it: nothing allocates, and several threads may. Lives as long as the component.
+class Formula {
+ public:
+  static constexpr std::size_t most_variables = 4;
+
+  Formula() = default;
+  Formula(const abi::FormulaTable& table, const void* self) : table_(&table), self_(self) {}
+  /// False: it is optional and was not given.
+  explicit operator bool() const { return table_ != nullptr; }
+
+  /// Its value, and in `slopes`, which may be empty, its exact partial derivatives by the first variables; beside a
+  /// kink those of the side where the variables are. Throws where the formula has no value; a component that lets that
+  /// pass shows the place in the model file.
+  double at(Span<const double> variables, Span<double> slopes = {}) const;
+  /// How many abs, sign, min, max and if of variables there are. What decides one, its `decide` number, passes zero
+  /// where the formula changes its form; NaN where it has none.
+  std::int32_t switches() const { return table_->switches(self_); }
+  void decide(Span<const double> variables, Span<double> values) const { table_->decide(self_, variables, values); }
+
+ private:
+  const abi::FormulaTable* table_ = nullptr;
+  const void* self_ = nullptr;
 };
 
 struct ContactPair;
@@ -99,6 +147,8 @@ struct ParameterTable {
   Status (*function)(const void* self, const char* name, TimeFunction*, Message*) noexcept;
   Status (*contact_law)(const void* self, const char* name, const ContactPair*, ContactLawRef*, Message*) noexcept;
   Status (*friction_law)(const void* self, const char* name, FrictionLawRef*, Message*) noexcept;
+  // Appended.
+  Status (*formula)(const void* self, const char* name, Formula*, Message*) noexcept;
 };
 
 inline void copy_text(char* to, std::size_t capacity, const char* from) noexcept {
@@ -146,6 +196,13 @@ inline TimeValue TimeFunction::at(double t) const {
   return value;
 }
 
+inline double Formula::at(Span<const double> variables, Span<double> slopes) const {
+  double value = 0.0;
+  Message message;
+  abi::require(table_->evaluate(self_, variables, &value, slopes, &message), message);
+  return value;
+}
+
 /// Checked values of one component's parameters, in SI units, handed to its constructor.
 /// Asking for a name that is not in the component's table throws.
 class Parameters {
@@ -168,6 +225,7 @@ class Parameters {
   int word(const char* name) const { return static_cast<int>(read<std::int32_t>(table_->word, name)); }
 
   TimeFunction function(const char* name) const { return read<TimeFunction>(table_->function, name); }
+  Formula formula(const char* name) const { return read<Formula>(table_->formula, name); }
 
   /// Creates the law named in the sub-block `name`; the model owns it and outlives the caller.
   ContactLawRef contact_law(const char* name, const ContactPair& pair) const;

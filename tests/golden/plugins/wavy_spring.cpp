@@ -9,12 +9,18 @@ namespace {
 
 using namespace freeplay;
 
-constexpr Parameter parameters[] = {{.name = "stiffness", .unit = "N*m", .minimum = 0.0, .summary = "Of all terms."}};
+constexpr Parameter parameters[] = {{.name = "stiffness", .unit = "N*m", .minimum = 0.0, .summary = "Of all terms."},
+                                    {.name = "more",
+                                     .kind = ParameterKind::formula,
+                                     .unit = "N*m",
+                                     .default_value = optional,
+                                     .summary = "A further torque against the angle s.",
+                                     .variables = "s: rad"}};
 constexpr Channel channels[] = {{"spring_torque", "N*m"}};
 
 class WavySpring final : public Joint {
  public:
-  explicit WavySpring(const Parameters& p) : stiffness_(p.number("stiffness")) {}
+  explicit WavySpring(const Parameters& p) : stiffness_(p.number("stiffness")), more_(p.formula("more")) {}
 
   void declare(JointLayout& layout) const override {
     layout.time_scale = unbounded;
@@ -45,10 +51,13 @@ class WavySpring final : public Joint {
                         std::expm1(s / 4.0) + std::cbrt(s) + std::sinh(s / 4.0);
     const double even = std::exp(-s * s) * std::pow(1.0 + s * s, 0.3) + std::log(2.0 + s * s) + std::erf(s * s);
     const std::complex<double> turned = std::exp(std::complex<double>(0.0, s));
+    const double more = more_ ? more_.at({&s, 1}) : 0.0;
     return -stiffness_ *
-           (real + 0.1 * even * s + turned.imag() + 0.1 * static_cast<double>(std::sin(static_cast<float>(s))));
+               (real + 0.1 * even * s + turned.imag() + 0.1 * static_cast<double>(std::sin(static_cast<float>(s)))) -
+           more;
   }
   double stiffness_;
+  Formula more_;
 };
 
 }  // namespace

@@ -147,5 +147,72 @@ TEST(ChoiceInTime, HasItsCornersAndTheSideFromTheRight) {
   EXPECT_FALSE(outline.corners[0].smooth);
 }
 
+/// x [m] and v [m/s] as plain words.
+class Words final : public FormulaVariables {
+ public:
+  std::optional<FormulaVariable> find(std::string_view name) const override {
+    if (name == "x") return FormulaVariable{0, DimensionKind::dimensioned, dimension::length};
+    if (name == "v") return FormulaVariable{1, DimensionKind::dimensioned, dimension::velocity};
+    return std::nullopt;
+  }
+  bool plain() const override { return true; }
+  std::string word() const override { return "variable"; }
+  std::string nearest(std::string_view) const override { return "x"; }
+  std::string known() const override { return "it may hold x or v"; }
+};
+
+TEST(StateFormula, GivesAllPartialDerivativesAtOnce) {
+  for (const char* text :
+       {"(2 N/m + 3 N/m^2*abs(x))*x - 4 N*s/m*v", "x^1.5*v/x^0.5 + x*v^2/(3 m/s)", "tanh(x/(1 m))*exp(-v/(3 m/s))",
+        "atan2(x, v*1 s) + sin(x/(1 m))^3", "if(v > 1 m/s, x*v, x^2/(1 s))", "max(x, v*1 s)*min(x, v*1 s)",
+        "smooth(x, 0 m, 1 m)*v", "sqrt(x)*log(v/(1 m/s))", "asin(x/(2 m)) + acos(x/(3 m)) + tan(x/(1 m))",
+        "2^sin(v/(1 m/s))", "-x"}) {
+    const StateFormula formula(Expression::compile(text, EmptyScope(), false, Words()));
+    const std::vector<double> at = {0.7, 0.4};
+    double value = 0.0, want = 0.0, slopes[4] = {};
+    EvaluationFailure failure;
+    ASSERT_TRUE(formula.value({0.0, at, nullptr}, want, failure)) << text;
+    for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{4}}) {
+      ASSERT_TRUE(formula.slopes({0.0, at, nullptr}, value, {slopes, count}, failure)) << text;
+      EXPECT_NEAR(value, want, 2e-16 * std::abs(want)) << text;
+      for (std::size_t k = 0; k < std::min<std::size_t>(count, 2); ++k) {
+        std::vector<double> unit = {0.0, 0.0};
+        unit[k] = 1.0;
+        const double rate = formula.rate({0.0, at, nullptr}, unit, 0.0);
+        EXPECT_NEAR(slopes[k], rate, 1e-14 * (1.0 + std::abs(rate))) << text << " by " << k;
+      }
+    }
+  }
+}
+
+TEST(StateFormula, ReadsPlainWordsAndNumbersThatFitAnyUnit) {
+  const auto error = [](std::string_view text) {
+    try {
+      Expression::compile(text, EmptyScope(), false, Words());
+    } catch (const ExpressionError& e) {
+      return e.id + " " + std::to_string(e.offset) + "+" + std::to_string(e.length) + " " + e.suggestion + e.hint;
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(error("x + y"), "unknown-name 4+1 xit may hold x or v");
+  EXPECT_EQ(error("x + v"), "dimension-mismatch 0+5 ");
+  EXPECT_EQ(error("x*t"), "time-not-allowed 2+1 ");
+  EXPECT_EQ(error("x + [3]*v"), "accepted");
+  EXPECT_EQ(error("x + [ 3.5 ]"), "accepted");
+  EXPECT_EQ(error("2 x"), "bad-unit 2+1 ");
+}
+
+TEST(StateFormula, TanhStaysFiniteAndExact) {
+  const StateFormula formula(Expression::compile("tanh(v/(1 mm/s))", EmptyScope(), false, Words()));
+  for (const double v : {-30.0, -1e-3, 0.0, 1e-12, 2e-3, 1e6}) {
+    const std::vector<double> at = {0.0, v};
+    double value = 0.0, slopes[2];
+    EvaluationFailure failure;
+    ASSERT_TRUE(formula.slopes({0.0, at, nullptr}, value, slopes, failure));
+    EXPECT_DOUBLE_EQ(value, std::tanh(v / 1e-3));
+    EXPECT_NEAR(slopes[1], 1e3 * (1.0 - value * value), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace freeplay

@@ -114,6 +114,59 @@ TEST(SpringDamper, DerivativesAreThoseOfTheForce) {
   expect_derivatives(JointInstance(row(), spring(1, {{"stiffness", 5.0}, {"damping", 0.5}})), 0.9);
 }
 
+/// s(x) = 40 x + 300 x^3 and d(v, x) = (2 + x) v |v|.
+constexpr abi::FormulaTable cubic{
+    sizeof(abi::FormulaTable),
+    [](const void*, Span<const double> x, double* value, Span<double> slopes, Message*) noexcept {
+      *value = (40.0 + 300.0 * x[0] * x[0]) * x[0];
+      if (!slopes.empty()) slopes[0] = 40.0 + 900.0 * x[0] * x[0];
+      return Status::ok;
+    },
+    [](const void*) noexcept { return std::int32_t{0}; },
+    [](const void*, Span<const double>, Span<double>) noexcept {}};
+constexpr abi::FormulaTable quadratic{
+    sizeof(abi::FormulaTable),
+    [](const void*, Span<const double> x, double* value, Span<double> slopes, Message*) noexcept {
+      *value = (2.0 + x[1]) * x[0] * std::abs(x[0]);
+      if (!slopes.empty()) slopes[1] = x[0] * std::abs(x[0]), slopes[0] = 2.0 * (2.0 + x[1]) * std::abs(x[0]);
+      return Status::ok;
+    },
+    [](const void*) noexcept { return std::int32_t{1}; },
+    [](const void*, Span<const double> x, Span<double> g) noexcept { g[0] = x[0]; }};
+
+ParameterStub with_formulas(int kind, std::map<std::string, double> numbers) {
+  ParameterStub stub = spring(kind, std::move(numbers));
+  stub.formulas["spring"] = Formula(cubic, nullptr);
+  stub.formulas["damper"] = Formula(quadratic, nullptr);
+  return stub;
+}
+
+TEST(SpringDamper, AddsWhatFormulasPull) {
+  const JointInstance joint(row(), with_formulas(0, {{"stiffness", 100.0}, {"damping", 2.0}, {"free_length", 0.25}}));
+  const Applied f = apply(joint, planar_marker(0, 0, 0.3), planar_marker(0.3, 0.4, 1.0, 1.0, 2.0, 5.0));
+  const double x = 0.25, v = 2.2, pull = 100.0 * x + 2.0 * v + 40.0 * x + 300.0 * x * x * x + (2.0 + x) * v * v;
+  EXPECT_NEAR(f.wrench[6], -pull * 0.6, 1e-12);
+  EXPECT_NEAR(f.wrench[7], -pull * 0.8, 1e-12);
+  EXPECT_NEAR(f.potential, 70.0 * x * x + 75.0 * x * x * x * x, 1e-9);
+  const Applied pressed = apply(joint, planar_marker(0, 0, 0), planar_marker(0.1, 0, 0));
+  EXPECT_NEAR(pressed.potential, 70.0 * 0.0225 + 75.0 * 0.15 * 0.15 * 0.0225, 1e-9);
+  for (const int kind : {0, 1}) {
+    expect_derivatives(JointInstance(row(), with_formulas(kind, {{"stiffness", 5.0}, {"damping", 0.5}})), 0.9);
+  }
+}
+
+TEST(SpringDamper, TellsTheKinksOfItsFormulas) {
+  const JointInstance joint(row(), with_formulas(0, {}));
+  JointLayout layout;
+  joint.call(&abi::JointTable::declare, &layout);
+  ASSERT_EQ(layout.kinks, 1);
+  const MarkerKinematics a = planar_marker(0, 0, 0), b = planar_marker(0.3, 0.4, 0, 1.0, 2.0);
+  const JointInput in = input(0.0, a, b, {}, {});
+  double g = 0.0;
+  joint.call(&abi::JointTable::kinks, &in, Span<double>(&g, 1));
+  EXPECT_NEAR(g, 2.2, 1e-14);
+}
+
 TEST(SpringDamper, RefusesTheFreePositionOfTheOtherKind) {
   EXPECT_EQ(bad_parameter_id([] { JointInstance(row(), spring(0, {{"free_angle", 0.1}})); }), "conflicting-keys");
   EXPECT_EQ(bad_parameter_id([] { JointInstance(row(), spring(1, {{"free_length", 0.1}})); }), "conflicting-keys");

@@ -145,6 +145,19 @@ inline void write_kinks(const FrictionLawRef& law, double slip, Span<double> g) 
 }
 inline std::int32_t count_kinks(const FrictionLawRef& law) { return static_cast<std::int32_t>(2 * law.kinks().size); }
 
+/// The same for both laws of a contact that is on, with what else they decide by.
+inline void write_kinks(const ContactLawRef& normal, const FrictionLawRef& friction, const Approach& gap, double slip,
+                        const JointInput& in, Span<double> g) {
+  const auto fixed = static_cast<std::size_t>(count_kinks(friction));
+  write_kinks(friction, slip, g.part(0, fixed));
+  const auto of_normal = static_cast<std::size_t>(normal.switches()), rest = g.size - fixed - of_normal;
+  if (of_normal > 0) normal.decide({gap.penetration, gap.rate, in.history[approach_speed]}, g.part(fixed, of_normal));
+  if (rest > 0) friction.decide({normal_force(normal, gap, in).normal, slip, {}}, g.part(fixed + of_normal, rest));
+}
+inline std::int32_t count_kinks(const ContactLawRef& normal, const FrictionLawRef& friction) {
+  return count_kinks(friction) + normal.switches() + friction.switches();
+}
+
 /// A contact is an impact as long as it lasts no more than so many times as long as one of the law alone.
 inline constexpr double longest_impact = 4.0;
 

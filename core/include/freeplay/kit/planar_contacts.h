@@ -182,7 +182,8 @@ class PlanarContacts : public Joint {
       const JointInput one = contact_input(in, i);
       if (one.history[phase] == flight) continue;
       const PlanarContact<double> at = contact(motion, i);
-      if (touches(one, at.approach())) write_kinks(laws_.friction, at.slip, g.part(each * i, each));
+      const Approach here = at.approach();
+      if (touches(one, here)) write_kinks(laws_.normal, laws_.friction, here, at.slip, one, g.part(each * i, each));
     }
   }
   /// In flight no contact nears its surface by more than the play, whichever way an end may lie.
@@ -235,7 +236,7 @@ class PlanarContacts : public Joint {
     layout.wants_whole_mobility = 1;
     layout.internal_variables = static_cast<std::int32_t>(count * laws_.variables);
     layout.history = static_cast<std::int32_t>(count * (slots + laws_.variables));
-    layout.kinks = static_cast<std::int32_t>(count) * count_kinks(laws_.friction);
+    layout.kinks = static_cast<std::int32_t>(count) * count_kinks(laws_.normal, laws_.friction);
     layout.clearance = geometry_.play;
   }
   const Geometry& geometry() const { return geometry_; }

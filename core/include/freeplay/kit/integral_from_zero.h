@@ -1,0 +1,150 @@
+// IntegralFromZero: the energy that a force stores of which no integral is known, as that of a formula.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace freeplay {
+
+/// F(x) = integral of f from 0 to x, to 1e-10 of the area below |f|. Made once, as polynomials on cells of which each
+/// ends twice as far from 0 as the one before and is cut where f is not smooth, so that a small x keeps its digits; a
+/// value costs no call of f. Immutable once it is made.
+class IntegralFromZero {
+ public:
+  IntegralFromZero() = default;
+  /// From 0 to `end`, which may be negative. The first cell ends at |x| = `first` and is never cut: what it adds need
+  /// not be known as well. `f` may throw where it has no value.
+  IntegralFromZero(std::function<double(double)> f, double first, double end)
+      : f_(std::move(f)), sign_(end < 0.0 ? -1.0 : 1.0) {
+    double from = 0.0;
+    for (double to = first; from < sign_ * end && whole_; from = to, to *= 2.0) {
+      most_cells_ = starts_.size() + most_cells;
+      add(from, to, from > 0.0 ? 0 : most_cuts);
+    }
+  }
+
+  /// Of 0 and all that lies between it and `end`. Beyond, and where a part of f has no value, by quadrature from there;
+  /// throws where that part counts.
+  double at(double x) const {
+    const double u = sign_ * x;
+    if (!(u > 0.0)) return 0.0;
+    if (!(u <= end_)) return total_ + beyond(end_, u);
+    const auto after = std::upper_bound(starts_.begin(), starts_.end(), u);
+    const auto index = static_cast<std::size_t>(after - starts_.begin()) - 1;
+    const double from = starts_[index], to = index + 1 < starts_.size() ? starts_[index + 1] : end_;
+    return cells_[index].value((2.0 * u - from - to) / (to - from));
+  }
+
+ private:
+  static constexpr std::size_t nodes = 14;
+  static constexpr std::size_t most_cells = 128;  // of one doubling: where f is mere rounding none is smooth
+  static constexpr int most_cuts = 40, most_cuts_at_end = 10;
+
+  /// F over a cell, by powers of t from -1 to 1.
+  struct Cell {
+    std::array<double, nodes + 1> c;
+    double value(double t) const {
+      double sum = c[nodes];
+      for (std::size_t k = nodes; k > 0; --k) sum = c[k - 1] + t * sum;
+      return sum;
+    }
+  };
+
+  double force(double u) const { return sign_ * f_(sign_ * u); }
+
+  /// T_k at the zeros of T_nodes.
+  using Polynomials = std::array<std::array<double, nodes>, nodes>;
+  static const Polynomials& polynomials() {
+    static const Polynomials all = [] {
+      constexpr double pi = 3.14159265358979323846;
+      Polynomials p{};
+      for (std::size_t k = 0; k < nodes; ++k) {
+        for (std::size_t j = 0; j < nodes; ++j) {
+          p[k][j] = std::cos(static_cast<double>(k) * (static_cast<double>(j) + 0.5) * pi / static_cast<double>(nodes));
+        }
+      }
+      return p;
+    }();
+    return all;
+  }
+
+  /// Cuts [from, to] until f is a polynomial in each part, or has no value in what is left.
+  void add(double from, double to, int cuts) {
+    if (!whole_) return;
+    std::array<double, nodes> f;
+    bool good = true;
+    try {
+      for (std::size_t j = 0; j < nodes; ++j) f[j] = force(0.5 * (from + to) + 0.5 * (to - from) * polynomials()[1][j]);
+    } catch (const std::exception&) {
+      good = false;
+    }
+    Cell cell;
+    const bool smooth = good && expand(f, 0.5 * (to - from), cell);
+    const bool last = cuts >= (good ? most_cuts : most_cuts_at_end) || starts_.size() >= most_cells_;
+    if (!smooth && !last) {
+      const double middle = 0.5 * (from + to);
+      add(from, middle, cuts + 1);
+      add(middle, to, cuts + 1);
+      return;
+    }
+    whole_ = good;
+    if (!good) return;
+    cell.c[0] = 0.0;
+    cell.c[0] = total_ - cell.value(-1.0);
+    starts_.push_back(from);
+    cells_.push_back(cell);
+    end_ = to;
+    total_ = cell.value(1.0);
+  }
+
+  /// The integral's series, but for its constant, from values of f at the zeros of the Chebyshev polynomial. Whether f
+  /// has as many digits as it should.
+  static bool expand(const std::array<double, nodes>& f, double half, Cell& cell) {
+    std::array<double, nodes + 2> a{};
+    double largest = 0.0;
+    for (const double value : f) largest = std::max(largest, std::abs(value));
+    for (std::size_t k = 0; k < nodes; ++k) {
+      for (std::size_t j = 0; j < nodes; ++j) a[k] += f[j] * polynomials()[k][j];
+      a[k] *= 2.0 / static_cast<double>(nodes);
+    }
+    // Of T_k by its powers: T_k = 2 t T_(k-1) - T_(k-2).
+    std::array<double, nodes + 1> before{1.0}, now{0.0, 1.0};
+    cell.c = {};
+    for (std::size_t k = 1; k <= nodes; ++k) {
+      const double of_k = half * (a[k - 1] - a[k + 1]) / (2.0 * static_cast<double>(k));
+      std::array<double, nodes + 1> next{};
+      for (std::size_t i = 0; i <= k; ++i) {
+        cell.c[i] += of_k * now[i];
+        next[i] = (i > 0 ? 2.0 * now[i - 1] : 0.0) - before[i];
+      }
+      if (k < nodes) next[k + 1] = 2.0 * now[k];
+      before = now;
+      now = next;
+    }
+    return std::abs(a[nodes - 1]) + std::abs(a[nodes - 2]) <= 1e-10 * largest;
+  }
+
+  double beyond(double from, double to) const {
+    constexpr double x[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+    constexpr double w[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) sum += w[i] * (force(middle - half * x[i]) + force(middle + half * x[i]));
+    return half * sum;
+  }
+
+  std::function<double(double)> f_;
+  double sign_ = 1.0, end_ = 0.0, total_ = 0.0;
+  bool whole_ = true;
+  std::size_t most_cells_ = 0;
+  std::vector<double> starts_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace freeplay

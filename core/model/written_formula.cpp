@@ -1,0 +1,56 @@
+#include "model/written_formula.h"
+
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/state_formula.h"
+
+namespace freeplay {
+namespace {
+
+struct WrittenFormula {
+  StateFormula formula;
+  Location begin;
+  bool places_inside;
+};
+
+std::span<const double> numbers(Span<const double> span) { return {span.data, span.size}; }
+std::span<double> numbers(Span<double> span) { return {span.data, span.size}; }
+
+constexpr abi::FormulaTable written_formula{
+    sizeof(abi::FormulaTable),
+    [](const void* self, Span<const double> variables, double* value, Span<double> slopes, Message* message) noexcept {
+      const auto& me = *static_cast<const WrittenFormula*>(self);
+      const StateFormula::Input in{0.0, numbers(variables), nullptr};
+      EvaluationFailure failure;
+      const bool good = me.formula.slopes(in, *value, numbers(slopes), failure);
+      return good ? Status::ok : tell_failure(me.begin, me.places_inside, failure, *message);
+    },
+    [](const void* self) noexcept {
+      return static_cast<std::int32_t>(static_cast<const WrittenFormula*>(self)->formula.switches());
+    },
+    [](const void* self, Span<const double> variables, Span<double> values) noexcept {
+      static_cast<const WrittenFormula*>(self)->formula.decide({0.0, numbers(variables), nullptr}, numbers(values));
+    }};
+
+}  // namespace
+
+void set_formula(ParameterValue& value, const Expression& expression, Location begin, bool places_inside) {
+  const auto served =
+      std::make_shared<const WrittenFormula>(WrittenFormula{StateFormula(expression), std::move(begin), places_inside});
+  value.formula = Formula(written_formula, served.get());
+  value.function_owner = served;
+}
+
+Status tell_failure(const Location& begin, bool places_inside, const EvaluationFailure& failure, Message& message) {
+  const int column = begin.column + (places_inside ? failure.offset : 0);
+  const auto end = fmt::format_to_n(message.text, sizeof message.text - 1, "{}:{}:{}: {}", begin.file, begin.line,
+                                    column, failure.reason);
+  *end.out = '\0';
+  abi::copy_text(message.id, sizeof message.id, failure.id);
+  return Status::bad_parameter;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,98 @@
+"""Formulas where the model file gives laws, springs, parameters of plugins and columns: from outside."""
+import json
+import os
+import unittest
+
+from program import BUILD, ProgramTest
+
+LIBRARY = os.path.join(BUILD, "plugins", "tests", "wavy_spring.so")
+PUCK = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {puck: {mass: 0.2, inertia: 1e-4}}
+joints:
+  ring:
+    type: revolute
+    between: [ground, puck]
+    clearance:
+      bearing_radius: 5 mm
+      radial_clearance: 0.1 mm
+      contact: {law: expression, force: %s}
+      friction: {law: expression, coefficient: %s}
+simulation: {end: 8 ms, accuracy: 1e-8, output: {interval: 1 ms}}
+"""
+HERTZ, TANH = "7.5e10 N/m^1.5*delta^1.5*(1 + 0.1*rate/v0)", '"0.1*tanh(vt/(1 mm/s))"'
+
+# Force or coefficient, by what; id, column, suggestion or a part of the hint.
+MISTAKES = [
+    ("7.5e10 N/m^1.5*detla^1.5", None, "unknown-name", 56, "delta"),
+    ("7.5e10 N/m^1.5*depth", None, "unknown-name", 56, "it may hold delta, rate or v0"),
+    ("7.5e10 N/m*delta^1.5", None, "dimension-mismatch", 41, ""),
+    ("1e6 N/m*delta*t", None, "time-not-allowed", 55, ""),
+    ("$K*delta", None, "unknown-name", 41, ""),
+    (None, "0.2", "out-of-range", 48, ""),
+    (None, "0.2*tanh(vt)", "dimension-mismatch", 57, ""),
+]
+TEMPLATE = """freeplay: 1
+templates:
+  arm:
+    parameters: {k: required, c: 0.3, x: required}
+    bodies: {rod: {mass: 1, inertia: 0.1, com: [0.3, 0]}}
+    joints: {pin: {type: revolute, between: [ground, rod]}}
+    forces:
+      coil: {type: spring-damper, kind: rotational, between: [ground, rod], spring: "$k*x - $c*x^3", damper: "${c}*v"}
+instances: {one: {template: arm, with: {k: 30 N*m, x: 1}}, two: {template: arm, with: {k: 40, c: -0.2, x: 2}}}
+initial: {joints: {one.pin: 1, two.pin: 1}}
+simulation: {end: 0.5, step: 1 ms}
+"""
+
+
+class Formulas(ProgramTest):
+    def test_mistakes_have_their_place(self):
+        for force, coefficient, id_, column, words in MISTAKES:
+            with self.subTest(force or coefficient):
+                self.write("model.yaml", PUCK % (force or HERTZ, coefficient or TANH))
+                report = json.loads(self.freeplay("validate", "model.yaml", "--json", code=3)[0])
+                found = report["messages"][0]
+                self.assertEqual((id_, 11 if force else 12, column), (found["id"], found["line"], found["column"]), found)
+                self.assertIn(words, str(found), found)
+                self.assertEqual(1, len(report["messages"]))
+
+    def test_a_formula_without_a_value_ends_the_run_at_its_place(self):
+        self.write("model.yaml", PUCK % ("1e6 N/m*delta/sqrt(1 - delta/(1 um))", TANH))
+        _, errors = self.freeplay("run", "model.yaml", code=4)
+        self.assertIn("model.yaml:11:55: square root of a negative number [bad-expression]", errors)
+
+    def test_types_say_what_their_formulas_are_of(self):
+        text = self.freeplay("describe", "expression")[0]
+        self.assertIn("formula in delta [m], rate [m/s], v0 [m/s]", text)
+        self.assertIn("formula in vt [m/s], fn [N]", text)
+
+    def test_a_model_without_its_templates_runs_to_the_same_bytes(self):
+        self.write("model.yaml", TEMPLATE)
+        self.freeplay("convert", "model.yaml", "flat.yaml")
+        self.assertNotIn("templates", self.read("flat.yaml"))
+        for name in ("model", "flat"):
+            self.freeplay("run", name + ".yaml", "--out", name)
+        rows = [self.read(name, "results.csv").splitlines()[1:] for name in ("model", "flat")]
+        self.assertEqual(rows[0], rows[1])
+
+    def test_a_type_of_a_plugin_takes_one(self):
+        self.write("model.yaml", """freeplay: 1
+plugins: [%s]
+bodies: {disc: {mass: 1, inertia: 0.2}}
+joints:
+  pin: {type: revolute, between: [ground, disc]}
+forces:
+  spring: {type: wavy-spring, between: [ground, disc], stiffness: 0 N*m, more: "5 N*m*s*(1 + s^2)"}
+initial: {joints: {pin: 1}}
+simulation: {end: 0.1, accuracy: 1e-8}
+""" % LIBRARY)
+        self.freeplay("run", "model.yaml", "--allow-plugins", "--out", "done")
+        lines = [line for line in self.read("done", "results.csv").splitlines() if not line.startswith("#")]
+        row = dict(zip(lines[0].split(","), map(float, lines[1].split(","))))
+        self.assertEqual(-10.0, row["force.spring.torque"])
+        self.freeplay("check-plugin", LIBRARY)
+
+
+if __name__ == "__main__":
+    unittest.main()

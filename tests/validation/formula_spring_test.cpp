@@ -1,0 +1,122 @@
+// Springs and dampers that formulas give: closed forms, order, energy, and what they copy.
+#include "run_model.h"
+
+namespace freeplay::test::formula_spring {
+namespace {
+
+/// A mass of 2 kg on a rail along x, tied to the ground by a spring that is slack at 1 m.
+std::string sled(const std::string& keys, double stretch, double v, const std::string& simulation) {
+  return "freeplay: 1\n"
+         "bodies: {sled: {mass: 2, inertia: 1}}\n"
+         "joints: {rail: {type: prismatic, between: [ground, sled]}}\n"
+         "forces: {tie: {type: spring-damper, between: [ground, sled], free_length: 1 m, " +
+         keys + "}}\ninitial: {joints: {rail: " + number(1.0 + stretch) + "}, speeds: {rail: " + number(v) +
+         "}}\nsimulation: {" + simulation + "}\n";
+}
+
+constexpr const char* progressive = "spring: \"(50 N/m + 10 N/m^2*abs(x))*x\"";
+constexpr double amplitude = 0.8, mass = 2.0;
+
+double stored(double x) { return 25.0 * x * x + 10.0 / 3.0 * x * x * std::abs(x); }
+
+/// From A to -A and back takes four times the integral of 1/v: with x = A sin(p) it is smooth.
+double period() {
+  const auto integrand = [&](double p) {
+    const double c = amplitude * std::cos(p), left = stored(amplitude) - stored(amplitude * std::sin(p));
+    return std::sqrt(c * c > 1e-7 ? mass * c * c / 2.0 / left : mass / (50.0 + 10.0 * amplitude));
+  };
+  double quarter = 0.0;
+  const int panels = 2000;
+  for (int i = 0; i < panels; ++i) {
+    const double h = 0.5 * M_PI / panels, p = i * h;
+    quarter += h / 6.0 * (integrand(p) + 4.0 * integrand(p + 0.5 * h) + integrand(p + h));
+  }
+  return 4.0 * quarter;
+}
+
+TEST(FormulaSpring, ThatGrowsStifferHasItsPeriodAndKeepsItsEnergy) {
+  for (const char* integrator : {"bathe", "dopri5", "verner7"}) {
+    const ModelRun run(
+        sled(progressive, amplitude, 0.0,
+             "end: " + number(period()) + ", accuracy: 1e-9, integrator: " + integrator + ", output: {interval: 0.1}"));
+    ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+    EXPECT_NEAR(run.at(0, "energy.potential"), stored(amplitude), 1e-10 * stored(amplitude));
+    EXPECT_NEAR(run.last("joint.rail.position"), 1.0 + amplitude, 1e-8) << integrator;
+    EXPECT_NEAR(run.last("joint.rail.speed"), 0.0, 1e-7) << integrator;
+    EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-8) << integrator;
+    EXPECT_EQ(run.last("energy.work"), 0.0) << integrator;
+    for (std::size_t row = 0; row < run.rows(); ++row) {
+      const double x = run.at(row, "joint.rail.position") - 1.0;
+      EXPECT_NEAR(run.at(row, "force.tie.fx"), -(50.0 + 10.0 * std::abs(x)) * x, 1e-10);
+      EXPECT_NEAR(run.at(row, "energy.potential"), stored(x), 1e-9);
+    }
+  }
+}
+
+class FormulaSpringOrder : public ::testing::TestWithParam<const char*> {};
+TEST_P(FormulaSpringOrder, IsThatOfTheMethod) {
+  std::vector<double> errors;
+  for (double step = 0.01; errors.size() < 3; step *= 0.5) {
+    const ModelRun run(sled(progressive, amplitude, 0.0,
+                            "end: " + number(period()) + ", step: " + number(step) + ", integrator: " + GetParam() +
+                                ", output: {interval: " + number(period()) + "}"));
+    ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+    errors.push_back(std::hypot(run.last("joint.rail.position") - 1.0 - amplitude, run.last("joint.rail.speed")));
+  }
+  record("error", errors[2]);
+  EXPECT_GE(order(errors[1], errors[2]), 1.9);
+}
+INSTANTIATE_TEST_SUITE_P(Methods, FormulaSpringOrder,
+                         ::testing::Values("bathe", "newmark", "hht", "generalized-alpha"));
+
+// 2 v' = -3 v |v| from 4 m/s: v = 4/(1 + 6 t).
+TEST(FormulaSpring, ADamperMayBeQuadratic) {
+  const ModelRun run(
+      sled("damper: \"3 N*s^2/m^2*v*abs(v)\"", 0.0, 4.0, "end: 0.5, accuracy: 1e-8, output: {interval: 0.1}"));
+  ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+  const double v = 4.0 / (1.0 + 6.0 * 0.5);
+  EXPECT_NEAR(run.last("joint.rail.speed"), v, 1e-7);
+  EXPECT_NEAR(run.last("joint.rail.position"), 1.0 + std::log(4.0) / 1.5, 1e-8);
+  EXPECT_NEAR(run.last("energy.dissipated"), 16.0 - v * v, 1e-6);
+  EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-6);
+}
+
+/// Both ways to write a linear spring: the columns of both runs agree to rounding.
+void expect_same(const std::string& text, const std::string& keys, const std::string& formulas) {
+  const ModelRun one(replaced(text, "KEYS", formulas)), other(replaced(text, "KEYS", keys));
+  ASSERT_EQ(one.outcome().exit_code, 0) << one.outcome().reason;
+  ASSERT_EQ(one.rows(), other.rows());
+  for (const std::string& name : one.kept().names()) {
+    if (name == "energy.residual") continue;
+    for (std::size_t row = 0; row < one.rows(); ++row) {
+      EXPECT_NEAR(one.at(row, name), other.at(row, name), 1e-9 * (1.0 + std::abs(other.at(row, name)))) << name;
+    }
+  }
+}
+
+TEST(FormulaSpring, LinearOnesAreThoseOfTheNumbers) {
+  expect_same(sled("KEYS", 0.3, -1.0, "end: 1, step: 5 ms, output: {interval: 0.1}"),
+              "stiffness: 500, damping: 7, preload: 4", "spring: \"500 N/m*x + 4 N\", damper: \"7 N*s/m*v\"");
+  const std::string turning =
+      "freeplay: 1\nSPACEgravity: GRAVITY\nbodies: {rod: {mass: 2, inertia: INERTIA, com: [0.4, 0ZERO]}}\n"
+      "joints: {pin: {type: revolute, between: [ground, rod]}}\n"
+      "forces: {coil: {type: spring-damper, between: [ground, rod], kind: rotational, free_angle: 20 deg, KEYS}}\n"
+      "simulation: {end: 1, step: 5 ms, output: {interval: 0.1}}\n";
+  const char *keys = "stiffness: 30, damping: 0.5", *formulas = "spring: \"30 N*m*x\", damper: \"0.5 N*m*s*v\"";
+  const auto in = [&](const std::string& space, const std::string& gravity, const std::string& inertia,
+                      const std::string& zero) {
+    return replaced(replaced(replaced(replaced(turning, "SPACE", space), "GRAVITY", gravity), "INERTIA", inertia),
+                    "ZERO", zero);
+  };
+  expect_same(in("", "[0, -9.81]", "0.1", ""), keys, formulas);
+  expect_same(in("space: spatial\n", "[0, -9.81, 0]", "[0.1, 0.1, 0.1]", ", 0"), keys, formulas);
+  expect_same(
+      "freeplay: 1\nspace: spatial\ngravity: [0, 0, -9.81]\nbodies: {bob: {mass: 2, inertia: [0.1, 0.1, 0.1],"
+      " pose: {position: [0.3, 0.1, -0.8]}, velocity: {linear: [0, 0.5, 0]}}}\n"
+      "forces: {tie: {type: spring-damper, between: [ground, bob], free_length: 0.7, KEYS}}\n"
+      "simulation: {end: 1, step: 5 ms, output: {interval: 0.1}}\n",
+      "stiffness: 200, damping: 3", "spring: \"200 N/m*x\", damper: \"3 N*s/m*v\"");
+}
+
+}  // namespace
+}  // namespace freeplay::test::formula_spring
