@@ -302,6 +302,13 @@ double Expression::value(double t, std::span<const double> variables) const noex
   return good ? out.value : std::numeric_limits<double>::quiet_NaN();
 }
 
+void Expression::renumber(std::span<const int> to) {
+  for (Instruction& instruction : program_) {
+    if (instruction.operation == Operation::push_variable)
+      instruction.constant = to[static_cast<std::size_t>(instruction.constant)];
+  }
+}
+
 Quantity Expression::constant() const { return {program_.front().constant, kind_, dimension_}; }
 
 void Expression::require(const Dimension& field) const {

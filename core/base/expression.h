@@ -127,6 +127,9 @@ class Expression {
   /// rest is unknown: then the last rate is infinite. Allocates.
   Outline outline(double from, double to) const;
 
+  /// Variable k becomes number `to[k]` of those that are given.
+  void renumber(std::span<const int> to);
+
   /// On time or on variables.
   bool depends_on_time() const { return depends_on_time_; }
   bool depends_on_variables() const { return depends_on_variables_; }

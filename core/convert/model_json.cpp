@@ -334,8 +334,11 @@ class ModelWriter {
     }
     Json frames = Json::array();
     for (const int frame : settings.frames) frames.push_back(marker(frame));
+    Json columns = Json::object();
+    for (const OutputColumn& one : settings.columns) columns[one.name.substr(one.name.find('.') + 1)] = one.text;
     json["output"] = {{"interval", number(settings.interval, "s")},
                       {"channels", settings.channels},
+                      {"columns", columns},
                       {"frames", frames},
                       {"format", result_formats[static_cast<std::size_t>(settings.format)]},
                       {"rows_in_contact", settings.rows_in_contact},

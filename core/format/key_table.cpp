@@ -201,6 +201,8 @@ constexpr FormatKey output[] = {
     {"interval", "quantity", "s", "a thousandth of the run", "Between rows.", "1 ms"},
     {"channels", "list of text", "", "[\"*\"]", "Patterns of the columns; `freeplay list channels FILE` shows all.",
      "[\"joint.*.fx\", \"energy.*\"]"},
+    {"columns", "entries of quantity", "", "", "Further columns output.NAME: formulas of channels and t.",
+     "{slide: body.ram.x - frame.rod/tip.x}"},
     {"frames", "list of frame", "", "", "Frames whose pose and velocity are reported.", "[rod/tip]"},
     {"format", "'csv' | 'hdf5' | 'both'", "", "both", "Of the results.", "csv"},
     {"rows_in_contact", "integer", "", "0",

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "format/doubtful_number.h"
+#include "format/output_columns.h"
 #include "format/parameter_check.h"
 
 namespace freeplay {
@@ -58,6 +59,7 @@ class SimulationSection {
     settings_.interval = options.interval.value_or(settings_.interval);
     check_interval();
     if (!options.channels.empty()) settings_.channels = options.channels;
+    if (columns_ && !draft_.diagnostics.has_errors()) read_output_columns(*columns_, draft_.model);
     create_integrator();
     complete_steps();
     doubt_discard();
@@ -177,6 +179,7 @@ class SimulationSection {
     MapReader map(value, "output");
     interval_ = map.find("interval");
     const auto channels = map.find("channels");
+    columns_ = map.find("columns");
     const auto frames = map.find("frames");
     const auto format = map.find("format");
     const auto rows_in_contact = map.find("rows_in_contact");
@@ -336,7 +339,8 @@ class SimulationSection {
   Draft& draft_;
   Settings& settings_;
   bool frames_good_ = true;
-  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_, discard_, interval_;
+  std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_, discard_, interval_,
+      columns_;
 };
 
 }  // namespace

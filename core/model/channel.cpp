@@ -1,13 +1,29 @@
 #include "model/channel.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <set>
 #include <string_view>
 
+#include "base/name_pattern.h"
 #include "component/joint_roles.h"
 
 namespace freeplay {
+namespace {
 
-Channels::Channels(const Model& model) : planar_(model.space == Space::planar) {
+/// The same text for the life of the program: units of columns are views.
+const char* kept_unit(const std::string& unit) {
+  static std::mutex lock;
+  static std::set<std::string> units;
+  const std::scoped_lock guard(lock);
+  return units.insert(unit).first->c_str();
+}
+
+}  // namespace
+
+Channels::Channels(const Model& model, bool all) : planar_(model.space == Space::planar) {
   struct Column {
     const char *name, *unit;
   };
@@ -50,6 +66,99 @@ Channels::Channels(const Model& model) : planar_(model.space == Space::planar) {
   energy.dissipated = add("energy.dissipated", "J");
   energy.work = add("energy.work", "J");
   energy.residual = add("energy.residual", "J");
+  add_asked(model, all);
+  if (!all) add_formulas(model);
+}
+
+namespace {
+
+/// Names and patterns of columns that a model asks for, by what stands after the last dot.
+class Asked {
+ public:
+  Asked(const Settings& settings, bool all) : all_(all) {
+    for (const std::string& pattern : settings.channels) note(pattern);
+    for (const StopCondition& stop : settings.stop) note(stop.channel);
+    for (const OutputColumn& column : settings.columns) {
+      for (const std::string& channel : column.channels) note(channel);
+    }
+  }
+  /// Whether any column of this quantity is asked for, and whether this one is.
+  bool any(std::string_view quantity) const { return all_ || by_quantity_.contains(quantity); }
+  bool has(const std::string& prefix, std::string_view quantity) const {
+    if (all_) return true;
+    const auto patterns = by_quantity_.find(quantity);
+    if (patterns == by_quantity_.end()) return false;
+    const std::string name = prefix + "." + std::string(quantity);
+    return std::ranges::any_of(patterns->second, [&](std::string_view pattern) { return matches(pattern, name); });
+  }
+
+ private:
+  void note(std::string_view name) {
+    const std::size_t dot = name.rfind('.');
+    if (dot != std::string_view::npos) by_quantity_[name.substr(dot + 1)].push_back(name);
+  }
+  bool all_;
+  std::map<std::string_view, std::vector<std::string_view>, std::less<>> by_quantity_;
+};
+
+}  // namespace
+
+void Channels::add_asked(const Model& model, bool all) {
+  const Asked asked(model.settings, all);
+  struct Quantity {
+    const char *name, *unit;
+    int component;
+  };
+  constexpr Quantity in_plane[] = {{"ax", "m/s^2", 0}, {"ay", "m/s^2", 1}, {"alpha", "rad/s^2", 5}};
+  constexpr Quantity in_space[] = {{"ax", "m/s^2", 0},       {"ay", "m/s^2", 1},       {"az", "m/s^2", 2},
+                                   {"alphax", "rad/s^2", 3}, {"alphay", "rad/s^2", 4}, {"alphaz", "rad/s^2", 5}};
+  const auto quantities = planar_ ? std::span<const Quantity>(in_plane) : std::span<const Quantity>(in_space);
+  const auto add_if = [&](const std::string& prefix, int element, const Quantity& q, std::vector<AskedColumn>& to) {
+    if (asked.has(prefix, q.name)) to.push_back({add(prefix + "." + q.name, q.unit), element, q.component});
+  };
+  const auto accelerations = [&](const std::string& prefix, std::size_t element, std::vector<AskedColumn>& to) {
+    for (const Quantity& q : quantities) add_if(prefix, static_cast<int>(element), q, to);
+  };
+  if (std::ranges::any_of(quantities, [&](const Quantity& q) { return asked.any(q.name); })) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      accelerations("body." + model.bodies[b].name, b, body_accelerations);
+    }
+    for (std::size_t f = 0; f < model.settings.frames.size(); ++f) {
+      const int marker = model.settings.frames[f];
+      accelerations("frame." + model.markers[static_cast<std::size_t>(marker)].name, f, frame_accelerations);
+    }
+  }
+  constexpr Quantity work{"work", "J", 0}, loss{"loss", "J", 0};
+  for (std::size_t d = 0; asked.any(work.name) && d < model.drivers.size(); ++d) {
+    add_if("driver." + model.drivers[d].name, static_cast<int>(d), work, driver_work);
+  }
+  for (std::size_t i = 0; asked.any(work.name) && i < model.force_elements.size(); ++i) {
+    const ForceElement& element = model.force_elements[i];
+    const std::string& name = element.joint >= 0 ? model.joints[static_cast<std::size_t>(element.joint)].name
+                                                 : model.forces[static_cast<std::size_t>(element.applied)].name;
+    add_if("force." + name, static_cast<int>(i), work, force_work);
+  }
+  for (std::size_t j = 0; asked.any(loss.name) && j < model.joints.size(); ++j) {
+    const JointElement& joint = model.joints[j];
+    if (joint.layout.forces == 0) continue;
+    add_if((joint.is_force ? "force." : "joint.") + joint.name, static_cast<int>(j), loss, joint_loss);
+  }
+}
+
+void Channels::add_formulas(const Model& model) {
+  for (const OutputColumn& column : model.settings.columns) {
+    std::vector<int> places;
+    for (const std::string& channel : column.channels) places.push_back(std::max(find(channel), 0));
+    FormulaColumn& added =
+        formulas.emplace_back(FormulaColumn{add(column.name, kept_unit(column.unit)), column.formula});
+    added.formula.renumber(places);
+  }
+}
+
+void Channels::fill_formulas(std::span<double> row) const {
+  for (const FormulaColumn& column : formulas) {
+    row[static_cast<std::size_t>(column.column)] = column.formula.value(row[static_cast<std::size_t>(time)], row);
+  }
 }
 
 int* JointColumns::of(ChannelRole role) {

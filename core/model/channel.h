@@ -41,11 +41,23 @@ struct EnergyColumns {
   int kinetic = -1, potential = -1, dissipated = -1, work = -1, residual = -1;
 };
 
+/// A column that a model has only where something asks for it by the name of its quantity, such as "body.*.ax".
+struct AskedColumn {
+  int column, element;
+  int component = 0;  ///< of an acceleration: 0 to 2 linear, 3 to 5 angular
+};
+/// A column that the model file gives as a formula; its variables are the numbers of a row.
+struct FormulaColumn {
+  int column;
+  Expression formula;
+};
+
 /// All columns of a model, fixed before the first row: time; bodies, joints, drivers, forces, frames in declaration
-/// order; energy.
+/// order; energy; what is asked for; formulas.
 class Channels {
  public:
-  explicit Channels(const Model& model);
+  /// `all`: whatever can be asked for, and no formulas.
+  explicit Channels(const Model& model, bool all = false);
 
   std::span<const ChannelInfo> all() const { return all_; }
   /// Index of the column with this name, or -1.
@@ -60,8 +72,16 @@ class Channels {
   std::vector<ForceColumns> forces;  ///< of applied forces
   std::vector<int> frames;           ///< as for bodies
   EnergyColumns energy;
+  std::vector<AskedColumn> body_accelerations, frame_accelerations;  ///< element: body, index into Settings::frames
+  std::vector<AskedColumn> driver_work, force_work, joint_loss;      ///< of drivers, Model::force_elements, joints
+  std::vector<FormulaColumn> formulas;
+
+  /// The formulas of a row whose other numbers are known; NaN where one has no value.
+  void fill_formulas(std::span<double> row) const;
 
  private:
+  void add_asked(const Model& model, bool all);
+  void add_formulas(const Model& model);
   int add_wrench(const std::string& prefix);
   void add_drivers(const Model& model);
   JointColumns add_joint(const JointElement& joint, const std::string& prefix);

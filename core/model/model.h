@@ -172,6 +172,15 @@ struct StopCondition {
   Location location;
 };
 
+/// A result column that is a formula of others.
+struct OutputColumn {
+  std::string name;      ///< in full, output.NAME
+  std::string text;      ///< as written
+  std::string unit;      ///< SI
+  Expression formula{};  ///< variables: indices into `channels`
+  std::vector<std::string> channels{};
+};
+
 enum class ResultFormat { csv, hdf5, both };
 inline constexpr const char* result_formats[] = {"csv", "hdf5", "both"};
 
@@ -191,6 +200,7 @@ struct Settings {
   double discard = 0.0;                    ///< left out of statistics, from the start [s]
   std::vector<std::string> channels{"*"};  ///< patterns of result columns
   std::vector<int> frames;                 ///< markers to report
+  std::vector<OutputColumn> columns;
   ResultFormat format = ResultFormat::both;
   std::vector<StopCondition> stop;
   double assembly_tolerance = 1e-10;  ///< [m, rad]

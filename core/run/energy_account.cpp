@@ -218,6 +218,10 @@ void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::spa
   row[at(channels.energy.dissipated)] = lost;
   row[at(channels.energy.work)] = work;
   row[at(channels.energy.residual)] = total - initial_ + lost - work;
+  for (const AskedColumn& asked : channels.driver_work) row[at(asked.column)] = driver_work_[at(asked.element)];
+  for (const AskedColumn& asked : channels.force_work) row[at(asked.column)] = force_work_[at(asked.element)];
+  for (const AskedColumn& asked : channels.joint_loss) row[at(asked.column)] = joint_loss_[at(asked.element)];
+  channels.fill_formulas(row);
 }
 
 }  // namespace freeplay

@@ -14,9 +14,10 @@
 
 namespace freeplay {
 
-bool Observer::observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
-                       Fault& fault) {
+bool Observer::observe(const State& state, const Evaluation& e, std::span<double> row, Fault& fault) {
   const Model& model = system_.model();
+  const Point point = freeplay::point(state);
+  const std::span<const double> lambda = state.lambda();
   row[at(channels_.time)] = point.t;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, e, row);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
@@ -32,7 +33,21 @@ bool Observer::observe(const Point& point, const Evaluation& e, std::span<const 
   for (const double potential : e.potential) stored += potential;
   row[at(channels_.energy.kinetic)] = system_.inertia().kinetic_energy(e.v);
   row[at(channels_.energy.potential)] = stored;
+  observe_accelerations(state.a(), e, row);
+  channels_.fill_formulas(row);
   return true;
+}
+
+void Observer::observe_accelerations(std::span<const double> a, const Evaluation& e, std::span<double> row) const {
+  double of[6];
+  for (const AskedColumn& asked : channels_.body_accelerations) {
+    motion_.body_acceleration(asked.element, a, e, of);
+    row[at(asked.column)] = of[asked.component];
+  }
+  for (const AskedColumn& asked : channels_.frame_accelerations) {
+    motion_.acceleration(system_.model().settings.frames[at(asked.element)], a, e, of);
+    row[at(asked.column)] = of[asked.component];
+  }
 }
 
 void Observer::observe_body(int index, const Evaluation& e, std::span<double> row) const {

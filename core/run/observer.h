@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/channel.h"
+#include "system/motion_channels.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -12,11 +13,13 @@ namespace freeplay {
 /// Fills every column but dissipated, work and residual, which the energy account knows.
 class Observer {
  public:
-  Observer(const System& system, const Channels& channels) : system_(system), channels_(channels) {}
+  Observer(const System& system, const Channels& channels)
+      : system_(system),
+        channels_(channels),
+        motion_(system.model(), system.layout(), system.markers(), system.joints()) {}
 
-  /// `e` holds all terms at `point`. False, with `fault` filled, when a joint's observation fails.
-  bool observe(const Point& point, const Evaluation& e, std::span<const double> lambda, std::span<double> row,
-               Fault& fault);
+  /// `e` holds all terms at the point of `state`. False, with `fault` filled, when a joint's observation fails.
+  bool observe(const State& state, const Evaluation& e, std::span<double> row, Fault& fault);
 
  private:
   void observe_body(int index, const Evaluation& e, std::span<double> row) const;
@@ -27,10 +30,12 @@ class Observer {
   bool observe_path(int index, const Point& point, const Evaluation& e, std::span<double> row, Fault& fault);
   void observe_force(int index, const Evaluation& e, std::span<double> row) const;
   void observe_frame(int index, const Evaluation& e, std::span<double> row) const;
+  void observe_accelerations(std::span<const double> a, const Evaluation& e, std::span<double> row) const;
 
   const System& system_;
   MotionWork motion_work_;
   const Channels& channels_;
+  MotionChannels motion_;
 };
 
 }  // namespace freeplay

@@ -37,7 +37,7 @@ std::vector<bool> touching(const System& system, const Start& start) {
   Fault fault;
   std::vector<bool> out(model.joints.size(), false);
   if (!system.evaluate(point(start.state), terms, e) ||
-      !Observer(system, channels).observe(point(start.state), e, start.state.lambda(), row, fault)) {
+      !Observer(system, channels).observe(start.state, e, row, fault)) {
     return out;  // the run will say why
   }
   for (std::size_t j = 0; j < out.size(); ++j) {

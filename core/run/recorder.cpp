@@ -44,7 +44,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
 
 bool Recorder::observe_start() {
   Fault fault;
-  if (!observer_.observe(point(run_.accepted), run_.e_accepted, run_.accepted.lambda(), row_, fault)) {
+  if (!observer_.observe(run_.accepted, run_.e_accepted, row_, fault)) {
     return failure_.fail_with(fault, run_.accepted.t());
   }
   run_.energy.start(run_.e_accepted, run_.accepted.lambda(), run_.channels, row_);
@@ -59,7 +59,7 @@ bool Recorder::know_row() {
   if (!run_.adaptive &&
       !run_.system.joints().evaluate_coordinates(point(run_.accepted), term_coordinate, run_.e_accepted))
     return failure_.fail_with(run_.e_accepted->fault, run_.accepted.t());
-  if (!observer_.observe(point(run_.accepted), run_.e_accepted, run_.accepted.lambda(), row_, fault)) {
+  if (!observer_.observe(run_.accepted, run_.e_accepted, row_, fault)) {
     return failure_.fail_with(fault, run_.accepted.t());
   }
   run_.energy.fill(run_.e_accepted, run_.channels, row_);
@@ -250,8 +250,7 @@ bool Recorder::write_rows_inside() {
 bool Recorder::see_at(double t, std::span<double> row) {
   if (!inside_.look_inside(t)) return false;
   Fault fault;
-  if (!observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row, fault))
-    return failure_.fail_with(fault, t);
+  if (!observer_.observe(run_.between, run_.e_between, row, fault)) return failure_.fail_with(fault, t);
   const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
   if (run_.flows > 0 && run_.inner.known()) {
     const std::span<const double> integrals = std::span<const double>(run_.between.z()).last(at(run_.flows));
@@ -292,7 +291,7 @@ bool Recorder::observe_inside(double t, const Ends& step, std::span<double> row)
   return inside_.settle_between() && attempt_.evaluate_all(run_.between, run_.e_between) &&
          (run_.adaptive ||
           run_.system.joints().evaluate_coordinates(point(run_.between), term_coordinate, run_.e_between)) &&
-         observer_.observe(point(run_.between), run_.e_between, run_.between.lambda(), row, ignored);
+         observer_.observe(run_.between, run_.e_between, row, ignored);
 }
 
 void Recorder::see_contact_end(std::span<const double> row) {
@@ -341,7 +340,7 @@ bool Recorder::note_abrupt_end() {
   if (!statistics_.counts(run_.trial.t()) && !statistics_.largest().noise().active()) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
   Fault fault;
-  if (!observer_.observe(point(run_.trial), run_.e_trial, run_.trial.lambda(), row_between_, fault))
+  if (!observer_.observe(run_.trial, run_.e_trial, row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
   const auto middle = [this, &step]() -> std::span<const double> {

@@ -74,6 +74,19 @@ void MotionChannels::acceleration(int marker, std::span<const double> a, const E
   });
 }
 
+void MotionChannels::body_acceleration(int body, std::span<const double> a, const Evaluation& e, double* out) const {
+  const BodyId place = layout_.place(body);
+  const int driven = place - layout_.free_bodies();
+  by_space(model_.space, [&]<class Bodies>(Bodies) {
+    const double* of = driven < 0 ? &a[Bodies::velocities * at(place)] : &e.driven_a[Bodies::velocities * at(driven)];
+    typename Bodies::Arm centre{};
+    if constexpr (requires { centre.turn; }) {
+      centre.turn = turn(Bodies{}, &e.q[Bodies::coordinates * at(place)], &e.v[Bodies::velocities * at(place)]);
+    }
+    marker_acceleration(of, centre, out);
+  });
+}
+
 double MotionChannels::rate(const MotionChannel& channel, std::span<const double> a, const Evaluation& e) const {
   double acceleration_of[6];
   switch (channel.of) {

@@ -30,9 +30,11 @@ class MotionChannels {
   int bodies(const MotionChannel& channel, BodyId (&places)[2]) const;
   void rows(const MotionChannel& channel, const Evaluation& e, ChannelRows (&rows)[2]) const;
 
- private:
+  /// Linear and angular acceleration of a marker, or of a body at its centre of mass, world axes, 6 numbers.
   void acceleration(int marker, std::span<const double> a, const Evaluation& e, double* out) const;
+  void body_acceleration(int body, std::span<const double> a, const Evaluation& e, double* out) const;
 
+ private:
   const Model& model_;
   const Layout& layout_;
   const Markers& markers_;
