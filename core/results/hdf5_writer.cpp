@@ -17,6 +17,7 @@
 #include "base/whole_file.h"
 #include "results/hdf5_attributes.h"
 #include "results/hdf5_call.h"
+#include "results/hdf5_headers.h"
 
 namespace freeplay {
 namespace {
@@ -104,6 +105,7 @@ Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& 
                 : H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
   checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
   checked(H5Pset_file_locking(access, false, true));
+  if (grows) keep_headers(access);
   file = checked(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, creation, access));
   make();
   if (grows) checked(H5Fstart_swmr_write(file));

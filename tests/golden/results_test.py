@@ -182,6 +182,13 @@ class Results(ProgramTest):
             self.assertEqual(self.read("r", "summary.json").encode(), file["summary"][:].tobytes())
             self.assertEqual(self.read("r", "model.yaml"), file.attrs["model"].decode())
 
+    def test_a_result_may_have_thousands_of_columns(self):
+        # Their headers are more than HDF5 keeps in memory by itself.
+        self.freeplay("run", mechanism("benchmark/chain"), "--quiet", "--set", "links=200", "--end", "20 us", "--step", "10 us",
+                      "--out", "r")
+        self.assertGreater(len(self.read("r", "results.csv").split("\n", 1)[0].split(",")), 3000)
+        self.freeplay("compare", "r/results.csv", "r/results.h5")
+
     @needs("xarray")
     @needs("netCDF4")
     def test_xarray_opens_rows_and_events(self):
