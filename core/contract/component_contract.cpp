@@ -10,6 +10,7 @@
 #include "contract/integrator_contract.h"
 #include "contract/joint_contract.h"
 #include "contract/law_contract.h"
+#include "contract/parameter_words.h"
 #include "contract/sample_parameters.h"
 
 namespace freeplay {
@@ -61,6 +62,12 @@ void say(const Conditions& conditions, const std::string& words) {
   if (conditions.note != nullptr) conditions.note->say(words);
 }
 
+/// "as few as possible (gap = 0.01 m)": in front of what was found with these parameters.
+std::string case_words(const ParameterSample& sample) {
+  const std::string values = words_of(*sample.block);
+  return values.empty() ? sample.name : fmt::format("{} ({})", sample.name, values);
+}
+
 Findings check_joint_sample(const ParameterSample& sample, Space space, const Conditions& conditions) {
   const ParameterBlock& block = *sample.block;
   Findings findings;
@@ -91,7 +98,7 @@ void check_joint_type(const Component& component, const Registry& registry, cons
     findings.expect("accepts-parameters", !samples.accepted.empty(), [&] { return where + ": " + samples.refusal; });
     for (const ParameterSample& sample : samples.accepted) {
       say(conditions, fmt::format("{}, {}", sample.name, where));
-      findings.merge(check_joint_sample(sample, space, conditions), fmt::format("{}: {}", sample.name, where));
+      findings.merge(check_joint_sample(sample, space, conditions), fmt::format("{}: {}", case_words(sample), where));
     }
   }
 }
@@ -141,7 +148,7 @@ Findings check_component(const Component& component, const Registry& registry, c
   const ParameterSamples samples = sample_parameters(component, registry, conditions);
   findings.expect("accepts-parameters", !samples.accepted.empty(), [&] { return samples.refusal; });
   for (const ParameterSample& sample : samples.accepted) {
-    findings.merge(check_sample(sample, conditions), sample.name);
+    findings.merge(check_sample(sample, conditions), case_words(sample));
   }
   return findings;
 }

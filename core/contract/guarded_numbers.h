@@ -15,6 +15,7 @@ namespace freeplay {
 struct GuardMark {
   std::uint64_t bits = 0x7ff8c0ffee15600d;
   bool intact() const { return bits == GuardMark().bits; }
+  double number() const { return std::bit_cast<double>(bits); }
 };
 
 class GuardedNumbers {
@@ -41,7 +42,7 @@ class GuardedNumbers {
  private:
   // Two rows of a joint's Jacobian, so that an index that is one row off is caught and harms nothing else.
   static constexpr std::size_t margin = 24;
-  static double guard() { return std::bit_cast<double>(GuardMark().bits); }
+  static double guard() { return GuardMark().number(); }
   std::vector<double> numbers_;
   std::size_t count_;
 };

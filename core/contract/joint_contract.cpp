@@ -52,6 +52,7 @@ MarkerPair within_play(const JointProbe& probe, const MarkerPair& base, RandomNu
 /// of the states that its history can be in after a step has begun and after an event.
 std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& random) {
   std::vector<JointMoment> moments;
+  int turn_of_event = 0;
   const double play = probe.layout().clearance;
   const Space space = probe.space();
   const auto add = [&](const MarkerPair& markers, double latest) {
@@ -68,9 +69,11 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
     const double dt = 1e-4;
     probe.begin_step(other, random_twelve(space, random, 10.0), dt, begun);
     if (probe.layout().history > 0) moments.push_back(begun);
-    for (int event = 0; event < static_cast<int>(probe.layout().events.size); ++event) {
+    // Of many events some each time; where contacts begin each has moments of its own.
+    const int events = static_cast<int>(probe.layout().events.size);
+    for (int i = 0; i < std::min(events, 2); ++i) {
       JointMoment after_event = fresh;
-      probe.on_event(event, after_event);
+      probe.on_event(turn_of_event++ % events, after_event);
       moments.push_back(after_event);
     }
   };
@@ -101,6 +104,21 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
     }
   }
   return moments;
+}
+
+/// Moments about the beginning of each contact, in flight and after its begin was told, in runs of both kinds.
+void add_contacts(const JointProbe& probe, const std::vector<ContactPose>& poses, RandomNumbers& random,
+                  std::vector<JointMoment>& moments) {
+  for (const ContactPose& pose : poses) {
+    for (const double depth : {-0.003, 0.001, 0.01}) {
+      const Twelve twist = random_twelve(probe.space(), random, 1.5);
+      JointMoment fresh = probe.start(with_twists(pose.at(depth * pose.way), twist), random.between(0.5, 1.0));
+      moments.push_back(fresh);
+      fresh.per_contact = depth > 0.005 ? 20.0 : 0.0;
+      probe.on_event(pose.begin, fresh);
+      moments.push_back(fresh);
+    }
+  }
 }
 
 /// Keeps the first and about every fifth of the others, by chance: kinds of moment follow each other in turn.
@@ -185,8 +203,13 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   findings.expect("pin", !probe.layout().pin || subject.space != Space::planar || probe.layout().constraint_rows == 2,
                   [&] { return fmt::format("it declares {} constraint rows", probe.layout().constraint_rows); });
   if (!findings.held()) return findings;  // a layout that is wrong makes every other answer meaningless
+  std::vector<ContactPose> poses = contact_poses(probe, random);
   std::vector<JointMoment> moments = moments_of(probe, random);
-  if (!subject.thorough) thin(moments, random);
+  add_contacts(probe, poses, random, moments);
+  if (!subject.thorough) {
+    thin(moments, random);
+    if (poses.size() > 1) poses.resize(1);
+  }
   check_rows(probe, moments, random, findings);
   check_forces(probe, subject.passive, moments, findings);
   check_cycle(probe, subject.passive, random, findings);
@@ -194,6 +217,8 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   check_rest(probe, moments, random, findings);
   check_time(probe, moments, random, findings);
   check_roles(probe, moments, findings);
+  check_contacts(probe, poses, random, findings);
+  check_impacts(probe, poses, random, findings);
   check_place(probe, random, findings);
   check_offset(probe, findings);
   return findings;

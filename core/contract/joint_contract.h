@@ -1,6 +1,7 @@
 // The contract of joints: what joint.h asks of every one of them.
 #pragma once
 
+#include "contract/contact_poses.h"
 #include "contract/joint_probe.h"
 
 namespace freeplay {
@@ -33,6 +34,9 @@ struct JointSubject {
 ///   free-distance                     within it nothing acts, happens or is remembered
 ///   time-scale, next-corner           what it says of its own dependence on time
 ///   rollback                          history and internal variables are all there is to put back
+///   contact-acts, located, prediction, force-jump, no-tension, starts-in-contact, event-fields, contacts-apart,
+///   contact-numbers                   each contact where it begins, as runs of both kinds meet it
+///   impact-energy, impact-modes, impact-events, impact-steps, event-storm    a free body thrown against each contact
 ///   answers, finite, stays-in-span, step-limit, allocation, declares-sanely    of every call
 Findings check_joint(const JointSubject& subject, const Conditions& conditions);
 
@@ -48,5 +52,9 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
 void check_time(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
                 Findings& findings);
 void check_roles(const JointProbe& probe, const std::vector<JointMoment>& moments, Findings& findings);
+void check_contacts(const JointProbe& probe, const std::vector<ContactPose>& poses, RandomNumbers& random,
+                    Findings& findings);
+void check_impacts(const JointProbe& probe, const std::vector<ContactPose>& poses, RandomNumbers& random,
+                   Findings& findings);
 
 }  // namespace freeplay

@@ -165,8 +165,22 @@ class DerivativeCheck {
     const double play = probe_.layout().clearance;
     if (!(play > 0.0)) return 0.02;
     const MarkerPair& m = moment_.markers;
-    const double beyond = std::abs((vector3(m.b.position) - vector3(m.a.position)).norm() - play);
+    double beyond = std::abs((vector3(m.b.position) - vector3(m.a.position)).norm() - play);
+    for (const double g : probe_.events(moment_).g) {
+      if (std::abs(g) > 1e-9 * play) beyond = std::min(beyond, std::abs(g));
+    }
     return std::min(0.02, std::max(0.2 * beyond, 1e-6 * play));
+  }
+  /// What forces change by on the way from the world's origin: the rounding of places counts by it.
+  std::vector<double> rounded_places() const {
+    const double far = vector3(moment_.markers.a.position).norm() + vector3(moment_.markers.b.position).norm();
+    std::vector<double> result(12 + nz_);
+    for (std::size_t r = 0; r < result.size(); ++r) {
+      for (const std::size_t i : moving_components(probe_.space())) {
+        if (i % 6 < 3) result[r] = std::max(result[r], far * std::abs(given_[r * (24 + nz_) + i]));
+      }
+    }
+    return result;
   }
   /// `largest`: first step tried, in m, rad, m/s or rad/s.
   template <class Move>
@@ -177,7 +191,7 @@ class DerivativeCheck {
           move(x, there);
           return outputs(probe_.forces(there));
         },
-        largest);
+        largest, Side::both, c < 12 ? rounded_places() : std::vector<double>());
     const std::size_t width = 24 + nz_;
     double size[3] = {0.0, 0.0, 0.0};
     for (std::size_t r = 0; r < d.value.size(); ++r) size[group(r)] = std::max(size[group(r)], std::abs(d.value[r]));

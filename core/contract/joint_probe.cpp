@@ -33,7 +33,8 @@ constexpr std::size_t how_many(int count) { return static_cast<std::size_t>(std:
 struct JointProbe::Fed {
   Fed(const JointProbe& probe, const JointMoment& given)
       : moment(given), markers(given.markers), z(given.z), h(given.h) {
-    in = {moment.t, &markers.a, &markers.b, 0.0, 0.0, z.span(), h.span()};
+    in = {moment.t,           &markers.a,      &markers.b,           0.0, 0.0, z.span(), h.span(),
+          moment.per_contact, moment.mobility, moment.whole_mobility};
     if (probe.layout_.coordinate == Coordinate::none) return;
     CoordinateRow row{};
     Message message;
@@ -172,6 +173,17 @@ std::vector<double> JointProbe::observe(const JointMoment& moment) const {
     return {};
   watch("observe", fed, {&channels});
   return channels.values();
+}
+
+std::vector<double> JointProbe::contacts(const JointMoment& moment, std::size_t count) const {
+  Fed fed(*this, moment);
+  const double untouched = GuardMark().number();
+  GuardedNumbers numbers(3 * count, untouched);
+  if (!run("contacts", &moment, [&](Message& m) { return joint_.contacts(fed.in, numbers.span(), m); })) return {};
+  const std::vector<double> values = numbers.values();
+  if (same_bits(values, std::vector<double>(values.size(), untouched))) return {};
+  watch("contacts", fed, {&numbers});
+  return values;
 }
 
 double JointProbe::step_limit(const JointMoment& moment) const {

@@ -20,6 +20,8 @@ struct JointMoment {
   MarkerPair markers;
   double coordinate = 0.0;  ///< last known value, for angles over more than a turn
   std::vector<double> z, h;
+  double per_contact = 0.0;                                     ///< JointInput::per_contact
+  const double *mobility = nullptr, *whole_mobility = nullptr;  ///< of on_event()
 };
 
 struct ProbedRows {
@@ -54,6 +56,8 @@ class JointProbe {
   ProbedForces forces(const JointMoment& moment, bool derivatives = false) const;
   ProbedEvents events(const JointMoment& moment) const;
   std::vector<double> observe(const JointMoment& moment) const;
+  /// Three numbers for each of `count` contacts; empty where the joint leaves them as they are.
+  std::vector<double> contacts(const JointMoment& moment, std::size_t count) const;
   double step_limit(const JointMoment& moment) const;
   double free_distance(const JointMoment& moment) const;
   double next_corner(double t) const;

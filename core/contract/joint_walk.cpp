@@ -12,7 +12,7 @@ void JointWalk::step(const MarkerPair& next, const Twelve& acceleration, double 
   probe_.begin_step(now_, acceleration, dt, trial);
   trial.t += dt;
   trial.markers = next;
-  advance_internal(trial, dt);
+  advance_internal(probe_, trial, dt);
   tell_events(trial);
   probe_.commit(trial);
   if (probe_.layout().coordinate != Coordinate::none) trial.coordinate = probe_.coordinate(trial).value;
@@ -20,11 +20,11 @@ void JointWalk::step(const MarkerPair& next, const Twelve& acceleration, double 
 }
 
 // z <- z + (1/dt - dz'/dz)^-1 z'
-void JointWalk::advance_internal(JointMoment& trial, double dt) const {
+void advance_internal(const JointProbe& probe, JointMoment& trial, double dt) {
   const auto n = static_cast<Eigen::Index>(trial.z.size());
   if (n == 0) return;
   const auto rate = [&](const JointMoment& there) {
-    const std::vector<double> z_rate = probe_.forces(there).z_rate;
+    const std::vector<double> z_rate = probe.forces(there).z_rate;
     Eigen::VectorXd result = Eigen::VectorXd::Zero(n);
     for (std::size_t i = 0; i < z_rate.size(); ++i) result[static_cast<Eigen::Index>(i)] = z_rate[i];
     return result;

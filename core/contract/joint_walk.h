@@ -5,18 +5,19 @@
 
 namespace freeplay {
 
+/// Takes z over a step of length `dt` by a linearly implicit rule, so that stiff ones stay bounded.
+void advance_internal(const JointProbe& probe, JointMoment& trial, double dt);
+
 class JointWalk {
  public:
   JointWalk(const JointProbe& probe, const JointMoment& start) : probe_(probe), now_(start) {}
 
-  /// Takes a step of length `dt` to `next`. Internal variables follow by a linearly implicit rule, so that stiff ones
-  /// stay bounded; events are passed on at the end of the step.
+  /// Takes a step of length `dt` to `next`; events are passed on at its end.
   void step(const MarkerPair& next, const Twelve& acceleration, double dt);
 
   const JointMoment& now() const { return now_; }
 
  private:
-  void advance_internal(JointMoment& trial, double dt) const;
   void tell_events(JointMoment& trial) const;
 
   const JointProbe& probe_;

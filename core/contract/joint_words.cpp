@@ -22,6 +22,18 @@ std::string words_of(const JointMoment& moment) {
   const double cosine = std::clamp(0.5 * (relative.trace() - 1.0), -1.0, 1.0);
   std::string words = fmt::format("at t = {:.4g} s with b at ({:.4g}, {:.4g}, {:.4g}) m from a, turned by {:.4g} rad",
                                   moment.t, arm[0], arm[1], arm[2], std::acos(cosine));
+  const Eigen::Vector3d v = vector3(moment.markers.b.velocity) - vector3(moment.markers.a.velocity),
+                        wa = vector3(moment.markers.a.angular_velocity),
+                        wb = vector3(moment.markers.b.angular_velocity);
+  if (!v.isZero(0.0)) words += fmt::format(", moving with ({:.4g}, {:.4g}, {:.4g}) m/s", v[0], v[1], v[2]);
+  if (!wa.isZero(0.0) || !wb.isZero(0.0)) {
+    const auto turning = [](const Eigen::Vector3d& w) {
+      return w[0] == 0.0 && w[1] == 0.0 ? fmt::format("{:.4g}", w[2])
+                                        : fmt::format("({:.4g}, {:.4g}, {:.4g})", w[0], w[1], w[2]);
+    };
+    words += fmt::format(", a turning with {} rad/s and b with {} rad/s", turning(wa), turning(wb));
+  }
+  if (moment.per_contact > 0.0) words += fmt::format(", per_contact = {:g}", moment.per_contact);
   if (!moment.z.empty()) words += fmt::format(", z0 = {:.4g}", moment.z[0]);
   return words;
 }

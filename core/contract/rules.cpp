@@ -116,6 +116,52 @@ constexpr Rule rules[] = {
      "Wherever the origins of the markers move within free_distance(), the joint exerts and stores nothing, no event "
      "is "
      "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it answers later."},
+    // Contacts of joints, where an event begins one.
+    {"contact-acts", joints,
+     "A contact whose begin was told pushes as soon as it is deep, and stops a body that it can stop. Look for a "
+     "contact "
+     "that no force belongs to, and for events that are told for another one."},
+    {"located", joints,
+     "Where `per_contact` is not zero, steps end at events, and history alone says who touches: a contact in flight "
+     "gives "
+     "no force past its event, and its function stays past zero until the event is told."},
+    {"prediction", joints,
+     "In steps of one size a contact begins inside of a step. Its force there is that which it has after its event: "
+     "begin_step() foresees the approach speed, or the force takes the present rate for it."},
+    {"force-jump", joints,
+     "The elastic force of a contact starts from zero, and no force jumps with the place while contacts go on. Look "
+     "for "
+     "a preload, and for formulas that change when a second contact closes."},
+    {"no-tension", joints, "Surfaces push and do not pull: return zero where damping would make a force negative."},
+    {"starts-in-contact", joints,
+     "A contact that is on when a run starts pushes, and has no approach speed to divide by: it is elastic until it "
+     "has "
+     "ended. Look at what initialize() leaves and what the begin event, which is told then, makes of it."},
+    {"event-fields", joints,
+     "`speed` of a begin is the rate of its event function; `duration` and `max_fn` of an end are those of this "
+     "contact."},
+    {"contacts-apart", joints,
+     "Events of one contact leave the others as they are. Look at the places of a contact in `history`."},
+    {"contact-numbers", joints,
+     "The normal forces of contacts() add up to the channel of that role, and their losses to the power that the "
+     "wrenches "
+     "take out and do not store."},
+    {"impact-energy", joints,
+     "An impact of a free body never has more energy than it began with. Look at approach speeds that are next to "
+     "zero."},
+    {"impact-modes", joints,
+     "An impact loses the same where steps end at its events and where they do not. Look at the approach speed of "
+     "each."},
+    {"impact-events", joints,
+     "An impact tells one begin and, when the body has left, one end. Look for functions that are NaN when they must "
+     "be "
+     "numbers."},
+    {"impact-steps", joints,
+     "step_limit() during an impact is its duration over `per_contact`, about. Look at the mass that the contact "
+     "feels, "
+     "turning included (`whole_mobility`)."},
+    {"event-storm", joints,
+     "Events come to an end. Look for one that makes another possible when that is past its zero already."},
     {"time-scale", joints,
      "`time_scale` is a time above zero, or zero where it is not known; a joint that declares `unbounded` gives the "
      "same "
