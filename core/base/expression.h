@@ -147,6 +147,7 @@ class Expression {
  private:
   friend class ExpressionCompiler;
   friend class ExpressionOperands;
+  friend class FormulaBounds;
   friend class FormulaCourse;
   friend class FormulaForms;
   friend class FormulaSides;

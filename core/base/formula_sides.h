@@ -61,6 +61,7 @@ class FormulaSides {
   }
 
  private:
+  friend class FormulaBounds;
   using Operation = Expression::Operation;
 
   /// It depends on the instructions from `first` on alone.

@@ -43,6 +43,7 @@ class StateFormula {
   double side_at_zero(int index, double rate) const;
 
  private:
+  friend class FormulaBounds;
   using Operation = Expression::Operation;
   struct Decided {
     double* values = nullptr;

@@ -12,6 +12,7 @@ namespace {
 constexpr double largest_turn = 1.0;    // of a joint in one step [rad]: angles are continued over turns
 constexpr double barely = 1.0 - 1e-6;   // of a step: what is shorter by the rounding of times alone is as long
 constexpr double beside_a_root = 1.5;   // power of the step with which errors fall there
+constexpr int most_resolutions = 100;   // at what loads do inside one step
 constexpr double least_allowed = 64.0;  // roundings of positions and, per second, of velocities
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
@@ -53,7 +54,7 @@ bool AdaptiveRun::advance(const RunHooks& hooks, const RunGoal& goal) {
       return true;
     }
     const long before = run_.outcome.steps;
-    const bool going = step(goal.until) && parts_.end.check_stop();
+    const bool going = step(goal.until) && parts_.stop.go_on();
     const bool due = run_.accepted.t() >= parts_.recorder.next_row_time();
     if (run_.outcome.steps > before && (due || !going) && !parts_.recorder.write_row()) return false;
     if (!going) {
@@ -73,7 +74,8 @@ bool AdaptiveRun::step(double until) {
   Search search;
   if (!begin_search(until, search)) return false;
   for (;;) {
-    const Found found = attempt(search);
+    Found found = attempt(search);
+    if (found == Found::yes) found = end_at_stop(search);
     if (found == Found::failed) return false;
     if (found == Found::yes) return accept(search);
   }
@@ -100,6 +102,7 @@ bool AdaptiveRun::begin_search(double until, Search& search) {
     search.goal = Corners::before(kink);
     search.kink = kink;
   }
+  search.dt = std::min(search.dt, std::max(parts_.motion_loads.longest(), smallest));
   const double proposed = std::min(search.dt, search.goal - run_.accepted.t());
   double reach = proposed;
   if (!parts_.corners.resolve_inputs(reach)) return false;
@@ -176,12 +179,25 @@ AdaptiveRun::Found AdaptiveRun::judge(Search& search) {
   }
   const double whole = run_.trial.t() - run_.accepted.t();
   double resolved = whole;
-  if (!parts_.corners.resolves_joints(resolved)) return Found::failed;
+  if (!parts_.corners.resolves_joints(resolved) || !resolve_motion_loads(search, resolved)) return Found::failed;
   if (!(resolved < barely * whole)) return end_at_force_kink(search);
   ++run_.outcome.rejected;
   search.hunted = {};
   search.dt = resolved;
   return Found::no;
+}
+
+// Shortens a step over what loads that depend on the motion do inside.
+bool AdaptiveRun::resolve_motion_loads(Search& search, double& dt) {
+  if (!parts_.motion_loads.any() || search.looks > most_resolutions) return true;
+  const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
+  double part = 1.0;
+  Fault fault;
+  if (!parts_.motion_loads.resolved(part, fault)) return parts_.failure.fail_with(fault, run_.trial.t());
+  if (!(part < barely)) return true;
+  ++search.looks;
+  dt = std::min(dt, std::max(part * (run_.trial.t() - run_.accepted.t()), control_.limits().smallest));
+  return true;
 }
 
 AdaptiveRun::Found AdaptiveRun::end_at_force_kink(Search& search) {
@@ -221,6 +237,27 @@ AdaptiveRun::Found AdaptiveRun::end_at_event(Search& search) {
     return Found::yes;
   }
   ++search.hunts;
+  return Found::no;
+}
+
+// A step in which a condition to stop is met is made again, to end there.
+AdaptiveRun::Found AdaptiveRun::end_at_stop(Search& search) {
+  if (!parts_.stop.any()) return Found::yes;
+  const double whole = run_.trial.t() - run_.accepted.t();
+  if (search.stop > 0.0 && std::abs(whole - search.stop) <= (1.0 - barely) * whole) {
+    parts_.stop.end_there();
+    return Found::yes;
+  }
+  double part = 2.0;
+  if (!parts_.stop.first_inside(part)) return Found::failed;
+  if (!(part <= 1.0)) return Found::yes;
+  if (part > barely) {
+    parts_.stop.end_there();
+    return Found::yes;
+  }
+  ++run_.outcome.rejected;
+  search.hunted = {};
+  search.dt = search.stop = part * whole;
   return Found::no;
 }
 

@@ -40,6 +40,8 @@ class AdaptiveRun {
     bool quick = false;            ///< an input acts for a short time
     bool unbounded_slope = false;  ///< of it, at a corner beside the step
     bool at_force_kink = false;    ///< the attempt is to end there
+    int looks = 0;                 ///< at what loads do inside that had it shortened
+    double stop = 0.0;             ///< length at which a condition to stop is met [s]
     double hidden = 1.0;           ///< errors of the last attempt are so many times what it shows
   };
   enum class Found { no, yes, failed };  ///< a step that may stand; failed: the run is over
@@ -49,8 +51,10 @@ class AdaptiveRun {
   Found attempt(Search& search);
   Found shorten(Search& search, bool converged);
   Found judge(Search& search);
+  bool resolve_motion_loads(Search& search, double& dt);
   Found end_at_force_kink(Search& search);
   Found end_at_event(Search& search);
+  Found end_at_stop(Search& search);
   void allow_error(Search& search);
   bool in_contact(const Evaluation& e) const;
   bool bounded_step(double& dt, int& limiting_joint);

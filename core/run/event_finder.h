@@ -19,6 +19,10 @@ struct Hermite {
     const double c = 1.0 - s;
     return 6.0 * s * c * (value1 - value0) + c * (1.0 - 3.0 * s) * slope0 + s * (3.0 * s - 2.0) * slope1;
   }
+  /// Its second derivative.
+  double bend(double s) const {
+    return 6.0 * (1.0 - 2.0 * s) * (value1 - value0) + (6.0 * s - 4.0) * slope0 + (6.0 * s - 2.0) * slope1;
+  }
   /// The same cubic over the next interval, of the length `part` of this one.
   Hermite ahead(double part) const {
     const double bend = 6.0 * (value0 - value1) + 2.0 * slope0 + 4.0 * slope1;  // second derivative at the end

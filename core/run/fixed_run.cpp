@@ -89,6 +89,7 @@ bool FixedRun::accept(double corner) {
   for (const auto& [kink, of_motion] : step_corners_.all()) {
     if (of_motion && kink <= run_.trial.t() && parts_.corners.note_jumps(kink)) parts_.corners.book_jump(kink);
   }
+  parts_.motion_loads.note();
   const bool has_energy = step_corners_.add_energy();
   return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
@@ -99,7 +100,7 @@ bool FixedRun::advance(const RunHooks& hooks, const RunGoal& goal) {
   while (run_.accepted.t() < run_.settings.end) {
     if (!(run_.accepted.t() < goal.until) || rows >= goal.rows || run_.outcome.steps - steps >= goal.steps) return true;
     if (!(run_.accepted.t() < leg_.target) && !begin_leg()) return false;
-    const bool going = step(goal.until) && parts_.end.check_stop();
+    const bool going = step(goal.until) && parts_.stop.go_on();
     const bool arrived = going && !(run_.accepted.t() < leg_.target);
     // A run that was stopped keeps the state it stopped in.
     if ((arrived || (!going && run_.outcome.steps > leg_.steps_before)) && !parts_.recorder.write_row()) return false;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double fewest_samples = 8.0;  // in a step, besides its ends, its middle and its quarters
 constexpr double part_of_form = 0.25;   // as long as a step may be where such a motion has one form for a while
-constexpr double little = 0.01;         // of what positions may err by in a step
 constexpr double slow = 2.0;            // rate times step that every integrator sees
 constexpr double slow_load = 0.5;       // of a short load
 constexpr double slow_bend = 0.4;       // of a motion whose powers are integrated and whose forces have their peaks
@@ -80,19 +79,11 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
       start_(system.model().settings.start),
       end_(system.model().settings.end),
       shortest_(shortest),
+      light_(system, allowed),
+      short_length_(light_.length()),
+      small_angle_(short_length_ / system.size()),
       resolution_(0) {
   const Model& model = system.model();
-  double mass = unbounded, inertia = unbounded;
-  for (const Body& body : model.bodies) {
-    if (body.mass > 0.0) mass = std::min(mass, body.mass);
-    for (const std::size_t axis : {0u, 4u, 8u}) {
-      if (body.inertia[axis] > 0.0) inertia = std::min(inertia, body.inertia[axis]);
-    }
-  }
-  short_length_ = little * allowed;
-  small_angle_ = short_length_ / system.size();
-  light_force_ = std::isfinite(mass) ? short_length_ * mass : 0.0;
-  light_torque_ = std::isfinite(inertia) ? small_angle_ * inertia : 0.0;
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const Driver& driver = model.drivers[at(d)];
     const CornerKind sharp = prescribes(driver.kind) ? CornerKind::motion : CornerKind::load;
@@ -136,15 +127,12 @@ void InputActivity::add(const char* section, const std::string& name, const Expr
       {section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, shortest_, bends});
 }
 
-// In a step a force moves a mass by force dt^2/mass and makes it faster by force dt/mass, which counts for the run, or
-// a second.
 double InputActivity::negligible(Unit unit, double dt) const {
-  const double lasting = std::max({dt, 1.0, end_ - start_});
   switch (unit) {
     case Unit::force:
-      return light_force_ / (dt * lasting);
+      return light_.force(dt);
     case Unit::torque:
-      return light_torque_ / (dt * lasting);
+      return light_.torque(dt);
     case Unit::length:
       return short_length_;
     case Unit::angle:

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/formula_course.h"
+#include "run/light_loads.h"
 #include "run/step_resolution.h"
 #include "run/unseen_change.h"
 #include "system/system.h"
@@ -155,7 +156,8 @@ class InputActivity {
 
   const System& system_;
   double start_, end_, shortest_;
-  double light_force_, light_torque_, short_length_, small_angle_;  ///< over a second; see negligible()
+  LightLoads light_;
+  double short_length_, small_angle_;  ///< that do not matter [m, rad]
   std::vector<Formula> formulas_;
   std::vector<Table> tables_;
   std::vector<TellingJoint> telling_;  ///< joints that may declare corners

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/formula_bounds.h"
 #include "base/index.h"
+#include "run/load_channels.h"
 
 namespace freeplay {
 
@@ -14,7 +16,15 @@ LoadSwitches::LoadSwitches(const System& system)
       events_(at(slots_.size)),
       room_(system.forces().applied().switch_numbers()),
       scale_(events_.size()),
+      scale_here_(events_.size()),
       sides_(events_.size()) {
+  const LoadChannels channels(system);
+  for (const LoadChannels::Load& load : channels.loads()) {
+    for (const StateFormula& formula : load.formulas->formulas) {
+      const FormulaBounds bounds(formula);
+      for (int i = 0; i < formula.switches(); ++i) even_.push_back(bounds.is_even(i) ? 1 : 0);
+    }
+  }
   for (Event& event : events_) {
     event = Event{};
     event.name = "switch";
@@ -29,6 +39,8 @@ void LoadSwitches::look_from(const Point& start, const Evaluation& e) {
 
 void LoadSwitches::functions(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> g,
                              std::span<double> rate) {
+  const bool even = std::ranges::find(even_, 0) == even_.end();
+  if (!even) system_.forces().applied().scale(point, system_.size(), e, room_, scale_here_);
   system_.forces().applied().decide(point, a, e, room_, g, rate);
   for (std::size_t s = 0; s < g.size(); ++s) {
     const double side = point.h[at(slots_.offset) + s];
@@ -36,7 +48,9 @@ void LoadSwitches::functions(const Point& point, std::span<const double> a, cons
       g[s] = rate[s] = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    g[s] = -side * g[s] / scale_[s] - band_;
+    // Beside its zero it may change by far less than where the step starts.
+    const double part = even_[s] != 0 ? 1.0 : std::min(1.0, scale_here_[s] / scale_[s]);
+    g[s] = -side * g[s] / scale_[s] - part * band_;
     rate[s] = -side * rate[s] / scale_[s];
   }
 }

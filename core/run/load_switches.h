@@ -30,6 +30,8 @@ class LoadSwitches {
   /// The functions of their events [m] and their rates [m/s].
   void functions(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> g,
                  std::span<double> rate);
+  /// By so much [m] what decides a switch may be past its zero, as it is measured there.
+  double band() const { return band_; }
   /// Takes the sides of this state into its history. Returns whether other forces act from here on.
   bool renew(State& state, const Evaluation& e);
   void change(int which, State& state) const {
@@ -44,7 +46,8 @@ class LoadSwitches {
   Slice slots_;  ///< in h
   double band_ = 0.0;
   std::vector<Event> events_;
-  std::vector<double> room_, scale_, sides_;
+  std::vector<double> room_, scale_, scale_here_, sides_;
+  std::vector<char> even_;  ///< what decides it changes with the motion as it does where the step starts
 };
 
 }  // namespace freeplay

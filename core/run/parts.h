@@ -2,7 +2,9 @@
 #pragma once
 
 #include "run/end_check.h"
+#include "run/motion_loads.h"
 #include "run/step_acceptance.h"
+#include "run/stop_search.h"
 
 namespace freeplay {
 
@@ -15,7 +17,9 @@ struct RunParts {
   Recorder& recorder;
   EnergyGrowth& growth;
   Corners& corners;
+  MotionLoads& motion_loads;
   EndCheck& end;
+  StopSearch& stop;
 };
 
 }  // namespace freeplay

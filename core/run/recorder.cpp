@@ -246,11 +246,18 @@ bool Recorder::write_rows_inside() {
   return true;
 }
 
+bool Recorder::see_ahead(double t, std::span<double> row) {
+  const bool inside = t < run_.trial.t();
+  if (inside && !inside_.look_inside(t)) return false;
+  const State& state = inside ? run_.between : run_.trial;
+  Fault fault;
+  return observer_.observe(state, inside ? run_.e_between : run_.e_trial, row, fault) ||
+         failure_.fail_with(fault, t);
+}
+
 // The row at t inside of the step that is being accepted. False when the run is over.
 bool Recorder::see_at(double t, std::span<double> row) {
-  if (!inside_.look_inside(t)) return false;
-  Fault fault;
-  if (!observer_.observe(run_.between, run_.e_between, row, fault)) return failure_.fail_with(fault, t);
+  if (!see_ahead(t, row)) return false;
   const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
   if (run_.flows > 0 && run_.inner.known()) {
     const std::span<const double> integrals = std::span<const double>(run_.between.z()).last(at(run_.flows));

@@ -33,6 +33,9 @@ class Recorder {
   /// The last that was made, every channel.
   std::span<const double> row() const { return row_; }
 
+  /// What the row at t, inside or at the end of the step that was made, will hold but for energies that are summed up.
+  bool see_ahead(double t, std::span<double> row);
+
   /// Statistics at the end of a step that was just accepted; of one that ends abruptly before it is; and where
   /// statistics begin inside.
   bool record_step();

@@ -37,8 +37,8 @@ struct Simulation::Impl {
   void restore(const RunState& state);
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.context, self.attempt, self.recorder, self.doubts, self.growth, self.corners, self.fixed,
-            self.adaptive);
+    archive(self.context, self.attempt, self.recorder, self.doubts, self.growth, self.corners, self.motion_loads,
+            self.stop, self.fixed, self.adaptive);
   }
 
   RunContext context;
@@ -54,11 +54,13 @@ struct Simulation::Impl {
   RunDoubts doubts{context, failure, recorder};
   EnergyGrowth growth{context};
   Corners corners{context, failure, attempt};
+  MotionLoads motion_loads{context};
   StepCorners step_corners{context, attempt};
   StepAcceptance acceptance{context, failure, attempt, recorder, doubts, growth, corners, step_corners};
   EventPursuit pursuit{context, failure, attempt, inside};
-  EndCheck end{context, recorder};
-  RunParts parts{context, failure, attempt, acceptance, recorder, growth, corners, end};
+  EndCheck end{context};
+  StopSearch stop{context, recorder};
+  RunParts parts{context, failure, attempt, acceptance, recorder, growth, corners, motion_loads, end, stop};
   FixedRun fixed{parts, step_corners};
   AdaptiveRun adaptive{parts, pursuit};
 };
@@ -68,7 +70,7 @@ void Simulation::Impl::begin(const RunHooks& run_hooks) {
   end.start_clock();
   context.evaluations.profile = run_hooks.profile;
   if (run_hooks.profile != nullptr) run_hooks.profile->start();
-  if (run_hooks.blind_to_inputs) corners.go_blind();
+  if (run_hooks.blind_to_inputs) corners.go_blind(), motion_loads.go_blind();
   recorder.feed(run_hooks.steps);
   context.outcome.time = context.accepted.t();
   over = !goes_on && !(acceptance.begin() && recorder.write_row());
@@ -123,9 +125,11 @@ const Outcome& Simulation::Impl::finish() {
   outcome.factorizations = context.solver.factorizations();
   doubts.format_warnings();
   doubts.note_unused_play();
+  doubts.note_fast_motion();
   failure.explain_failure();
   corners.format_jumps();
   corners.format_unresolved();
+  motion_loads.format();
   return outcome;
 }
 

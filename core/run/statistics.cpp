@@ -10,6 +10,7 @@ namespace freeplay {
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double small_part = 1e-4;  // of an integral
+constexpr double unlike = 4.0;       // lengths of steps, one by the other
 }  // namespace
 
 void Statistics::Mean::add(double value, double dt, bool first, bool by_parabolas) {
@@ -17,9 +18,14 @@ void Statistics::Mean::add(double value, double dt, bool first, bool by_parabola
   if (!first) integral += 0.5 * dt * (last * last + square);
   if (by_parabolas && !first && known > 1 && dt > 0.0) {
     // A step takes half of what the parabola through its start takes off, and half of that through its end; at the
-    // ends of a stretch all of the only one. No more than a part of what is there.
+    // ends of a stretch all of the only one. No more than a part of what is there, and in steps of unlike lengths of
+    // what is in each.
     const double bend = ((square - last * last) / dt - (last * last - before) / length) / (length + dt);
-    const double most = 0.25 * (before + 2.0 * last * last + square) / ((length + dt) * (length + dt));
+    double most = 0.25 * (before + 2.0 * last * last + square) / ((length + dt) * (length + dt));
+    if (std::max(length, dt) > unlike * std::min(length, dt)) {
+      most = std::min(
+          {most, 0.25 * (before + last * last) / (length * length), 0.25 * (last * last + square) / (dt * dt)});
+    }
     const double off = std::clamp(bend / 12.0, -most, most);
     const double earlier = off * length * length * length, later = off * dt * dt * dt;
     integral -= (known == 2 ? 2.0 : 1.0) * earlier + later;

@@ -85,6 +85,7 @@ bool StepAcceptance::go_on_from(bool changed, const End& end) {
 bool StepAcceptance::accept(const End& end) {
   const double dt = run_.trial.t() - run_.accepted.t();
   if (!end.has_energy) add_energy();
+  doubts_.note_motion();
   if (run_.adaptive && (!recorder_.write_rows_inside() || !recorder_.begin_statistics_inside())) return false;
   const bool expected = run_.adaptive && (end.located.joint >= 0 || end.kink < unbounded);
   if (expected && !recorder_.note_abrupt_end()) return false;

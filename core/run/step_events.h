@@ -71,6 +71,7 @@ class StepEvents {
   void renew_switches(State& after, const Evaluation& e) {
     if (!located_ && switches_.count() > 0 && switches_.renew(after, e)) switched_ = true;
   }
+  const LoadSwitches& switches() const { return switches_; }
   /// Other forces act after the last call: by an event of a joint, or as an applied force changes its form.
   bool changed() const { return !happenings_.empty() || switched_; }
   bool switched() const { return switched_; }

@@ -1,0 +1,290 @@
+#include "run/motion_loads.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/index.h"
+#include "run/dense_step.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double no_departure = std::numeric_limits<double>::infinity();
+constexpr double shown_part = 0.01;          // of a formula's range in the step
+constexpr double hidden_part = 0.1;          // of its range in the run: more is not shown by steps of one size
+constexpr double finest_span = 1e-9;         // of the step: shorter spans are not halved
+constexpr double same_begin = 1.0 / 64.0;    // to which it is known where something begins
+constexpr double late_part = 0.125;          // what begins later in the step is left to the next
+constexpr double next_longest = 4.0;         // the next step to try, of one that had to be shortened
+constexpr double least_part = 1e-6;          // of a step that it is shortened to at once
+constexpr double no_change = 1e-12;          // of the largest value
+constexpr int most_looks_at_formula = 4000;  // at a formula in a step
+constexpr int most_looks_at_ends = 200;      // in one of one size
+
+}  // namespace
+
+MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.allowed), channels_(run.system) {
+  std::size_t channels = 0, switches = 0;
+  for (const LoadChannels::Load& load : channels_.loads()) {
+    Load own{&load, {}, MotionPieces(load.formulas->channels.size())};
+    int first = load.first_switch;
+    for (const StateFormula& formula : load.formulas->formulas) {
+      FormulaBounds bounds(formula);
+      // In steps of one size nothing ends where a switch changes its side.
+      const bool watched = bounds.may_hide() || (!run.adaptive && formula.switches() > 0);
+      if (watched) own.formulas.push_back({.bounds = std::move(bounds), .first_switch = first});
+      first += formula.switches();
+      switches = std::max(switches, at(formula.switches()));
+    }
+    if (own.formulas.empty()) continue;
+    channels = std::max(channels, load.formulas->channels.size());
+    loads_.push_back(std::move(own));
+  }
+  ranges_.resize(channels);
+  middles_.resize(channels);
+  values_.resize(channels);
+  switches_.resize(switches);
+  changes_.resize(channels);
+  for (std::vector<double>* numbers : {&decides_, &rates_, &scale_}) numbers->resize(switches);
+}
+
+bool MotionLoads::follow(Fault& fault) {
+  const double start = run_.accepted.t(), dt = run_.trial.t() - start;
+  const DenseStep step(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial,
+                       run_.e_trial->internal_rate);
+  for (std::size_t k = 0; k <= MotionPieces::count; ++k) {
+    const bool inside = k > 0 && k < MotionPieces::count;
+    if (inside) {
+      step.at(static_cast<double>(k) / static_cast<double>(MotionPieces::count), run_.between);
+      if (!run_.system.evaluate(point(run_.between), term_event, run_.e_between)) {
+        fault = run_.e_between->fault;
+        return false;
+      }
+      run_.system.constraints().fill_driven(run_.e_between);
+    }
+    const State& state = inside ? run_.between : k == 0 ? run_.accepted : run_.trial;
+    const Evaluation& e = inside ? run_.e_between : k == 0 ? run_.e_accepted : run_.e_trial;
+    for (Load& load : loads_) channels_.follow(*load.load, state.a(), e, load.motion.end(k));
+  }
+  for (Load& load : loads_) load.motion.take(start, dt);
+  return true;
+}
+
+double MotionLoads::value(const Course& course, double s) {
+  const std::span<double> values(values_.data(), course.load.load->formulas->channels.size());
+  course.load.motion.at(s, values);
+  double out = 0.0;
+  EvaluationFailure ignored;
+  const bool good =
+      course.formula.bounds.formula().value({course.load.motion.time(s), values, course.sides}, out, ignored);
+  return good ? out : std::nan("");
+}
+
+bool MotionLoads::show(Course& course) {
+  course.low = unbounded, course.high = -unbounded;
+  for (std::size_t k = 0; k < course.shown.size(); ++k) {
+    course.shown[k] = value(course, 0.25 * static_cast<double>(k) * course.part);
+    if (!std::isfinite(course.shown[k])) return false;
+    course.low = std::min(course.low, course.shown[k]), course.high = std::max(course.high, course.shown[k]);
+  }
+  const double dt = course.part * course.load.motion.length();
+  const double light = course.load.load->turns ? light_.torque(dt) : light_.force(dt);
+  const double largest = std::max(std::abs(course.low), std::abs(course.high));
+  course.allowed = std::max({shown_part * (course.high - course.low), no_change * largest, light});
+  return true;
+}
+
+Jet MotionLoads::Course::polynomial(double s) const {
+  // Newton's form by differences, x growing by 1 in each quarter.
+  const double by = part * load.motion.length() / 4.0;
+  const Jet x{4.0 * s / part, 1.0 / by, 0.0};
+  std::array<double, 5> difference = shown;
+  for (std::size_t order = 1; order < 5; ++order) {
+    for (std::size_t k = 4; k >= order; --k) {
+      difference[k] = (difference[k] - difference[k - 1]) / static_cast<double>(order);
+    }
+  }
+  Jet out = Jet::constant(difference[4]);
+  for (std::size_t k = 4; k > 0; --k) {
+    out = out * (x - Jet::constant(static_cast<double>(k - 1))) + Jet::constant(difference[k - 1]);
+  }
+  return out;
+}
+
+void MotionLoads::bound(const Course& course, double from, double to) {
+  const std::size_t channels = course.load.load->formulas->channels.size();
+  const std::span<IntervalJet> ranges(ranges_.data(), channels);
+  const std::span<Jet> middles(middles_.data(), channels);
+  course.load.motion.bound(from, to, ranges, middles);
+  course.formula.bounds.bound({.middle = course.load.motion.time(0.5 * (from + to)),
+                               .half = 0.5 * (to - from) * course.load.motion.length(),
+                               .ranges = ranges,
+                               .at_middle = middles,
+                               .sides = course.sides},
+                              bounds_, {switches_.data(), at(course.formula.bounds.formula().switches())});
+}
+
+// In the whole span, as its bounds say.
+bool MotionLoads::is_shown(const Course& course, double from, double to) const {
+  if (may_cross(course)) return false;
+  const double half = 0.5 * (to - from) * course.load.motion.length();
+  const Jet begin = course.polynomial(from), middle = course.polynomial(0.5 * (from + to)), end = course.polynomial(to);
+  // The second derivative of the polynomial is a parabola.
+  const auto bend = std::minmax({begin.acceleration, middle.acceleration, end.acceleration});
+  const double more = std::abs(begin.acceleration - 2.0 * middle.acceleration + end.acceleration);
+  IntervalJet off = bounds_.range;
+  off.value = off.value - hull(hull(Interval::at(begin.value), Interval::at(end.value)), Interval::at(middle.value));
+  off.rate = Interval::whole();
+  off.acceleration = off.acceleration - Interval{bend.first - more, bend.second + more};
+  tighten(off, bounds_.at_middle - middle, half);
+  return off.value.low >= -course.allowed && off.value.high <= course.allowed;
+}
+
+// Whether a switch that does not pass zero as evenly as the motion goes may be past it somewhere in the span that was
+// bounded.
+bool MotionLoads::may_cross(const Course& course) const {
+  if (course.sides == nullptr) return false;
+  const FormulaBounds& bounds = course.formula.bounds;
+  for (int i = 0; i < bounds.formula().switches(); ++i) {
+    if (course.sides[i] == 0.0 || bounds.is_even(i)) continue;
+    const Interval& values = switches_[at(i)].range.value;
+    if (!((course.sides[i] > 0.0 ? values.low : -values.high) >= 0.0)) return true;
+  }
+  return false;
+}
+
+// Whether one is past it in a place, by more than a switch may be that a step ends at.
+bool MotionLoads::crosses(const Course& course, double s) {
+  if (course.sides == nullptr) return false;
+  const FormulaBounds& bounds = course.formula.bounds;
+  const int count = bounds.formula().switches();
+  const std::vector<double>& units = course.load.load->units;
+  const std::span<double> values(values_.data(), units.size()), changes(changes_.data(), units.size());
+  const std::span<double> decides(decides_.data(), at(count)), rates(rates_.data(), at(count));
+  course.load.motion.at(s, values);
+  const StateFormula::Input here{course.load.motion.time(s), values, course.sides};
+  std::fill_n(scale_.begin(), count, 0.0);
+  for (std::size_t k = 0; k <= units.size(); ++k) {
+    std::ranges::fill(changes, 0.0);
+    if (k < units.size()) changes[k] = units[k];
+    bounds.formula().decide(here, changes, k < units.size() ? 0.0 : 1.0, decides, rates);
+    for (int i = 0; i < count; ++i) scale_[at(i)] += std::isfinite(rates[at(i)]) ? std::abs(rates[at(i)]) : 0.0;
+  }
+  for (int i = 0; i < count; ++i) {
+    if (course.sides[i] == 0.0 || bounds.is_even(i)) continue;
+    if (-course.sides[i] * decides[at(i)] > 2.0 * run_.events.switches().band() * scale_[at(i)]) return true;
+  }
+  return false;
+}
+
+// The first place of the span where the formula is not what is shown, or a switch is past its zero.
+double MotionLoads::departure(Course& course, double from, double to) {
+  if (++course.looks > most_looks_at_formula) return no_departure;
+  bound(course, from, to);
+  if (is_shown(course, from, to)) return no_departure;
+  const double middle = 0.5 * (from + to);
+  const bool leaves = std::abs(bounds_.at_middle.value - course.polynomial(middle).value) > course.allowed;
+  const bool crossing = may_cross(course) && crosses(course, middle);
+  if (leaves && to - from < same_begin * course.part) return from;
+  if (to - from >= finest_span) {
+    const double earlier = departure(course, from, middle);
+    if (earlier < no_departure) return earlier;
+  }
+  if (crossing) course.crosses = true;
+  if (crossing || leaves) return middle;
+  return to - from < finest_span ? no_departure : departure(course, middle, to);
+}
+
+double MotionLoads::resolved(const Load& load, const Formula& formula) {
+  const double* const sides = run_.accepted.h().data() + run_.system.layout().switches().offset + formula.first_switch;
+  Course course{.load = load, .formula = formula, .sides = sides};
+  while (show(course)) {
+    course.looks = 0;
+    double place = no_departure;
+    for (std::size_t k = 0; k < MotionPieces::count && !(place < no_departure); ++k) {
+      const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
+      const double to = std::min(course.part, from + 1.0 / static_cast<double>(MotionPieces::count));
+      if (from < to) place = departure(course, from, to);
+    }
+    if (!(place < no_departure)) break;
+    if (course.crosses) return place;
+    course.part = place > late_part * course.part ? place : 0.5 * course.part;
+    if (course.part < least_part) return least_part;
+  }
+  return course.part;
+}
+
+bool MotionLoads::resolved(double& part, Fault& fault) {
+  part = 1.0;
+  if (!follow(fault)) return false;
+  for (const Load& load : loads_) {
+    for (const Formula& formula : load.formulas) part = std::min(part, resolved(load, formula));
+  }
+  longest_ = part < 1.0 ? next_longest * part * (run_.trial.t() - run_.accepted.t()) : unbounded;
+  return true;
+}
+
+void MotionLoads::note() {
+  Fault ignored;
+  if (!any() || !follow(ignored)) return;
+  for (Load& load : loads_) {
+    for (Formula& formula : load.formulas) note(load, formula);
+  }
+}
+
+void MotionLoads::note(const Load& load, Formula& formula) {
+  Course course{.load = load, .formula = formula, .sides = nullptr};
+  const double begin = value(course, 0.0), end = value(course, 1.0);
+  if (!std::isfinite(begin) || !std::isfinite(end)) return;
+  course.low = std::min(begin, end), course.high = std::max(begin, end);
+  formula.low = std::min(formula.low, course.low), formula.high = std::max(formula.high, course.high);
+  for (std::size_t k = 0; k < MotionPieces::count; ++k) {
+    const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
+    seek_beyond(course, formula, from, from + 1.0 / static_cast<double>(MotionPieces::count));
+  }
+}
+
+void MotionLoads::seek_beyond(Course& course, Formula& formula, double from, double to) {
+  if (++course.looks > most_looks_at_ends) return;
+  const double largest = std::max(std::abs(formula.low), std::abs(formula.high));
+  course.allowed = std::max({formula.beyond, hidden_part * (formula.high - formula.low), no_change * largest});
+  bound(course, from, to);
+  const auto beyond = [&](const Interval& range) { return std::max(range.high - course.high, course.low - range.low); };
+  if (!(beyond(bounds_.range.value) > course.allowed)) return;
+  const double middle = 0.5 * (from + to), here = beyond(Interval::at(bounds_.at_middle.value));
+  if (here > course.allowed) formula.beyond = here, formula.at = course.load.motion.time(middle);
+  if (to - from < finest_span) return;
+  seek_beyond(course, formula, from, middle);
+  seek_beyond(course, formula, middle, to);
+}
+
+void MotionLoads::format() {
+  if (run_.adaptive) return;
+  const double step = std::min(run_.settings.step, run_.settings.interval);
+  for (const Load& load : loads_) {
+    const std::string& element = load.load->words;
+    for (const Formula& formula : load.formulas) {
+      const double range = std::max(formula.high - formula.low, 0.0) + formula.beyond;
+      if (!(formula.beyond > hidden_part * range)) continue;
+      const char* const unit = load.load->turns ? "N m" : "N";
+      run_.warnings.push_back(fmt::format(
+          "{}: at t = {:.9g} s, inside a step of {:.3g} s, it goes {:.4g} {} beyond what it is at both ends, and acts "
+          "as if it did not; ask for an accuracy instead, or for shorter steps",
+          element, formula.at, step, formula.beyond, unit));
+      run_.outcome.doubts.push_back(
+          {.id = "unresolved-input",
+           .level = Trust::doubtful,
+           .message =
+               fmt::format("{} changes with the motion at t = {:.9g} s in a way that steps of {:.3g} s do not show",
+                           element, formula.at, step),
+           .element = element,
+           .value = formula.beyond,
+           .limit = hidden_part * range});
+      break;
+    }
+  }
+}
+
+}  // namespace freeplay

@@ -1,0 +1,102 @@
+// MotionLoads: what loads that depend on the motion do inside the step that was just made.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/formula_bounds.h"
+#include "run/context.h"
+#include "run/light_loads.h"
+#include "run/load_channels.h"
+#include "run/motion_pieces.h"
+
+namespace freeplay {
+
+/// A load may act in a small part of a step's way alone, as a press that closes in the last half millimetre or a bump
+/// in the angle of a crank, where no stage of an integrator meets it. Its formulas are bounded along the interpolated
+/// motion by interval arithmetic, so that none is too narrow to be found. Allocates when it is made alone.
+class MotionLoads {
+ public:
+  explicit MotionLoads(RunContext& run);
+
+  bool any() const { return !loads_.empty(); }
+  /// For tests of what finds wrong runs: nothing is looked at.
+  void go_blind() { loads_.clear(); }
+
+  /// A longer step is not to be tried, as the last one showed [s].
+  double longest() const { return longest_; }
+  /// The part of the step in which each formula is, to a hundredth of its range, as a polynomial through five places of
+  /// it shows, and no switch changes its side before the end. False where the motion cannot be looked at.
+  bool resolved(double& part, Fault& fault);
+
+  /// Of a step of one size: how far loads go beyond what they are at its ends.
+  void note();
+  /// Once the run is over: those that do more there than the ends of all steps show.
+  void format();
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.longest_, self.loads_);
+  }
+
+ private:
+  struct Formula {
+    FormulaBounds bounds;
+    int first_switch;                           ///< in Layout::switches
+    double low = unbounded, high = -unbounded;  ///< at the ends of all steps
+    double beyond = 0.0, at = 0.0;              ///< farthest beyond both ends of a step, and when [s]
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.low, self.high, self.beyond, self.at);
+    }
+  };
+  struct Load {
+    const LoadChannels::Load* load;
+    std::vector<Formula> formulas{};
+    MotionPieces motion;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.formulas);
+    }
+  };
+  /// What a formula is compared with, from the begin of the step to a part of it.
+  struct Course {
+    const Load& load;
+    const Formula& formula;
+    const double* sides;  ///< that it keeps; null: the values decide
+    double part = 1.0;
+    std::array<double, 5> shown{};  ///< at the ends of quarters
+    double low = 0.0, high = 0.0;   ///< of these
+    double allowed = 0.0;           ///< by which it may be off
+    bool crosses = false;           ///< a switch changes its side
+    int looks = 0;
+
+    /// The polynomial of degree 4 through what is shown, with its derivatives by time.
+    Jet polynomial(double s) const;
+  };
+
+  bool follow(Fault& fault);
+  double resolved(const Load& load, const Formula& formula);
+  bool show(Course& course);
+  double value(const Course& course, double s);
+  double departure(Course& course, double from, double to);
+  void bound(const Course& course, double from, double to);
+  bool is_shown(const Course& course, double from, double to) const;
+  bool may_cross(const Course& course) const;
+  bool crosses(const Course& course, double s);
+  void note(const Load& load, Formula& formula);
+  void seek_beyond(Course& course, Formula& formula, double from, double to);
+
+  RunContext& run_;
+  LightLoads light_;
+  LoadChannels channels_;
+  std::vector<Load> loads_;
+  double longest_ = unbounded;
+  std::vector<IntervalJet> ranges_;
+  std::vector<Jet> middles_;
+  std::vector<double> values_, changes_, decides_, rates_, scale_;
+  FormulaBounds::Bounds bounds_;
+  std::vector<FormulaBounds::Bounds> switches_;
+};
+
+}  // namespace freeplay
