@@ -34,10 +34,11 @@ constexpr double of_last_step = 0.1;              // smooth change of such a for
 constexpr double most_play = 0.1;                 // clearance by the model's size
 constexpr double fewest_impacts = 10.0;           // in a window of statistics without a period
 constexpr double fewest_instants = 10.0, fewest_instants_of_accuracy = 2.0;  // that statistics are of
-constexpr double longest_period = 20.0;                                      // looked for, by the length of the run
-constexpr double whole_period = 0.99;                                        // of a window
-constexpr double lasting = 0.5;      // part of the time in contact that is no series of impacts,
-constexpr double long_enough = 0.1;  // in a window of this part of the run
+constexpr double longest_periods[] = {20.0, 1e6};                            // looked for, by the length of the run
+constexpr double least_slew = M_PI / 18.0;  // a turn that is the whole of a motion [rad]
+constexpr double whole_period = 0.99;       // of a window
+constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts,
+constexpr double long_enough = 0.1;         // in a window of this part of the run
 
 /// One reason, if `value` passes a limit.
 void judge(double value, const Limits& limits, TrustReason reason, Verdict& verdict) {
@@ -275,9 +276,12 @@ void judge_largest_force(const RunRecord& record, Verdict& verdict) {
         verdict);
 }
 
-/// A steady turn of less than one revolution in the whole run, as of a crane that slews: nothing of it comes again.
+/// A steady turn of less than one revolution in the whole run, as of a crane that slews: nothing of it comes again. A
+/// turn of less than ten degrees is an instant of one that goes on.
 bool turns_in_part(const Model& model, const Driver& driver, double period) {
-  if (driver.kinematics >= 0 || driver.table || period <= model.settings.end - model.settings.start) return false;
+  const double turns = (model.settings.end - model.settings.start) / period;
+  if (driver.kinematics >= 0 || driver.table || turns >= 1.0) return false;
+  if (model.settings.discard > 0.0 || 2.0 * M_PI * turns < least_slew) return false;
   if (!prescribes(driver.kind) || model.joints[at(driver.joint)].layout.coordinate != Coordinate::angle) return false;
   const bool angle = driver.kind == DriverKind::angle;
   double first = 0.0;
@@ -320,7 +324,10 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   double longest = 0.0;
   const Driver* slowest = nullptr;
   for (const Driver& driver : record.model.drivers) {
-    const auto period = motion_period(record.model, driver, from, longest_period * (settings.end - settings.start));
+    std::optional<double> period;
+    for (const double longest_by_run : longest_periods) {
+      if (!period) period = motion_period(record.model, driver, from, longest_by_run * (settings.end - settings.start));
+    }
     if (period && *period > longest && !turns_in_part(record.model, driver, *period)) {
       longest = *period, slowest = &driver;
     }

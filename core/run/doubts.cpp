@@ -15,6 +15,9 @@
 
 namespace freeplay {
 namespace {
+constexpr double fewest_steps_in_period = 10.0;  // of a motion that carries energy
+constexpr double least_energy = 1e-6;            // by masses lifted by the model's size, or crossing it in the run
+
 // Whether the bodies of a joint hang together without it, so that others may hold what it should.
 bool in_a_loop(const Model& model, int without) {
   const std::size_t bodies = model.bodies.size();  // the last place is ground's
@@ -35,7 +38,7 @@ bool in_a_loop(const Model& model, int without) {
 }  // namespace
 
 RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
-    : run_(run), failure_(failure), recorder_(recorder), joint_warnings_(run.model.joints.size()) {
+    : run_(run), failure_(failure), recorder_(recorder), joint_warnings_(run.model.joints.size()), motion_(run.system) {
   std::size_t values = 0;
   for (int j = 0; j < static_cast<int>(run.model.joints.size()); ++j) {
     joint_warnings_[at(j)].values = values;
@@ -45,20 +48,44 @@ RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
 }
 
 void RunDoubts::save(ArchiveWriter& archive) const {
-  archive(warning_values_, torn_from_);
+  archive(warning_values_, torn_from_, motion_);
   for (const Warning& warning : joint_warnings_) {
     archive(warning.text != nullptr, std::string(warning.text != nullptr ? warning.text : ""), warning.time);
   }
 }
 
 void RunDoubts::restore(ArchiveReader& archive) {
-  archive(warning_values_, torn_from_);
+  archive(warning_values_, torn_from_, motion_);
   warning_texts_.resize(joint_warnings_.size());
   for (std::size_t j = 0; j < joint_warnings_.size(); ++j) {
     bool warned = false;
     archive(warned, warning_texts_[j], joint_warnings_[j].time);
     joint_warnings_[j].text = warned ? warning_texts_[j].c_str() : nullptr;
   }
+}
+
+void RunDoubts::note_motion() {
+  if (run_.adaptive) return;
+  motion_.add(run_.trial.t(), run_.trial.t() - run_.accepted.t(), run_.accepted.a(), run_.trial.a(), run_.trial.v());
+}
+
+void RunDoubts::note_fast_motion() {
+  const FastMotion::Fewest fewest = motion_.fewest();
+  const double time = run_.outcome.time - run_.settings.start, size = run_.system.size();
+  if (!(fewest.steps < fewest_steps_in_period) || !(time > 0.0)) return;
+  const double mass = whole_mass(run_.model).mass, speed = size / time;
+  const double gravity = std::hypot(run_.model.gravity[0], run_.model.gravity[1], run_.model.gravity[2]);
+  if (!(fewest.energy > least_energy * mass * (gravity * size + speed * speed))) return;
+  const std::string body = fmt::format("body '{}'", run_.model.bodies[at(fewest.body)].name);
+  run_.outcome.doubts.push_back(
+      {.id = "oscillation-steps",
+       .level = Trust::doubtful,
+       .message = fmt::format("{} moves to and fro with {:.2g} steps in a period, fewer than {:g}, which steps of one "
+                              "size follow with another frequency; ask for shorter steps, or for an accuracy",
+                              body, fewest.steps, fewest_steps_in_period),
+       .element = body,
+       .value = fewest.steps,
+       .limit = fewest_steps_in_period});
 }
 
 // False where the row shows that going on makes no sense.

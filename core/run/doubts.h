@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "run/fast_motion.h"
 #include "run/recorder.h"
 
 namespace freeplay {
@@ -17,12 +18,15 @@ class RunDoubts {
   void note_event_directions();
   /// Forces at the start, to which later ones are compared.
   void note_first_forces();
+  /// Of a step of one size that is about to be accepted: how fast what moves does so.
+  void note_motion();
   /// After an accepted step of the length dt: false, with the outcome, where going on makes no sense.
   bool watch_row(double dt);
   bool note_warnings();
   /// Once the run is over: warnings of joints, and play that was never used.
   void format_warnings();
   void note_unused_play();
+  void note_fast_motion();
 
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
@@ -44,6 +48,7 @@ class RunDoubts {
   std::vector<double> warning_values_;      // the joints' own channels when they warned
   /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
   std::optional<double> torn_from_;
+  FastMotion motion_;  // in steps of one size
 };
 
 }  // namespace freeplay
