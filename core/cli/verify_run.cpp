@@ -62,6 +62,7 @@ struct OtherRun {
   std::optional<Channels> channels;
   std::optional<RowMemory> rows;
   std::vector<Peak> peaks;
+  double energy = 0.0;  ///< that was moved [J]
   Outcome outcome;
 
   RunResult result() const { return {&rows->table(), peaks}; }
@@ -85,6 +86,7 @@ void run_to_end(OtherRun& other, long most_steps) {
   other.outcome = simulation.run(hooks);
   // Peaks of a run that went less far are no others'.
   if (other.outcome.exit_code == 0) other.peaks = peaks_of(*other.loaded.model, simulation.statistics());
+  other.energy = simulation.extremes().exchanged + simulation.extremes().kinetic.span();
 }
 
 /// The model with an integrator of the other kind than the run's.
@@ -127,6 +129,7 @@ std::vector<Peak> peaks_of(const Model& model, const Statistics& statistics) {
     const JointStatistics seen = statistics.joint(static_cast<int>(i));
     if (model.joints[i].gear >= 0) continue;
     peaks.push_back({fmt::format("joint {} max |F|", model.joints[i].name), seen.max_force});
+    peaks.push_back({fmt::format("joint {} rms |F|", model.joints[i].name), seen.rms_force});
     if (model.joints[i].has_play) {
       peaks.push_back({fmt::format("joint {} max delta", model.joints[i].name), seen.max_penetration});
     }
@@ -134,8 +137,15 @@ std::vector<Peak> peaks_of(const Model& model, const Statistics& statistics) {
   for (std::size_t i = 0; i < model.drivers.size(); ++i) {
     const Driver& driver = model.drivers[i];
     const bool slide = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::position;
-    peaks.push_back({fmt::format("driver {} max {}", driver.name, slide ? "|force|" : "|torque|"),
-                     statistics.driver(static_cast<int>(i)).max_abs});
+    const char* const effort = slide ? "|force|" : "|torque|";
+    const DriverStatistics seen = statistics.driver(static_cast<int>(i));
+    peaks.push_back({fmt::format("driver {} max {}", driver.name, effort), seen.max_abs});
+    peaks.push_back({fmt::format("driver {} rms {}", driver.name, effort), seen.rms});
+    peaks.push_back({fmt::format("driver {} work", driver.name), seen.work});
+  }
+  for (std::size_t i = 0; i < model.force_elements.size(); ++i) {
+    peaks.push_back({fmt::format("force {} work", force_words(model, static_cast<int>(i)).name),
+                     statistics.force(static_cast<int>(i)).work});
   }
   for (std::size_t i = 0; i < model.kinematics.size(); ++i) {
     peaks.push_back({fmt::format("path {} max error", model.kinematics[i].name),
@@ -171,6 +181,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   VerificationRules rules;
   rules.limit = std::max(least_agreement, both_errors * settings.accuracy);
   rules.size = run.system.size();
+  rules.energy = second.energy;
   rules.fixed = settings.accuracy == 0.0;
   for (const Body& body : model.bodies) add_positions(body, *second.channels, rules.positions);
   const RunResult first{&run.rows, peaks_of(model, run.statistics)};

@@ -32,7 +32,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
 /// Adds what the other runs say to the record of this one, and to its verdict.
 void add_verification(const Verification& verification, RunRecord& record);
 
-/// The largest values of the table that a run prints.
+/// Largest values, means and works of the table that a run prints.
 std::vector<Peak> peaks_of(const Model& model, const Statistics& statistics);
 
 }  // namespace freeplay

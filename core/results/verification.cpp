@@ -16,6 +16,7 @@ constexpr double chaotic = 30.0;   // limits, by which runs of one method part
 constexpr double same_peak = 0.1;  // of the larger one
 constexpr double negligible_peak = 1e-6;   // of the largest of the same kind
 constexpr double negligible_lever = 1e-5;  // of the model's size: a torque that its forces have by it is none
+constexpr double negligible_work = 1e-2;   // of the energy that was moved: what comes and goes leaves rounding
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 struct Moments {
@@ -75,8 +76,10 @@ double farthest_way(const ResultTable& table, const VerificationRules& rules) {
 /// The last word of a name.
 std::string_view kind_of(const PeakPair& peak) { return std::string_view(peak.name).substr(peak.name.rfind(' ') + 1); }
 
-/// Below, a peak is none: in terms of the largest of its kind, and a torque of that of all forces, too.
-double negligible(std::span<const PeakPair> peaks, const PeakPair& of, double size) {
+/// Below, a figure is none: in terms of the largest of its kind, and a torque of that of all forces, too.
+double negligible(std::span<const PeakPair> peaks, const PeakPair& of, const VerificationRules& rules) {
+  if (kind_of(of) == "work") return negligible_work * rules.energy;
+  const double size = rules.size;
   double alike = 0.0, force = 0.0;
   for (const PeakPair& peak : peaks) {
     const double larger = std::fmax(std::abs(peak.run), std::abs(peak.second));
@@ -87,14 +90,14 @@ double negligible(std::span<const PeakPair> peaks, const PeakPair& of, double si
   return kind_of(of) == "|torque|" ? std::fmax(limit, negligible_lever * size * force) : limit;
 }
 
-void compare_peaks(const RunResult& run, const RunResult& second, double size, Verification& out) {
+void compare_peaks(const RunResult& run, const RunResult& second, const VerificationRules& rules, Verification& out) {
   for (std::size_t i = 0; i < std::min(run.peaks.size(), second.peaks.size()); ++i) {
     out.peaks.push_back({run.peaks[i].name, run.peaks[i].value, second.peaks[i].value});
   }
   for (PeakPair& peak : out.peaks) {
     const double larger = std::fmax(std::abs(peak.run), std::abs(peak.second));
     const double off = std::abs(peak.run - peak.second);
-    peak.differs = off > same_peak * larger && off > negligible(out.peaks, peak, size);
+    peak.differs = off > same_peak * larger && off > negligible(out.peaks, peak, rules);
   }
 }
 
@@ -131,7 +134,7 @@ Verification compare_runs(const RunResult& run, const RunResult& second, const V
     channel.second_largest = other.maximum();
     out.channels.push_back(std::move(channel));
   }
-  compare_peaks(run, second, rules.size, out);
+  compare_peaks(run, second, rules, out);
   const bool good = agreeing == off.size() && std::ranges::none_of(out.peaks, &PeakPair::differs);
   out.agreement = good ? Agreement::agree : Agreement::err;
   return out;

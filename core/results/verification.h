@@ -17,7 +17,8 @@ struct ChannelError {
   double largest = 0.0, second_largest = 0.0;  ///< largest absolute values, likewise
 };
 
-/// A largest value of the table of a run, such as "joint B max |F|", in SI units; NaN where it has none.
+/// A figure of the table of a run, such as "joint B max |F|", "driver m rms |torque|" or "force f work", in SI units;
+/// NaN where it has none. Its last word says with which others it is compared.
 struct Peak {
   std::string name;
   double value = 0.0;
@@ -53,8 +54,9 @@ struct VerificationRules {
   std::vector<PositionChannel> positions;
   /// Difference of positions that counts as agreement in the first second, and in each second after it [m].
   double limit = 1e-6;
-  bool fixed = false;  ///< the first run takes fixed steps: nothing is promised of its error
-  double size = 0.0;   ///< of the model [m]; torques are compared with forces by it
+  bool fixed = false;   ///< the first run takes fixed steps: nothing is promised of its error
+  double size = 0.0;    ///< of the model [m]; torques are compared with forces by it
+  double energy = 0.0;  ///< that was moved in the second run [J]: a small part of it is no work
 };
 
 struct Verification {

@@ -111,6 +111,25 @@ TEST(Verification, PeaksDecideWherePositionsDoNot) {
 }
 
 // A parallelogram at constant speed: its driver holds the difference of torques that cancel.
+// A load on a driven mechanism moves nothing elsewhere. What comes and goes leaves no work, whatever is left of it.
+TEST(Verification, WorkCountsWhereItIsPartOfTheEnergyThatWasMoved) {
+  const ResultTable rows = moving(smooth_motion);
+  const auto with = [&](double work, double rms) {
+    return RunResult{&rows, {{"force press work", work}, {"driver d rms |force|", rms}}};
+  };
+  VerificationRules by = rules(1e-6);
+  by.energy = 1.0;
+  const RunResult sees = with(-0.5, 100.0), blind = with(0.0, 100.0), steadier = with(-0.5, 80.0);
+  for (const RunResult* other : {&blind, &steadier}) {
+    Verification v = compare_runs(*other, sees, by);
+    EXPECT_EQ(v.agreement, Agreement::err);
+    judge(v, *other, sees, sees, by);
+    EXPECT_EQ(v.agreement, Agreement::disagree);
+  }
+  by.energy = 100.0;
+  EXPECT_EQ(compare_runs(blind, sees, by).agreement, Agreement::agree);
+}
+
 TEST(Verification, ATorqueThatForcesHaveByNoLeverIsNone) {
   const ResultTable rows = moving(smooth_motion);
   const auto agree = [&](double force, double torque) {
