@@ -297,6 +297,23 @@ bool turns_in_part(const Model& model, const Driver& driver, double period) {
   return true;
 }
 
+struct SlowestDriver {
+  const Driver* driver = nullptr;
+  double period = 0.0;  ///< [s]
+};
+SlowestDriver slowest_driver(const Model& model, double from) {
+  SlowestDriver slowest;
+  const double run = model.settings.end - model.settings.start;
+  for (const Driver& driver : model.drivers) {
+    std::optional<double> period;
+    for (const double longest_by_run : longest_periods) {
+      if (!period) period = motion_period(model, driver, from, longest_by_run * run);
+    }
+    if (period && *period > slowest.period && !turns_in_part(model, driver, *period)) slowest = {&driver, *period};
+  }
+  return slowest;
+}
+
 void judge_window(const RunRecord& record, Verdict& verdict) {
   const Settings& settings = record.model.settings;
   const double from = settings.start + settings.discard, window = record.outcome.time - from;
@@ -321,17 +338,7 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
                  .limit = fewest});
     return;
   }
-  double longest = 0.0;
-  const Driver* slowest = nullptr;
-  for (const Driver& driver : record.model.drivers) {
-    std::optional<double> period;
-    for (const double longest_by_run : longest_periods) {
-      if (!period) period = motion_period(record.model, driver, from, longest_by_run * (settings.end - settings.start));
-    }
-    if (period && *period > longest && !turns_in_part(record.model, driver, *period)) {
-      longest = *period, slowest = &driver;
-    }
-  }
+  const auto [slowest, longest] = slowest_driver(record.model, from);
   if (slowest != nullptr) {
     if (window >= longest * whole_period) return;
     verdict.add({.id = "statistics-window",

@@ -230,23 +230,6 @@ simulation: {end: 10, accuracy: 1 mm, output: {frames: [jib/tip]}}
 """)
         self.assertEqual("good", self.trust["verdict"])
 
-    def test_an_instant_of_a_slow_drive_is_no_window(self):
-        crank = """freeplay: 1
-bodies: {crank: {mass: 1, inertia: 1e-3}}
-joints: {main: {type: revolute, between: [ground, crank]}}
-drivers: {motor: {joint: main, kind: %s, value: %s}}
-initial: {joints: {main: 0}}
-simulation: {end: %s, step: 10 us%s}
-"""
-        if_less = [("velocity", "1 rad/s", "1 ms", ", output: {discard: 0.9 ms}"), ("velocity", "1 rad/s", "1 ms", ""),
-                   ("velocity", "1 rad/s", "1 s", ", output: {discard: 0.5 s}"), ("angle", "0.5*sin(2*pi*t)", "1 ms", ""),
-                   ("velocity", "0.5*sin(0.1*t)", "1 ms", "")]
-        for case in if_less:
-            self.run_model(crank % case)
-            self.assertIn("statistics-window", self.ids(), case)
-        self.run_model(crank % ("velocity", "1 rad/s", "1 s", ""))
-        self.assertEqual("good", self.trust["verdict"])
-
     def test_a_balanced_rotor_without_load_is_not_bypassed(self):
         self.run_model("""freeplay: 1
 bodies: {rotor: {mass: 2, inertia: 3e-3}}
