@@ -1,6 +1,4 @@
 # The package `freeplay` in the folder python of the build: _core from here, the rest as it stands in core/python/freeplay.
-find_program(FREEPLAY_INTERPRETER python3 PATHS /usr/bin NO_DEFAULT_PATH)  # that of the packages first
-find_program(FREEPLAY_INTERPRETER python3 REQUIRED)
 execute_process(COMMAND ${FREEPLAY_INTERPRETER} -c "import sysconfig; print(sysconfig.get_path('include'), sysconfig.get_config_var('EXT_SUFFIX'), sep=';', end='')"
                 OUTPUT_VARIABLE interpreter COMMAND_ERROR_IS_FATAL ANY)
 list(GET interpreter 0 interpreter_include)
@@ -41,3 +39,10 @@ foreach(file IN LISTS python_files)
   get_filename_component(name ${file} NAME)
   file(CREATE_LINK ${file} ${python_package}/${name} SYMBOLIC)
 endforeach()
+
+# For Debian's interpreter, of which the extension fits one version.
+execute_process(COMMAND ${FREEPLAY_INTERPRETER} -c "import sys; a, b = sys.version_info[:2]; print(f'python3 (>= {a}.{b}), python3 (<< {a}.{b + 1})', end='')"
+                OUTPUT_VARIABLE python_depends COMMAND_ERROR_IS_FATAL ANY)
+set(python_folder lib/python3/dist-packages/freeplay)
+install(TARGETS freeplay_python LIBRARY DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL)
+install(FILES ${python_files} DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL)

@@ -1,0 +1,55 @@
+# What an installation holds besides the program and the package for authors: manual page, type of files. And
+# the Debian packages that `./dev package` writes.
+set(manual ${CMAKE_BINARY_DIR}/generated/freeplay.1)
+add_custom_command(OUTPUT ${manual} DEPENDS freeplay core/cli/package/manual.py VERBATIM
+                   COMMAND ${FREEPLAY_INTERPRETER} -B ${PROJECT_SOURCE_DIR}/core/cli/package/manual.py $<TARGET_FILE:freeplay> ${manual})
+add_custom_target(freeplay_manual ALL DEPENDS ${manual})
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES core/cli/package/freeplay.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+install(DIRECTORY mechanisms DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/freeplay/examples)
+
+# Archives are linked into the program and the extension: their terms go with them.
+file(READ LICENSE terms)
+foreach(package libsuitesparse-dev liblapack-dev libblas-dev libsundials-dev libhdf5-dev libmatio-dev libsz2 zlib1g-dev libyaml-cpp-dev libtinyxml2-dev
+                libexpat1-dev libmd-dev libjs-dygraphs musl-dev libcli11-dev nlohmann-json3-dev libeigen3-dev libboost-dev pybind11-dev)
+  set(source /usr/share/doc/${package}/copyright)
+  string(APPEND terms "\n\n---- Of ${package}, parts of which are linked in ----\n\n")
+  if(EXISTS ${source})
+    file(READ ${source} text)
+    string(APPEND terms "${text}")
+  else()
+    string(APPEND terms "As Debian's package of this name says.\n")
+  endif()
+endforeach()
+file(CONFIGURE OUTPUT generated/copyright CONTENT "@terms@" @ONLY)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_PACKAGE_NAME freeplay)
+set(CPACK_PACKAGE_CONTACT "The Freeplay authors <freeplay@localhost.invalid>")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME freeplay)
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "simulates mechanisms whose joints have clearance
+Rigid-body mechanisms in the plane and in space, from model files in YAML or URDF: impacts and friction in clearances, studies
+over parameters, pictures and reports. With headers for plugins and examples.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "python3-freeplay, g++, cmake, libeigen3-dev")
+install(FILES ${CMAKE_BINARY_DIR}/generated/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/freeplay)
+if(FREEPLAY_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-freeplay)
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "mechanisms whose joints have clearance, from Python
+Runs models of Freeplay with the numbers of its command line; results are numpy arrays.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${python_depends}, python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "freeplay, python3-matplotlib, python3-pandas, python3-xarray, python3-scipy")
+  install(FILES ${CMAKE_BINARY_DIR}/generated/copyright DESTINATION share/doc/python3-freeplay COMPONENT python EXCLUDE_FROM_ALL)
+endif()
+include(CPack)
