@@ -1,7 +1,6 @@
 """What there is: types, their descriptions, the schema of model files, and what this package was built from."""
 from __future__ import annotations
 
-import platform
 from typing import Any
 
 from . import _core
@@ -24,6 +23,8 @@ def schema(kind: str = "model") -> dict[str, Any]:
 
 def info() -> dict[str, Any]:
     """Versions, as `freeplay --version --json`, and those of Python and numpy."""
+    import platform
+
     import numpy
 
     return {"freeplay": _core.version, "schema": _core.schema, "plugin_abi": _core.plugin_abi, "compiler": _core.compiler,

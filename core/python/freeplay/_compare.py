@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import math
 import os
-import tempfile
 from typing import Iterable, Union
 
 from . import _core
@@ -22,6 +21,8 @@ def compare(a: Compared, b: Compared, *, tolerance: float = 1e-6, absolute: floa
     a, b: results or paths of some. tolerance: part of the largest |a| that may differ. absolute: what may differ besides.
     channels: patterns of what is compared. start, until: first and last time [s].
     """
+    import tempfile
+
     with tempfile.TemporaryDirectory() as folder:
         paths = [path_of(one, os.path.join(folder, name)) for one, name in ((a, "a"), (b, "b"))]
         found = _core.compare(paths[0], paths[1], float(tolerance), float(absolute), names_of(channels),

@@ -3,9 +3,8 @@ from __future__ import annotations
 
 import json
 import os
-from concurrent.futures import Executor, ThreadPoolExecutor
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
@@ -15,6 +14,9 @@ from ._model import OF_LOAD, OF_RUN, Model, require_known
 from ._result import Result
 from ._source import Quantity, Source, build_options, place_of, plain, quantity, renamed
 from ._table import Column, Table
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 Reducer = Union["tuple[Any, ...]", Mapping[str, Any]]
 Reduce = Union[Mapping[str, Reducer], Callable[[Result], Mapping[str, float]], None]
@@ -155,6 +157,8 @@ def by_function(model: Model, reduce: Callable[[Result], Mapping[str, float]], t
             for one in executor.map(called, [model] * count, [reduce] * count, [targets] * count, values):
                 take(one)
         else:
+            from concurrent.futures import ThreadPoolExecutor
+
             with ThreadPoolExecutor(workers) as pool:
                 for future in in_order(pool, model, targets, values):
                     try:
