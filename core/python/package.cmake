@@ -23,13 +23,29 @@ set_target_properties(freeplay_python PROPERTIES PREFIX "" SUFFIX ${extension_su
 target_include_directories(freeplay_python SYSTEM PRIVATE ${PYBIND11_INCLUDE} ${PYTHON_INCLUDE})
 target_compile_definitions(freeplay_python PRIVATE FREEPLAY_BUILD="${CMAKE_BUILD_TYPE}")
 target_compile_options(freeplay_python PRIVATE $<$<CONFIG:Release>:-O1>)
-target_link_libraries(freeplay_python PRIVATE freeplay_load freeplay_results freeplay_convert freeplay_drawing freeplay_analysis freeplay_study
+# HDF5 is loaded when it is needed; expat is there with the interpreter.
+find_library(HDF5_SHARED NAMES hdf5_serial hdf5 REQUIRED)
+get_filename_component(hdf5_library ${HDF5_SHARED} REALPATH)
+get_filename_component(hdf5_library ${hdf5_library} NAME)
+string(REGEX MATCH "^[a-z0-9_]+\\.so\\.[0-9]+" hdf5_library ${hdf5_library})
+string(REGEX REPLACE ".*\\.so\\.([0-9]+)$" "libhdf5-\\1-1" hdf5_package ${hdf5_library})
+set(outside_hdf5 ${CMAKE_BINARY_DIR}/generated/outside_hdf5.cpp)
+add_custom_command(OUTPUT ${outside_hdf5} DEPENDS freeplay_results core/python/outside_hdf5.py VERBATIM
+                   COMMAND ${FREEPLAY_INTERPRETER} -B ${PROJECT_SOURCE_DIR}/core/python/outside_hdf5.py $<TARGET_FILE:freeplay_results>
+                           ${hdf5_library} ${hdf5_package} ${CMAKE_SYSTEM_PROCESSOR} ${outside_hdf5})
+target_sources(freeplay_python PRIVATE ${outside_hdf5})
+set_source_files_properties(${outside_hdf5} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+find_library(EXPAT_SHARED NAMES libexpat.so expat REQUIRED)
+target_link_libraries(freeplay_python PRIVATE -Wl,--no-as-needed ${EXPAT_SHARED} -Wl,--as-needed freeplay_load freeplay_results
+                                              freeplay_convert freeplay_drawing freeplay_analysis freeplay_study
                                               freeplay_contract)
 freeplay_builtins(freeplay_python OFF)
-# It shows nothing but its entry, and binds what it is made of to itself: no other library of the interpreter gets between.
+# Places that the loader moves are kept packed. It shows nothing but its entry, and binds what it is made of to itself: no other
+# library of the interpreter gets between.
 # The rooms are compiled for programs, to which data of other libraries is as near as their own: that of the C++ library
 # comes with them.
 target_link_options(freeplay_python PRIVATE -Wl,--exclude-libs,ALL -Wl,-Bsymbolic -Wl,--gc-sections -static-libstdc++
+                                            -Wl,-z,pack-relative-relocs
                                             -Wl,--version-script=${PROJECT_SOURCE_DIR}/core/python/exported.map)
 
 # The files of the package are used where they stand: what is changed there is so at once.
@@ -43,6 +59,7 @@ endforeach()
 # For Debian's interpreter, of which the extension fits one version.
 execute_process(COMMAND ${FREEPLAY_INTERPRETER} -c "import sys; a, b = sys.version_info[:2]; print(f'python3 (>= {a}.{b}), python3 (<< {a}.{b + 1})', end='')"
                 OUTPUT_VARIABLE python_depends COMMAND_ERROR_IS_FATAL ANY)
+string(APPEND python_depends ", ${hdf5_package}")
 set(python_folder lib/python3/dist-packages/freeplay)
 install(TARGETS freeplay_python LIBRARY DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL)
 install(FILES ${python_files} DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL)

@@ -53,7 +53,7 @@ class Packages(unittest.TestCase):
             self.assertEqual(version, re.search(r"_([\d.]+)_", self.files[name].name)[1])
         if WITH_PYTHON:
             now, later = "%d.%d" % sys.version_info[:2], "%d.%d" % (sys.version_info[0], sys.version_info[1] + 1)
-            for word in ("python3 (>= %s)" % now, "python3 (<< %s)" % later, "python3-numpy"):
+            for word in ("python3 (>= %s)" % now, "python3 (<< %s)" % later, "python3-numpy", "libhdf5-"):
                 self.assertIn(word, self.fields("python3-freeplay")["Depends"])
             for word in ("python3-matplotlib", "python3-pandas", "python3-xarray", "python3-scipy"):
                 self.assertIn(word, self.fields("python3-freeplay")["Suggests"])

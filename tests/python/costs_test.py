@@ -2,6 +2,7 @@
 import ctypes
 import gc
 import os
+import pathlib
 import resource
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import unittest
 import freeplay
 from in_folder import ROOT, SLIDER, InFolder
 
+LARGEST = 9.2e6  # of _core without symbols
 FAILS = (ROOT / "mechanisms/pendulum.yaml").read_text().replace("pivot: {type: revolute", "pivot: {type: revolut")
 
 
@@ -42,6 +44,18 @@ class Costs(InFolder):
         numpy, both = processor_times("import numpy", "import numpy, freeplay")
         tell("import", f"{both - numpy:.0f} ms beside {numpy:.0f} ms of Python and numpy")
         self.assertLess(both - numpy, max(60, 0.25 * numpy))
+
+    def test_the_extension_is_small(self):
+        core = next(pathlib.Path(freeplay.__file__).parent.glob("_core*.so"))
+        subprocess.run(["strip", "-o", "stripped.so", core], check=True)
+        tell("_core", f"{os.stat('stripped.so').st_size / 1e6:.2f} MB")
+        self.assertLess(os.stat("stripped.so").st_size, LARGEST)
+
+    def test_hdf5_is_the_system_s_and_loaded_when_it_is_needed(self):
+        code = ("import freeplay; maps = lambda: 'libhdf5' in open('/proc/self/maps').read(); r = freeplay.run(%r, end='0.1 ms'); a = maps(); "
+                "r.save('x', format='hdf5'); print(a, maps(), len(freeplay.open('x').time) == len(r.time))" % SLIDER)
+        said = subprocess.run([sys.executable, "-W", "ignore", "-c", code], check=True, capture_output=True, text=True).stdout
+        self.assertEqual("False True True\n", said)
 
     def test_200_rounds_leave_nothing(self):
         model = freeplay.load(str(ROOT / "mechanisms/4-rrr.yaml"))
