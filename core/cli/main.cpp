@@ -14,6 +14,7 @@
 #include "base/caught_error.h"
 #include "base/version.h"
 #include "cli/commands.h"
+#include "cli/completion.h"
 #include "cli/failure.h"
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
@@ -36,6 +37,12 @@ int print_version(const CommonOptions& common) {
   return 0;
 }
 
+/// For shells, not for people: a word that no help shows.
+int print_completions(const CLI::App& program, const std::vector<std::string>& words) {
+  for (const std::string& word : completions(program, words)) print(word + "\n");
+  return 0;
+}
+
 int execute(int argc, char** argv, CommonOptions& common) {
   CLI::App program("Freeplay simulates mechanisms whose joints have clearance.", "freeplay");
   bool version = false;
@@ -49,6 +56,7 @@ int execute(int argc, char** argv, CommonOptions& common) {
     if (!named || name == first) commands.push_back(add(program, common));
   }
   // Words that the parser does not know are left to unknown_word(), which suggests what was meant.
+  if (first == "complete") return print_completions(program, {argv + 2, argv + argc});
   program.require_subcommand(0, 1)->allow_extras();
   for (const Command& command : commands) command.app->allow_extras();
   try {

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/completion.h"
 #include "cli/run_command.h"
 
 namespace freeplay {
@@ -8,5 +9,7 @@ std::span<const CommandEntry> all_commands() {
   static constexpr CommandEntry all[] = {{"run", add_run_command}};
   return all;
 }
+
+std::vector<std::string> completions(const CLI::App&, const std::vector<std::string>&) { return {}; }
 
 }  // namespace freeplay

@@ -17,7 +17,7 @@ COMMANDS = [
     "cd /tmp && cp -r %s try && cd try && freeplay run mechanisms/pendulum.yaml --report --quiet" % EXAMPLES,
     "cd /tmp/try && test -s results/pendulum/report.html && freeplay study plan mechanisms/studies/tolerance-bound.yaml",
     "cd /tmp/try && freeplay init new.yaml && freeplay validate new.yaml",
-    "cd / && python3 -c 'import freeplay; print(freeplay.__version__)'",
+    "cd / && freeplay complete run --integ | grep -x -e --integrator && python3 -c 'import freeplay; print(freeplay.__version__)'",
     "cd /tmp/try && python3 ../first.py",
 ]
 

@@ -12,7 +12,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["FREEPLAY_BUILD"])
 WITH_PYTHON = os.environ["FREEPLAY_PYTHON"] == "ON"
 CONTENTS = {"freeplay": ["bin/freeplay", "include/freeplay/plugin.h", "lib/cmake/Freeplay/FreeplayConfig.cmake", "share/man/man1/freeplay.1",
-                         "share/mime/packages/freeplay.xml",
+                         "share/bash-completion/completions/freeplay", "share/zsh/vendor-completions/_freeplay",
+                         "share/fish/vendor_completions.d/freeplay.fish", "share/mime/packages/freeplay.xml",
                          "share/doc/freeplay/copyright", "share/doc/freeplay/examples/mechanisms/pendulum.yaml"],
             "python3-freeplay": ["lib/python3/dist-packages/freeplay/" + name for name in ("__init__.py", "_core.pyi", "py.typed", "plot.py")]}
 

@@ -1,10 +1,13 @@
-# What an installation holds besides the program and the package for authors: manual page, type of files. And
+# What an installation holds besides the program and the package for authors: manual page, completion, type of files. And
 # the Debian packages that `./dev package` writes.
 set(manual ${CMAKE_BINARY_DIR}/generated/freeplay.1)
 add_custom_command(OUTPUT ${manual} DEPENDS freeplay core/cli/package/manual.py VERBATIM
                    COMMAND ${FREEPLAY_INTERPRETER} -B ${PROJECT_SOURCE_DIR}/core/cli/package/manual.py $<TARGET_FILE:freeplay> ${manual})
 add_custom_target(freeplay_manual ALL DEPENDS ${manual})
 install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES core/cli/package/freeplay.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME freeplay)
+install(FILES core/cli/package/freeplay.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _freeplay)
+install(FILES core/cli/package/freeplay.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES core/cli/package/freeplay.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
 install(DIRECTORY mechanisms DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/freeplay/examples)
 
