@@ -30,6 +30,7 @@ class KeptRows : public Sink {
 
   void row(std::span<const double> values) override;
   void event(const EventRecord& record) override { sink_.event(record); }
+  void open_contact(const EventRecord& record) override { sink_.open_contact(record); }
   bool ok() const override { return true; }
   /// Takes what still waits, when the run has ended.
   void finish() { sink_.finish(); }

@@ -44,6 +44,15 @@ class Runs(InFolder):
             self.assertEqual(theirs, ours)
             self.assertTrue(same_bits(freeplay.open(f"{folder}/results.h5").data, freeplay.open("c/results.csv").data))
 
+    def test_a_contact_that_is_on_at_the_end_is_an_event_in_memory_too(self):
+        result = freeplay.run(SLIDER, end="2 ms", out="written")
+        kinds = [line.split(",")[2] for line in pathlib.Path("written/events.csv").read_text().splitlines()[1:]]
+        self.assertEqual("contact_open", kinds[-1])
+        self.assertEqual(kinds, result.events["kind"].tolist())
+        result.save("saved")
+        self.assertEqual(pathlib.Path("written/events.csv").read_bytes(), pathlib.Path("saved/events.csv").read_bytes())
+        self.assertEqual(result.summary["hashes"], freeplay.run(SLIDER, end="2 ms").summary["hashes"])
+
     def test_numbers_in_memory_are_those_that_the_file_reads_back_to(self):
         command("run", SLIDER, "--end", "0.5 ms", "--quiet", "--out", "c")
         result, stored = freeplay.run(SLIDER, end=0.5e-3), freeplay.open("c")
