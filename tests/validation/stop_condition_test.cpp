@@ -18,7 +18,7 @@ std::string mass(const std::string& force, const std::string& stop, double accur
       force, accuracy, stop);
 }
 
-struct Case {
+struct StopCase {
   const char *force, *stop;
   double time;  ///< [s]; of the end of the run where it is not met
 };
@@ -26,7 +26,7 @@ struct Case {
 // With -1 N the mass turns round at 0.5 m after 1 s, on a parabola, for which any step will do; on a spring of 100 N/m
 // at 0.1 m, with 10 rad/s; then what is met is met for a few milliseconds in a step of tens.
 TEST(StopConditionInside, EndsTheRunAtTheInstant) {
-  const Case cases[] = {
+  const StopCase cases[] = {
       {"-1", "{channel: body.m.x, above: 0.4999}", 1.0 - std::sqrt(2e-4)},
       {"-1", "{channel: body.m.x, above: 0.49999999}", 1.0 - std::sqrt(2e-8)},
       {"-1", "{channel: body.m.x, above: 0.50001}", 2.0},
@@ -44,7 +44,7 @@ TEST(StopConditionInside, EndsTheRunAtTheInstant) {
   for (const char* integrator : {"dopri5", "verner7", "bathe"}) {
     BuildOptions options;
     options.integrator = integrator;
-    for (const Case& one : cases) {
+    for (const StopCase& one : cases) {
       const ModelRun run(mass(one.force, one.stop), options);
       EXPECT_EQ(run.outcome().exit_code, 0);
       EXPECT_EQ(run.outcome().status, one.time < 2.0 ? RunStatus::stopped : RunStatus::completed) << one.stop;
