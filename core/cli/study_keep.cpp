@@ -26,8 +26,9 @@ constexpr int code_of_unwritten = 6;         // exit code
 KeptResults::KeptResults(const StudyOptions& options, const CommonOptions& common, OpenStudy& study,
                          const StudyFolder& folder)
     : common_(common), study_(study), folder_(folder) {
-  if (options.keep.empty() || options.keep == "none") return;
+  if (options.keep.empty()) return;
   require_word("--keep", options.keep, {"none", "failed", "all"});
+  if (options.keep != "failed" && options.keep != "all") return;
   which_ = options.keep == "all" ? Which::all : Which::failed;
   const StudyPlan& plan = study.plan();
   if (plan.chained() || plan.section().analysis != nullptr) {

@@ -7,7 +7,7 @@
 
 namespace freeplay {
 
-/// "gap = 0.01 m, contact = hertz (K = 3.16e+09)": what was given and what has a default, in the order of the table,
+/// "gap = 0.01 m, contact = my-law (K = 3.16e+09)": what was given and what has a default, in the order of the table,
 /// SI.
 std::string words_of(const ParameterBlock& block);
 

@@ -20,8 +20,10 @@ std::string list_text(const Json& list, const char* open, const char* close) {
 
 std::string map_text(const Json& map) {
   std::string out;
-  for (const auto& [key, value] : map.items())
+  for (const auto& [key, value] : map.items()) {
+    if (value.is_object() && value.empty()) continue;
     out += fmt::format("{}{} {}", out.empty() ? "" : "  ", key, words(value));
+  }
   return out;
 }
 

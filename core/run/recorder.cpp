@@ -251,8 +251,7 @@ bool Recorder::see_ahead(double t, std::span<double> row) {
   if (inside && !inside_.look_inside(t)) return false;
   const State& state = inside ? run_.between : run_.trial;
   Fault fault;
-  return observer_.observe(state, inside ? run_.e_between : run_.e_trial, row, fault) ||
-         failure_.fail_with(fault, t);
+  return observer_.observe(state, inside ? run_.e_between : run_.e_trial, row, fault) || failure_.fail_with(fault, t);
 }
 
 // The row at t inside of the step that is being accepted. False when the run is over.

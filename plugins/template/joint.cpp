@@ -18,6 +18,7 @@ constexpr Channel channels[] = {{"stretch", "m"}};
 
 /// Force on the second body at its point b, its reaction on the first body at the same place:
 ///   F = -(stiffness d + damping d'),  d = b - a [m] in world axes.  Stored energy: stiffness |d|^2 / 2.
+/// d' is as the first body sees it: the rate in world axes would do work on a body that turns.
 class MyType final : public Joint {
  public:
   explicit MyType(const Parameters& p) : stiffness_(p.number("stiffness")), damping_(p.number("damping")) {}
@@ -35,6 +36,8 @@ class MyType final : public Joint {
     difference(in.b->position, in.a->position, d);
     double rate[2];
     difference(in.b->velocity, in.a->velocity, rate);
+    rate[0] += in.a->angular_velocity[2] * d[1];
+    rate[1] -= in.a->angular_velocity[2] * d[0];
     for (int i = 0; i < 2; ++i) {
       out.wrench_b[i] = -(stiffness_ * d[i] + damping_ * rate[i]);
       out.wrench_a[i] = -out.wrench_b[i];
@@ -64,7 +67,7 @@ FREEPLAY_PLUGIN(my_type) {
       joint<MyType>({.name = "my-type",
                      .space = Space::planar,
                      .summary = "Soft bushing between two points.",
-                     .formula = "F = -(stiffness d + damping d'), d: from the first point to the second.",
+                     .formula = "F = -(stiffness d + damping d'), d: from the first point to the second, in its body.",
                      .validity = "Planar models.",
                      .parameters = parameters}),
   };

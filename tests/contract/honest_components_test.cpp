@@ -53,7 +53,7 @@ TEST(RulesLong, EveryExaminedRuleIsExplained) {
           << component.description.name << " " << finding.rule;
     }
   }
-  EXPECT_TRUE(rule_meaning(ComponentKind::joint, "no-tension").empty());
+  EXPECT_TRUE(rule_meaning(ComponentKind::joint, "monotone").empty());
   EXPECT_TRUE(rule_meaning(ComponentKind::contact_law, "no-such-rule").empty());
 }
 

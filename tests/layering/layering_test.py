@@ -228,7 +228,8 @@ CORE_TYPES = {"gear", "force", "torque", "gravity", "planar"}
 
 # Names of components that are also plain words: they count only as a quoted word.
 def is_plain_word(name):
-    return name in {"fixed", "distance", "none", "constant", "linear", "spherical", "universal", "gear", "hard"}
+    return name in {"fixed", "distance", "none", "constant", "linear", "spherical", "universal", "gear", "hard",
+                    "expression"}
 
 
 class Names(unittest.TestCase):

@@ -14,8 +14,8 @@ constexpr Parameter parameters[] = {{.name = "stiffness", .unit = "N*m", .minimu
                                      .kind = ParameterKind::formula,
                                      .unit = "N*m",
                                      .default_value = optional,
-                                     .summary = "A further torque against the angle s.",
-                                     .variables = "s: rad"}};
+                                     .summary = "A further torque against the turn.",
+                                     .variables = "turn: rad"}};
 constexpr Channel channels[] = {{"spring_torque", "N*m"}};
 
 class WavySpring final : public Joint {
