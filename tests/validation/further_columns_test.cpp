@@ -87,8 +87,7 @@ TEST(FurtherColumns, AFormulaIsAColumnAndMayEndARun) {
     EXPECT_EQ(run.at(row, "output.power"), run.at(row, "driver.motor.power"));
     EXPECT_EQ(run.at(row, "output.pull"), 2.0 * run.at(row, "body.rod.ax"));
   }
-  const ModelRun stopped(
-      replaced(text, "simulation: {", "simulation: {stop: [{channel: output.power, above: 4 W}], "));
+  const ModelRun stopped(replaced(text, "simulation: {", "simulation: {stop: [{channel: output.power, above: 4 W}], "));
   EXPECT_EQ(stopped.outcome().status, RunStatus::stopped);
   EXPECT_GT(stopped.last("output.power"), 4.0);
 }
