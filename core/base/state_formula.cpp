@@ -126,8 +126,13 @@ double StateFormula::side_at_zero(int index, double rate) const {
 template <class Number>
 bool StateFormula::run(const Input& in, const Change& change, const Decided& decided, Number& out,
                        EvaluationFailure& failure) const noexcept {
-  return expression_.stack_depth_ <= shallow ? run_in<Number, shallow>(in, change, decided, out, failure)
-                                             : run_in<Number, deepest>(in, change, decided, out, failure);
+  const auto run_from = [&](const Input& from) {
+    return expression_.stack_depth_ <= shallow ? run_in<Number, shallow>(from, change, decided, out, failure)
+                                               : run_in<Number, deepest>(from, change, decided, out, failure);
+  };
+  if (run_from(in)) return true;
+  // A form need not have a value beyond its switch, as the root in sqrt(max(0, x)) has none; the formula itself may.
+  return in.sides != nullptr && decided.values == nullptr && run_from({in.t, in.variables, nullptr});
 }
 
 // What has no value is NaN, which all that is made of it is, too; so only the end need be looked at.

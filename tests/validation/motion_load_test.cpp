@@ -44,6 +44,7 @@ const Bump bumps[] = {{"exp(-({u})^2)", std::sqrt(M_PI)},
                       {"if(({u})^2 < 1, 1, 0)", 2.0},
                       {"max(0, 1 - ({u})^2)", 4.0 / 3.0},
                       {"max(0, 1 - abs({u}))", 1.0},
+                      {"sqrt(max(0, 1 - ({u})^2))", M_PI / 2.0},
                       {"if(abs({u}) < 4, max(0, cos({u})), 0)", 2.0}};
 
 std::string written(const Bump& bump, double height, double centre, double width, bool turns) {

@@ -95,6 +95,8 @@ TEST(StateFormula, KeepsTheSideThatItIsGiven) {
   EXPECT_EQ(value("max(body.a.x, 1 m)", {.x = 3.0, .sides = {-1.0}}), 1.0);
   EXPECT_EQ(value("if(body.a.x < 0, 1, 2)", {.x = 3.0, .sides = {1.0}}), 1.0);
   EXPECT_EQ(value("abs(body.a.x)", {.x = -2.0, .sides = {0.0}}), 2.0);
+  // Where the form of its side has no value the formula itself may have one.
+  EXPECT_EQ(value("sqrt(max(0 m, body.a.x))", {.x = -3.0, .sides = {1.0}}), 0.0);
 }
 
 // d/ds of 3 x |v| + sin(t x) where x' = 2, v' = -1, t' = 1.
