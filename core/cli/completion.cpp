@@ -211,7 +211,7 @@ std::vector<std::string> completions(const CLI::App& program, const std::vector<
   }
   std::erase_if(found, [&](const std::string& word) { return !word.starts_with(begun); });
   std::ranges::sort(found);
-  found.erase(std::ranges::unique(found).begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 
