@@ -24,7 +24,7 @@ constexpr double finest_step = 1e-6;   // beside a singular position that is pas
 constexpr double of_regularity = 0.3;  // a step by the regularity of the rows, which falls as the way to one does
 constexpr double independent = 1e-7;   // pivot by the largest: rows with less follow from the others
 constexpr double steady_step = 1e-3;   // a way of this length says where it leads, ...
-constexpr double told_step = 1e-5;     // ... and of this one how fast the mechanism moves
+constexpr double quick_step = 1e-5;    // ... and of this one how fast the mechanism moves
 constexpr double much_faster = 2.0;    // than in steady steps: at the end of a way speeds grow without bound
 constexpr double leaps[] = {0.01, 0.03, 0.1};               // over a singular position on the way
 constexpr double closed_range = 1e-5;                       // less is no range
@@ -84,7 +84,7 @@ class Way {
       lead_.value = before;
       return false;
     }
-    if (step < told_step * unit_) return true;
+    if (step < quick_step * unit_) return true;
     mechanism_.system.coordinates().difference(q, mechanism_.state.q(), ahead_);
     speed_ = largest(ahead_) / step;
     if (step < steady_step * unit_) return true;

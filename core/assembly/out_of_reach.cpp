@@ -157,7 +157,7 @@ class Reach {
     };
     constexpr int pieces = 12;
     for (int i = 1; i <= pieces; ++i) look(way * i / pieces);
-    // The gap may be narrow, and the mechanism close again behind it, where it cannot come to.
+    // The gap may be narrow, and the mechanism close again beyond it, where it cannot get.
     for (double out = 0.5 * way / pieces; out > locked * (comes_round ? 1.0 : way); out *= 0.5) look(out);
     const double close = best ? best->out : 0.0;
     for (double step = std::min(0.5 * way / pieces, 0.5 * close); best && step > 1e-3 * close; step *= 0.5) {

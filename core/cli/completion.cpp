@@ -207,7 +207,7 @@ std::vector<std::string> completions(const CLI::App& program, const std::vector<
   try {
     found = candidates(line_of(program, words), begun);
   } catch (const std::exception&) {
-    return {};  // what is wrong with the line is told when it is entered
+    return {};  // a wrong line is reported when it is entered
   }
   std::erase_if(found, [&](const std::string& word) { return !word.starts_with(begun); });
   std::ranges::sort(found);

@@ -108,7 +108,7 @@ void KeptResults::make(const ScheduleOptions& schedule, const Question& has_row,
               fmt::format("the result of a point cannot be kept: {}", printable(unwritten)));
 }
 
-std::string KeptResults::told() const {
+std::string KeptResults::message() const {
   if (which_ == Which::none) return {};
   std::string text = fmt::format("  kept       {} of {} in {}", there_, wanted_, (folder_.path() / "kept").string());
   if (fruitless_ > 0) text += fmt::format("; {} fail before there is a result", fruitless_);

@@ -27,7 +27,7 @@ class KeptResults {
   void make(const ScheduleOptions& schedule, const Question& has_row, const Question& failed, const PoolOptions& pool,
             const std::atomic<int>& interrupts);
   /// A line about what is kept, or nothing.
-  std::string told() const;
+  std::string message() const;
 
  private:
   enum class Which { none, failed, all };

@@ -253,7 +253,7 @@ void StudyRun::tell(bool whole) const {
     for (const auto& [point, error] : failures) text += fmt::format("  {:>4} {}", point, error);
     text += "\n";
   }
-  text += results_->told();
+  text += results_->message();
   if (whole) text += fmt::format("  table      {}\n", folder_.table().string());
   print(text);
 }

@@ -27,7 +27,7 @@ ImpactWalk::ImpactWalk(const JointProbe& probe, const JointMoment& start, const 
   const std::vector<double> g = probe_.events(now_).g;
   armed_late_.resize(g.size(), 0);
   for (std::size_t i = 0; i < g.size(); ++i) {
-    if (probe_.layout().events[i].crossing == Crossing::rising && g[i] > 0.0) tell(i, now_, now_);
+    if (probe_.layout().events[i].crossing == Crossing::rising && g[i] > 0.0) handle(i, now_, now_);
   }
   ahead_ = probe_.events(now_).g;
 }
@@ -116,7 +116,7 @@ double ImpactWalk::length_to_event(double dt) const {
   return high;
 }
 
-void ImpactWalk::tell(std::size_t event, const JointMoment& here, JointMoment& state) {
+void ImpactWalk::handle(std::size_t event, const JointMoment& here, JointMoment& state) {
   const ProbedEvents functions = probe_.events(here);
   const bool begins = probe_.layout().events[event].crossing == Crossing::rising;
   JointMoment there = here;
@@ -129,22 +129,22 @@ void ImpactWalk::tell(std::size_t event, const JointMoment& here, JointMoment& s
   const std::vector<double> fields = probe_.on_event(static_cast<int>(event), there);
   state.z = there.z;
   state.h = there.h;
-  told_.push_back({static_cast<int>(event), here.t, functions.g[event], functions.rate[event], fields});
+  handled_.push_back({static_cast<int>(event), here.t, functions.g[event], functions.rate[event], fields});
 }
 
 // What one event makes possible does not happen at the same instant.
-void ImpactWalk::tell_at_end(JointMoment& trial) {
+void ImpactWalk::handle_at_end(JointMoment& trial) {
   const std::vector<double> before = probe_.events(trial).g;
   for (std::size_t i = 0; i < std::min(before.size(), ahead_.size()); ++i) {
     if (std::isnan(ahead_[i]) || !is_past(i, before[i]) || (is_past(i, ahead_[i]) && armed_late_[i] == 0)) continue;
     const std::vector<double> now = probe_.events(trial).g;
-    if (i < now.size() && is_past(i, now[i])) tell(i, trial, trial);
+    if (i < now.size() && is_past(i, now[i])) handle(i, trial, trial);
   }
   const std::vector<double> after = probe_.events(trial).g;
   for (std::size_t i = 0; i < after.size(); ++i) armed_late_[i] = std::isnan(before[i]) && is_past(i, after[i]) ? 1 : 0;
 }
 
-void ImpactWalk::tell_inside(JointMoment& trial) {
+void ImpactWalk::handle_inside(JointMoment& trial) {
   std::vector<char> handled(ahead_.size(), 0);
   for (int round = 0; round < most_in_a_step; ++round) {
     JointMoment before = now_;
@@ -172,7 +172,7 @@ void ImpactWalk::tell_inside(JointMoment& trial) {
     }
     there.t = now_.t + time;
     there.markers = with_twists(moved(now_.markers, by), twist);
-    tell(next, there, trial);
+    handle(next, there, trial);
   }
 }
 
@@ -182,9 +182,9 @@ bool ImpactWalk::step(double dt) {
   JointMoment trial = attempt(dt);
   if (located && passes(trial)) trial = attempt(length_to_event(dt));
   if (located) {
-    tell_at_end(trial);
+    handle_at_end(trial);
   } else {
-    tell_inside(trial);
+    handle_inside(trial);
   }
   probe_.commit(trial);
   now_ = trial;

@@ -17,8 +17,8 @@ struct FreeBody {
 
 class ImpactWalk {
  public:
-  struct Told {
-    int event;
+  struct Handled {
+    int index;
     double t, value, rate;  ///< of the event function there
     std::vector<double> fields;
   };
@@ -33,8 +33,8 @@ class ImpactWalk {
   bool step(double dt);
 
   const JointMoment& now() const { return now_; }
-  const std::vector<Told>& told() const { return told_; }
-  bool storms() const { return told_.size() > most_events; }
+  const std::vector<Handled>& handled() const { return handled_; }
+  bool storms() const { return handled_.size() > most_events; }
   /// Of motion and stored [J].
   double energy() const;
   /// On a and b; empty when the joint fails.
@@ -46,12 +46,12 @@ class ImpactWalk {
   Eigen::VectorXd pushed(const JointMoment& at) const;
   JointMoment attempt(double dt) const;
   bool is_past(std::size_t event, double g) const;
-  /// Does an event that was ahead at the start of the step lie behind at its end?
+  /// Does an event that was ahead at the start of the step lie past its zero at its end?
   bool passes(const JointMoment& end) const;
   double length_to_event(double dt) const;
-  void tell(std::size_t event, const JointMoment& here, JointMoment& state);
-  void tell_at_end(JointMoment& trial);
-  void tell_inside(JointMoment& trial);
+  void handle(std::size_t event, const JointMoment& here, JointMoment& state);
+  void handle_at_end(JointMoment& trial);
+  void handle_inside(JointMoment& trial);
 
   const JointProbe& probe_;
   FreeBody body_;
@@ -61,7 +61,7 @@ class ImpactWalk {
   JointMoment now_;
   std::vector<double> ahead_;     ///< event functions at the start of the step
   std::vector<char> armed_late_;  ///< by another event, when they were past their zero
-  std::vector<Told> told_;
+  std::vector<Handled> handled_;
 };
 
 }  // namespace freeplay

@@ -1,4 +1,4 @@
-// Rules of contacts, one at a time, where they begin: forces before and after their events, and what is told of them.
+// Rules of contacts, one at a time, where they begin: forces before and after their events, and what events report.
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -68,17 +68,17 @@ class ContactCheck {
     moment.per_contact = per_contact;
     return moment;
   }
-  void tell(int event, JointMoment& moment) const {
+  void handle(int event, JointMoment& moment) const {
     moment.mobility = mobility_.data();
     if (probe_.layout().wants_whole_mobility != 0) moment.whole_mobility = whole_.data();
     probe_.on_event(event, moment);
     moment.mobility = moment.whole_mobility = nullptr;
   }
-  /// A contact whose begin was told at its zero with the rate `approach`, and that has come to `depth` since.
+  /// A contact that began at its zero with the rate `approach`, and that has come to `depth` since.
   JointMoment on(double depth, double rate) const {
     JointMoment moment = apart(depth_);
     moment.markers = markers(1e-9 * depth_, approach);
-    tell(pose_.begin, moment);
+    handle(pose_.begin, moment);
     moment.markers = markers(depth, rate);
     return moment;
   }
@@ -86,7 +86,7 @@ class ContactCheck {
   void check_force_of_contact() {
     const JointMoment there = on(depth_, approach);
     expect("contact-acts", push_ > 0.0, there,
-           [&] { return fmt::format("told of its begin and {:.3g} m deep it pushes with {:.6g} N", depth_, push_); });
+           [&] { return fmt::format("after its begin event, {:.3g} m deep, it pushes with {:.6g} N", depth_, push_); });
   }
 
   // An attempt that passes the event is thrown away; what it feels until then must be smooth.
@@ -96,18 +96,18 @@ class ContactCheck {
     past.markers = markers(depth_, approach);
     const double after = size(forces(past));
     expect("located", after <= before + 1e-2 * std::abs(push_), past, [&] {
-      return fmt::format("{:.3g} m past an event that was not told yet the force is {:.6g} N, where per_contact = 20",
+      return fmt::format("{:.3g} m past an event that is not handled yet the force is {:.6g} N, where per_contact = 20",
                          depth_, after);
     });
     const ProbedEvents events = probe_.events(past);
     const auto i = static_cast<std::size_t>(pose_.begin);
     expect("located", i < events.g.size() && events.g[i] > 0.0, past, [&] {
-      return fmt::format("its function is {:.6g} when the contact is {:.3g} m deep and was not told yet",
+      return fmt::format("its function is {:.6g} when the contact is {:.3g} m deep and its event not handled yet",
                          i < events.g.size() ? events.g[i] : 0.0, depth_);
     });
   }
 
-  // In steps of one size a contact begins inside of a step, which integrates its force before the event is told.
+  // In steps of one size a contact begins inside of a step, which integrates its force before the event is handled.
   void check_force_of_prediction() {
     JointMoment before = apart(depth_);
     before.per_contact = 0.0;
@@ -181,27 +181,28 @@ class ContactCheck {
     if (probe_.layout().wants_whole_mobility != 0) moment.whole_mobility = whole_.data();
     const std::vector<double> fields = probe_.on_event(pose_.begin, moment);
     if (fields.empty()) return;
-    const double told = fields[static_cast<std::size_t>(speed)];
-    expect("event-fields", std::isnan(told) || std::abs(told - approach) <= 1e-6 * approach, moment, [&] {
-      return fmt::format("its begin tells the speed {:.9g} m/s where its function grows at {:.9g} m/s", told, approach);
+    const double reported = fields[static_cast<std::size_t>(speed)];
+    expect("event-fields", std::isnan(reported) || std::abs(reported - approach) <= 1e-6 * approach, moment, [&] {
+      return fmt::format("its begin reports the speed {:.9g} m/s where its function grows at {:.9g} m/s", reported,
+                         approach);
     });
   }
 
-  // What is told of one contact changes no other.
+  // An event of one contact changes no other.
   void check_others() {
     const JointMoment alone = on(depth_, approach);
     for (std::size_t i = 0; i < probe_.layout().events.size; ++i) {
       const auto event = static_cast<int>(i);
       if (event == pose_.begin || event == pose_.end || event_role(probe_.layout(), i) == EventRole::none) continue;
-      JointMoment told = alone;
-      tell(event, told);
-      // The other one is apart here, whatever it was told.
-      const std::vector<double> before = forces(alone), after = forces(told);
+      JointMoment handled = alone;
+      handle(event, handled);
+      // The other one is apart here, whatever event was handled.
+      const std::vector<double> before = forces(alone), after = forces(handled);
       double off = 0.0;
       for (std::size_t k = 0; k < std::min(before.size(), after.size()); ++k)
         off = std::max(off, std::abs(after[k] - before[k]));
       expect("contacts-apart", off <= 1e-9 * size(before), alone, [&] {
-        return fmt::format("its force of {:.6g} N changes by {:.6g} N when '{}' is told", size(before), off,
+        return fmt::format("its force of {:.6g} N changes by {:.6g} N when '{}' is handled", size(before), off,
                            probe_.layout().events[i].name);
       });
     }
@@ -245,8 +246,13 @@ class ContactCheck {
       power += f.wrench[i] * v[i];
       terms += std::abs(f.wrench[i] * v[i]);
     }
-    // A bearing in space whose journal tilts by 0.3 rad is off by 0.3 %.
-    const double least = 0.01 * std::max(std::abs(lost), std::abs(power + f.potential_rate)) + 1e-6 * terms;
+    // The speed of the surfaces and that of the point of action differ by a penetration times an angular velocity.
+    double force = 0.0, turning = 0.0;
+    for (const std::size_t i : {0u, 1u, 2u}) {
+      force += std::abs(f.wrench[6 + i]);
+      turning += std::abs(v[3 + i]) + std::abs(v[9 + i]);
+    }
+    const double least = force * std::max(depth, 0.0) * turning + 1e-6 * terms;
     if (!std::isnan(f.potential_rate))
       expect("contact-numbers", std::abs(lost + power + f.potential_rate) <= least, moment, [&] {
         return fmt::format("contacts() loses {:.9g} W and the forces {:.9g} W", lost, -power - f.potential_rate);
@@ -326,7 +332,7 @@ class WayCheck {
     const std::vector<double> here = wrench(low), beyond = wrench(high);
     const double jump = apart(here, beyond), size = std::max({size_of(here), size_of(beyond), least_});
     findings.expect("force-jump", jump <= 1e-3 * size, [&] {
-      return fmt::format("{}: at rest, with all contacts told, the force jumps by {:.6g} N of {:.6g} N, {}",
+      return fmt::format("{}: at rest, with all contacts begun, the force jumps by {:.6g} N of {:.6g} N, {}",
                          contact_word(probe_, pose), jump, size, words_of(at(high)));
     });
   }

@@ -106,7 +106,7 @@ std::vector<JointMoment> moments_of(const JointProbe& probe, RandomNumbers& rand
   return moments;
 }
 
-/// Moments about the beginning of each contact, in flight and after its begin was told, in runs of both kinds.
+/// Moments about the beginning of each contact, in flight and after its begin event, in runs of both kinds.
 void add_contacts(const JointProbe& probe, const std::vector<ContactPose>& poses, RandomNumbers& random,
                   std::vector<JointMoment>& moments) {
   for (const ContactPose& pose : poses) {

@@ -88,7 +88,7 @@ class ImpactCheck {
     deep.markers = with_twists(pose_.at(depth_), {});
     const ProbedForces f = probe_.forces(deep);
     const double stored = f.potential > 0.0 ? f.potential : 0.4 * depth_ * pose_.push(f.wrench);
-    if (!(stored > 0.0)) return false;  // contact-acts tells
+    if (!(stored > 0.0)) return false;  // contact-acts reports it
     double inverse = 0.0;               // of the mass at the contact, for a body of 1 kg
     for (std::size_t i = 0; i < 6; ++i) {
       inverse += pose_.by_twist[i] * pose_.by_twist[i] / (i < 3 ? 1.0 : radius_ * radius_);
@@ -105,17 +105,17 @@ class ImpactCheck {
     result.energy = result.most_energy = walk.energy();
     std::size_t known = 0;
     const auto note_events = [&] {
-      for (; known < walk.told().size(); ++known) {
-        const ImpactWalk::Told& told = walk.told()[known];
-        if (told.event == pose_.begin) {
+      for (; known < walk.handled().size(); ++known) {
+        const ImpactWalk::Handled& event = walk.handled()[known];
+        if (event.index == pose_.begin) {
           ++result.begins;
-          result.begin_time = told.t;
+          result.begin_time = event.t;
           result.limit = probe_.step_limit(walk.now());
-        } else if (told.event == pose_.end) {
+        } else if (event.index == pose_.end) {
           ++result.ends;
-          result.end_time = told.t;
-          result.end_rate = told.rate;
-          result.end_fields = told.fields;
+          result.end_time = event.t;
+          result.end_rate = event.rate;
+          result.end_fields = event.fields;
         }
       }
     };
@@ -156,7 +156,7 @@ class ImpactCheck {
     if (!i.sound || i.deepest >= 20.0 * depth_) return;
     const bool left = depth_of(i.last) < 0.0;
     expect("impact-events", i.begins == 1 && (pose_.end < 0 || i.ends == (left ? 1 : 0)), i.last, [&] {
-      return fmt::format("an impact of {:.3g} m/s tells {} begins and {} ends {}", speed, i.begins, i.ends, how);
+      return fmt::format("an impact of {:.3g} m/s reports {} begins and {} ends {}", speed, i.begins, i.ends, how);
     });
     if (i.begins == 1 && i.ends == 1) judge_fields(i, steps);
   }
@@ -168,13 +168,14 @@ class ImpactCheck {
       return at < 0 || i.end_fields.empty() ? std::numeric_limits<double>::quiet_NaN()
                                             : i.end_fields[static_cast<std::size_t>(at)];
     };
-    const double lasted = i.end_time - i.begin_time, told = field("duration"), force = field("max_fn");
-    expect("event-fields", std::isnan(told) || std::abs(told - lasted) <= 0.05 * lasted, i.last,
-           [&] { return fmt::format("its end tells the duration {:.6g} s of an impact of {:.6g} s", told, lasted); });
+    const double lasted = i.end_time - i.begin_time, reported = field("duration"), force = field("max_fn");
+    expect("event-fields", std::isnan(reported) || std::abs(reported - lasted) <= 0.05 * lasted, i.last, [&] {
+      return fmt::format("its end reports the duration {:.6g} s of an impact of {:.6g} s", reported, lasted);
+    });
     if (steps > 0.0)
       expect("event-fields", std::isnan(force) || std::abs(force - i.largest_push) <= 0.2 * i.largest_push, i.last,
              [&] {
-               return fmt::format("its end tells the largest force {:.6g} N where {:.6g} N were the most", force,
+               return fmt::format("its end reports the largest force {:.6g} N where {:.6g} N were the most", force,
                                   i.largest_push);
              });
   }

@@ -13,7 +13,7 @@ void JointWalk::step(const MarkerPair& next, const Twelve& acceleration, double 
   trial.t += dt;
   trial.markers = next;
   advance_internal(probe_, trial, dt);
-  tell_events(trial);
+  handle_events(trial);
   probe_.commit(trial);
   if (probe_.layout().coordinate != Coordinate::none) trial.coordinate = probe_.coordinate(trial).value;
   now_ = trial;
@@ -42,7 +42,7 @@ void advance_internal(const JointProbe& probe, JointMoment& trial, double dt) {
   for (Eigen::Index k = 0; k < n; ++k) trial.z[static_cast<std::size_t>(k)] += change[k];
 }
 
-void JointWalk::tell_events(JointMoment& trial) const {
+void JointWalk::handle_events(JointMoment& trial) const {
   const Span<const Event> events = probe_.layout().events;
   // An event may arm another: each is passed on once in a step, in the order of the table.
   for (std::size_t i = 0; i < events.size; ++i) {

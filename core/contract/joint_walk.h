@@ -18,7 +18,7 @@ class JointWalk {
   const JointMoment& now() const { return now_; }
 
  private:
-  void tell_events(JointMoment& trial) const;
+  void handle_events(JointMoment& trial) const;
 
   const JointProbe& probe_;
   JointMoment now_;

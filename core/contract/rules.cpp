@@ -118,16 +118,16 @@ constexpr Rule rules[] = {
      "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it answers later."},
     // Contacts of joints, where an event begins one.
     {"contact-acts", joints,
-     "A contact whose begin was told pushes as soon as it is deep, and stops a body that it can stop. Look for a "
+     "After its begin event a contact pushes as soon as it is deep, and stops a body that it can stop. Look for a "
      "contact "
-     "that no force belongs to, and for events that are told for another one."},
+     "that no force belongs to, and for events that belong to another one."},
     {"located", joints,
      "Where `per_contact` is not zero, steps end at events, and history alone says who touches: a contact in flight "
      "gives "
-     "no force past its event, and its function stays past zero until the event is told."},
+     "no force past its event, and its function stays past zero until the event is handled."},
     {"prediction", joints,
      "In steps of one size a contact begins inside of a step. Its force there is that which it has after its event: "
-     "begin_step() foresees the approach speed, or the force takes the present rate for it."},
+     "begin_step() predicts the approach speed, or the force takes the present rate for it."},
     {"force-jump", joints,
      "The elastic force of a contact starts from zero, and no force jumps with the place while contacts go on. Look "
      "for "
@@ -136,7 +136,7 @@ constexpr Rule rules[] = {
     {"starts-in-contact", joints,
      "A contact that is on when a run starts pushes, and has no approach speed to divide by: it is elastic until it "
      "has "
-     "ended. Look at what initialize() leaves and what the begin event, which is told then, makes of it."},
+     "ended. Look at what initialize() leaves and what the begin event, which is handled then, makes of it."},
     {"event-fields", joints,
      "`speed` of a begin is the rate of its event function; `duration` and `max_fn` of an end are those of this "
      "contact."},
@@ -153,7 +153,7 @@ constexpr Rule rules[] = {
      "An impact loses the same where steps end at its events and where they do not. Look at the approach speed of "
      "each."},
     {"impact-events", joints,
-     "An impact tells one begin and, when the body has left, one end. Look for functions that are NaN when they must "
+     "An impact has one begin and, when the body has left, one end. Look for functions that are NaN when they must "
      "be "
      "numbers."},
     {"impact-steps", joints,

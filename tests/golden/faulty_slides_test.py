@@ -9,7 +9,7 @@ LIBRARY = os.path.join(BUILD, "plugins", "tests", "faulty_slides.so")
 
 
 class FaultySlides(ProgramTest):
-    def test_every_fault_is_told_with_parameters_and_state(self):
+    def test_every_fault_is_reported_with_parameters_and_state(self):
         report = json.loads(self.freeplay("check-plugin", LIBRARY, "--json", code=5)[0])
         slides = {kind["name"]: kind for kind in report["types"]}
         self.assertEqual(32, len(slides))

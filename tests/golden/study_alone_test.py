@@ -100,11 +100,11 @@ class StudyAlone(ProgramTest):
         self.assertIn("tired", reasons[0])
         self.assertNotIn(self.folder, reasons[0])
 
-    def test_a_plugin_that_ends_the_program_costs_one_point_and_is_told(self):
+    def test_a_plugin_that_ends_the_program_costs_one_point_and_is_reported(self):
         shutil.copy(probe("exits"), self.path("mine.so"))
         self.write("ending.yaml", ENDING)
-        told = json.loads(self.study("run", "ending.yaml", "--out", "r", "--allow-plugins", "--json", code=4)[0])
-        self.assertEqual(3, told["ran"])  # not tried again
+        answer = json.loads(self.study("run", "ending.yaml", "--out", "r", "--allow-plugins", "--json", code=4)[0])
+        self.assertEqual(3, answer["ran"])  # not tried again
         self.assertEqual([("0", ""), ("5", "crash-exit"), ("0", "")], [(row["exit_code"], row["error"]) for row in self.rows("r")])
         self.assertIn("code of a plugin ended its process", self.read("r", "failures.jsonl"))
 

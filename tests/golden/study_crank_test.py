@@ -124,9 +124,9 @@ class StudyOfTheCrank(ProgramTest):
   axes: {simulation.output.discard: {linspace: [0.3 ms, 3.9 ms, 41]}}
   reducers:
     fn: {channel: joint.wrist.fn, reduce: max}
-    told: {summary: joints.wrist.max_fn}
+    reported: {summary: joints.wrist.max_fn}
     depth: {channel: joint.wrist.delta, reduce: max}
-    told_depth: {summary: joints.wrist.max_delta}
+    reported_depth: {summary: joints.wrist.max_delta}
     play: {joint: wrist, set: clearance}
     hits: {events: wrist, reduce: count}
 """
@@ -134,7 +134,7 @@ class StudyOfTheCrank(ProgramTest):
         self.run_study("w", file="window.yaml", code=0)
         rows = list(csv.DictReader(self.read("w", "study.csv").splitlines()))
         for row in rows:
-            self.assertEqual((row["told"], row["told_depth"], row["play.wrist.contacts"]), (row["fn"], row["depth"], row["hits"]), row)
+            self.assertEqual((row["reported"], row["reported_depth"], row["play.wrist.contacts"]), (row["fn"], row["depth"], row["hits"]), row)
         self.assertLess(5, len({row["fn"] for row in rows}))
 
     def test_verify_finds_a_forged_row(self):

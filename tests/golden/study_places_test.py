@@ -119,7 +119,7 @@ class StudyPlaces(ProgramTest):
         self.assertIn("joint 'crankpin' has no events: nothing in it touches", err)
         self.assertIn("there is no joint 'wirst'", err)
 
-    def test_mistakes_of_axes_and_reducers_are_told_at_once(self):
+    def test_mistakes_of_axes_and_reducers_are_reported_at_once(self):
         self.write("ball.yaml", BALL + "study:\n  axes: {gg: [1, 2]}\n  reducers: {y: {channel: body.bal.y, reduce: final}}\n")
         _, err = self.study("plan", "ball.yaml", code=3)
         for word in ("did you mean 'g'?", "did you mean 'body.ball.y'?"):
@@ -129,7 +129,7 @@ class StudyPlaces(ProgramTest):
         for word in ("did you mean 'axes'?", "did you mean 'final'?"):
             self.assertIn(word, err)
 
-    def test_an_axis_that_changes_nothing_is_told(self):
+    def test_an_axis_that_changes_nothing_is_reported(self):
         warning = "'%s' changes nothing: the model is the same at all its values"
         with open(mechanism("slider-crank"), encoding="utf-8") as file:
             self.write("crank.yaml", file.read() + "study:\n  axes: {c: [0.1 mm, 0.2 mm], speed: [500 rpm, 600 rpm]}\n"

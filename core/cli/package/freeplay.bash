@@ -5,7 +5,7 @@ _freeplay() {
   [[ ${COMP_LINE:COMP_POINT-1:1} != ' ' ]] || words+=('')
   word=${words[-1]}
   mapfile -t COMPREPLY < <("${words[0]/#\~\//$HOME/}" complete "${words[@]:1}" 2>/dev/null)
-  # bash puts what is found in place of the part behind the last '=' or ':'.
+  # bash puts what is found in place of the part after the last '=' or ':'.
   at=${word%"${word##*[=:]}"}
   COMPREPLY=("${COMPREPLY[@]#"$at"}")
   [[ ${COMPREPLY[0]} != *[/=] ]] || compopt -o nospace

@@ -59,7 +59,7 @@ def list_of(pairs):
 
 
 def commands_of(program, words=()):
-    """Each command with its parts, those within it behind it."""
+    """Each command with its parts, each followed by those within it."""
     parts = parts_of(help_of(program, *words))
     yield words, parts
     for word, _ in parts[2].get("Subcommands", ()):

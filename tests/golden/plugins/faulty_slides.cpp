@@ -175,7 +175,7 @@ class Slide : public Joint {
       if (is(end_begins_again) && now != flight) g[2 * i + 1] = at.rate;
     }
   }
-  void on_event(int index, const JointInput& in, Span<double>, Span<double> history, Span<double> told) const override {
+  void on_event(int index, const JointInput& in, Span<double>, Span<double> history, Span<double> out) const override {
     const auto i = static_cast<std::size_t>(index / 2);
     const PlanarMotion<double> m = PlanarPair(in).numbers();
     const Place<double> at = corner(m, i);
@@ -183,7 +183,7 @@ class Slide : public Joint {
     if (index % 2 == 0) {
       const bool known = own[phase] == from_start;
       own[phase] = contact;
-      told[0] = at.rate;
+      out[0] = at.rate;
       if (known) return;
       own[speed] = in.per_contact == 0.0 && own[predicted] > 0.0 ? own[predicted] : std::max(at.rate, least_speed);
       if (is(speed_of_a_prediction_alone)) own[speed] = std::max(own[predicted], least_speed);
@@ -193,9 +193,9 @@ class Slide : public Joint {
       if (!is(largest_force_of_all_time)) own[largest_force] = 0.0;
       own[impact_time] = duration(in, at, own[speed], i);
     } else {
-      told[0] = std::max(-at.rate, 0.0);
-      told[1] = in.t - own[begin_time];
-      told[2] = own[largest_force];
+      out[0] = std::max(-at.rate, 0.0);
+      out[1] = in.t - own[begin_time];
+      out[2] = own[largest_force];
       const double kept = own[largest_force];
       const Span<double> ended = history.part((is(ends_another_corner) ? (i + 1) % corners : i) * slots, slots);
       std::fill(ended.begin(), ended.end(), 0.0);
