@@ -113,7 +113,7 @@ class WarmStart {
     if (model_.space == Space::spatial) {
       for (const Turn& turn : wanted) move_count(turn.joint, turn.turns);
     } else {
-      turn_bodies(std::move(wanted));
+      turn_bodies(wanted);
     }
     evaluate(term_position);
     for (int j = 0; j < joints(); ++j) {

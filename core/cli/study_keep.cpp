@@ -79,11 +79,11 @@ StudyOutcome KeptResults::run(const StudyPoint& point) const {
 }
 
 void KeptResults::make(const ScheduleOptions& schedule, const Question& has_row, const Question& failed,
-                       const PoolOptions& options, const std::atomic<int>& interrupts) {
+                       const PoolOptions& pool_options, const std::atomic<int>& interrupts) {
   if (which_ == Which::none) return;
   const std::vector<std::uint64_t> points = lacking(schedule, has_row, failed);
   study_.work().do_instead([this](const StudyPoint& point) { return run(point); });
-  WorkerPool pool(study_.work(), options);
+  WorkerPool pool(study_.work(), pool_options);
   StudyProgress progress(points.size(), stderr_is_terminal() && !common_.quiet);
   std::size_t given = 0, ended = 0;
   std::string unwritten;

@@ -24,8 +24,8 @@ class KeptResults {
   using Question = std::function<bool(std::uint64_t point)>;
   /// Of the points of `schedule` that have a row; those that failed alone, if these are to be kept. Ends early where
   /// `interrupts` is not 0. Throws Error{file} "cannot-write".
-  void make(const ScheduleOptions& schedule, const Question& has_row, const Question& failed, const PoolOptions& pool,
-            const std::atomic<int>& interrupts);
+  void make(const ScheduleOptions& schedule, const Question& has_row, const Question& failed,
+            const PoolOptions& pool_options, const std::atomic<int>& interrupts);
   /// A line about what is kept, or nothing.
   std::string message() const;
 
