@@ -117,13 +117,14 @@ class Repeat(ProgramTest):
 
     def test_results_do_not_depend_on_how_many_run_at_once(self):
         self.write("m.yaml", SIX_BAR)
-        found = [self.run_json("m.yaml", "--repeat", "5", "--out", threads, environment={"FREEPLAY_THREADS": threads})
+        words = ("m.yaml", "--end", "0.15 s")
+        found = [self.run_json(*words, "--repeat", "5", "--out", threads, environment={"FREEPLAY_THREADS": threads})
                  for threads in ("1", "2", "7")]
         self.assertEqual(found[0]["repeat"], found[1]["repeat"])
         self.assertEqual(found[0]["repeat"], found[2]["repeat"])
-        more = self.run_json("m.yaml", "--repeat", "6", "--out", "more")["repeat"]["joints"]["wrist"]["max_force"]
+        more = self.run_json(*words, "--repeat", "6", "--out", "more")["repeat"]["joints"]["wrist"]["max_force"]
         self.assertEqual(found[0]["repeat"]["joints"]["wrist"]["max_force"]["values"], more["values"][:5])
-        other = self.run_json("m.yaml", "--repeat", "5", "--seed", "2", "--out", "other")["repeat"]
+        other = self.run_json(*words, "--repeat", "5", "--seed", "2", "--out", "other")["repeat"]
         self.assertNotEqual(found[0]["repeat"]["joints"], other["joints"])
 
     def test_a_regular_model_has_tight_ranges_and_all_digits(self):

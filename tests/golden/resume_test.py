@@ -62,8 +62,8 @@ class Resume(ProgramTest):
 
     def test_a_killed_run_goes_on_to_the_same_bytes(self):
         draw = random.Random(1)
-        for options in (("--end", "0.3 s"), ("--end", "2 s", "--accuracy", "1um")):
-            options += ("--checkpoint", "50 ms")
+        for options in (("--end", "0.1 s"), ("--end", "0.7 s", "--accuracy", "1um")):
+            options += ("--checkpoint", "25 ms")
             seconds = self.whole(*options)
             for again in range(3):
                 with self.subTest(options=options, again=again):
@@ -73,7 +73,7 @@ class Resume(ProgramTest):
                     self.assert_same(name, "whole")
 
     def test_an_interrupted_run_has_a_checkpoint_and_rows_of_the_whole_one(self):
-        options = ("--end", "0.3 s", "--checkpoint", "0")
+        options = ("--end", "0.1 s", "--checkpoint", "0")
         seconds = self.whole(*options)
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
@@ -85,7 +85,7 @@ class Resume(ProgramTest):
                 self.assertIn("resumed from t = ", self.read(name, "run.log"))
 
     def test_rows_and_events_that_were_changed_are_found(self):
-        options = ("--end", "0.3 s", "--checkpoint", "0")
+        options = ("--end", "0.1 s", "--checkpoint", "0")
         name = self.interrupted(signal.SIGTERM, self.whole(*options), *options)
         for file in ("results.csv", "events.csv"):
             changed = "changed-" + file
@@ -108,11 +108,11 @@ class Resume(ProgramTest):
         self.assert_same("again", "whole")
 
     def test_a_limit_of_file_sizes_leaves_rows_that_are_named_and_gone_on_from(self):
-        self.whole("--end", "0.3 s", "--format", "both")
+        self.whole("--end", "0.1 s", "--format", "both")
         for format_, largest in (("both", "results.csv"), ("hdf5", "results.h5")):
             limit = os.path.getsize(self.path("whole", largest)) // 2
             name = "limited-" + format_
-            done = subprocess.run([PROGRAM, "run", CRANK, "--quiet", "--out", name, "--end", "0.3 s", "--format", format_],
+            done = subprocess.run([PROGRAM, "run", CRANK, "--quiet", "--out", name, "--end", "0.1 s", "--format", format_],
                                   cwd=self.folder, capture_output=True, text=True, check=False,
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
             self.assertEqual(done.returncode, 6, done.stderr)
