@@ -1,6 +1,7 @@
 """freeplay check-plugin: sound libraries pass, and each probe is found out by the rule that it breaks."""
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -182,10 +183,16 @@ class CheckPlugin(ProgramTest):
                 self.assertRegex(out, r"keeps? (its contract|their contracts)")
                 self.assertEqual("", err)
 
-    def test_every_built_in_type_passes_within_the_time(self):
+    def test_every_built_in_type_passes_within_the_time_and_the_page_explains_its_rules(self):
+        with open(os.path.join(ROOT, "docs", "check-plugin.md"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertIn("\n./dev check-plugin built-in\n", page)
         build = json.loads(self.freeplay("--version", "--json")[0])["build"]
         limit = [] if build == "Release" else ["--time-limit", "300 s"]  # of processor time: sanitizers are slow
         out, _ = self.freeplay("check-plugin", "built-in", "--json", *limit)
+        rules = {rule["rule"] for found in json.loads(out)["types"] for rule in found["rules"]}
+        self.assertGreater(len(rules), 50)
+        self.assertEqual(set(), rules - set(re.findall("`([a-z-]+)`", page)))
         listed, _ = self.freeplay("list", "--json")
         # The program has forces and gears besides that are no types of a library.
         found = {(found["kind"], found["name"]) for found in json.loads(out)["types"]}
