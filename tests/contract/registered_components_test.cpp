@@ -4,6 +4,7 @@
 #include "allocation_counter.h"
 #include "component/registry.h"
 #include "contract/component_contract.h"
+#include "contract/rules.h"
 
 namespace freeplay::test {
 namespace {
@@ -20,6 +21,7 @@ TEST_P(ComponentContract, Holds) {
   EXPECT_GT(findings.all().size(), 8u) << "hardly a rule was examined";
   for (const Finding& finding : findings.all()) {
     EXPECT_TRUE(finding.held) << finding.rule << ": " << finding.detail;
+    EXPECT_FALSE(rule_meaning(GetParam()->kind, finding.rule).empty()) << finding.rule << " is not explained";
   }
 }
 
