@@ -1,9 +1,12 @@
 // GuardedNumbers: an array with marked numbers before and after it, so that a write beside it is seen.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/same_bits.h"
@@ -15,36 +18,43 @@ namespace freeplay {
 struct GuardMark {
   std::uint64_t bits = 0x7ff8c0ffee15600d;
   bool intact() const { return bits == GuardMark().bits; }
-  double number() const { return std::bit_cast<double>(bits); }
+  constexpr double number() const { return std::bit_cast<double>(bits); }
 };
 
 class GuardedNumbers {
  public:
-  explicit GuardedNumbers(std::size_t count, double fill = 0.0) : numbers_(count + 2 * margin, guard()), count_(count) {
-    for (double& number : span()) number = fill;
+  explicit GuardedNumbers(std::size_t count, double fill = 0.0) : count_(count) {
+    if (count > few_.size() - 2 * margin) many_.resize(count + 2 * margin);
+    std::ranges::copy(marks, first());
+    std::fill_n(first() + margin, count, fill);
+    std::ranges::copy(marks, first() + margin + count);
   }
   explicit GuardedNumbers(const std::vector<double>& values) : GuardedNumbers(values.size()) {
-    for (std::size_t i = 0; i < count_; ++i) span()[i] = values[i];
+    std::ranges::copy(values, first() + margin);
   }
 
-  Span<double> span() { return {numbers_.data() + margin, count_}; }
-  std::vector<double> values() const { return {numbers_.data() + margin, numbers_.data() + margin + count_}; }
+  Span<double> span() { return {first() + margin, count_}; }
+  std::span<const double> numbers() const { return {first() + margin, count_}; }
+  std::vector<double> values() const { return {first() + margin, first() + margin + count_}; }
   bool intact() const {
-    const auto is_mark = [](double number) {
-      return std::bit_cast<std::uint64_t>(number) == std::bit_cast<std::uint64_t>(guard());
-    };
-    for (std::size_t i = 0; i < margin; ++i) {
-      if (!is_mark(numbers_[i]) || !is_mark(numbers_[margin + count_ + i])) return false;
-    }
-    return true;
+    return same_bits({first(), margin}, marks) && same_bits({first() + margin + count_, margin}, marks);
   }
 
  private:
   // Two rows of a joint's Jacobian, so that an index that is one row off is caught and harms nothing else.
   static constexpr std::size_t margin = 24;
-  static double guard() { return GuardMark().number(); }
-  std::vector<double> numbers_;
+  static constexpr std::array<double, margin> marks = [] {
+    std::array<double, margin> all{};
+    all.fill(GuardMark().number());
+    return all;
+  }();
+  double* first() { return many_.empty() ? few_.data() : many_.data(); }
+  const double* first() const { return many_.empty() ? few_.data() : many_.data(); }
+
   std::size_t count_;
+  // Few numbers stand in the object, as suites make them for each call of a component.
+  std::array<double, 2 * margin + 24> few_;
+  std::vector<double> many_;
 };
 
 }  // namespace freeplay

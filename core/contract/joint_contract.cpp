@@ -212,7 +212,7 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   }
   check_rows(probe, moments, random, findings);
   check_forces(probe, subject.passive, moments, findings);
-  check_cycle(probe, subject.passive, random, findings);
+  check_cycle(probe, subject, random, findings);
   check_memory(probe, twin, moments, random, findings);
   check_rest(probe, moments, random, findings);
   check_time(probe, moments, random, findings);

@@ -44,7 +44,7 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions);
 void check_rows(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
                 Findings& findings);
 void check_forces(const JointProbe& probe, bool passive, const std::vector<JointMoment>& moments, Findings& findings);
-void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, Findings& findings);
+void check_cycle(const JointProbe& probe, const JointSubject& subject, RandomNumbers& random, Findings& findings);
 void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
                   RandomNumbers& random, Findings& findings);
 void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,

@@ -76,9 +76,9 @@ void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findi
 
 }  // namespace
 
-void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, Findings& findings) {
-  if (!passive || probe.layout().forces == 0) return;
-  constexpr int around = 4000;
+void check_cycle(const JointProbe& probe, const JointSubject& subject, RandomNumbers& random, Findings& findings) {
+  if (!subject.passive || probe.layout().forces == 0) return;
+  const int around = subject.thorough ? 4000 : 1000;
   const ClosedPath path(probe, random);
   const double dt = path.period() / around;
   JointWalk walk(probe, probe.start(path.at(0.0), 0.0));
@@ -108,7 +108,7 @@ void check_cycle(const JointProbe& probe, bool passive, RandomNumbers& random, F
     before = power;
     if (i + 1 == 2 * around) stored = f.potential - stored;
   }
-  // Sums over 4000 points: the step in which a contact begins is known to one part in a thousand of the work.
+  // Sums over so many points: the step in which a contact begins is known to one part in a thousand of the work.
   findings.expect("energy-cycle", work + stored <= 1e-3 * total + 1e-13 * terms, [&] {
     return fmt::format("{:.6g} J come out of a closed motion in which {:.6g} J are moved", work + stored, total);
   });

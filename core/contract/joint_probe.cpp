@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -50,11 +51,11 @@ struct JointProbe::Fed {
     for (std::size_t i = 0; i < twist.size(); ++i) in.coordinate_rate += row.jacobian[i] * twist[i];
   }
   bool untouched() const {
-    return z.intact() && h.intact() && same_bits(z.values(), moment.z) && same_bits(h.values(), moment.h) &&
+    return z.intact() && h.intact() && same_bits(z.numbers(), moment.z) && same_bits(h.numbers(), moment.h) &&
            // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): made of numbers alone, which are compared by bits
            std::memcmp(&markers, &moment.markers, sizeof markers) == 0;
   }
-  JointMoment moment;
+  const JointMoment& moment;
   MarkerPair markers;
   GuardedNumbers z, h;
   JointInput in{};
@@ -70,6 +71,7 @@ JointProbe::JointProbe(const JointRef& joint, Space space, const Conditions& con
   layout_ = JointLayout();  // what follows must not trip over a wrong count
 }
 
+template <class Call>
 bool JointProbe::run(const char* function, const JointMoment* moment, const Call& call) const {
   Message message;
   WatchedCall watched(conditions_, function);
@@ -96,15 +98,16 @@ bool JointProbe::watch(const char* function, const Fed& fed, std::initializer_li
       return fmt::format("{}() writes beside the {} numbers it was given, {}", function, numbers->values().size(),
                          words_of(fed.moment));
     });
-    if (nan_allowed) continue;
-    const std::vector<double> values = numbers->values();
-    const bool finite = std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-    findings_.expect("finite", finite, [&] {
-      return fmt::format("{}() gives a number that is not finite, {}", function, words_of(fed.moment));
-    });
-    all_finite = all_finite && finite;
+    if (!nan_allowed) all_finite = expect_finite(function, fed, numbers->numbers()) && all_finite;
   }
   return all_finite;
+}
+
+bool JointProbe::expect_finite(const char* function, const Fed& fed, std::span<const double> numbers) const {
+  const bool finite = std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+  return findings_.expect("finite", finite, [&] {
+    return fmt::format("{}() gives a number that is not finite, {}", function, words_of(fed.moment));
+  });
 }
 
 void JointProbe::expect_fence(const char* function, bool intact, const JointMoment& moment) const {
@@ -129,14 +132,14 @@ ProbedCoordinate JointProbe::coordinate(const JointMoment& moment) const {
   CoordinateRow& row = fenced.inside;
   if (!run("coordinate", &moment, [&](Message& m) { return joint_.coordinate(fed.in, row, m); })) return {};
   expect_fence("coordinate", fenced.intact(), moment);
-  const GuardedNumbers numbers(std::vector<double>(row.jacobian, row.jacobian + 12)),
-      pair(std::vector<double>{row.value, row.bias});
-  if (!watch("coordinate", fed, {&numbers, &pair})) return {};
+  const double pair[] = {row.value, row.bias};
+  const bool finite = watch("coordinate", fed, {}) && expect_finite("coordinate", fed, row.jacobian);
+  if (!expect_finite("coordinate", fed, pair) || !finite) return {};
   double value = row.value;
   if (layout_.coordinate == Coordinate::angle) {
     value = nearest_turn(value, moment.coordinate);
   }
-  return {value, row.bias, numbers.values()};
+  return {value, row.bias, std::vector<double>(row.jacobian, row.jacobian + 12)};
 }
 
 ProbedForces JointProbe::forces(const JointMoment& moment, bool derivatives) const {
@@ -149,11 +152,12 @@ ProbedForces JointProbe::forces(const JointMoment& moment, bool derivatives) con
   if (derivatives) out.derivatives = table.span();
   if (!run("apply", &moment, [&](Message& m) { return joint_.apply(fed.in, out, m); })) return {};
   expect_fence("apply", fenced.intact() && out.internal_rate.data == rate.span().data, moment);
-  std::vector<double> wrench(out.wrench_a, out.wrench_a + 6);
-  wrench.insert(wrench.end(), out.wrench_b, out.wrench_b + 6);
-  const GuardedNumbers given(wrench), potential(std::vector<double>{out.potential});
-  if (!watch("apply", fed, {&rate, &table, &given, &potential})) return {};
-  return {wrench, out.potential, rate.values(), table.values(), out.potential_rate};
+  std::vector<double> wrench(12);
+  std::ranges::copy(out.wrench_b, std::ranges::copy(out.wrench_a, wrench.begin()).out);
+  bool finite = watch("apply", fed, {&rate, &table});
+  finite = expect_finite("apply", fed, wrench) && finite;
+  if (!expect_finite("apply", fed, {&out.potential, 1}) || !finite) return {};
+  return {std::move(wrench), out.potential, rate.values(), table.values(), out.potential_rate};
 }
 
 ProbedEvents JointProbe::events(const JointMoment& moment) const {

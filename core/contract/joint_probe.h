@@ -1,8 +1,8 @@
 // JointProbe: calls a joint as the host does and watches what it writes.
 #pragma once
 
-#include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -79,12 +79,13 @@ class JointProbe {
   JointMoment start(const MarkerPair& markers, double t) const;
 
  private:
-  struct Fed;  // a JointInput and the numbers that it refers to
-  using Call = std::function<bool(Message&)>;
+  struct Fed;            // a JointInput and the numbers that it refers to
+  template <class Call>  // returns false when the joint fails, and takes a Message
   bool run(const char* function, const JointMoment* moment, const Call& call) const;
-  /// False when a number is not finite.
+  /// These return false when a number is not finite.
   bool watch(const char* function, const Fed& fed, std::initializer_list<const GuardedNumbers*> written,
              bool nan_allowed = false) const;
+  bool expect_finite(const char* function, const Fed& fed, std::span<const double> numbers) const;
   void expect_fence(const char* function, bool intact, const JointMoment& moment) const;
 
   JointRef joint_;

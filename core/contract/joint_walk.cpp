@@ -44,14 +44,21 @@ void advance_internal(const JointProbe& probe, JointMoment& trial, double dt) {
 
 void JointWalk::handle_events(JointMoment& trial) const {
   const Span<const Event> events = probe_.layout().events;
-  // An event may arm another: each is passed on once in a step, in the order of the table.
-  for (std::size_t i = 0; i < events.size; ++i) {
-    JointMoment before = now_;
+  if (events.empty()) return;
+  JointMoment before = now_;
+  ProbedEvents start, end;
+  const auto look = [&] {
     before.h = trial.h;
-    const ProbedEvents start = probe_.events(before), end = probe_.events(trial);
-    if (i >= start.g.size() || i >= end.g.size()) return;
+    start = probe_.events(before);
+    end = probe_.events(trial);
+  };
+  look();
+  // An event may arm another: each is passed on once in a step, in the order of the table.
+  for (std::size_t i = 0; i < std::min(start.g.size(), end.g.size()); ++i) {
     const double sign = events[i].crossing == Crossing::rising ? 1.0 : -1.0;
-    if (sign * start.g[i] <= 0.0 && sign * end.g[i] > 0.0) probe_.on_event(static_cast<int>(i), trial);
+    if (!(sign * start.g[i] <= 0.0 && sign * end.g[i] > 0.0)) continue;
+    probe_.on_event(static_cast<int>(i), trial);
+    look();
   }
 }
 
