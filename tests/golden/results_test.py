@@ -293,6 +293,14 @@ class Results(ProgramTest):
         self.assertIn("x.csv", stderr)
         self.freeplay("export", "r", "--to", "csv", "--out", "x.csv", "--force")
 
+    def test_a_result_its_table_its_picture_and_its_page_are_made_again(self):
+        self.run_model(end="1 ms")
+        self.freeplay("export", "r", "--to", "csv", "--out", "x.csv")
+        self.freeplay("plot", "r", "body.slider.x", "--out", "x.svg")
+        self.freeplay("report", "r", "--out", "x.html")
+        for name in ("r", "x.csv", "x.svg", "x.html"):  # reproduce_test has the rest, which takes too long with sanitizers
+            self.assertIn("same bytes", self.freeplay("reproduce", name)[0])
+
     def test_export_says_what_is_wrong(self):
         self.run_model(end="1 ms")
         for words, code, message in (
