@@ -24,72 +24,81 @@ std::string named(const Component& component, const std::string& text) {
   return std::string("'") + component.description.name + "': " + text;
 }
 
-/// A law, and how messages name it.
-template <class Law>
+/// A law, and how messages name it. It is called in every evaluation of a contact: calls go straight on to its table.
+template <class Table>
 struct NamedLaw {
-  Law law;
+  const Table& table;
+  const void* law;
   std::string name;
 
-  /// Calls `body` on the law; puts the name before what is thrown.
-  template <class Body>
-  static Status call(const void* self, Message* message, Body&& body) noexcept {
-    const auto& me = *static_cast<const NamedLaw*>(self);
-    const Status status = abi::guarded(message, [&] { body(me.law); });
+  static const NamedLaw& of(const void* self) { return *static_cast<const NamedLaw*>(self); }
+  /// The status of a call; puts the name before what one that failed has said.
+  Status told(Status status, Message* message) const noexcept {
     if (status == Status::ok) return status;
     Message text = *message;
-    const std::size_t length = std::min(me.name.size(), sizeof text.text / 2);
-    std::memcpy(text.text, me.name.data(), length);
+    const std::size_t length = std::min(name.size(), sizeof text.text / 2);
+    std::memcpy(text.text, name.data(), length);
     std::memcpy(text.text + length, ": ", 2);
     abi::copy_text(text.text + length + 2, sizeof text.text - length - 2, message->text);
     *message = text;
     return status;
   }
+  /// The same of one for a force, which must be a finite number.
+  Status told(Status status, bool finite, Message* message) const noexcept {
+    if (status != Status::ok || finite) return told(status, message);
+    abi::copy_text(message->text, sizeof message->text, "it returned a force that is not a finite number");
+    return told(Status::failed, message);
+  }
 };
-
-void require_finite(bool finite) {
-  if (!finite) throw std::runtime_error("it returned a force that is not a finite number");
-}
+using NamedContactLaw = NamedLaw<abi::ContactLawTable>;
+using NamedFrictionLaw = NamedLaw<abi::FrictionLawTable>;
 
 constexpr abi::ContactLawTable named_contact_law{
     sizeof(abi::ContactLawTable),
     nullptr,
     [](const void* self, const ContactState* in, ContactForce* out, Message* m) noexcept {
-      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) {
-        *out = law.evaluate(*in);
-        require_finite(std::isfinite(out->normal + out->potential) || !std::isfinite(in->penetration + in->rate));
-      });
+      const auto& me = NamedContactLaw::of(self);
+      const Status status = me.table.evaluate(me.law, in, out, m);
+      const bool asked_finite = std::isfinite(in->penetration + in->rate);
+      return me.told(status, std::isfinite(out->normal + out->potential) || !asked_finite, m);
     },
     [](const void* self, const ContactState* in, const char** why, Message* m) noexcept {
-      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { *why = law.outside_range(*in); });
+      const auto& me = NamedContactLaw::of(self);
+      return me.told(me.table.outside_range(me.law, in, why, m), m);
     },
     [](const void* self, std::int32_t* count, Message* m) noexcept {
-      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { *count = law.switches(); });
+      const auto& me = NamedContactLaw::of(self);
+      return me.told(me.table.switches(me.law, count, m), m);
     },
     [](const void* self, const ContactState* in, Span<double> values, Message* m) noexcept {
-      return NamedLaw<ContactLawRef>::call(self, m, [&](const ContactLawRef& law) { law.decide(*in, values); });
+      const auto& me = NamedContactLaw::of(self);
+      return me.told(me.table.decide(me.law, in, values, m), m);
     }};
 
 constexpr abi::FrictionLawTable named_friction_law{
     sizeof(abi::FrictionLawTable),
     nullptr,
     [](const void* self, std::int32_t* count, Message* m) noexcept {
-      return NamedLaw<FrictionLawRef>::call(self, m,
-                                            [&](const FrictionLawRef& law) { *count = law.internal_variables(); });
+      const auto& me = NamedFrictionLaw::of(self);
+      return me.told(me.table.internal_variables(me.law, count, m), m);
     },
     [](const void* self, const FrictionState* in, Span<double> rate, FrictionForce* out, Message* m) noexcept {
-      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) {
-        *out = law.evaluate(*in, rate);
-        require_finite(std::isfinite(out->tangential) || !std::isfinite(in->normal_force + in->slip_speed));
-      });
+      const auto& me = NamedFrictionLaw::of(self);
+      const Status status = me.table.evaluate(me.law, in, rate, out, m);
+      const bool asked_finite = std::isfinite(in->normal_force + in->slip_speed);
+      return me.told(status, std::isfinite(out->tangential) || !asked_finite, m);
     },
     [](const void* self, Span<const double>* speeds, Message* m) noexcept {
-      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { *speeds = law.kinks(); });
+      const auto& me = NamedFrictionLaw::of(self);
+      return me.told(me.table.kinks(me.law, speeds, m), m);
     },
     [](const void* self, std::int32_t* count, Message* m) noexcept {
-      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { *count = law.switches(); });
+      const auto& me = NamedFrictionLaw::of(self);
+      return me.told(me.table.switches(me.law, count, m), m);
     },
     [](const void* self, const FrictionState* in, Span<double> values, Message* m) noexcept {
-      return NamedLaw<FrictionLawRef>::call(self, m, [&](const FrictionLawRef& law) { law.decide(*in, values); });
+      const auto& me = NamedFrictionLaw::of(self);
+      return me.told(me.table.decide(me.law, in, values, m), m);
     }};
 
 CreationFault fault_of(const Component& component, Status status, const Message& message) {
@@ -126,6 +135,9 @@ struct Instances::Server {
     throw BadParameter(kept_path.c_str(), kept_id.c_str(), fault.text);
   }
 
+  static void* make_contact_law(Instances& owner, const ParameterBlock& parameters, const ContactPair& pair,
+                                CreationFault& fault);
+  static void* make_friction_law(Instances& owner, const ParameterBlock& parameters, CreationFault& fault);
   ContactLawRef serve_contact_law(const ParameterBlock& law, const ContactPair& pair, CreationFault& fault) const;
   FrictionLawRef serve_friction_law(const ParameterBlock& law, CreationFault& fault) const;
 
@@ -180,18 +192,20 @@ abi::ParameterTable Instances::Server::table() const {
 // A joint gets its law through a table of ours, so that a law that fails is named.
 ContactLawRef Instances::Server::serve_contact_law(const ParameterBlock& law, const ContactPair& pair,
                                                    CreationFault& fault) const {
-  const ContactLawRef inner = owner.create_contact_law(law, pair, fault);
+  const void* made = make_contact_law(owner, law, pair, fault);
   if (!fault.id.empty()) return {};
-  auto* named = new NamedLaw<ContactLawRef>{inner, "contact law of " + owner.words_of(*law.component)};
-  owner.objects_.emplace_back(named, [](void* self) { delete static_cast<NamedLaw<ContactLawRef>*>(self); });
+  const auto& table = table_of<abi::ContactLawTable>(*law.component);
+  auto* named = new NamedContactLaw{table, made, "contact law of " + owner.words_of(*law.component)};
+  owner.objects_.emplace_back(named, [](void* self) { delete static_cast<NamedContactLaw*>(self); });
   return {named_contact_law, named};
 }
 
 FrictionLawRef Instances::Server::serve_friction_law(const ParameterBlock& law, CreationFault& fault) const {
-  const FrictionLawRef inner = owner.create_friction_law(law, fault);
+  const void* made = make_friction_law(owner, law, fault);
   if (!fault.id.empty()) return {};
-  auto* named = new NamedLaw<FrictionLawRef>{inner, "friction law of " + owner.words_of(*law.component)};
-  owner.objects_.emplace_back(named, [](void* self) { delete static_cast<NamedLaw<FrictionLawRef>*>(self); });
+  const auto& table = table_of<abi::FrictionLawTable>(*law.component);
+  auto* named = new NamedFrictionLaw{table, made, "friction law of " + owner.words_of(*law.component)};
+  owner.objects_.emplace_back(named, [](void* self) { delete static_cast<NamedFrictionLaw*>(self); });
   return {named_friction_law, named};
 }
 
@@ -248,19 +262,28 @@ IntegratorRef Instances::create_integrator(const ParameterBlock& parameters, Cre
   return self == nullptr ? IntegratorRef() : IntegratorRef(table_of<abi::IntegratorTable>(*parameters.component), self);
 }
 
-ContactLawRef Instances::create_contact_law(const ParameterBlock& parameters, const ContactPair& pair,
-                                            CreationFault& fault) {
+void* Instances::Server::make_contact_law(Instances& owner, const ParameterBlock& parameters, const ContactPair& pair,
+                                          CreationFault& fault) {
   const auto create_law = reinterpret_cast<CreateContactLaw>(parameters.component->create);
   const auto make = [&](const abi::ParameterTable* table, void** self, Message* message) {
     return create_law(table, &pair, self, message);
   };
-  void* self = create(parameters, make, table_of<abi::ContactLawTable>(*parameters.component).destroy, fault);
+  return owner.create(parameters, make, table_of<abi::ContactLawTable>(*parameters.component).destroy, fault);
+}
+
+void* Instances::Server::make_friction_law(Instances& owner, const ParameterBlock& parameters, CreationFault& fault) {
+  const auto make = reinterpret_cast<CreateFrictionLaw>(parameters.component->create);
+  return owner.create(parameters, make, table_of<abi::FrictionLawTable>(*parameters.component).destroy, fault);
+}
+
+ContactLawRef Instances::create_contact_law(const ParameterBlock& parameters, const ContactPair& pair,
+                                            CreationFault& fault) {
+  const void* self = Server::make_contact_law(*this, parameters, pair, fault);
   return self == nullptr ? ContactLawRef() : ContactLawRef(table_of<abi::ContactLawTable>(*parameters.component), self);
 }
 
 FrictionLawRef Instances::create_friction_law(const ParameterBlock& parameters, CreationFault& fault) {
-  const auto make = reinterpret_cast<CreateFrictionLaw>(parameters.component->create);
-  void* self = create(parameters, make, table_of<abi::FrictionLawTable>(*parameters.component).destroy, fault);
+  const void* self = Server::make_friction_law(*this, parameters, fault);
   return self == nullptr ? FrictionLawRef()
                          : FrictionLawRef(table_of<abi::FrictionLawTable>(*parameters.component), self);
 }
