@@ -92,8 +92,8 @@ void RunDoubts::note_fast_motion() {
 bool RunDoubts::watch_row(double dt) {
   run_.watch.add_regularity(run_.solver.regularity(), run_.accepted.t());
   if (torn_from_ && run_.accepted.t() >= *torn_from_) return failure_.fail(4, "the mechanism is torn apart");
-  if (!recorder_.row_is_known() && !run_.watch.is_due(run_.e_accepted)) return true;
-  if (!recorder_.know_row()) return false;
+  if (!recorder_.loads_are_known() && !run_.watch.is_due(run_.e_accepted)) return true;
+  if (!recorder_.know_loads()) return false;
   const int joint = run_.watch.add(recorder_.row(), run_.e_accepted);
   // A look at the drivers takes longer than many steps, so it waits until something is wrong.
   if (!torn_from_ && run_.watch.deeper_than_play())

@@ -15,6 +15,8 @@ class DriveKinks {
   /// `model` must live as long as this. Of prescribed motions, or of efforts and applied forces.
   explicit DriveKinks(const Model& model, Of of = Of::motions);
 
+  /// Whether there can be one.
+  bool any() const { return !formulas_.empty() || !tables_.empty(); }
   /// The first kink after t, if it is `until` or earlier; else a later time, or infinity. Times grow from step to step.
   double next(double t, double until);
 

@@ -194,6 +194,15 @@ void EnergyAccount::fill_inside(double s, const Evaluation& e, std::span<const d
 
 void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::span<double> row,
                          std::span<const double> integral, double row_work) {
+  fill_sums(e, channels, row, integral, row_work);
+  for (const AskedColumn& asked : channels.driver_work) row[at(asked.column)] = driver_work_[at(asked.element)];
+  for (const AskedColumn& asked : channels.force_work) row[at(asked.column)] = force_work_[at(asked.element)];
+  for (const AskedColumn& asked : channels.joint_loss) row[at(asked.column)] = joint_loss_[at(asked.element)];
+  channels.fill_formulas(row);
+}
+
+void EnergyAccount::fill_sums(const Evaluation& e, const Channels& channels, std::span<double> row,
+                              std::span<const double> integral, double row_work) {
   std::size_t flow = 0;
   double work = row_work, lost = 0.0;
   for (double& driver : driver_work_) work += driver = integral[flow++];
@@ -218,10 +227,6 @@ void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::spa
   row[at(channels.energy.dissipated)] = lost;
   row[at(channels.energy.work)] = work;
   row[at(channels.energy.residual)] = total - initial_ + lost - work;
-  for (const AskedColumn& asked : channels.driver_work) row[at(asked.column)] = driver_work_[at(asked.element)];
-  for (const AskedColumn& asked : channels.force_work) row[at(asked.column)] = force_work_[at(asked.element)];
-  for (const AskedColumn& asked : channels.joint_loss) row[at(asked.column)] = joint_loss_[at(asked.element)];
-  channels.fill_formulas(row);
 }
 
 }  // namespace freeplay

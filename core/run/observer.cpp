@@ -18,24 +18,40 @@ bool Observer::observe(const State& state, const Evaluation& e, std::span<double
   const Model& model = system_.model();
   const Point point = freeplay::point(state);
   const std::span<const double> lambda = state.lambda();
-  row[at(channels_.time)] = point.t;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, e, row);
+  observe_loads(state, e, row);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    if (!observe_joint(j, point, e, lambda, row, fault)) return false;
+    observe_coordinate(j, e, row);
+    if (!observe_own(j, point, e, lambda, row, fault)) return false;
   }
-  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) observe_driver(d, e, lambda, row);
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) observe_driver(d, e, row);
   for (int k = 0; k < static_cast<int>(model.kinematics.size()); ++k) {
     if (!observe_path(k, point, e, row, fault)) return false;
   }
-  for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) observe_force(f, e, row);
   for (int f = 0; f < static_cast<int>(channels_.frames.size()); ++f) observe_frame(f, e, row);
+  observe_accelerations(state.a(), e, row);
+  channels_.fill_formulas(row);
+  return true;
+}
+
+void Observer::observe_loads(const State& state, const Evaluation& e, std::span<double> row) const {
+  const Model& model = system_.model();
+  const std::span<const double> lambda = state.lambda();
+  row[at(channels_.time)] = state.t();
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) observe_body(b, e, row);
+  double wrench[6];
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    system_.constraints().reaction(j, e, lambda, wrench);
+    write_wrench(wrench, &row[at(channels_.joints[at(j)].force)]);
+  }
+  for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
+    const int r = system_.layout().driver_row(d);
+    row[at(channels_.drivers[at(d)].effort)] = r < 0 ? e.motion[at(d)].value : -lambda[at(r)];
+  }
+  for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) observe_force(f, e, row);
   double stored = system_.inertia().gravity_potential(e.q);
   for (const double potential : e.potential) stored += potential;
   row[at(channels_.energy.kinetic)] = system_.inertia().kinetic_energy(e.v);
   row[at(channels_.energy.potential)] = stored;
-  observe_accelerations(state.a(), e, row);
-  channels_.fill_formulas(row);
-  return true;
 }
 
 void Observer::observe_accelerations(std::span<const double> a, const Evaluation& e, std::span<double> row) const {
@@ -54,8 +70,8 @@ void Observer::observe_body(int index, const Evaluation& e, std::span<double> ro
   double* to = &row[at(channels_.bodies[at(index)])];
   const int place = system_.layout().place(index);
   if (system_.model().space == Space::planar) {
-    std::copy_n(&e.q[3 * at(place)], 3, to);
-    std::copy_n(&e.v[3 * at(place)], 3, to + 3);
+    const double *q = &e.q[3 * at(place)], *v = &e.v[3 * at(place)];
+    for (int i = 0; i < 3; ++i) to[i] = q[i], to[3 + i] = v[i];
     return;
   }
   std::copy_n(&e.q[7 * at(place)], 3, to);
@@ -72,21 +88,21 @@ void Observer::write_wrench(const double* wrench, double* to) const {
   }
 }
 
-bool Observer::observe_joint(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
-                             std::span<double> row, Fault& fault) const {
+void Observer::observe_coordinate(int index, const Evaluation& e, std::span<double> row) const {
   const JointColumns& columns = channels_.joints[at(index)];
   if (columns.coordinate >= 0) {
     row[at(columns.coordinate)] = e.coordinate[at(index)];
     if (columns.speed >= 0) row[at(columns.speed)] = e.coordinate_rate[at(index)];
   }
-  double wrench[6];
-  system_.constraints().reaction(index, e, lambda, wrench);
-  write_wrench(wrench, &row[at(columns.force)]);
-  if (columns.power >= 0) {
-    const JointElement& joint = system_.model().joints[at(index)];
-    row[at(columns.power)] = power(&e.wrench[12 * at(index)], e.markers[at(joint.marker_a)]) +
-                             power(&e.wrench[12 * at(index) + 6], e.markers[at(joint.marker_b)]);
-  }
+  if (columns.power < 0) return;
+  const JointElement& joint = system_.model().joints[at(index)];
+  row[at(columns.power)] = power(&e.wrench[12 * at(index)], e.markers[at(joint.marker_a)]) +
+                           power(&e.wrench[12 * at(index) + 6], e.markers[at(joint.marker_b)]);
+}
+
+bool Observer::observe_own(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
+                           std::span<double> row, Fault& fault) const {
+  const JointColumns& columns = channels_.joints[at(index)];
   const std::size_t own = system_.joints().layout(index).channels.size;
   if (own == 0) return true;
   const Slice rows = system_.layout().rows(index);
@@ -103,20 +119,18 @@ bool Observer::observe_joint(int index, const Point& point, const Evaluation& e,
   return false;
 }
 
-void Observer::observe_driver(int index, const Evaluation& e, std::span<const double> lambda,
-                              std::span<double> row) const {
+void Observer::observe_driver(int index, const Evaluation& e, std::span<double> row) const {
   const DriverColumns& columns = channels_.drivers[at(index)];
   const int r = system_.layout().driver_row(index);
   const std::size_t joint = at(system_.model().drivers[at(index)].joint);
   const double prescribed = e.motion[at(index)].value;
-  const double effort = r < 0 ? prescribed : -lambda[at(r)];
+  const double effort = row[at(columns.effort)];
   // An angle from inverse kinematics is known up to whole turns; the joint counts them.
   const bool turns = r >= 0 && system_.motions().modulo_turns(index);
   const bool speed = system_.model().drivers[at(index)].kind == DriverKind::velocity;
   row[at(columns.value)] = turns   ? e.coordinate[joint] - (r < system_.layout().nc() ? e.phi[at(r)] : 0.0)
                            : speed ? e.motion[at(index)].rate
                                    : prescribed;
-  row[at(columns.effort)] = effort;
   row[at(columns.power)] = effort * e.coordinate_rate[joint];
 }
 

@@ -40,7 +40,12 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       row_(run.channels.all().size(), 0.0),
       row_between_(row_.size(), 0.0),
       row_middle_(row_.size(), 0.0),
-      residual_(at(run.system.layout().nc())) {}
+      residual_(at(run.system.layout().nc())) {
+  for (int j = 0; j < run.system.joints().count(); ++j) {
+    const JointColumns& columns = run.channels.joints[at(j)];
+    if (columns.normal_force >= 0 || columns.penetration >= 0) touching_.push_back(j);
+  }
+}
 
 bool Recorder::observe_start() {
   Fault fault;
@@ -66,6 +71,25 @@ bool Recorder::know_row() {
   return row_is_known_ = true;
 }
 
+// A joint that sleeps is in flight, as in the row before it fell asleep; of one that never touched it is told how far
+// it moved.
+bool Recorder::know_loads() {
+  if (loads_are_known()) return true;
+  const bool row_is_due = !(run_.accepted.t() < row_time(next_row_ - 1));
+  if (run_.adaptive || feed_.active() || contact_rows_.active() || row_is_due) return know_row();
+  const Point here = point(run_.accepted);
+  const LargestValues& largest = statistics_.largest();
+  Fault fault;
+  observer_.observe_loads(run_.accepted, run_.e_accepted, row_);
+  for (const int j : touching_) {
+    if (run_.evaluations.is_asleep(j) && largest.before()[largest.places().penetration(j)] >= 0.0) continue;
+    if (!observer_.observe_own(j, here, run_.e_accepted, run_.accepted.lambda(), row_, fault))
+      return failure_.fail_with(fault, run_.accepted.t());
+  }
+  run_.energy.fill_sums(run_.e_accepted, run_.channels, row_);
+  return loads_are_known_ = true;
+}
+
 bool Recorder::record_step() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
   double position = 0.0, velocity = 0.0;
@@ -75,7 +99,7 @@ bool Recorder::record_step() {
   const bool counts = statistics_.counts(run_.accepted.t());
   const bool noise = statistics_.largest().noise().active();
   if (!counts && !noise && !feed_.active()) return true;
-  if (!know_row()) return false;
+  if (!(counts ? know_row() : know_loads())) return false;
   if (!counts) {
     if (noise) {
       statistics_.note(row_);
@@ -148,7 +172,7 @@ bool Recorder::write_events() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   if (ledger_.active()) {
     Fault fault;
-    if (!know_row()) return false;
+    if (!know_loads()) return false;
     if (!ledger_.take_step(row_, run_.energy.joint_loss(), run_.events, point(run_.accepted), run_.e_accepted, fault))
       return failure_.fail_with(fault, run_.accepted.t());
   }

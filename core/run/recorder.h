@@ -28,8 +28,11 @@ class Recorder {
   bool observe_start();
   /// Makes the row of the accepted state, unless it is known.
   bool know_row();
-  bool row_is_known() const { return row_is_known_; }
-  void forget_row() { row_is_known_ = false; }
+  /// The same of those columns alone that the run is judged by: in steps that nobody else asks for, the rest of a row
+  /// would take longer than they do.
+  bool know_loads();
+  bool loads_are_known() const { return row_is_known_ || loads_are_known_; }
+  void forget_row() { row_is_known_ = loads_are_known_ = false; }
   /// The last that was made, every channel.
   std::span<const double> row() const { return row_; }
 
@@ -110,7 +113,9 @@ class Recorder {
   EventStorm storm_;
   StepFeed feed_;
   std::vector<double> row_, row_between_, row_middle_, residual_;
-  bool row_is_known_ = false;  // row_ is that of the accepted state
+  bool row_is_known_ = false;     // row_ is that of the accepted state
+  bool loads_are_known_ = false;  // its columns that know_loads() makes are
+  std::vector<int> touching_;     // joints whose own channels say something of a contact
   long next_row_ = 1;
 };
 

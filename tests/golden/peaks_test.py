@@ -117,6 +117,28 @@ class PeaksTest(ProgramTest):
             self.assertLess(summary["joints"]["pivot"]["max_force"], before)
             self.assertEqual((0.6, 0.8), (summary["statistics"]["from"], summary["statistics"]["to"]))
 
+    def test_what_is_left_out_has_the_events_and_peaks_of_a_run_that_leaves_out_nothing(self):
+        for name, end in (("slider-crank", 4e-3), ("3-rrr", 12e-3), ("slider-in-guide", 40e-3)):
+            with open(mechanism(name), encoding="utf-8") as file:
+                text = re.sub(r"(, )?discard: [^,}\n]+", "", file.read())
+            whole, part = (self.write(file, re.sub(r"output: \{", "output: {discard: %g s, " % discard, text))
+                           for file, discard in (("whole.yaml", 0.0), ("part.yaml", 0.98 * end)))
+            with self.subTest(name):
+                options = ("--end", "%g" % end, "--step", "%g" % (end / 2000))
+                rows, all_counts, _, _ = self.run_model(whole, *options)
+                events = self.read("r", "events.csv")
+                others, left_out, _, _ = self.run_model(part, *options)
+                self.assertEqual(rows, others)
+                self.assertEqual(events, self.read("r", "events.csv"))
+                self.assertGreater(events.count("contact_end"), 3)
+                for kind, key in (("joints", "max_force"), ("drivers", "max_abs")):
+                    for element, before in left_out["statistics"]["before"][kind].items():
+                        most = max(before[key], left_out[kind][element][key])
+                        self.assertEqual(all_counts[kind][element][key], most, element)
+                penetrations = [[reason for reason in summary["trust"]["reasons"] if reason["id"] == "penetration"]
+                                for summary in (all_counts, left_out)]
+                self.assertEqual(*penetrations)
+
     def test_without_a_window_there_are_no_figures_and_a_word(self):
         for discard in ("2 s", "3 s"):
             self.write("m.yaml", PENDULUM.replace("interval: 2 s", "interval: 10 ms, discard: " + discard))
