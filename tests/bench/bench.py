@@ -12,6 +12,7 @@ import platform
 import subprocess
 import sys
 
+import instructions
 import page
 import pareto
 import parts
@@ -30,8 +31,11 @@ PARTS = {
     "startup": ("the whole process with one step", parts.start),
     "load": ("reading and checking models", parts.load),
     "output": ("what rows at 1 kHz of all channels cost", parts.output),
+    "instructions": ("machine instructions of runs by fixed steps and by accuracy, which repeat on a busy machine", instructions.measure),
     "studies": ("what the engine of studies costs a point, and memory and time of 10^5 points", studies.studies),
 }
+
+COMPARED = (*PROBLEMS, "instructions")  # by --vs
 
 
 class Bench:
@@ -97,8 +101,8 @@ def parse(arguments):
     for name in options.names:
         if name not in PARTS:
             reader.exit(2, "bench: there is no part '%s'%s\n%s\n" % (name, meant(name, PARTS) or ";", help_of_parts()))
-        if options.vs and name not in PROBLEMS:
-            reader.exit(2, "bench: --vs compares %s, not '%s'\n" % (", ".join(PROBLEMS), name))
+        if options.vs and name not in COMPARED:
+            reader.exit(2, "bench: --vs compares %s, not '%s'\n" % (", ".join(COMPARED), name))
     return options
 
 
@@ -129,7 +133,11 @@ def main(arguments):
         bench = Bench(options)
         results = facts(bench, options)
         if options.vs:
-            results["vs"] = versus.compare(bench, options.vs, options.names or list(PROBLEMS))
+            names = options.names or list(PROBLEMS)
+            if timed := [name for name in names if name in PROBLEMS]:
+                results["vs"] = versus.compare(bench, options.vs, timed)
+            if "instructions" in names:
+                results["instructions"] = instructions.compare(bench, options.vs)
         else:
             for name in options.names or usual_parts(options.quick):
                 bench.print("\n== %s: %s ==" % (name, PARTS[name][0]))

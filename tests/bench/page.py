@@ -70,11 +70,15 @@ def of_kernels(found):
     return markdown(["kernel", "ns"], [[one["name"], "%.4g" % one["ns"]] for one in found["kernels"]])
 
 
+def of_instructions(found):
+    return markdown(found["heading"], found["rows"])
+
+
 def of_studies(found):
     return markdown(*studies.rows_of_engine(found)) + "\n" + markdown(*studies.rows_of_large(found))
 
 
-MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies,
+MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies, "instructions": of_instructions,
           **{name: of_problem for name in PROBLEMS}}
 
 
