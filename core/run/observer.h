@@ -24,7 +24,7 @@ class Observer {
   /// efforts and energies. The others stay as they are.
   void observe_loads(const State& state, const Evaluation& e, std::span<double> row) const;
   /// The channels of a joint's type.
-  bool observe_own(int joint, const Point& point, const Evaluation& e, std::span<const double> lambda,
+  bool observe_own(int index, const Point& point, const Evaluation& e, std::span<const double> lambda,
                    std::span<double> row, Fault& fault) const;
 
  private:
