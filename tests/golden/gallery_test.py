@@ -1,0 +1,113 @@
+"""The mechanisms of docs/gallery.md: their files, their figures, and what each is known for."""
+import csv
+import glob
+import math
+import os
+import re
+import shlex
+import unittest
+
+from program import MECHANISMS, ROOT, ProgramTest, drawing
+
+FOLDER = os.path.join(MECHANISMS, "gallery")
+NAMES = sorted(os.path.basename(path)[:-5] for path in glob.glob(os.path.join(FOLDER, "*.yaml")))
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def text_of(*path):
+    with open(os.path.join(ROOT, *path), encoding="utf-8") as file:
+        return file.read()
+
+
+class Gallery(ProgramTest):
+    def run_file(self, name):
+        """Columns of a run that says nothing but that it went well."""
+        out, err = self.freeplay("run", os.path.join(FOLDER, name + ".yaml"), "--out", name)
+        self.assert_good(out, err)
+        rows = list(csv.reader(self.read(name, "results.csv").splitlines()))
+        return {column: [float(x) if x else math.nan for x in values] for column, *values in zip(*rows)}
+
+    def assert_good(self, out, err):
+        self.assertIn("trust: good", out)
+        self.assertNotIn("far, correct it", out)
+        self.assertEqual("", err)
+
+    def assert_all(self, columns, difference, tolerance):
+        for row in range(len(columns["time"])):
+            self.assertAlmostEqual(0, difference(lambda name: columns[name][row]), delta=tolerance)
+
+    def test_page_and_folder_show_the_same_short_files(self):
+        page = text_of("docs", "gallery.md")
+        self.assertEqual(NAMES, sorted(re.findall(r"run mechanisms/gallery/(.*)\.yaml$", page, re.M)))
+        for name in NAMES:
+            self.assertLess(text_of("mechanisms", "gallery", name + ".yaml").count("\n"), 80)
+
+    def test_commands_run_without_a_doubt_and_draw_the_figures(self):
+        os.symlink(MECHANISMS, self.path("mechanisms"))
+        for line in re.findall(r"^\./dev (.*)$", text_of("docs", "gallery.md"), re.M):
+            words = shlex.split(line)
+            out, err = self.freeplay(*words)
+            if words[0] == "run":
+                self.assert_good(out, err)
+                continue
+            name = words[words.index("--out") + 1]
+            shown, drawn = text_of("docs", "images", "gallery", name), drawing(self.read(name))
+            self.assertEqual(NUMBER.sub("#", shown), NUMBER.sub("#", drawn), name)
+            for x, y in zip(NUMBER.findall(shown), NUMBER.findall(drawn), strict=True):
+                self.assertAlmostEqual(float(x), float(y), delta=0.1, msg=name)
+
+    def test_a_scotch_yoke_makes_a_cosine(self):
+        self.assert_all(self.run_file("scotch-yoke"),
+                        lambda at: at("body.yoke.x") - 0.04 * math.cos(4 * math.pi * at("time")), 2e-6)
+
+    def test_a_quick_return_takes_its_two_ways_in_times_of_the_swing(self):
+        columns = self.run_file("quick-return")
+        ends = [t for t, a, b in zip(columns["time"], columns["body.lever.omega"], columns["body.lever.omega"][1:])
+                if a * b < 0]
+        half = math.asin(60 / 150)
+        ratio = (ends[1] - ends[0]) / (ends[2] - ends[1])
+        wanted = (math.pi + 2 * half) / (math.pi - 2 * half)
+        self.assertAlmostEqual(math.log(wanted), abs(math.log(ratio)), delta=0.03)
+
+    def test_a_shaper_cuts_on_its_way_forward_alone(self):
+        columns = self.run_file("shaper")
+        for force, speed in zip(columns["force.cutting.fx"], columns["body.ram.vx"]):
+            if abs(speed) > 1e-3:
+                self.assertEqual(-500 if speed > 0 else 0, force)
+
+    def test_a_toggle_multiplies_the_force_of_its_rod(self):
+        columns = self.run_file("toggle-press")
+        self.assertGreater(max(columns["force.work.fy"]), 19e3)
+        self.assertLess(max(map(abs, columns["driver.motor.torque"])), 130)
+
+    def test_both_wipers_stay_parallel(self):
+        self.assert_all(self.run_file("windscreen-wiper"),
+                        lambda at: at("body.arm.angle") - at("body.second.angle"), 1e-9)
+
+    def test_a_pantograph_draws_twice_as_large(self):
+        columns = self.run_file("pantograph")
+        for axis in "xy":
+            self.assert_all(columns, lambda at: 2 * at("frame.inner/tracer." + axis) - at("frame.right/pen." + axis), 1e-9)
+
+    def test_the_linkage_of_peaucellier_draws_a_straight_line(self):
+        columns = self.run_file("peaucellier")
+        self.assert_all(columns, lambda at: at("frame.c/pen.x") - 0.2625, 1e-9)
+        self.assertGreater(max(columns["frame.c/pen.y"]), 0.09)
+
+    def test_a_scissor_lift_needs_the_force_of_virtual_work(self):
+        columns = self.run_file("scissor-lift")
+        for row in (0, -1):  # at rest: dV = F dx with V = g (2 M + 60 kg) l sin(a), x = l cos(a)
+            x = columns["joint.cylinder.position"][row]
+            force = -9.81 * (2 * 530 + 60) * x / math.sqrt(1 - x * x)
+            self.assertAlmostEqual(force, columns["driver.lift.force"][row], delta=1e-6 * abs(force))
+
+    def test_the_counterweight_of_a_pump_jack_saves_torque(self):
+        largest = max(map(abs, self.run_file("pump-jack")["driver.motor.torque"]))
+        self.freeplay("run", os.path.join(FOLDER, "pump-jack.yaml"), "--out", "light", "--set", "counterweight=1kg", "--quiet")
+        rows = list(csv.reader(self.read("light", "results.csv").splitlines()))
+        column = rows[0].index("driver.motor.torque")
+        self.assertGreater(max(abs(float(row[column])) for row in rows[1:]) / largest, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
