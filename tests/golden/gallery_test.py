@@ -101,6 +101,32 @@ class Gallery(ProgramTest):
             force = -9.81 * (2 * 530 + 60) * x / math.sqrt(1 - x * x)
             self.assertAlmostEqual(force, columns["driver.lift.force"][row], delta=1e-6 * abs(force))
 
+    def test_an_oldham_coupling_turns_evenly_while_its_disc_whirls(self):
+        columns = self.run_file("oldham-coupling")
+        self.assert_all(columns, lambda at: at("body.first.angle") - at("body.second.angle"), 1e-9)
+        self.assert_all(columns, lambda at: math.hypot(at("body.disc.x") - 0.0025, at("body.disc.y")) - 0.0025, 1e-9)
+
+    def test_the_first_piston_of_a_radial_engine_is_that_of_a_slider_crank(self):
+        self.assert_all(self.run_file("radial-engine"), lambda at: at("joint.one.position") - (
+            0.045 * math.sin(at("joint.main.angle"))
+            + math.sqrt(0.16 ** 2 - (0.045 * math.cos(at("joint.main.angle"))) ** 2)), 1e-9)
+
+    def test_a_foot_of_hoekens_goes_straight_on_over_half_a_turn(self):
+        columns = self.run_file("walking-leg")
+        low = [(y, vx) for angle, y, vx in zip(columns["joint.main.angle"], columns["frame.rod/foot.y"],
+                                               columns["frame.rod/foot.vx"]) if math.cos(angle) < 0]
+        self.assertLess(max(y for y, _ in low) - min(y for y, _ in low), 0.01 * 0.16)
+        self.assertGreater(len(low), 100)
+
+    def test_two_cardan_joints_cancel_each_other(self):
+        columns = self.run_file("double-cardan")
+        self.assert_all(columns, lambda at: at("body.last.wx") - at("body.first.wx"), 1e-4)
+        speed, bend = 20 * math.pi, math.radians(25)
+        along = [math.cos(bend) * wx + math.sin(bend) * wy
+                 for wx, wy in zip(columns["body.middle.wx"], columns["body.middle.wy"])]
+        self.assertAlmostEqual(math.cos(bend), min(along) / speed, delta=1e-4)
+        self.assertAlmostEqual(1 / math.cos(bend), max(along) / speed, delta=1e-4)
+
     def test_the_counterweight_of_a_pump_jack_saves_torque(self):
         largest = max(map(abs, self.run_file("pump-jack")["driver.motor.torque"]))
         self.freeplay("run", os.path.join(FOLDER, "pump-jack.yaml"), "--out", "light", "--set", "counterweight=1kg", "--quiet")
