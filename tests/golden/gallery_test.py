@@ -127,6 +127,24 @@ class Gallery(ProgramTest):
         self.assertAlmostEqual(math.cos(bend), min(along) / speed, delta=1e-4)
         self.assertAlmostEqual(1 / math.cos(bend), max(along) / speed, delta=1e-4)
 
+    def test_a_suspension_rests_where_it_starts_and_comes_to_rest_again(self):
+        columns = self.run_file("wishbone-suspension")
+        before = [y for t, y in zip(columns["time"], columns["body.body.y"]) if t < 0.5]
+        self.assertLess(max(map(abs, before)), 1e-3)
+        self.assertGreater(max(columns["body.body.y"]), 0.02)
+        self.assertLess(abs(columns["body.body.y"][-1]), 2e-3)
+        self.assertAlmostEqual(380 + 10, columns["force.tyre.fy"][-1] / 9.81, delta=5)
+
+    def test_a_luffing_crane_keeps_its_load_level(self):
+        columns = self.run_file("luffing-crane")
+        self.assertGreater(columns["frame.jib/hook.x"][0] - columns["frame.jib/hook.x"][-1], 11)
+        self.assertLess(max(columns["frame.jib/hook.y"]) - min(columns["frame.jib/hook.y"]), 0.12)
+
+    def test_watts_linkage_guides_the_rod_straight(self):
+        columns = self.run_file("beam-engine")
+        self.assert_all(columns, lambda at: at("frame.coupler/rod.x") - 1.2, 1e-3)
+        self.assertGreater(max(columns["frame.coupler/rod.y"]) - min(columns["frame.coupler/rod.y"]), 0.6)
+
     def test_the_counterweight_of_a_pump_jack_saves_torque(self):
         largest = max(map(abs, self.run_file("pump-jack")["driver.motor.torque"]))
         self.freeplay("run", os.path.join(FOLDER, "pump-jack.yaml"), "--out", "light", "--set", "counterweight=1kg", "--quiet")
