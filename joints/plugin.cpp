@@ -19,6 +19,11 @@ Component spherical_clearance();
 Component bushing();
 Component joint_friction();
 Component joint_stop();
+Component point_on_plane();
+Component revolute_spherical();
+Component screw();
+Component belt();
+Component point_on_curve();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
@@ -39,6 +44,11 @@ FREEPLAY_PLUGIN(joints) {
                                          spherical_clearance(),
                                          bushing(),
                                          joint_friction(),
-                                         joint_stop()};
+                                         joint_stop(),
+                                         point_on_plane(),
+                                         revolute_spherical(),
+                                         screw(),
+                                         belt(),
+                                         point_on_curve()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

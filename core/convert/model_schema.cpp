@@ -132,8 +132,11 @@ Json leaf_schema(const Parameter& p) {
     case ParameterKind::number:
     case ParameterKind::integer:
     case ParameterKind::function:
+      alternatives.push_back(reference("quantity"));
+      break;
     case ParameterKind::formula:
       alternatives.push_back(reference("quantity"));
+      alternatives.push_back(reference("points"));
       break;
     case ParameterKind::vector:
       alternatives.push_back(reference("vector"));

@@ -101,6 +101,12 @@ constexpr FormatKey driver[] = {
      "{frame: platform, path: {x: 0.1*t}, joints: [A]}"},
     use};
 
+constexpr FormatKey points[] = {
+    {"points", "list of list of quantity", "", "required", "Pairs of the variable and the value, the first increasing.",
+     "[[-10 mm, -900 N], [0 m, 0 N], [10 mm, 600 N]]"},
+    {"interpolation", "'cubic' | 'linear'", "", "cubic", "Cubic spline, or straight lines.", "linear"},
+    {"ends", "'natural' | 'periodic'", "", "natural", "Straight on beyond them, or the same again.", "periodic"}};
+
 constexpr FormatKey inverse_kinematics[] = {
     {"frame", "frame", "", "required", "What follows the path.", "platform"},
     {"path", "map path", "", "required", "At least one component.", "{x: 0.1*cos(t), y: 0.1*sin(t)}"},
@@ -368,6 +374,8 @@ constexpr FormatMap maps[] = {
     {"inverse_kinematics", "drivers.NAME.inverse_kinematics", "A path that a frame follows.", inverse_kinematics},
     {"path", "drivers.NAME.inverse_kinematics.path", "Functions of time.", path},
     {"table", "drivers.NAME.table", "Values over time.", table},
+    {"points", "forces.NAME.spring", "A formula of a type, such as of a spring, as points of its first variable.",
+     points},
     {"force", "forces.NAME", "A force element; its other keys depend on its type.", force},
     {"force force", "forces.NAME", "A force that acts on a point.", applied_force},
     {"force torque", "forces.NAME", "A torque that acts on a body.", applied_torque},

@@ -12,11 +12,14 @@
 
 #include "format/parameter_tree.h"
 #include "format/table_variables.h"
+#include "model/table_formula.h"
 #include "model/time_function.h"
 #include "model/written_formula.h"
 
 namespace freeplay {
 namespace {
+
+constexpr std::size_t most_curve_points = 1000;  // of a curve
 
 bool is_law(ParameterKind kind) { return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law; }
 
@@ -240,9 +243,54 @@ class ParameterCheck {
   bool read_formula(const Parameter& parameter, const Unit& unit, const CheckedValue& written, ParameterValue& value) {
     TableVariables variables;
     for (const VariableRow& row : variables_of(parameter)) variables.add(row.name, unit_in_table(row.unit).dimension);
+    if (written.node().is_map()) {
+      return read_points(unit_in_table(variables_of(parameter).front().unit).dimension, unit.dimension, written, value);
+    }
     const std::optional<Expression> expression = written.formula(variables, unit.dimension);
     if (!expression) return false;
     set_formula(value, *expression, written.node().location_at(0), written.node().verbatim);
+    return true;
+  }
+
+  /// `spring: {points: [[x, y], ...], interpolation: cubic}`: a function of the first variable.
+  static bool read_points(const Dimension& of_x, const Dimension& of_y, const CheckedValue& written,
+                          ParameterValue& value) {
+    MapReader map(written, "points");
+    const auto points = map.require("points"), interpolation = map.find("interpolation"), ends = map.find("ends");
+    map.finish();
+    const auto word = interpolation ? interpolation->word({"cubic", "linear"}) : std::optional<int>(0);
+    const auto end_word = ends ? ends->word({"natural", "periodic"}) : std::optional<int>(0);
+    const auto items = points ? points->list() : std::nullopt;
+    if (!items || !word || !end_word) return false;
+    const bool periodic = *end_word == 1;
+    std::vector<double> x, y;
+    for (const CheckedValue& item : *items) {
+      const auto pair = item.list(2);
+      const auto at = pair ? (*pair)[0].quantity(of_x) : std::nullopt;
+      const auto there = pair ? (*pair)[1].quantity(of_y) : std::nullopt;
+      if (!at || !there) return false;
+      if (!x.empty() && !(*at > x.back())) {
+        (*pair)[0].fail("bad-table",
+                        fmt::format("the first numbers of points must increase: {} follows {}", *at, x.back()));
+        return false;
+      }
+      x.push_back(*at);
+      y.push_back(*there);
+    }
+    const std::size_t least = periodic ? 3 : 2;
+    if (x.size() < least || x.size() > most_curve_points) {
+      points->fail(x.size() < least ? "bad-table" : "too-large",
+                   fmt::format("a curve has from {} to {} points", least, most_curve_points));
+      return false;
+    }
+    if (periodic && std::abs(y.front() - y.back()) >
+                        1e-9 * std::abs(*std::ranges::max_element(y, {}, [](double v) { return std::abs(v); }))) {
+      points->fail("bad-table", fmt::format("the first and the last value of periodic points must agree: {} and {}",
+                                            y.front(), y.back()));
+      return false;
+    }
+    set_table_formula(value, std::move(x), std::move(y), static_cast<Interpolation>(*word),
+                      periodic ? SplineEnds::periodic : SplineEnds::natural);
     return true;
   }
 

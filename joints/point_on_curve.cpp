@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "freeplay/kit/planar_marker.h"
+#include "freeplay/plugin.h"
+
+namespace freeplay {
+namespace {
+
+using namespace planar;
+
+/// Value, slope and bend of a curve. The bend is the difference of exact slopes at three places on either side, to
+/// sixth order: exact for polynomials up to the seventh degree.
+class Curve {
+ public:
+  Curve(const Formula& formula, double step) : formula_(formula), step_(step) {}
+
+  struct At {
+    double value, slope, bend;
+  };
+  At at(double x) const {
+    At out{};
+    out.value = value_at(x, out.slope);
+    constexpr double weights[] = {45.0, -9.0, 1.0};
+    for (int k = 1; k <= 3; ++k) {
+      double above = 0.0, below = 0.0;
+      value_at(x + k * step_, above);
+      value_at(x - k * step_, below);
+      out.bend += weights[k - 1] * (above - below) / (60.0 * step_);
+    }
+    return out;
+  }
+
+ private:
+  double value_at(double x, double& slope) const {
+    const double variables[] = {x};
+    double slopes[1] = {};
+    const double value = formula_.at(variables, slopes);
+    slope = slopes[0];
+    return value;
+  }
+
+  Formula formula_;
+  double step_;
+};
+
+enum CurveForm { cartesian, polar };
+
+/// A pin in a curved groove, or the roller of a follower on a cam: the second origin stays on a curve of marker a, the
+/// turn is free. With d = P_b - P_a, V = d', w the angular speed of a, and
+///
+///   cartesian: h, n the axes of a, x = h.d, y = n.d      Phi = y - f(x)      dPhi/dP_b = n - f' h
+///     Phi'' = (n - f' h).d'' - (x + f' y) w' - w (h.V + x' + f' (n.V + y')) - f'' x'^2
+///   polar: rho = |d|, u = d/rho, t = u turned by +90 degrees, psi the angle of d in a from 0 to one turn
+///     Phi = rho - f(psi)      dPhi/dP_b = u - f' t/rho
+///     Phi'' = (u - f' t/rho).d'' + f' w' + rho q^2 + 2 f' rho' q/rho - f'' psi'^2 with q = t.V/rho
+class PointOnCurve final : public Joint {
+ public:
+  explicit PointOnCurve(const Parameters& p)
+      : form_(static_cast<CurveForm>(p.word("form"))),
+        curve_(p.formula("curve"), form_ == polar ? polar_step : cartesian_step) {}
+
+  void declare(JointLayout& layout) const override {
+    static constexpr Channel channels[] = {{"normal_force", "N"}};
+    layout.time_scale = unbounded;
+    layout.constraint_rows = 1;
+    layout.channels = channels;
+  }
+  void constrain(const JointInput& in, ConstraintRows& rows) const override {
+    const Row row = row_of(in);
+    rows.phi[0] = row.phi;
+    rows.gamma[0] = row.gamma;
+    for (int i = 0; i < 2; ++i) {
+      rows.jacobian[velocity_a + i] = -row.normal[i];
+      rows.jacobian[velocity_b + i] = row.normal[i];
+    }
+    rows.jacobian[turn_a] = row.by_turn;
+  }
+  /// Positive: the curve pushes the point up, or away from the middle of the cam.
+  void observe(const JointInput& in, Span<const double> lambda, Span<double> channels) const override {
+    channels[0] = -lambda[0] * row_of(in).normal.norm();
+  }
+
+ private:
+  static constexpr double smallest_distance = 1e-12;                 // [m]
+  static constexpr double polar_step = 1e-3, cartesian_step = 1e-4;  // of differences of slopes [rad, m]
+
+  struct Row {
+    double phi, gamma, by_turn;
+    Eigen::Vector2d normal;
+  };
+  Row row_of(const JointInput& in) const {
+    const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
+    return form_ == polar ? around(in, d, rate) : along(in, d, rate);
+  }
+  Row along(const JointInput& in, const Eigen::Vector2d& d, const Eigen::Vector2d& rate) const {
+    const Eigen::Vector2d h = x_axis(*in.a), n = turned(h);
+    const double w = angular_velocity(*in.a), x = h.dot(d), y = n.dot(d);
+    const double x_rate = h.dot(rate) + w * y, y_rate = n.dot(rate) - w * x;
+    const Curve::At f = curve_.at(x);
+    return {y - f.value, w * (h.dot(rate) + x_rate + f.slope * (n.dot(rate) + y_rate)) + f.bend * x_rate * x_rate,
+            -(x + f.slope * y), n - f.slope * h};
+  }
+  Row around(const JointInput& in, const Eigen::Vector2d& d, const Eigen::Vector2d& rate) const {
+    // In the middle of the curve the x axis stands for u.
+    const Eigen::Vector2d h = x_axis(*in.a);
+    const double rho = std::max(d.norm(), smallest_distance);
+    const Eigen::Vector2d u = d.norm() > 0.0 ? Eigen::Vector2d(d / d.norm()) : h, t = turned(u);
+    double psi = std::atan2(turned(h).dot(d), h.dot(d));
+    if (psi < 0.0) psi += 2.0 * std::numbers::pi;
+    const Curve::At f = curve_.at(psi);
+    const double out = u.dot(rate), q = t.dot(rate) / rho, turning = q - angular_velocity(*in.a);
+    return {rho - f.value, f.bend * turning * turning - rho * q * q - 2.0 * f.slope * out * q / rho, f.slope,
+            u - f.slope / rho * t};
+  }
+
+  CurveForm form_;
+  Curve curve_;
+};
+
+constexpr Parameter point_on_curve_parameters[] = {
+    {.name = "form",
+     .kind = ParameterKind::choice,
+     .default_value = cartesian,
+     .choices = "cartesian|polar",
+     .summary = "The curve gives y over x of the first frame, or the distance from its origin over the angle."},
+    {.name = "curve",
+     .kind = ParameterKind::formula,
+     .unit = "m",
+     .summary = "Height at x, or distance at the angle x from 0 to one turn; points as well.",
+     .variables = "x: form: m | rad"}};
+
+}  // namespace
+
+Component point_on_curve() {
+  return joint<PointOnCurve>(
+      {.name = "point-on-curve",
+       .space = Space::planar,
+       .summary =
+           "Pin in a curved groove, or roller on a cam: the second origin stays on a curve of the first frame, the "
+           "turn is free.",
+       .formula =
+           "y = curve(x) in the first frame, or |d| = curve(angle of d in the first frame), d = P_b - P_a; for a "
+           "roller the way of its centre.",
+       .validity = "The point does not lift off: a negative normal_force pulls. Where the curvature of a formula or of "
+                   "points jumps, accelerations go over within 3e-4 m or 3e-3 rad.",
+       .references = "Norton 2009, Cam Design and Manufacturing Handbook",
+       .parameters = point_on_curve_parameters});
+}
+
+}  // namespace freeplay

@@ -1,0 +1,55 @@
+"""Belts pull as statics says, keep the ratio of their radii, swing, and go slack."""
+import math
+import unittest
+
+from model_cases import EXACT, ModelTest
+
+
+class Belts(ModelTest):
+    TEXT = """
+bodies: {small: {mass: 1, inertia: 0.01}, large: {mass: 3, inertia: 0.04}}
+frames: {ground/l: [0.5, 0]}
+joints: {s: {type: revolute, between: [ground, small]}, l: {type: revolute, between: [ground/l, large]}}
+forces:
+  belt: {type: belt, between: [small, large], first_radius: 50 mm, second_radius: 120 mm, stiffness: 2e5 N/m,
+         pretension: 400 N, damping: %s, strands: %s}
+  load: {type: torque, on: large, value: "%s"}
+drivers: {motor: {joint: s, kind: angle, value: "%s"}}
+simulation: {end: %s, output: {interval: 10 ms}, %s}
+"""
+
+    def test_tensions_and_bearings_are_those_of_statics(self):
+        for strands, across in (("open", 0.12 - 0.05), ("crossed", 0.12 + 0.05)):
+            for torque in (36, -36):
+                columns = self.run_model(self.TEXT % (400, strands, "%s N*m" % torque, "0", 1, "step: 1 ms"))
+                sense = 1 if strands == "open" else -1
+                # A load that turns the large pulley on stretches the strand that holds it.
+                left, right = (columns["force.belt.%s_tension" % side][-1] for side in ("left", "right"))
+                self.assertAlmostEqual(400 - sense * torque / 0.24, left, delta=1e-7)
+                self.assertAlmostEqual(400 + sense * torque / 0.24, right, delta=1e-7)
+                sine = across / 0.5
+                self.assertAlmostEqual(800 * math.sqrt(1 - sine ** 2), columns["joint.l.fx"][-1], delta=1e-6)
+                self.assertAlmostEqual(sense * (left - right) * sine, columns["joint.l.fy"][-1], delta=1e-6)
+
+    def test_the_ratio_is_that_of_the_radii(self):
+        for strands, ratio in (("open", 5 / 12), ("crossed", -5 / 12)):
+            columns = self.run_model(self.TEXT % (400, strands, "0 N*m", "10 rad*smooth(t, 0 s, 0.5 s)", 1,
+                                                  "step: 1 ms"))
+            self.assertAlmostEqual(10 * ratio, columns["joint.l.angle"][-1], delta=1e-8)
+
+    def test_a_pulley_swings_on_both_strands(self):
+        columns = self.run_model((self.TEXT % (0, "open", "0 N*m", "0", 0.5, EXACT))
+                                 + "initial: {speeds: {l: 1 rad/s}}\n")
+        w = math.sqrt(2 * 2e5 * 0.12 ** 2 / 0.04)
+        self.assert_column(columns, "joint.l.angle", lambda t: math.sin(w * t) / w, 1e-9)
+        self.assertLess(max(map(abs, columns["energy.residual"])), 1e-9)
+
+    def test_a_slack_strand_does_not_push(self):
+        columns = self.run_model(self.TEXT % (400, "open", "150 N*m*smooth(t, 0 s, 0.5 s)", "0", 1, "step: 1 ms"))
+        self.assertEqual(0, columns["force.belt.left_tension"][-1])
+        self.assertAlmostEqual(150 / 0.12, columns["force.belt.right_tension"][-1], delta=1e-4)
+        self.assertLess(max(map(abs, columns["energy.residual"])), 1e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()

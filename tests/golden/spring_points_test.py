@@ -1,0 +1,89 @@
+"""Springs whose force goes through given points."""
+import unittest
+
+from model_cases import EXACT, ModelTest
+
+POINTS = [(-0.02, -900.0), (-0.005, -60.0), (0.0, 0.0), (0.01, 200.0), (0.03, 1500.0)]
+
+
+def natural_spline(points):
+    """Second derivatives at the points, by elimination."""
+    n = len(points)
+    rows = [[0.0] * (n + 1) for _ in range(n)]
+    rows[0][0] = rows[-1][n - 1] = 1.0
+    for i in range(1, n - 1):
+        (a, fa), (b, fb), (c, fc) = points[i - 1:i + 2]
+        rows[i][i - 1:i + 2] = [(b - a) / 6, (c - a) / 3, (c - b) / 6]
+        rows[i][n] = (fc - fb) / (c - b) - (fb - fa) / (b - a)
+    for i in range(n):
+        pivot = rows[i][i]
+        rows[i] = [x / pivot for x in rows[i]]
+        for k in range(n):
+            if k != i:
+                rows[k] = [x - rows[k][i] * y for x, y in zip(rows[k], rows[i])]
+    return [row[n] for row in rows]
+
+
+def through_points(x, cubic):
+    """The force at x; beyond the ends straight on."""
+    bends = natural_spline(POINTS) if cubic else [0.0] * len(POINTS)
+    i = max(0, min(len(POINTS) - 2, sum(x >= p for p, _ in POINTS) - 1))
+    (a, fa), (b, fb) = POINTS[i:i + 2]
+    inside, h = max(a, min(b, x)), b - a
+    u, v = (b - inside) / h, (inside - a) / h
+    value = u * fa + v * fb + ((u ** 3 - u) * bends[i] + (v ** 3 - v) * bends[i + 1]) * h * h / 6
+    slope = (fb - fa) / h + ((3 * v * v - 1) * bends[i + 1] - (3 * u * u - 1) * bends[i]) * h / 6
+    return value + slope * (x - inside)
+
+
+class SpringsThroughPoints(ModelTest):
+    TEXT = """
+bodies: {sled: {mass: 2 kg, inertia: 1}}
+joints: {rail: {type: prismatic, between: [ground, sled]}}
+forces:
+  tie:
+    type: spring-damper
+    between: [ground, sled]
+    free_length: 1 m
+    spring: {points: [[-20 mm, -900 N], [-5 mm, -60 N], [0, 0], [10 mm, 200 N], [30 mm, 1.5 kN]], interpolation: %s}
+initial: {joints: {rail: 1.035 m}, speeds: {rail: 0.5 m/s}}
+simulation: {end: 0.5, %s, output: {interval: 2 ms}}
+"""
+
+    def test_pull_as_their_lines_or_their_spline_and_keep_the_energy(self):
+        for word in ("linear", "cubic"):
+            columns = self.run_model(self.TEXT % (word, "accuracy: 1e-9"))
+            for row, x in enumerate(columns["joint.rail.position"]):
+                wanted = -through_points(x - 1, word == "cubic")
+                self.assertAlmostEqual(wanted, columns["force.tie.fx"][row], delta=1e-8 * max(1, abs(wanted)))
+            self.assertLess(min(columns["joint.rail.position"]), 0.978)
+            self.assertGreater(max(columns["joint.rail.position"]), 1.031)
+            self.assertLess(max(map(abs, columns["energy.residual"])), 1e-8 * max(columns["energy.potential"]))
+
+    def test_of_a_straight_line_are_the_linear_spring(self):
+        text = self.TEXT % ("cubic", EXACT)
+        head, _, tail = text.partition("    spring:")
+        tail = tail[tail.index("\n"):]
+        line = self.run_model(head + "    spring: {points: [[-1 mm, -3 N], [0, 0 N], [5 mm, 15 N]]}" + tail)
+        number = self.run_model(head + "    stiffness: 3000 N/m" + tail)
+        for name in ("joint.rail.position", "energy.potential"):
+            for x, y in zip(number[name], line[name], strict=True):
+                self.assertAlmostEqual(x, y, delta=1e-9)
+
+    def test_say_what_is_wrong_with_the_points(self):
+        for points, error in (
+                ("[[0, 0], [0, 1 N]]", "bad-table"), ("[[0, 0]]", "bad-table"), ("[[0, 0], [1 N, 1 N]]", "dimension-mismatch"),
+                ("[[0, 0], [1 mm, 1 mm]]", "dimension-mismatch"), ("[[0, 0], [1 mm]]", "wrong-length"), ("3", "wrong-type")):
+            text = (self.TEXT % ("linear", "step: 1 ms"))
+            start = text.index("points: ") + len("points: ")
+            text = text[:start] + points + text[text.index(", interpolation"):]
+            self.refusal(text, id=error, line=10)
+        self.refusal(self.TEXT % ("quadratic", "step: 1 ms"), line=10)
+        self.refusal((self.TEXT % ("linear", "step: 1 ms")).replace("interpolation: linear", "intrepolation: linear"),
+                     id="unknown-key", line=10)
+        self.refusal((self.TEXT % ("linear", "step: 1 ms")).replace("interpolation: linear", "ends: periodic"),
+                     id="bad-table", line=10)
+
+
+if __name__ == "__main__":
+    unittest.main()
