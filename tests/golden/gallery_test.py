@@ -145,6 +145,17 @@ class Gallery(ProgramTest):
         self.assert_all(columns, lambda at: at("frame.coupler/rod.x") - 1.2, 1e-3)
         self.assertGreater(max(columns["frame.coupler/rod.y"]) - min(columns["frame.coupler/rod.y"]), 0.6)
 
+    def test_a_valve_is_lifted_and_never_left(self):
+        columns = self.run_file("valve-train")
+        self.assertAlmostEqual(0.039, max(columns["body.valve.y"]), delta=1e-5)
+        self.assertGreater(min(columns["joint.roller.normal_force"]), 0)
+
+    def test_a_strand_goes_slack_in_the_jerk_of_a_start(self):
+        columns = self.run_file("belt-drive")
+        tensions = columns["force.belt.left_tension"], columns["force.belt.right_tension"]
+        self.assertEqual(0, min(map(min, tensions)))
+        self.assertLess(abs(columns["joint.motor.speed"][-1] / columns["joint.fan.speed"][-1] - 3), 1e-2)
+
     def test_the_counterweight_of_a_pump_jack_saves_torque(self):
         largest = max(map(abs, self.run_file("pump-jack")["driver.motor.torque"]))
         self.freeplay("run", os.path.join(FOLDER, "pump-jack.yaml"), "--out", "light", "--set", "counterweight=1kg", "--quiet")
