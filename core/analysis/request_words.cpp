@@ -232,6 +232,30 @@ void require_sense(const AnalysisWords& words) {
   }
 }
 
+std::vector<std::string> arguments_of(const AnalysisWords& asked, bool coloured) {
+  std::vector<std::string> words{asked.kind};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  const auto add_each = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) add(option, value);
+  };
+  add("--frame", asked.frame);
+  add_each("--pose", asked.pose);
+  add_each("--grid", asked.grid);
+  add("--time", asked.time);
+  add_each("--input", asked.input);
+  add("--elbow", asked.elbow);
+  if (asked.sensitivity) words.emplace_back("--sensitivity");
+  add("--samples", asked.samples);
+  add("--seed", asked.seed);
+  add("--distribution", asked.distribution);
+  if (asked.branches) words.emplace_back("--branches");
+  if (coloured) words.emplace_back("--colours");
+  add("--preload", asked.preload);
+  return words;
+}
+
 long seed_of(const AnalysisWords& words) { return words.seed.empty() ? 0 : whole_number("--seed", words.seed, 0); }
 
 }  // namespace freeplay

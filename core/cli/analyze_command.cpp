@@ -1,7 +1,6 @@
 #include "cli/analyze_command.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -9,8 +8,6 @@
 #include <fmt/format.h>
 
 #include "analysis/analyse.h"
-#include "analysis/rows.h"
-#include "analysis/singularity.h"
 #include "base/processors.h"
 #include "base/sha256.h"
 #include "base/whole_file.h"
@@ -20,62 +17,13 @@
 #include "cli/loading.h"
 #include "cli/output_file.h"
 #include "cli/terminal.h"
-#include "drawing/map_drawing.h"
+#include "drawing/analysis_map.h"
 #include "load/load.h"
 #include "results/made_text.h"
 #include "results/provenance.h"
 
 namespace freeplay {
 namespace {
-
-/// The map of a table over a grid of x and y.
-std::string drawing(const IdealMechanism& mechanism, const AnalysisRequest& request, const RequestedStations& stations,
-                    const AnalysisTable& table, bool coloured, const TickOf& tick_of) {
-  const Model& model = mechanism.model();
-  const PoseForm& form = mechanism.form();
-  const auto* grid = stations.grid();
-  const bool of_errors = request.kind == AnalysisKind::error;
-  bool flat = grid != nullptr && (*grid)[0].count > 1 && (*grid)[1].count > 1;
-  for (std::size_t i = 2; i < form.size(); ++i) flat = flat && (*grid)[i].count == 1;
-  if (!flat || request.must_reach()) {
-    throw Error(Error::Category::usage, "bad-value",
-                "--svg draws a map: workspace, singularity or error on a grid of x and y, with one value of all else");
-  }
-  const std::vector<Station>& all = stations.all();
-  const std::string column = of_errors ? "position" : "condition";
-  const auto place = static_cast<std::size_t>(std::ranges::find(table.columns, column) - table.columns.begin());
-  PositionMap map;
-  map.title = fmt::format("{}: {}", model.name, of_errors ? "largest position error by clearance" : "condition number");
-  for (std::size_t i = 2; i < form.size(); ++i) {
-    if (!stations.given()[i] || (*grid)[i].value(0) == 0.0) continue;
-    map.title += fmt::format(", {} {:.6g} {}", form.words[i], (*grid)[i].value(0), form.is_turn(i) ? "rad" : "m");
-  }
-  map.coloured = coloured;
-  map.quantity = of_errors ? "position error [um]" : "condition number";
-  const double unit = of_errors ? 1e6 : 1.0;
-  for (long i = 0; i < (*grid)[0].count; ++i) map.x.push_back((*grid)[0].value(i));
-  for (long j = 0; j < (*grid)[1].count; ++j) map.y.push_back((*grid)[1].value(j));
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const double value = std::get<double>(table.rows[k][place]);
-    map.values.push_back(unit * value);
-    const bool good = all[k].reachable && std::isfinite(value) && (of_errors || value * singular_limit < 1.0);
-    map.points.push_back(!all[k].reachable ? MapPoint::unreachable : good ? MapPoint::good : MapPoint::singular);
-  }
-  if (!std::ranges::is_sorted(map.x) || !std::ranges::is_sorted(map.y)) {
-    throw Error(Error::Category::usage, "bad-value", "--svg needs a grid whose x and y grow");
-  }
-  map.determinant =
-      determinants(mechanism, all, stations.given(), request.threads, tick_of("signs of the map", all.size()));
-  const auto& path = mechanism.platform().path;
-  for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
-    const Settings& settings = model.settings;
-    Jet x, y;
-    EvaluationFailure failure;
-    const double t = settings.start + (settings.end - settings.start) * k / 200.0;
-    if (path[0]->evaluate(t, x, failure) && path[1]->evaluate(t, y, failure)) map.path.push_back({x.value, y.value});
-  }
-  return map_svg(map);
-}
 
 /// What makes the same table or map again.
 Json record_of(const Model& model, const AnalyzeOptions& options, const CommonOptions& common) {
@@ -133,7 +81,9 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
     const AnalysisRequest request = request_of(mechanism, options, processor_count());
     const RequestedStations stations(mechanism, request, tick_of);
     result = analyse(mechanism, request, stations, tick_of);
-    if (!options.svg.empty()) map = drawing(mechanism, request, stations, result.table, options.coloured, tick_of);
+    if (!options.svg.empty()) {
+      map = analysis_map_svg(mechanism, request, stations, result.table, options.coloured, tick_of);
+    }
   } catch (const Interrupted&) {
     Diagnostic diagnostic;
     diagnostic.id = "interrupted";

@@ -18,15 +18,16 @@
 #include "cli/profile_table.h"
 #include "cli/progress_line.h"
 #include "cli/repeat_runs.h"
-#include "cli/resumption.h"
 #include "cli/run_glance.h"
 #include "cli/run_options.h"
 #include "cli/run_size.h"
 #include "cli/run_table.h"
 #include "cli/terminal.h"
 #include "cli/twin_run.h"
-#include "cli/verify_run.h"
 #include "cli/verify_table.h"
+#include "job/resumption.h"
+#include "job/verification_record.h"
+#include "job/verify_run.h"
 #include "load/facts.h"
 #include "load/input_file.h"
 #include "load/load.h"
@@ -51,15 +52,6 @@ std::filesystem::path result_path(const RunOptions& options, const Model& model)
   return std::filesystem::path("results") / result_name(model.name, !options.model_options.ideal.empty());
 }
 
-/// What the run is made from and with, for its checkpoints.
-Json made(const RunOptions& options, const CommonOptions& common, const Model& model) {
-  return {{"program", program_of_checkpoints()},
-          {"options", kept_options(options, common)},
-          {"settings", settings_json(model)},
-          {"model_copy", model_copy_name(model)},
-          {"provenance", provenance(model, making(options, common, model))}};
-}
-
 /// Runs to the end and returns it as a record.
 class RunJob {
  public:
@@ -76,12 +68,14 @@ class RunJob {
         twin_(twin),
         path_(std::move(path)),
         channels_(*loaded.model),
-        recording_(from == nullptr ? Recording(path_, options.force, *loaded.model, channels_,
-                                               making(options, common, *loaded.model))
-                                   : Recording::go_on(path_, *loaded.model, channels_,
-                                                      making(options, common, *loaded.model), kept_part_of(*from))),
+        recording_(from == nullptr
+                       ? Recording(path_, options.force, *loaded.model, channels_,
+                                   making(options, common.command, *loaded.model))
+                       : Recording::go_on(path_, *loaded.model, channels_,
+                                          making(options, common.command, *loaded.model), kept_part_of(*from))),
         sinks_(recording_.sinks()),
-        checkpoints_(recording_, path_, made(options, common, *loaded.model), checkpoint_period(options)) {
+        checkpoints_(recording_, path_, made_from(options, common.command, *loaded.model),
+                     checkpoint_period(options.checkpoint)) {
     if (from == nullptr || !from->state) {
       simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks());
     } else {
@@ -160,8 +154,11 @@ class RunJob {
   std::optional<Verification> verify(const Outcome& outcome, const Ended& ended) {
     std::string trouble;
     const BuildOptions build = build_options(options_);
+    const LoadOptions load = loading(common_);
     std::optional<Verification> verification = verify_run(
-        {options_.model, build, common_, assembled_.system, outcome, ended.statistics, rows_->table()}, trouble);
+        {[&](const BuildOptions& other) { return load_model(options_.model, other, load); }, build, load,
+         assembled_.system, outcome, ended.statistics, rows_->table(), [] { return watch_interrupts() != 0; }},
+        trouble);
     if (!trouble.empty()) warn("--verify: " + trouble);
     if (verification && verification->agreement == Agreement::disagree) {
       warn("--verify: " + agreement_text(*verification));
@@ -380,21 +377,17 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
   if (!options.model_name.empty()) loaded.model->name = options.model_name;
   const std::filesystem::path path = result_path(options, *loaded.model);
-  if (resumed != nullptr) require_same_making(*resumed, *loaded.model);
   if (!options.dry_run && resumed == nullptr) {
     check_result_directory(path, options.force);
     if (options.out.empty() && !options.force) require_no_other_model(path, *loaded.model);
   }
-  if (options.twin && loaded.model->clearance_joints() == 0) {
-    throw Error(
-        Error::Category::usage, "no-clearance",
-        "--twin runs the model with every clearance closed alongside, and no joint of this model has a clearance");
-  }
+  if (options.twin) require_twin(*loaded.model);
   InputCourse inputs;
   if (!options.inputs.empty()) {
     inputs = read_inputs(options.inputs, *loaded.model, loaded.diagnostics, loaded.model->inputs.emplace_back());
   }
   if (loaded.diagnostics.has_errors()) return report_failure(loaded.diagnostics, 3, common);
+  if (resumed != nullptr) require_same_making(resumed->checkpoint, provenance(*loaded.model, {}));
   const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
   if (!options.dry_run) announce_size(*loaded.model, path, from != nullptr ? from->rows() : 0, options, common);
   const auto assembled = assemble_model(loaded);
@@ -418,12 +411,25 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
 }
 
 int resume(const CLI::App& app, const RunOptions& asked, CommonOptions& common) {
-  const Resumption resumption = read_resumption(app, asked, common);
-  if (resumption.nothing_to_do.empty()) return run(resumption.options, common, &resumption);
-  const std::string text = "nothing to do: " + resumption.nothing_to_do;
-  common.json ? print_json(Json{{"directory", asked.resume}, {"resumed", false}, {"reason", text}})
-              : print(text + "\n");
-  return 0;
+  refuse_other_options(app);
+  checkpoint_period(asked.checkpoint);
+  const Resumption resumption = read_resumption(asked.resume, asked.end);
+  if (!resumption.nothing_to_do.empty()) {
+    const std::string text = "nothing to do: " + resumption.nothing_to_do;
+    common.json ? print_json(Json{{"directory", asked.resume}, {"resumed", false}, {"reason", text}})
+                : print(text + "\n");
+    return 0;
+  }
+  RunOptions options = asked;
+  static_cast<KeptWords&>(options) = resumption.words;
+  options.model = resumption.model;
+  options.model_name = resumption.model_name;
+  options.out = asked.resume;
+  options.resume.clear();
+  options.force = !resumption.goes_on;
+  common.recorded_plugins = resumption.recorded_plugins;
+  common.strict = options.strict;
+  return run(options, common, &resumption);
 }
 
 }  // namespace
@@ -435,6 +441,7 @@ Command add_run_command(CLI::App& program, CommonOptions& common) {
   add_common_options(*app, common);
   return {app, [app, options, &common] {
             options->plugins = common.plugins;
+            options->strict = common.strict;
             return options->resume.empty() ? run(*options, common, nullptr) : resume(*app, *options, common);
           }};
 }

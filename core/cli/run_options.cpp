@@ -1,33 +1,20 @@
 #include "cli/run_options.h"
 
+#include <algorithm>
+#include <array>
+
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "cli/repeat_runs.h"
 
 namespace freeplay {
 namespace {
 
-/// Every option that the numbers or the files of a run depend on.
-template <class Options, class Common, class Visit>
-void each_kept(Options& options, Common& common, Visit&& visit) {
-  visit("end", options.end);
-  visit("step", options.step);
-  visit("accuracy", options.accuracy);
-  visit("integrator", options.integrator);
-  visit("format", options.format);
-  visit("repeat", options.repeat);
-  visit("seed", options.seed);
-  visit("set", options.model_options.set);
-  visit("ideal", options.model_options.ideal);
-  visit("verify", options.verify);
-  visit("interval", options.interval);
-  visit("inputs", options.inputs);
-  visit("channels", options.channels);
-  visit("twin", options.twin);
-  visit("plugins", options.plugins);
-  visit("strict", common.strict);
-}
+// What the numbers of a run that goes on may differ in; the rest of its options stays as it was.
+constexpr std::array may_change{"--resume", "--end", "--checkpoint", "--report", "--profile", "--yes"};
+constexpr std::array of_every_command{"--quiet",      "--verbose", "--json",         "--no-color",
+                                      "--max-errors", "--plugin",  "--allow-plugins"};
 
 }  // namespace
 
@@ -73,57 +60,20 @@ void refuse_idle_options(const RunOptions& options) {
     throw Error(Error::Category::usage, "usage",
                 fmt::format("--dry-run runs nothing, so {} has nothing to report", idle));
   }
-  if (!options.inputs.empty() && (options.verify || !options.repeat.empty())) {
-    throw Error(Error::Category::usage, "usage",
-                fmt::format("--inputs and {} exclude each other: other runs have no inputs",
-                            options.verify ? "--verify" : "--repeat"));
+  require_together(options);
+}
+
+void refuse_other_options(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::ranges::find(may_change, name) != may_change.end() ||
+        std::ranges::find(of_every_command, name) != of_every_command.end()) {
+      continue;
+    }
+    throw Error(Error::Category::usage, "usage", fmt::format("{} does not go with --resume", name), {},
+                "model and settings are those of the run that goes on; only --end, --checkpoint, --report, "
+                "--profile and --yes may change");
   }
-  if (options.twin && !options.repeat.empty()) {
-    throw Error(Error::Category::usage, "usage",
-                "--twin and --repeat exclude each other: a twin without play has one start only");
-  }
-}
-
-double checkpoint_period(const RunOptions& options) {
-  constexpr double usual = 10.0;
-  if (options.checkpoint.empty()) return usual;
-  if (options.checkpoint == "0") return 0.0;
-  const double period = signed_quantity("--checkpoint", options.checkpoint, dimension::time);
-  if (!(period >= 0.0)) bad_value("--checkpoint", options.checkpoint, "it must not be negative");
-  return period;
-}
-
-Making making(const RunOptions& options, const CommonOptions& common, const Model& model) {
-  Making making{
-      .made = "run", .command = common.command, .arguments = arguments_of(model, options), .build = FREEPLAY_BUILD};
-  const auto add = [&](const char* option, const std::string& value) {
-    if (value.empty()) return;
-    making.arguments.emplace_back(option);
-    making.arguments.push_back(value);
-  };
-  add("--inputs", options.inputs);
-  add("--repeat", options.repeat);
-  add("--seed", options.seed);
-  if (!options.repeat.empty()) making.seed = repeat_plan(options.repeat, options.seed).seed;
-  if (options.verify) making.arguments.emplace_back("--verify");
-  if (options.twin) making.arguments.emplace_back("--twin");
-  for (const std::string& plugin : options.plugins) add("--plugin", plugin);
-  return making;
-}
-
-Json kept_options(const RunOptions& options, const CommonOptions& common) {
-  Json kept;
-  each_kept(options, common, [&](const char* name, const auto& value) { kept[name] = value; });
-  return kept;
-}
-
-bool keep_options(const Json& kept, RunOptions& options, CommonOptions& common) {
-  try {
-    each_kept(options, common, [&](const char* name, auto& value) { kept.at(name).get_to(value); });
-  } catch (const Json::exception&) {
-    return false;
-  }
-  return true;
 }
 
 }  // namespace freeplay

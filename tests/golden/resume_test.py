@@ -16,6 +16,16 @@ from program import PROGRAM, ProgramTest, mechanism
 CRANK = mechanism("slider-crank")
 
 
+HELD = """freeplay: 1
+name: held-rod
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1 kg, inertia: "1 kg*m^2 / 12", com: [0.5, 0]}}
+joints: {pivot: {type: revolute, between: [ground, rod]}}
+drivers: {motor: {joint: pivot, kind: torque, input: 0 N*m}}
+simulation: {end: 20 s, step: 0.1 ms, output: {interval: 10 ms}}
+"""
+
+
 def other_arithmetic(checkpoint):
     """A checkpoint as a machine with other elementary functions would have written it."""
     data = re.sub(rb'("arithmetic":\s*")[0-9a-f]{16}', rb"\g<1>0123456789abcdef", checkpoint[:-64])
@@ -23,8 +33,10 @@ def other_arithmetic(checkpoint):
 
 
 class Resume(ProgramTest):
+    model = CRANK
+
     def run_model(self, name, *options):
-        return self.freeplay("run", CRANK, "--quiet", "--out", name, *options)
+        return self.freeplay("run", self.model, "--quiet", "--out", name, *options)
 
     def whole(self, *options):
         """Not disturbed; how long it took [s]."""
@@ -34,7 +46,7 @@ class Resume(ProgramTest):
 
     def ended_early(self, name, number, after, *options):
         """Gives a run a signal some seconds after its first checkpoint. Returns its exit code."""
-        with subprocess.Popen([PROGRAM, "run", CRANK, "--quiet", "--out", name, *options], cwd=self.folder,
+        with subprocess.Popen([PROGRAM, "run", self.model, "--quiet", "--out", name, *options], cwd=self.folder,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
             while process.poll() is None and not os.path.exists(self.path(name, "checkpoint.bin")):
                 time.sleep(0.005)
@@ -83,6 +95,21 @@ class Resume(ProgramTest):
                 self.freeplay("run", "--resume", name, "--quiet")
                 self.assert_same(name, "whole")
                 self.assertIn("resumed from t = ", self.read(name, "run.log"))
+
+    def test_a_run_with_inputs_goes_on_with_those_that_it_began_with(self):
+        self.model = self.write("held.yaml", HELD)
+        self.write("course.csv", "time,motor\n0,1\n0.0137,2\n3,-1\n7.77,0.5\n90,0\n")
+        options = ("--inputs", "course.csv", "--checkpoint", "0")
+        name = self.interrupted(signal.SIGTERM, self.whole(*options), *options)
+        self.write("course.csv", "time,motor\n0,1\n")
+        before = self.read(name, "results.csv")
+        _, refused = self.freeplay("run", "--resume", name, code=3)
+        self.assertRegex(refused, r"'course.csv' of the inputs is not that of the run.*\[resume-mismatch\]")
+        self.assertTrue(before == self.read(name, "results.csv"))
+        os.remove(self.path("course.csv"))  # the copy in the result serves
+        self.freeplay("run", "--resume", name, "--quiet")
+        self.assert_same(name, "whole")
+        self.assertTrue(self.read(name, "inputs.csv") == self.read("whole", "inputs.csv"))
 
     def test_rows_and_events_that_were_changed_are_found(self):
         options = ("--end", "0.1 s", "--checkpoint", "0")

@@ -27,15 +27,16 @@ STANDS_ON = {
     "results": ["run"],
     "svg": ["base"],
     "plot": ["results", "svg"],
-    "drawing": ["assembly", "svg"],
     "analysis": ["assembly"],
+    "drawing": ["analysis", "svg"],
     "load": ["yaml", "urdf", "run"],
     "report": ["results", "load"],
     "workers": ["base"],
+    "job": ["results", "load", "workers"],
     "study": ["workers", "results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
     "python": ["load", "results", "convert", "drawing", "analysis", "contract", "study"],
-    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "workers", "study"],
+    "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "workers", "study", "job"],
 }
 WITHOUT_SDK = {"base", "linear", "svg", "workers"}
 
@@ -71,7 +72,7 @@ LIBRARIES = {
     "CLI": {"cli"},
     "pybind11": {"python"},
     "fmt": EVERY_ROOM,
-    "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "cli", "python"},
+    "Eigen": EVERY_ROOM - {"base", "component", "model", "format", "yaml", "results", "svg", "plot", "load", "job", "cli", "python"},
 }
 # Libraries that may be missing: the files that are built only where they are.
 OPTIONAL_LIBRARIES = {"solvers/sundials_": {"arkode", "nvector"}}

@@ -1,13 +1,11 @@
-#include "cli/verify_run.h"
+#include "job/verify_run.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.h"
-#include "cli/loading.h"
-#include "cli/verify_table.h"
+#include "job/verification_record.h"
 #include "load/plugins.h"
 #include "results/row_memory.h"
 
@@ -69,19 +67,18 @@ struct OtherRun {
 };
 
 /// One that takes too many steps is given up.
-void run_to_end(OtherRun& other, long most_steps) {
+void run_to_end(OtherRun& other, long most_steps, const std::function<bool()>& interrupted) {
   other.assembled = other.loaded.model ? assemble_model(other.loaded) : nullptr;
   if (!other.assembled) return;
   other.channels.emplace(*other.loaded.model);
   other.rows.emplace(*other.channels);
   Sink* const sink = &*other.rows;
   Simulation simulation(other.assembled->system, other.assembled->start, *other.channels, {&sink, 1});
-  const std::atomic<int>& asked = watch_interrupts();
   std::atomic<int> stop{0};
   RunHooks hooks;
   hooks.interrupt = &stop;
   hooks.progress = [&](double, long steps) {
-    if (asked.load() != 0 || steps > most_steps) stop = 1;
+    if (interrupted() || steps > most_steps) stop = 1;
   };
   other.outcome = simulation.run(hooks);
   // Peaks of a run that went less far are no others'.
@@ -92,7 +89,7 @@ void run_to_end(OtherRun& other, long most_steps) {
 /// The model with an integrator of the other kind than the run's.
 LoadedModel load_by_other_kind(const VerifiedRun& run, BuildOptions& build) {
   const bool was_explicit = layout_of(run.system.model()).explicit_stages != 0;
-  const Registry registry = load_registry(loading(run.common), nullptr);
+  const Registry registry = load_registry(run.load, nullptr);
   std::vector<std::string> names;
   for (const std::uint32_t use : {2u, 1u}) {
     const Component* component = registry.preferred(ComponentKind::integrator, use);
@@ -103,7 +100,7 @@ LoadedModel load_by_other_kind(const VerifiedRun& run, BuildOptions& build) {
     build.integrator = name;
     LoadedModel loaded;
     try {
-      loaded = load_model(run.file, build, loading(run.common));
+      loaded = run.read(build);
     } catch (const Error&) {
       continue;  // it gives no error estimate
     }
@@ -171,9 +168,9 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
     return std::nullopt;
   }
   const long most_steps = std::max(steps_at_least, steps_for_each * run.outcome.steps);
-  run_to_end(second, most_steps);
+  run_to_end(second, most_steps, run.interrupted);
   if (!second.assembled || second.outcome.rows < 2) {
-    trouble = watch_interrupts() != 0
+    trouble = run.interrupted()
                   ? "the second run was interrupted"
                   : fmt::format("the second run, by {}, came to nothing: {}", *build.integrator, second.outcome.reason);
     return std::nullopt;
@@ -189,17 +186,17 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   result.method = words(second.loaded.model->settings, second_explicit);
   result.steps = second.outcome.steps;
   if (second.outcome.exit_code != 0) {
-    trouble = second.outcome.status == RunStatus::interrupted
-                  ? fmt::format("the second run was {} at {:.6g} s after {} steps",
-                                watch_interrupts() != 0 ? "interrupted" : "given up", second.outcome.time,
-                                second.outcome.steps)
-                  : fmt::format("the second run ended early: {}", second.outcome.reason);
+    trouble =
+        second.outcome.status == RunStatus::interrupted
+            ? fmt::format("the second run was {} at {:.6g} s after {} steps",
+                          run.interrupted() ? "interrupted" : "given up", second.outcome.time, second.outcome.steps)
+            : fmt::format("the second run ended early: {}", second.outcome.reason);
   }
-  if (result.agreement == Agreement::agree || watch_interrupts() != 0) return result;
+  if (result.agreement == Agreement::agree || run.interrupted()) return result;
   OtherRun third;
   build.accuracy = third_accuracy * *build.accuracy;
-  third.loaded = load_model(run.file, build, loading(run.common));
-  run_to_end(third, most_steps);
+  third.loaded = run.read(build);
+  run_to_end(third, most_steps, run.interrupted);
   if (third.assembled && third.rows) judge(result, first, second.result(), third.result(), rules);
   return result;
 }

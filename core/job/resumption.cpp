@@ -1,36 +1,18 @@
-#include "cli/resumption.h"
+#include "job/resumption.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/option_value.h"
+#include "base/unit.h"
 #include "results/checkpoints.h"
 #include "results/whole_result.h"
 
 namespace freeplay {
 namespace {
-
-// What the numbers of a run that goes on may differ in; the rest of its options stays as it was.
-constexpr std::array may_change{"--resume", "--end", "--checkpoint", "--report", "--profile", "--yes"};
-constexpr std::array of_every_command{"--quiet",      "--verbose", "--json",         "--no-color",
-                                      "--max-errors", "--plugin",  "--allow-plugins"};
-
-void refuse_other_options(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || std::ranges::find(may_change, name) != may_change.end() ||
-        std::ranges::find(of_every_command, name) != of_every_command.end()) {
-      continue;
-    }
-    throw Error(Error::Category::usage, "usage", fmt::format("{} does not go with --resume", name), {},
-                "model and settings are those of the run that goes on; only --end, --checkpoint, --report, "
-                "--profile and --yes may change");
-  }
-}
 
 [[noreturn]] void mismatch(const std::string& what, const std::string& then, const std::string& now) {
   throw Error(Error::Category::input, "resume-mismatch",
@@ -60,13 +42,6 @@ double number_at(const Json& json, const char* pointer) {
   return json.contains(path) && json.at(path).is_number() ? json.at(path).get<double>() : 0.0;
 }
 
-void require_same_program(const Checkpoint& checkpoint) {
-  const Json now = program_of_checkpoints();
-  for (const auto& [name, value] : now.items()) {
-    require_same(fmt::format("the program's {}", name), checkpoint.made["program"].value(name, Json()), value);
-  }
-}
-
 /// Whether a comparison with the run without clearances that is null is to stay so: another would find the same.
 bool has_no_comparison(const std::filesystem::path& directory, const Json& summary) {
   const Json twin = summary_of(directory / "twin");
@@ -90,42 +65,41 @@ void require_whole(const std::filesystem::path& directory, const Json& summary, 
 
 }  // namespace
 
-Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonOptions& common) {
-  refuse_other_options(app);
-  const std::filesystem::path directory = asked.resume;
+void require_same_program(const Checkpoint& checkpoint) {
+  const Json now = program_of_checkpoints();
+  for (const auto& [name, value] : now.items()) {
+    require_same(fmt::format("the program's {}", name), checkpoint.made["program"].value(name, Json()), value);
+  }
+}
+
+Resumption read_resumption(const std::filesystem::path& directory, const std::string& asked_end) {
   Resumption out;
   out.checkpoint = read_checkpoint(directory);
   const Json& made = out.checkpoint.made;
-  if (!keep_options(made.value("options", Json()), out.options, common)) {
+  if (!keep_options(made.value("options", Json()), out.words)) {
     throw Error(Error::Category::file, "bad-checkpoint",
                 fmt::format("'{}' does not say how the run was made", (directory / checkpoint_name).string()));
   }
   require_same_program(out.checkpoint);
   const Json record = made.value("provenance", Json::object());
   for (const Json& plugin : record.value("plugins", Json::array())) {
-    common.recorded_plugins.push_back(plugin.value("file", ""));
+    out.recorded_plugins.push_back(plugin.value("file", ""));
   }
-  out.options.checkpoint = asked.checkpoint;
-  out.options.profile = asked.profile;
-  out.options.report = asked.report;
-  out.options.yes = asked.yes;
-  out.options.out = asked.resume;
-  out.options.model = (directory / made.value("model_copy", "model.yaml")).string();
-  out.options.model_name = record.value("model", Json::object()).value("name", "");
+  out.model = (directory / made.value("model_copy", "model.yaml")).string();
+  out.model_name = record.value("model", Json::object()).value("name", "");
   const double end = number_at(made, "/settings/end");
   out.interval = number_at(made, "/settings/interval");
   const Json summary = summary_of(directory);
   const std::string status = summary.value("status", "");
   const double reached = status.empty() ? 0.0 : number_at(summary, "/time/reached");
-  checkpoint_period(asked);
-  const double later = asked.end.empty() ? end : positive_quantity("--end", asked.end, dimension::time);
-  if (!asked.end.empty() && later < end) {
+  const double later = asked_end.empty() ? end : positive_quantity("--end", asked_end, dimension::time);
+  if (!asked_end.empty() && later < end) {
     const double at = std::max(reached, out.checkpoint.state ? out.checkpoint.state->time : 0.0);
-    bad_value("--end", asked.end,
+    bad_value("--end", asked_end,
               fmt::format("the run went to {0:g} s and is to end at {1:g} s: it can end later, not before", at, end));
   }
   const bool no_twin =
-      out.options.twin && summary.value("twin", Json()).is_null() && !has_no_comparison(directory, summary);
+      out.words.twin && summary.value("twin", Json()).is_null() && !has_no_comparison(directory, summary);
   const bool ended = status == "stopped" || status == "completed", there = status == "stopped" || later == end;
   if (ended) require_whole(directory, summary, record);
   if (ended && there && !no_twin) {
@@ -134,17 +108,15 @@ Resumption read_resumption(const CLI::App& app, const RunOptions& asked, CommonO
   }
   if (later != end || ended) {
     out.goes_on = false;
-    if (later != end) out.options.end = asked.end;
-    out.options.force = true;
+    if (later != end) out.words.end = asked_end;
   }
   // Those beside it need every channel of all rows.
-  if (out.options.verify || out.options.twin) out.checkpoint = Checkpoint{.made = Json(made)};
+  if (out.words.verify || out.words.twin) out.checkpoint = Checkpoint{.made = Json(made)};
   return out;
 }
 
-void require_same_making(const Resumption& resumption, const Model& model) {
-  const Json& then = resumption.checkpoint.made["provenance"];
-  const Json now = provenance(model, {});
+void require_same_making(const Checkpoint& checkpoint, const Json& now) {
+  const Json& then = checkpoint.made["provenance"];
   require_same("the model", then["model"]["sha256"], now["model"]["sha256"]);
   for (const char* kind : {"inputs", "plugins"}) {
     const Json &before = then[kind], &after = now[kind];
@@ -154,6 +126,13 @@ void require_same_making(const Resumption& resumption, const Model& model) {
       require_same(fmt::format("'{}' of the {}", words_of(before[i]["name"]), kind), before[i]["sha256"],
                    after[i]["sha256"]);
     }
+  }
+}
+
+void require_same_settings(const Checkpoint& checkpoint, const Json& now) {
+  const Json& then = checkpoint.made["settings"];
+  for (const auto& [name, value] : now.items()) {
+    require_same(fmt::format("'{}' of the settings", name), then.value(name, Json()), value);
   }
 }
 

@@ -1,10 +1,10 @@
 // VerifyRun: the runs that `--verify` makes besides the one that is asked for.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
-#include "cli/options.h"
 #include "load/load.h"
 #include "results/summary.h"
 #include "results/verification.h"
@@ -14,13 +14,15 @@ namespace freeplay {
 
 /// The run to verify.
 struct VerifiedRun {
-  const std::string& file;    ///< the model
-  const BuildOptions& build;  ///< as it was read
-  const CommonOptions& common;
+  std::function<LoadedModel(const BuildOptions&)> read;  ///< the model once more, with other options
+  const BuildOptions& build;                             ///< as it was read
+  const LoadOptions& load;
   const System& system;
   const Outcome& outcome;
   const Statistics& statistics;
   const ResultTable& rows;  ///< every channel
+  /// Asked several times a second: whether to end before the other runs do.
+  std::function<bool()> interrupted;
 };
 
 /// Runs the model again by an integrator of another kind (implicit where the run was explicit, and the other way round)
