@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "analysis/analyse.h"
+#include "drawing/analysis_map.h"
 #include "python/refusal.h"
 
 namespace freeplay {
@@ -35,7 +36,7 @@ class AnalysisPulse {
 
 }  // namespace
 
-AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& words, int threads,
+AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& words, AskedMap map, int threads,
                             const std::function<bool()>& tick) {
   require_sense(words);
   AnalysisPulse pulse(tick);
@@ -51,7 +52,16 @@ AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& word
     const AnalysisRequest request = request_of(mechanism, words, threads);
     const RequestedStations stations(mechanism, request, tick_of);
     AnalysisResult result = analyse(mechanism, request, stations, tick_of);
-    return {std::move(result.table), std::move(result.warnings)};
+    std::string picture;
+    if (map != AskedMap::none) {
+      const bool coloured = map == AskedMap::coloured;
+      picture = analysis_map_svg(mechanism, request, stations, result.table, coloured, tick_of);
+      Making making{
+          .made = "analyze", .command = "freeplay analyze", .arguments = arguments_of(words, coloured), .build = {}};
+      if (!words.samples.empty()) making.seed = seed_of(words);
+      picture = opened.with_record(picture, model, std::move(making));
+    }
+    return {std::move(result.table), std::move(picture), std::move(result.warnings)};
   } catch (const Error& error) {
     opened.refuse(error);
   }

@@ -45,4 +45,31 @@ void KeptRows::take_event(std::span<const double> numbers) {
 
 Json KeptRows::hashes() const { return {{"rows", row_hash_.digits()}, {"events", event_hash_.digits()}}; }
 
+void KeptRows::save(ArchiveWriter& archive) const {
+  std::vector<double> rows;
+  for (std::size_t row = 0; row < block_.rows(); ++row) {
+    for (std::size_t column = 0; column < block_.columns(); ++column) rows.push_back(block_.at(row, column));
+  }
+  archive.list(rows);
+  archive.list(events_);
+  archive(sink_);
+}
+
+void KeptRows::restore(ArchiveReader& archive) {
+  std::vector<double> rows, events;
+  archive.list(rows);
+  archive.list(events);
+  archive(sink_);
+  const std::size_t width = picked_.size(), event_width = layout_.events.size();
+  ArchiveReader::require(rows.size() % width == 0 && events.size() % event_width == 0);
+  for (std::size_t at = 0; at < rows.size(); at += width) {
+    std::copy_n(&rows[at], width, row_.begin());
+    block_.add(row_);
+    row_hash_.write({row_, {}});
+  }
+  for (std::size_t at = 0; at < events.size(); at += event_width) {
+    take_event(std::span(events).subspan(at, event_width));
+  }
+}
+
 }  // namespace freeplay

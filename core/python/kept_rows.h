@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
 #include "python/column_block.h"
@@ -43,6 +44,9 @@ class KeptRows : public Sink {
   std::span<const std::size_t> picked() const { return picked_; }
   /// `hashes` of a summary.
   Json hashes() const;
+  /// All that there is, for one that goes on from it.
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
 
  private:
   void take_event(std::span<const double> numbers);

@@ -39,6 +39,7 @@ void save_run(const KeptRun& run, const std::filesystem::path& path, bool force,
   directory.write(model_copy_name(model), model.text);
   for (const InputFile& input : model.inputs) directory.write("inputs/" + input.name, input.text);
   if (!run.inputs.empty()) directory.write("inputs.csv", run.inputs);
+  if (!run.asked.name.empty()) directory.write("inputs/" + run.asked.name, run.asked.text);
   const RecordLayout& layout = run.record.layout;
   RecordLayout whole = layout;
   std::vector<std::unique_ptr<RecordWriter>> writers;

@@ -18,6 +18,7 @@ struct KeptRun {
   std::shared_ptr<const OpenedModel> model;
   KeptRecord record;
   std::string inputs;  ///< text of inputs.csv; empty without inputs
+  InputFile asked;     ///< the table of inputs that makes the run again; without a name where there is none
   BearingTables bearings;
   Json summary;
   std::string status, reason;

@@ -14,14 +14,6 @@ namespace {
 
 constexpr int exit_input = 3;
 
-LoadOptions load_options(const OpenRequest& request) {
-  LoadOptions options;
-  options.strict = request.strict;
-  options.plugins = request.plugins;
-  options.allow_plugins = request.allow_plugins;
-  return options;
-}
-
 /// Without what a point sets itself.
 BuildOptions common_options(const OpenRequest& request) {
   BuildOptions build = build_options(request.words);

@@ -27,6 +27,7 @@
 #include "python/opened_model.h"
 #include "python/refusal.h"
 #include "python/stored_result.h"
+#include "results/hdf5_forks.h"
 
 namespace freeplay {
 namespace {
@@ -190,12 +191,15 @@ py::tuple analyse_words(const Opened& model, const py::dict& options) {
   list("input", words.input);
   if (options.contains("sensitivity")) words.sensitivity = options["sensitivity"].cast<bool>();
   if (options.contains("branches")) words.branches = options["branches"].cast<bool>();
+  std::string drawn;
+  text("map", drawn);
+  const AskedMap map = drawn.empty() ? AskedMap::none : drawn == "grey" ? AskedMap::grey : AskedMap::coloured;
   Pulse pulse{py::none()};
   std::optional<AskedAnalysis> result;
   std::string csv;
   try {
     const Away away;
-    result = analyse_model(*model, words, processor_count(), [&] { return pulse(0.0, 0); });
+    result = analyse_model(*model, words, map, processor_count(), [&] { return pulse(0.0, 0); });
     csv = result->table.csv();
   } catch (const AnalysisStopped&) {
     return py::make_tuple(py::none(), pulse.raised());
@@ -213,6 +217,7 @@ py::tuple analyse_words(const Opened& model, const py::dict& options) {
   out["summary"] = python_of(result->table.summary);
   out["warnings"] = result->warnings;
   out["csv"] = csv;
+  out["map"] = result->map;
   return py::make_tuple(out, py::none());
 }
 
@@ -258,6 +263,7 @@ py::object schema_of(const std::string& kind) {
 PYBIND11_MODULE(_core, module) {
   using namespace freeplay;
   py::register_local_exception_translator(&translate);
+  keep_hdf5_whole_at_forks();
   module.attr("version") = program_version;
   module.attr("schema") = schema_version;
   module.attr("plugin_abi") = abi_version;

@@ -10,7 +10,6 @@
 #include "load/model_file.h"
 #include "python/refusal.h"
 #include "results/made_text.h"
-#include "results/provenance.h"
 
 namespace freeplay {
 namespace {
@@ -18,32 +17,38 @@ namespace {
 /// One at a time: the log handler of the library that reads URDF is global.
 std::mutex reading;
 
-LoadedModel read(const OpenRequest& request, std::vector<std::string>& remarks) {
-  LoadOptions options;
-  options.strict = request.strict;
-  options.plugins = request.plugins;
-  options.allow_plugins = request.allow_plugins;
+LoadedModel read(const OpenRequest& request, const BuildOptions& build, std::vector<std::string>& remarks) {
+  LoadOptions options = load_options(request);
   options.warn = options.note = [&](const std::string& text) { remarks.push_back(text); };
-  const BuildOptions build = build_options(request.words);
   const std::lock_guard lock(reading);
   return request.text ? load_text(*request.text, request.file, build, options)
                       : load_model(request.file, build, options);
 }
 
 LoadedModel read_whole(const OpenRequest& request, std::vector<std::string>& remarks) {
-  LoadedModel loaded = read(request, remarks);
+  LoadedModel loaded = read(request, build_options(request.words), remarks);
   if (!loaded.model) throw Refusal(loaded.diagnostics, loaded.exit_code);
+  if (!request.name.empty()) loaded.model->name = request.name;
   return loaded;
 }
 
 }  // namespace
+
+LoadOptions load_options(const OpenRequest& request) {
+  LoadOptions options;
+  options.strict = request.strict;
+  options.plugins = request.plugins;
+  options.allow_plugins = request.allow_plugins;
+  options.recorded_plugins = request.recorded_plugins;
+  return options;
+}
 
 OpenedModel::OpenedModel(OpenRequest request)
     : request_(std::move(request)), loaded_(read_whole(request_, remarks_)), channels_(*loaded_.model) {}
 
 Json OpenedModel::check(OpenRequest request) {
   std::vector<std::string> remarks;
-  LoadedModel loaded = read(request, remarks);
+  LoadedModel loaded = read(request, build_options(request.words), remarks);
   if (loaded.model) assemble_model(loaded);
   return messages_json(loaded.diagnostics, 0);
 }
@@ -63,11 +68,26 @@ std::unique_ptr<AssembledModel> OpenedModel::assemble(Diagnostics& diagnostics) 
   return assembled;
 }
 
-LoadedModel OpenedModel::read_again() const {
+OpenRequest OpenedModel::same_text() const {
   OpenRequest request = request_;
   if (!is_urdf(request.file)) request.text = model().text;  // whatever the file has become
+  return request;
+}
+
+LoadedModel OpenedModel::read_again() const {
   std::vector<std::string> remarks;
-  return read_whole(request, remarks);
+  return read_whole(same_text(), remarks);
+}
+
+LoadedModel OpenedModel::read_with(const BuildOptions& build) const {
+  std::vector<std::string> remarks;
+  return read(same_text(), build, remarks);
+}
+
+std::shared_ptr<const OpenedModel> OpenedModel::twin() const {
+  OpenRequest request = same_text();
+  request.words.model_options.ideal = {"all"};
+  return std::make_shared<OpenedModel>(std::move(request));
 }
 
 void OpenedModel::refuse(const Error& error) const {
@@ -100,18 +120,21 @@ Json OpenedModel::start() const { return start_json(model(), assembled().start);
 
 Json OpenedModel::tree() const { return model_json(model()); }
 
-std::string OpenedModel::svg() const {
-  const AssembledModel& assembled = this->assembled();
-  std::vector<std::string> arguments{"--format", "svg"};
+std::string OpenedModel::with_record(const std::string& picture, const Model& model, Making making) const {
   const auto add = [&](const char* option, const std::vector<std::string>& values) {
-    for (const std::string& value : values) arguments.insert(arguments.end(), {option, value});
+    for (const std::string& value : values) making.arguments.insert(making.arguments.end(), {option, value});
   };
   add("--set", request_.words.model_options.set);
   add("--ideal", request_.words.model_options.ideal);
   add("--plugin", request_.plugins);
-  const Json record =
-      provenance_with_texts(model(), {"show", "freeplay show", std::move(arguments), FREEPLAY_BUILD, nullptr});
-  return picture_with_record(mechanism_svg(assembled.system, {assembled.start.state.q()}), record);
+  making.build = FREEPLAY_BUILD;
+  return picture_with_record(picture, provenance_with_texts(model, making));
+}
+
+std::string OpenedModel::svg() const {
+  const AssembledModel& assembled = this->assembled();
+  return with_record(mechanism_svg(assembled.system, {assembled.start.state.q()}), model(),
+                     {.made = "show", .command = "freeplay show", .arguments = {"--format", "svg"}, .build = {}});
 }
 
 }  // namespace freeplay

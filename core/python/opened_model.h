@@ -11,6 +11,7 @@
 #include "load/load.h"
 #include "load/run_words.h"
 #include "model/channel.h"
+#include "results/provenance.h"
 
 namespace freeplay {
 
@@ -21,7 +22,12 @@ struct OpenRequest {
   RunWords words;
   std::vector<std::string> plugins;
   bool strict = false, allow_plugins = false;
+  // Of a run that goes on: the files of its plugins, and its name, which the copy of the model may not have.
+  std::vector<std::string> recorded_plugins;
+  std::string name;
 };
+
+LoadOptions load_options(const OpenRequest& request);
 
 class OpenedModel {
  public:
@@ -44,10 +50,17 @@ class OpenedModel {
   /// A system of its own for each caller; `diagnostics` gets the warnings of the file and those of the assembly. Throws
   /// Refusal.
   std::unique_ptr<AssembledModel> assemble(Diagnostics& diagnostics) const;
-  /// The same model once more, for what changes it.
+  /// The same text once more, for what changes it. Throws Refusal.
   LoadedModel read_again() const;
+  /// With other options of its build, as far as it can be read. Throws Error{usage}.
+  LoadedModel read_with(const BuildOptions& build) const;
+  /// The same text with every clearance closed. Throws Refusal.
+  std::shared_ptr<const OpenedModel> twin() const;
   /// Throws Error as a message of this file, Refusal where it is one of the file.
   [[noreturn]] void refuse(const Error& error) const;
+
+  /// A picture of `model` with the record of its making, to which options of this model are added.
+  std::string with_record(const std::string& picture, const Model& model, Making making) const;
 
   // What `validate`, `show` and `list channels` say of it. Throws Refusal.
   Json facts() const;
@@ -58,6 +71,7 @@ class OpenedModel {
  private:
   /// Assembled when it is first asked for.
   const AssembledModel& assembled() const;
+  OpenRequest same_text() const;
 
   OpenRequest request_;
   std::vector<std::string> remarks_;

@@ -38,7 +38,7 @@ set_source_files_properties(${outside_hdf5} PROPERTIES SKIP_UNITY_BUILD_INCLUSIO
 find_library(EXPAT_SHARED NAMES libexpat.so expat REQUIRED)
 target_link_libraries(freeplay_python PRIVATE -Wl,--no-as-needed ${EXPAT_SHARED} -Wl,--as-needed freeplay_load freeplay_results
                                               freeplay_convert freeplay_drawing freeplay_analysis freeplay_study
-                                              freeplay_contract)
+                                              freeplay_contract freeplay_report freeplay_job)
 freeplay_builtins(freeplay_python OFF)
 # Places that the loader moves are kept packed. It shows nothing but its entry, and binds what it is made of to itself: no other
 # library of the interpreter gets between.

@@ -8,9 +8,10 @@
 
 #include <pybind11/stl.h>
 
-#include "load/input_file.h"
 #include "python/binding.h"
+#include "python/resumed_run.h"
 #include "python/stepped_run.h"
+#include "report/report.h"
 
 namespace freeplay {
 namespace {
@@ -18,26 +19,85 @@ namespace {
 using Opened = std::shared_ptr<OpenedModel>;
 using Kept = std::shared_ptr<KeptRun>;
 
-RunRequest request_of(const py::object& out, bool force, bool profile, const std::string& call,
-                      const py::object& inputs) {
-  RunRequest request{.out = {}, .inputs = {}, .force = force, .profile = profile, .call = call};
-  if (!inputs.is_none()) request.inputs = inputs.cast<std::string>();
-  if (!out.is_none()) request.out = out.cast<std::string>();
+RunRequest request_of(const py::dict& words) {
+  RunRequest request;
+  const auto text = [&](const char* name, std::string& to) {
+    if (words.contains(name)) to = words[name].cast<std::string>();
+  };
+  const auto flag = [&](const char* name, bool& to) {
+    if (words.contains(name)) to = words[name].cast<bool>();
+  };
+  if (words.contains("out")) request.out = words["out"].cast<std::string>();
+  if (words.contains("state")) request.state = words["state"].cast<std::string>();
+  text("call", request.call);
+  text("inputs", request.inputs);
+  text("repeat", request.repeat);
+  text("seed", request.seed);
+  text("checkpoint", request.checkpoint);
+  flag("force", request.force);
+  flag("profile", request.profile);
+  flag("verify", request.verify);
+  flag("twin", request.twin);
+  flag("report", request.report);
   return request;
 }
 
-py::tuple run_kept(const Opened& model, const py::object& out, bool force, bool profile, const std::string& call,
-                   const py::object& inputs, const py::object& progress) {
-  const RunRequest request = request_of(out, force, profile, call, inputs);
+/// The page of a result, at `file` or in its directory.
+std::string write_page(const std::string& result, const std::string& file, const LoadOptions& load) {
+  ReportRequest page;
+  page.results = {result};
+  page.out = file;
+  page.build = FREEPLAY_BUILD;
+  page.load = load;
+  return write_report(page).file;
+}
+
+Kept run_whole(const Opened& model, const RunRequest& request, const RunTick& tick) {
+  OngoingRun run(model, request, tick);
+  run.run_to_end();
+  Kept ended = run.finish();
+  if (request.report && ended->exit_code != 6) {
+    write_page(request.out->string(), "", load_options(model->request()));
+  }
+  return ended;
+}
+
+py::tuple run_kept(const Opened& model, const py::dict& words, const py::object& progress) {
+  const RunRequest request = request_of(words);
   Pulse pulse(progress);
   Kept ended;
   {
     const Away away;
-    OngoingRun run(model, request, [&](double t, long steps) { return pulse(t, steps); });
-    run.run_to_end();
-    ended = run.finish();
+    ended = run_whole(model, request, [&](double t, long steps) { return pulse(t, steps); });
   }
   return py::make_tuple(ended, pulse.raised());
+}
+
+/// None where there is nothing to do. `begun` gets the end of the run [s].
+py::tuple resume_kept(const std::string& path, const std::string& end, bool allow_plugins, const py::dict& words,
+                      const py::object& begun, const py::object& progress) {
+  RunRequest request = request_of(words);
+  Pulse pulse(progress);
+  Kept ended;
+  Resumption resumption;
+  Opened model;
+  {
+    const Away away;
+    resumption = read_resumption(path, end);
+    if (resumption.nothing_to_do.empty()) model = model_of(resumption, allow_plugins);
+  }
+  if (model) {
+    begun(model->model().settings.end);
+    go_on_with(resumption, path, request);
+    const Away away;
+    ended = run_whole(model, request, [&](double t, long steps) { return pulse(t, steps); });
+  }
+  return py::make_tuple(ended, pulse.raised());
+}
+
+std::string report_on(const std::string& result, const std::string& file) {
+  const Away away;
+  return write_page(result, file, {});
 }
 
 void save_kept(const KeptRun& run, const std::string& path, bool force, const std::string& format) {
@@ -70,6 +130,16 @@ class [[gnu::visibility("hidden")]] BoundRun {
     const Turn turn(*run_);
     const Away away;
     run_->close();
+  }
+
+  py::bytes checkpoint() {
+    const Turn turn(*run_);
+    std::string bytes;
+    {
+      const Away away;
+      bytes = run_->checkpoint();
+    }
+    return bytes;
   }
 
   void interrupt() { run_->interrupt(); }
@@ -171,6 +241,7 @@ void bind_runs(py::module_& module) {
   py::class_<BoundRun>(module, "SteppedRun")
       .def("advance", &BoundRun::advance)
       .def("close", &BoundRun::close)
+      .def("checkpoint", &BoundRun::checkpoint)
       .def("interrupt", &BoundRun::interrupt)
       .def("set", &BoundRun::set)
       .def("value", &BoundRun::value)
@@ -183,9 +254,12 @@ void bind_runs(py::module_& module) {
       .def("record", &BoundRun::record)
       .def("layout", &BoundRun::layout);
   module.def("run", &run_kept);
-  module.def("begin", [](const Opened& model, const py::object& out, bool force, bool profile, const std::string& call,
-                         const py::object& inputs, const py::object& progress) {
-    return std::make_unique<BoundRun>(model, request_of(out, force, profile, call, inputs), progress);
+  module.def("resume", &resume_kept);
+  module.def("report", &report_on);
+  module.def("begin", [](const Opened& model, const py::dict& words, const py::object& progress) {
+    RunRequest request = request_of(words);
+    request.stepped = true;
+    return std::make_unique<BoundRun>(model, request, progress);
   });
   module.def("save", &save_kept);
 }

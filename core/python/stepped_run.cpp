@@ -4,14 +4,12 @@
 
 namespace freeplay {
 
-SteppedRun::SteppedRun(const std::shared_ptr<const OpenedModel>& model, const RunRequest& request,
-                       OngoingRun::Tick tick)
+SteppedRun::SteppedRun(const std::shared_ptr<const OpenedModel>& model, const RunRequest& request, RunTick tick)
     : run_(model, request, std::move(tick)), row_(run_.columns()) {}
 
-void SteppedRun::require_going() const {
+void SteppedRun::require_going() {
   if (ended_) throw Error(Error::Category::usage, "usage", "the simulation is over: it " + ended_->status);
-  if (run_.at_home()) return;
-  throw Error(Error::Category::usage, "usage", "the files of this simulation are written by the process that began it");
+  run_.leave_files_of_others();
 }
 
 bool SteppedRun::advance(const RunGoal& goal) {
@@ -30,6 +28,11 @@ void SteppedRun::close() {
   if (ended_) return;
   require_going();
   end();
+}
+
+std::string SteppedRun::checkpoint() {
+  require_going();
+  return run_.checkpoint();
 }
 
 void SteppedRun::end() {

@@ -13,7 +13,7 @@ namespace freeplay {
 /// For one caller at a time: each function but interrupt() and those that say so needs a Turn.
 class SteppedRun {
  public:
-  SteppedRun(const std::shared_ptr<const OpenedModel>& model, const RunRequest& request, OngoingRun::Tick tick);
+  SteppedRun(const std::shared_ptr<const OpenedModel>& model, const RunRequest& request, RunTick tick);
 
   class Turn {
    public:
@@ -30,14 +30,17 @@ class SteppedRun {
     bool good_;
   };
 
-  /// To `goal`; ends the run with its files where it comes to its end. False once it is over. Throws Error{usage} in a
-  /// process that does not write its files.
+  /// To `goal`; ends the run with its files where it comes to its end. False once it is over. In a process that was
+  /// forked from the one that began it, without the files.
   bool advance(const RunGoal& goal);
   /// Ends it where it is, unless it is over.
   void close();
   void interrupt() { run_.interrupt(); }
   /// Throws Error{usage}.
   void set(std::size_t input, double effort);
+
+  /// What another simulation goes on from. Throws Error{usage} once it is over.
+  std::string checkpoint();
 
   /// The kept channels now, whose place in memory stays; `renewed` from now on after every call. Any time.
   const std::vector<double>& row(bool renewed);
@@ -47,7 +50,7 @@ class SteppedRun {
   const std::shared_ptr<KeptRun>& ended() const { return ended_; }
 
  private:
-  void require_going() const;
+  void require_going();
   void end();
 
   OngoingRun run_;

@@ -5,10 +5,12 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <pthread.h>
 #include <sys/mman.h>
 
 #include "base/address_sanitizer.h"
 #include "results/formats.h"
+#include "results/hdf5_forks.h"
 
 #if FREEPLAY_ADDRESS_SANITIZER
 // A file that could not be written is never closed, see hdf5_writer.h: what the library keeps for it is no leak.
@@ -46,13 +48,18 @@ Hdf5Lock::Hdf5Lock() : lock_(library()) {
   static const bool ready = [] {
     require_memory_for_hdf5();
     H5dont_atexit();
-    H5open();
-    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+    return H5open() >= 0;
   }();
   static_cast<void>(ready);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // each thread has its own
 }
 
 void renew_hdf5_lock() { new (&library()) std::recursive_mutex; }
+
+void keep_hdf5_whole_at_forks() {
+  // The thread of the child has another number, so that it cannot release what it held.
+  ::pthread_atfork([] { library().lock(); }, [] { library().unlock(); }, renew_hdf5_lock);
+}
 
 void require_memory_for_hdf5(std::size_t more) {
   const std::size_t bytes = (std::size_t{16} << 20) + more;

@@ -35,7 +35,7 @@ STANDS_ON = {
     "job": ["results", "load", "workers"],
     "study": ["workers", "results", "load", "convert", "analysis", "svg"],
     "contract": ["format", "stage"],
-    "python": ["load", "results", "convert", "drawing", "analysis", "contract", "study"],
+    "python": ["load", "results", "convert", "drawing", "analysis", "contract", "study", "report", "job"],
     "cli": ["load", "convert", "plot", "drawing", "analysis", "contract", "report", "workers", "study", "job"],
 }
 WITHOUT_SDK = {"base", "linear", "svg", "workers"}
@@ -78,7 +78,7 @@ LIBRARIES = {
 OPTIONAL_LIBRARIES = {"solvers/sundials_": {"arkode", "nvector"}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 STANDARD = re.compile(r"^[a-z_0-9]+$")
-SYSTEM = {"unistd.h", "fcntl.h", "malloc.h", "poll.h", "sched.h", "sys/file.h", "sys/ioctl.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/socket.h", "sys/stat.h", "sys/sysmacros.h", "sys/types.h", "sys/utsname.h", "sys/wait.h"}
+SYSTEM = {"unistd.h", "fcntl.h", "malloc.h", "poll.h", "pthread.h", "sched.h", "sys/file.h", "sys/ioctl.h", "sys/mman.h", "sys/prctl.h", "sys/resource.h", "sys/socket.h", "sys/stat.h", "sys/sysmacros.h", "sys/types.h", "sys/utsname.h", "sys/wait.h"}
 
 
 def sources(*folders):

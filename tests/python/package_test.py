@@ -2,6 +2,7 @@
 import json
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import tempfile
@@ -28,6 +29,11 @@ def command(*words, code=0):
     done = subprocess.run([PROGRAM, *words], capture_output=True, text=True)
     assert done.returncode == code, (words, done.returncode, done.stderr)
     return done
+
+
+def without_command(picture):
+    """The record of a picture quotes the command line as it was typed."""
+    return re.sub(r'"command": *"(?:[^"\\]|\\.)*"', "", picture)
 
 
 class Runs(InFolder):
@@ -186,8 +192,6 @@ class Models(InFolder):
         pathlib.Path("full/mine.txt").write_text("x")
         for call in (lambda: freeplay.run(SLIDER, end="0.1 ms", out="full"), lambda: freeplay.open("nowhere")):
             self.assertRaises(freeplay.ResultError, call)
-        for call in (lambda: freeplay.load(SLIDER).simulation().checkpoint(), lambda: freeplay.run(SLIDER, verify=True), lambda: freeplay.resume("x")):
-            self.assertRaisesRegex(freeplay.UsageError, "not in this release", call)
 
     def test_tables_are_those_of_the_command(self):
         path = str(ROOT / "mechanisms/4-rrr.yaml")
@@ -203,6 +207,15 @@ class Models(InFolder):
         command("analyze", "error", path, "--grid", "x=-0.1:0.1:3", "--grid", "y=-0.1:0.1:2", "--out", "c.csv")
         table.save("p.csv")
         self.assertEqual(pathlib.Path("c.csv").read_bytes(), pathlib.Path("p.csv").read_bytes())
+        words = ("--grid", "x=-0.1:0.1:3", "--grid", "y=-0.1:0.1:2", "--colours")
+        command("analyze", "error", path, *words, "--out", "c.csv", "--svg", "c.svg")
+        drawn = freeplay.load(path).error(grid={"x": (-0.1, 0.1, 3), "y": (-0.1, 0.1, 2)}, colours=True)
+        self.assertEqual(without_command(pathlib.Path("c.svg").read_text()), without_command(drawn.svg()))
+        self.assertNotEqual(without_command(table.svg()), without_command(drawn.svg()))
+        self.assertIn("<svg", pickle.loads(pickle.dumps(drawn))._repr_html_())
+        for other in (freeplay.load(path).ik(time=(0, 0.1, 3)), freeplay.compare(*2 * [freeplay.run(SLIDER, end="0.1 ms")])):
+            self.assertRaises(freeplay.UsageError, other.svg)
+            self.assertIn("<table", other._repr_html_())
         with self.assertRaises(freeplay.NumericalError) as caught:
             freeplay.load(path).ik(pose=[5.0, 0, 0])
         self.assertEqual("ik-unreachable", caught.exception.messages[0].id)

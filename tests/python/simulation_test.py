@@ -1,6 +1,5 @@
 """Runs step by step: the bits of a whole run, inputs that the command line sets again, one thread at a time."""
 import math
-import os
 import pathlib
 import subprocess
 import sys
@@ -101,7 +100,6 @@ class Steps(WithRod):
             self.assertRaises(TypeError, call)
         for call in (lambda: sim["joint.pivot.angel"], lambda: sim.set("moter", 1)):
             self.assertRaisesRegex(freeplay.UnknownName, "did you mean", call)
-        self.assertRaisesRegex(freeplay.UsageError, "not in this release", sim.checkpoint)
         self.assertEqual(0.02, sim.time)
 
 
@@ -179,20 +177,6 @@ class Threads(WithRod):
     def test_a_function_that_is_called_during_a_run_cannot_use_it(self):
         sim = freeplay.load("rod.yaml", end="100000 s").simulation(progress=lambda *_: sim.step())
         self.assertRaisesRegex(RuntimeError, "a function called during a step", sim.advance)
-
-    def test_a_forked_child_goes_on_with_what_has_no_files(self):
-        sim, filed = freeplay.load("rod.yaml").simulation(), freeplay.load("rod.yaml").simulation(out="r")
-        sim.advance("50 ms"), filed.advance("50 ms")
-        pid = os.fork()
-        if pid == 0:
-            good = sim.advance() == 0.2
-            try:
-                filed.advance()
-            except freeplay.UsageError:
-                os._exit(0 if good else 1)
-            os._exit(2)
-        self.assertEqual(0, os.waitpid(pid, 0)[1])
-        self.assertEqual(0.2, filed.advance())
 
     def test_a_halt_costs_less_than_two_microseconds(self):
         sim = freeplay.load(str(ROOT / "mechanisms/pendulum.yaml"), end="200 s").simulation()

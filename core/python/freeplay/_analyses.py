@@ -2,13 +2,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
-from ._errors import Interrupted
-from ._source import quantity
+from ._errors import Error, Interrupted, usage
+from ._source import count_of, quantity, renamed
 from ._table import Table
 
 if TYPE_CHECKING:
@@ -39,6 +41,8 @@ def span(name: str, value: Any) -> str:
         begin, end, count = value
     except (TypeError, ValueError):
         raise TypeError(f"{name}: (from, to, count) is needed") from None
+    if isinstance(count, bool) or not isinstance(count, Integral):
+        raise TypeError(f"{name}: the count of values is a whole number, not {type(count).__name__}")
     return f"{quantity(name, begin)}:{quantity(name, end)}:{int(count)}"
 
 
@@ -75,6 +79,8 @@ def analysis_words(kind: str, options: Mapping[str, Any]) -> dict[str, Any]:
             continue
         if name in ("sensitivity", "branches"):
             words[name] = bool(value)
+        elif name == "grid" and not isinstance(value, Mapping):
+            raise TypeError("grid: a mapping of axes to (from, to, count) is needed, not " + type(value).__name__)
         elif name == "grid":
             words[name] = [f"{axis}={span('grid: ' + axis, one)}" for axis, one in value.items()]
         elif name == "time":
@@ -87,8 +93,14 @@ def analysis_words(kind: str, options: Mapping[str, Any]) -> dict[str, Any]:
             words[name] = ",".join(quantity(name, one) for one in value) if not isinstance(value, str) and isinstance(value, Iterable) else quantity(name, value)
         elif name == "preload":
             words[name] = quantity(name, value)
+        elif name in ("samples", "seed"):
+            words[name] = str(count_of(name, value, 0))
+        elif isinstance(value, str):
+            words[name] = value
         else:
-            words[name] = quantity(name, value) if not isinstance(value, str) else value
+            raise TypeError(f"{name}: a text is needed, not {type(value).__name__}")
+        if name in ("grid", "pose", "input") and not words[name]:
+            raise usage(f"{name}: at least one is needed")
     return words
 
 
@@ -104,16 +116,30 @@ def axes_of(table: Mapping[str, Any]) -> dict[str, Any]:
     return axes if axes and int(np.prod([len(axis) for axis in axes.values()])) == table["rows"] else {}
 
 
-def analyse(model: Model, kind: str, options: Mapping[str, Any], force: bool) -> Table:
-    table, raised = _core.analyse(model._core, analysis_words(kind, options))
+def asked(model: Model, words: dict[str, Any]) -> dict[str, Any]:
+    """What the core tells of an analysis."""
+    table, raised = _core.analyse(model._core, words)
     if raised is not None:
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted() from None
         raise raised
     assert table is not None
+    return table
+
+
+def drawn(model: Model, words: dict[str, Any]) -> str:
+    try:
+        return str(asked(model, words)["map"])
+    except Error as error:
+        raise renamed(error, model._options.get("folder")) from None
+
+
+def analyse(model: Model, kind: str, options: Mapping[str, Any], force: bool, colours: bool) -> Table:
+    words = analysis_words(kind, options)
+    table = asked(model, words)
     channels = {channel.name: channel.unit for channel in model.channels}
     columns = dict(zip(table["names"], table["columns"]))
     axes = axes_of(table) if options.get("pose") is None and options.get("time") is None and options.get("input") is None else {}
     return Table(kind, columns, {name: unit_of(name, channels) for name in columns}, table["summary"], table["warnings"], axes,
-                 table["csv"], force)
+                 table["csv"], force, partial(drawn, model, {**words, "map": "colours" if colours else "grey"}))
 

@@ -7,7 +7,8 @@ from typing import Iterable, Union
 
 from . import _core
 from ._result import Result
-from ._source import names as names_of
+from ._simulation import number
+from ._source import Quantity, names as names_of
 from ._table import Table
 
 COLUMNS = ("channel", "max_abs", "max_rel", "rms", "at_time", "ok")
@@ -15,7 +16,7 @@ Compared = Union[Result, str, "os.PathLike[str]"]
 
 
 def compare(a: Compared, b: Compared, *, tolerance: float = 1e-6, absolute: float = 1e-12, channels: str | Iterable[str] = "*",
-            start: float | None = None, until: float | None = None) -> Table:
+            start: Quantity | None = None, until: Quantity | None = None) -> Table:
     """The rows of `freeplay compare`, worst first; `summary["agree"]` says whether both agree.
 
     a, b: results or paths of some. tolerance: part of the largest |a| that may differ. absolute: what may differ besides.
@@ -25,8 +26,9 @@ def compare(a: Compared, b: Compared, *, tolerance: float = 1e-6, absolute: floa
 
     with tempfile.TemporaryDirectory() as folder:
         paths = [path_of(one, os.path.join(folder, name)) for one, name in ((a, "a"), (b, "b"))]
-        found = _core.compare(paths[0], paths[1], float(tolerance), float(absolute), names_of(channels),
-                              -math.inf if start is None else float(start), math.inf if until is None else float(until))
+        found = _core.compare(paths[0], paths[1], number("tolerance", tolerance, "1"), number("absolute", absolute, "1"), names_of(channels),
+                              -math.inf if start is None else number("start", start, "s"),
+                              math.inf if until is None else number("until", until, "s"))
     rows = found["rows"]
     columns = {name: [row[i] for row in rows] for i, name in enumerate(COLUMNS)}
     units = {name: "s" if name == "at_time" else "1" for name in COLUMNS}

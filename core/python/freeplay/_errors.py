@@ -128,6 +128,8 @@ def unknown_name(what: str, name: str, known: Sequence[str]) -> UnknownName:
     """An error that says which name was probably meant."""
     import difflib
 
+    if not isinstance(name, str):
+        raise TypeError(f"the name of a {what} is a text, not {type(name).__name__}".replace("a input", "an input"))
     near = difflib.get_close_matches(name, known, 1, 0.5)
     text = f"there is no {what} '{name}'"
     hint = f"did you mean '{near[0]}'?" if near else None

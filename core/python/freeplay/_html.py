@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 MOST_ROWS = 20
+MOST_TEXT = 3_000_000  # of a page
 count = itertools.count(1)
 
 
@@ -24,6 +25,13 @@ def escape(text: str) -> str:
     for mark, word in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;"), ("'", "&#x27;")):
         text = text.replace(mark, word)
     return text
+
+
+def frame(document: str, most: int) -> str:
+    """A page of its own in the page, whose scripts see nothing of it; nothing where it takes more than `most` characters."""
+    text = escape(document)
+    shown = f'<iframe sandbox="allow-scripts" srcdoc="{text}" style="width: 100%; height: 40em; border: 0"></iframe>'
+    return shown if document and len(shown) <= most else ""
 
 
 def number(value: Any) -> str:

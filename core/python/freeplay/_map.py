@@ -12,7 +12,7 @@ from . import _core
 from ._errors import Error, Interrupted, Message, refused, usage
 from ._model import OF_LOAD, OF_RUN, Model, require_known
 from ._result import Result
-from ._source import Quantity, Source, build_options, place_of, plain, quantity, renamed
+from ._source import OF_TEXT, Quantity, Source, build_options, count_of, place_of, plain, quantity, renamed
 from ._table import Column, Table
 
 if TYPE_CHECKING:
@@ -57,6 +57,8 @@ def reducer(name: str, entry: Any) -> dict[str, Any]:
 
 
 def reducers_text(reduce: Mapping[str, Any]) -> str:
+    if not isinstance(reduce, Mapping):
+        raise TypeError(f"reduce: reducers by name, or a function of a Result, are needed, not {type(reduce).__name__}")
     if not reduce:
         raise usage("reduce: at least one reducer is needed")
     for name in reduce:
@@ -108,7 +110,7 @@ def called(model: Model, reduce: Callable[[Result], Mapping[str, float]], target
         result = run_point(model, targets, texts)
     except Error as error:
         return failure_of(error)
-    return 0, "", "", {name: float(value) for name, value in reduce(result).items()}
+    return 0, "", "", numbers_of(reduce, result)
 
 
 def failure_of(error: Error) -> tuple[int, str, str, dict[str, float]]:
@@ -117,27 +119,42 @@ def failure_of(error: Error) -> tuple[int, str, str, dict[str, float]]:
     return exit_code, first.id if first else "", first.message if first else str(error), {}
 
 
-def run_point(model: Model, targets: Sequence[str], texts: Sequence[str]) -> Result:
+def numbers_of(reduce: Callable[[Result], Mapping[str, float]], result: Result) -> dict[str, float]:
+    """What a function of the caller takes of a run."""
+    found = reduce(result)
+    if not isinstance(found, Mapping):
+        raise TypeError(f"reduce: the function is to return a mapping of names to numbers, not {type(found).__name__}")
+    return {name: float(value) for name, value in found.items()}
+
+
+def run_point(model: Model, targets: Sequence[str], texts: Sequence[str], progress: Callable[..., None] | None = None) -> Result:
     from ._model import quiet_run
 
     own = {name: text for name, text in zip(targets, texts) if text}
-    return quiet_run(model.replace(set={**(model._options.get("set") or {}), **own}))
+    return quiet_run(model.replace(set={**(model._options.get("set") or {}), **own}), progress)
 
 
 def in_order(pool: Executor, model: Model, targets: list[str], values: list[list[str]]) -> Iterator[Any]:
     """Results of runs, or what was raised instead, in the order of the points; no more runs begin than are taken soon."""
     from collections import deque
+    from threading import Event
 
     waiting: Any = deque()
+    over = Event()
+
+    def go_on(*_: Any) -> None:
+        if over.is_set():
+            raise KeyboardInterrupt  # the caller was; runs in threads hear no signal
     ahead = 2 * (getattr(pool, "_max_workers", None) or 1)
     try:
         for texts in values:
-            waiting.append(pool.submit(run_point, model, targets, texts))
+            waiting.append(pool.submit(run_point, model, targets, texts, go_on))
             if len(waiting) >= ahead:
                 yield waiting.popleft()
         while waiting:
             yield waiting.popleft()
     finally:
+        over.set()
         for future in waiting:
             future.cancel()
 
@@ -166,7 +183,7 @@ def by_function(model: Model, reduce: Callable[[Result], Mapping[str, float]], t
                     except Error as error:
                         take(failure_of(error))
                     else:
-                        take((0, "", "", {name: float(value) for name, value in reduce(result).items()}))
+                        take((0, "", "", numbers_of(reduce, result)))
     except KeyboardInterrupt as error:
         raised = error
     names = list(dict.fromkeys(name for one in taken for name in one[3]))
@@ -262,21 +279,17 @@ def study_of(source: Source | Model, reduce: Mapping[str, Any] | None, workers: 
         place, given = source._place, {**source._options, **{name: value for name, value in options.items() if value is not None}}
     else:
         place, given = place_of(source, options.get("folder")), dict(options)
-    if "text" in place:
+    if os.path.basename(place["file"]) == OF_TEXT:
         raise usage("map() without points: the section `study` is read from a file; save() the model before")
     reducers = "" if reduce is None else reducers_text(reduce)
-    return done_of(_core.map_study({**place, **build_options(given)}, reducers, workers, counted(progress)))
+    return done_of(_core.map_study({"file": place["file"], **build_options(given)}, reducers, workers, counted(progress)))
 
 
 def computed(source: Source | Model, points: Points, reduce: Reduce, workers: int | None, executor: Executor | None, progress: Progress,
              errors: str, options: Mapping[str, Any]) -> Done:
     if errors not in ("keep", "raise"):
         raise usage(f"bad value '{errors}' of errors: it must be keep or raise", message_id="bad-value")
-    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, int)):
-        raise TypeError(f"workers: a whole number is needed, not {type(workers).__name__}")
-    if workers is not None and workers < 1:
-        raise usage(f"bad value '{workers}' of workers: it must be at least 1", message_id="bad-value")
-    threads = _core.processor_count() if workers is None else workers
+    threads = _core.processor_count() if workers is None else count_of("workers", workers)
     if progress is not None and not callable(progress):
         raise TypeError(f"progress: a function of the points done and of all is needed, not {type(progress).__name__}")
     if points is None:

@@ -3,21 +3,21 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Callable, Iterable, Mapping, NamedTuple, TypeVar, Union
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, Sequence, TypeVar, Union
 
 from . import _core, _html
 from ._analyses import analyse
-from ._errors import Error, Message, ModelWarning, message_of, not_in_this_release, usage
+from ._errors import Error, Message, ModelWarning, message_of, usage
 from ._result import Result, raise_failure, result_of
-from ._source import Quantity, Source, build_options, of_text, place_of, remark, renamed
+from ._source import Quantity, Source, build_options, count_of, filled, kept_options, of_text, place_of, quantity, remark, renamed
 from ._simulation import Simulation
 from ._table import Table
 
 Progress = Union[bool, Callable[[float, float, int], None], None]
 OF_LOAD = ("set", "ideal", "end", "step", "accuracy", "integrator", "plugins", "strict", "folder", "allow_plugins")
 OF_RUN = ("interval", "channels", "format")
-OF_CALL = ("out", "force", "yes", "profile", "progress", "inputs")
-LATER = ("colours", "verify", "repeat", "seed", "twin", "report", "checkpoint")
+OF_RUN_ALONE = ("verify", "repeat", "seed", "twin", "report", "checkpoint", "inputs")
+OF_CALL = ("out", "force", "yes", "profile", "progress", *OF_RUN_ALONE)
 
 
 Answer = TypeVar("Answer")
@@ -39,7 +39,7 @@ class Model:
 
     def __init__(self, place: Mapping[str, Any], options: Mapping[str, Any]) -> None:
         self._place = dict(place)
-        self._options = {name: value for name, value in options.items() if value is not None}
+        self._options = kept_options(options)
         try:
             self._core = _core.open_model({**self._place, **build_options(self._options)})
         except Error as error:
@@ -61,7 +61,11 @@ class Model:
             [one._replace(file=of_text(one.file, folder)) for one in messages] + [remark(text) for text in known["remarks"]])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Model, (self._place, self._options)
+        return Model, (self._same_text(), self._options)
+
+    def _same_text(self) -> dict[str, Any]:
+        """Where the model is from, whatever its file has become."""
+        return self._place if self.file.endswith(".urdf") else {**self._place, "text": self._known["text"]}
 
     def __repr__(self) -> str:
         return f"<freeplay.Model '{self.name}', {self.space}, {len(self.bodies)} bodies>"
@@ -73,7 +77,7 @@ class Model:
         for one, other in (("step", "accuracy"), ("accuracy", "step")):
             if options_of_load.get(one) is not None and other not in options_of_load:
                 options[other] = None  # each takes the place of the other
-        return Model(self._place, options)
+        return Model(self._same_text(), options)
 
     def facts(self) -> dict[str, Any]:
         """Counts, rank and freedoms, as `facts` of `freeplay validate --json`. Raises ModelError where it cannot be assembled."""
@@ -107,7 +111,10 @@ class Model:
         return run_model(self, options_of_run)
 
     def simulation(self, **options_of_run: Any) -> Simulation:
-        """A run step by step, at its start: the options are those of freeplay.run()."""
+        """A run step by step, at its start: the options are those of freeplay.run() but verify, twin, repeat, seed, report and inputs.
+
+        checkpoint: what Simulation.checkpoint() of the same model gave: it goes on from there. `out` does not go with it.
+        """
         return Simulation(self, **options_of_run)
 
     def ik(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None, elbow: Any = None,
@@ -118,40 +125,40 @@ class Model:
         elbow: working modes of the legs, 1 or -1. branches: all working modes of a pose.
         force: save() of the table replaces any file.
         """
-        return self._analysed("ik", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, branches=branches)
+        return self._analysed("ik", force, False, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, branches=branches)
 
     def workspace(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, elbow: Any = None,
                   colours: bool = False, force: bool = False) -> Table:
         """What is reachable, and how well conditioned.
 
         frame: the platform. pose [m, rad], grid {axis: (from, to, count)} or time (from, to, count) [s]: where. elbow: working modes.
-        colours: of a map, which is not in this release.
+        colours: of the map that svg() of the table draws, in place of greys. force: as in ik().
         """
-        require_release({"colours": colours})
-        return self._analysed("workspace", force, frame=frame, pose=pose, grid=grid, time=time, elbow=elbow)
+        return self._analysed("workspace", force, colours, frame=frame, pose=pose, grid=grid, time=time, elbow=elbow)
 
     def singularity(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None,
-                    elbow: Any = None, force: bool = False) -> Table:
-        """How near poses are to singular ones. The arguments are those of ik()."""
-        return self._analysed("singularity", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow)
+                    elbow: Any = None, colours: bool = False, force: bool = False) -> Table:
+        """How near poses are to singular ones. The arguments are those of ik() and workspace()."""
+        return self._analysed("singularity", force, colours, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow)
 
     def error(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None, elbow: Any = None,
-              sensitivity: bool = False, samples: int | None = None, seed: int | None = None, distribution: str | None = None, force: bool = False) -> Table:
-        """Largest position errors by clearance [m, rad]. Where: as in ik().
+              sensitivity: bool = False, samples: int | None = None, seed: int | None = None, distribution: str | None = None, colours: bool = False,
+              force: bool = False) -> Table:
+        """Largest position errors by clearance [m, rad]. Where: as in ik(); colours, force: as in workspace().
 
         sensitivity: a column for each joint. samples, seed, distribution: columns of random play.
         """
-        return self._analysed("error", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, sensitivity=sensitivity,
+        return self._analysed("error", force, colours, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, sensitivity=sensitivity,
                               samples=samples, seed=seed, distribution=distribution)
 
     def inverse_dynamics(self, *, frame: str | None = None, pose: Any = None, grid: Any = None, time: Any = None, input: Any = None,
                          elbow: Any = None, preload: Quantity | None = None, force: bool = False) -> Table:
         """Efforts of the drivers [N, N m] and forces of the joints along the path. Where: as in ik(). preload: inner tension of redundant drivers."""
-        return self._analysed("inverse-dynamics", force, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, preload=preload)
+        return self._analysed("inverse-dynamics", force, False, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, preload=preload)
 
-    def _analysed(self, kind: str, force: bool, **options: Any) -> Table:
+    def _analysed(self, kind: str, force: bool, colours: bool, **options: Any) -> Table:
         try:
-            return analyse(self, kind, options, force)
+            return analyse(self, kind, options, force, colours)
         except Error as error:
             raise renamed(error, self._options.get("folder")) from None
 
@@ -166,6 +173,11 @@ def require_known(options: Mapping[str, Any], known: Iterable[str]) -> None:
     for name in options:
         if name not in known:
             raise TypeError(f"there is no option '{name}'")
+
+
+def require_model(model: object) -> None:
+    if not isinstance(model, Model):
+        raise TypeError(f"a Model is needed, as load() gives it, not {type(model).__name__}")
 
 
 def warn(texts: Iterable[str], level: int) -> None:
@@ -213,10 +225,13 @@ def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, fo
 
     source: as in load(), or a Model. out: result directory; without it nothing is written. force: write beside other files.
     format: of the files, csv, hdf5 or both. profile: count where the time goes. channels: patterns of what is kept and written.
+    verify: run again by a method of another kind; the summary and warnings say how far both agree. twin: run the model with every
+    clearance closed, too, into the folder twin of `out`; summary["twin"] says how far both are apart. repeat: how many runs, from starts
+    moved in the play, that `seed` chooses (1); summary["repeat"] has their peaks. report: write report.html into `out`.
+    checkpoint: wall time between checkpoints of `out`, from which resume() goes on [s] (10); 0: when it is interrupted.
     progress: True prints how far it is; a function gets time [s], end [s] and steps, and what it raises ends the run.
     interval: between rows [s]. inputs: a table of efforts over time, inputs.csv of another run. yes: no question is put in any case.
     set, ideal, end [s], step [s], accuracy [m per s], integrator, plugins, strict, folder, allow_plugins: as in load().
-    verify, twin, report, repeat, seed, checkpoint: not in this release.
 
     Raises what load() raises; NumericalError and Interrupted with .result, all rows up to the last accepted step; ResultError.
     """
@@ -228,16 +243,9 @@ def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, fo
     options = {name: value for name, value in {**given, **called}.items() if value is not None}
     if isinstance(source, Model):
         return run_model(source, options)
-    require_release(options)
     load_options = {name: value for name, value in options.items() if name in (*OF_LOAD, *OF_RUN)}
     model = Model(place_of(source, folder), load_options)
     return run_model(model, {name: value for name, value in options.items() if name in OF_CALL})
-
-
-def require_release(options: Mapping[str, Any]) -> None:
-    for name in LATER:
-        if options.get(name) not in (None, False):
-            not_in_this_release(f"--{name}")
 
 
 class Call(NamedTuple):
@@ -250,20 +258,22 @@ class Call(NamedTuple):
 
 
 def call_of(model: Model, options: Mapping[str, Any], name: str) -> Call:
-    require_known(options, (*OF_LOAD, *OF_RUN, *OF_CALL, *LATER))
-    require_release(options)
+    require_known(options, (*OF_LOAD, *OF_RUN, *OF_CALL))
     changes = {name: value for name, value in options.items() if name in (*OF_LOAD, *OF_RUN) and value is not None}
     if changes:
         model = model.replace(**changes)
-    out = options.get("out")
     profiled = bool(options.get("profile", False))
-    directory = None if out is None else os.fspath(out)
-    if directory == "":
-        raise usage("bad value '' of --out: it must not be empty", message_id="bad-value")
-    progress = progress_of(options.get("progress"), float(model._known["end"]))
-    inputs = options.get("inputs")
-    words = (model._core, directory, bool(options.get("force", False)), profiled, name, None if inputs is None else os.fspath(inputs), progress)
-    return Call(model, None if directory is None else os.path.abspath(directory), profiled, words)
+    words: dict[str, Any] = {"call": name, "profile": profiled, "force": bool(options.get("force", False))}
+    words.update((flag, bool(options.get(flag, False))) for flag in ("verify", "twin", "report"))
+    words.update((count, str(count_of(count, options[count], least))) for count, least in (("repeat", 2), ("seed", 0))
+                 if options.get(count) is not None)
+    if options.get("checkpoint") is not None:
+        words["checkpoint"] = filled("checkpoint", quantity("checkpoint", options["checkpoint"]))
+    words.update((path, filled(path, os.fspath(options[path]))) for path in ("out", "inputs") if options.get(path) is not None)
+    if words["report"] and "out" not in words:
+        raise usage("--report needs --out, the directory in which the page is to be")
+    progress = progress_of(options.get("progress"), (float(model._known["end"]),))
+    return Call(model, os.path.abspath(words["out"]) if "out" in words else None, profiled, (model._core, words, progress))
 
 
 def run_model(model: Model, options: Mapping[str, Any]) -> Result:
@@ -278,9 +288,9 @@ def run_model(model: Model, options: Mapping[str, Any]) -> Result:
     return result
 
 
-def quiet_run(model: Model) -> Result:
+def quiet_run(model: Model, progress: Callable[..., None] | None = None) -> Result:
     """A run without warnings of Python, which a worker has no one to give to."""
-    call = call_of(model, {}, "freeplay.map()")
+    call = call_of(model, {"progress": progress}, "freeplay.map()")
     kept, raised = _core.run(*call.words)
     result = result_of(kept, call.model, False, None)
     raise_failure(kept, result, raised)
@@ -288,24 +298,37 @@ def quiet_run(model: Model) -> Result:
 
 
 def begin(model: Model, options: Mapping[str, Any]) -> tuple[Model, _core.SteppedRun, str | None, bool]:
-    if options.get("inputs") is not None:
-        raise usage("simulation(): inputs are set by set(); run() takes a table of them")
+    state = options.get("checkpoint")
+    if state is not None and not isinstance(state, (bytes, bytearray, memoryview)):
+        raise TypeError(f"checkpoint: bytes of Simulation.checkpoint() are needed, not {type(state).__name__}")
+    options = {name: value for name, value in options.items() if name != "checkpoint"}
+    if state is not None and options.get("out") is not None:
+        raise usage("simulation(): out and checkpoint exclude each other: result().save() writes all rows at its end")
+    for name in OF_RUN_ALONE:
+        if options.get(name) not in (None, False):
+            raise usage("simulation(): inputs are set by set(); run() takes a table of them" if name == "inputs" else
+                        f"simulation(): --{name} is of a whole run: run() takes it")
     call = call_of(model, options, "freeplay.Simulation()")
+    if state is not None:
+        call.words[1]["state"] = bytes(state)
     try:
         return call.model, _core.begin(*call.words), call.directory, call.profiled
     except Error as error:
         raise renamed(error, call.model._options.get("folder")) from None
 
 
-def progress_of(progress: Progress, end: float) -> Callable[[float, int], None] | None:
+def progress_of(progress: Progress, end: Sequence[float]) -> Callable[[float, int], None] | None:
+    """What the core calls. `end` has the end of the run [s] by then."""
     if progress is None or progress is False:
         return None
     if progress is True:
-        return lambda time, steps: print(f"{time:g} s of {end:g} s, {steps} steps", flush=True)
+        return lambda time, steps: print(f"{time:g} s of {end[0]:g} s, {steps} steps", flush=True)
+    if not callable(progress):
+        raise TypeError(f"progress: True or a function of time [s], end [s] and steps is needed, not {type(progress).__name__}")
     called = progress
 
     def tick(time: float, steps: int) -> None:
-        called(time, end, steps)
+        called(time, end[0], steps)
     return tick
 
 

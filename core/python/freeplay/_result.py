@@ -7,17 +7,18 @@ import pathlib
 import re
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, NoReturn
+from typing import TYPE_CHECKING, Any, Iterable, Mapping
 
 import numpy as np
 
 from . import _core, _html
-from ._errors import Interrupted, NumericalError, Message, PluginError, ResultError, not_in_this_release, unknown_name, usage
+from ._errors import Error, Interrupted, NumericalError, Message, PluginError, ResultError, not_in_this_release, unknown_name, usage
 from ._source import names as names_of
 
 if TYPE_CHECKING:
     from ._model import Model
 
+DISAGREE = 7  # exit code of verify: a warning says so
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Records = np.ndarray[Any, np.dtype[Any]]
 
@@ -40,7 +41,7 @@ def events_of(layout: Mapping[str, Any], numbers: Array) -> Records:
     for name, column in zip(fields, columns):
         events[name] = column
     events.setflags(write=False)
-    return events
+    return events.view()  # which cannot be made one to write into
 
 
 class Result:
@@ -70,10 +71,30 @@ class Result:
 
     def __getitem__(self, name: str) -> Array:
         """The numbers of one column, (rows,): a view. Raises UnknownName."""
-        place = self._places.get(name)
+        place = self._places.get(name) if isinstance(name, str) else None
         if place is None:
             raise unknown_name("channel", name, self.names)
         return self.data[:, place]
+
+    def __copy__(self) -> Result:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Result:
+        return self
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For another process: what was read and no more, as of a result that was opened."""
+        state = {**self.__dict__, "units": dict(self.units), "data": np.asfortranarray(self.data), "events": np.array(self.events), "_kept": None}
+        del state["time"]
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.units = MappingProxyType(state["units"])
+        for array in (state["data"], state["events"]):
+            array.setflags(write=False)
+        self.data, self.events = state["data"].view(), state["events"].view()
+        self.time = self.data[:, 0]
 
     def __contains__(self, name: object) -> bool:
         return name in self._places
@@ -88,7 +109,18 @@ class Result:
         parts = [] if self.model is None else [_html.drawing(self.model.svg())]
         counts = {"rows": len(self.time), "until [s]": float(self.time[-1]) if len(self.time) else 0.0, **(self.summary.get("counts") or {})}
         parts += [_html.table((), _html.pairs(counts)), _html.joints(self.summary)]
-        return _html.page(f"{self.model.name if self.model else 'result'}: {self.status}", *parts)
+        title = f"{self.model.name if self.model else 'result'}: {self.status}"
+        return _html.page(title, *parts, _html.frame(self._page(), _html.MOST_TEXT - sum(map(len, parts)) - 1000))
+
+    def _page(self) -> str:
+        """The page of report(); empty where there is none, as of a simulation that goes on."""
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                return self.report(os.path.join(folder, "report.html")).read_text(encoding="utf-8")
+            except Error:
+                return ""
 
     def _chosen(self, patterns: Iterable[str]) -> list[str]:
         chosen: dict[str, None] = {}
@@ -138,9 +170,21 @@ class Result:
         _core.save(self._kept, path, force, self.model._known["format"] if format is None else format)
         return pathlib.Path(path)
 
-    def report(self, path: str | os.PathLike[str] | None = None) -> NoReturn:
-        """The page of `freeplay report` at `path`. Not in this release: the command writes it."""
-        not_in_this_release("report()")
+    def report(self, path: str | os.PathLike[str] | None = None) -> pathlib.Path:
+        """Writes the page of `freeplay report` and returns where it is.
+
+        path: of the page, which may replace another page; without it report.html in the directory of the result.
+        """
+        if self._directory is not None:
+            return pathlib.Path(_core.report(self._directory, "" if path is None else os.fspath(path)))
+        if path is None:
+            raise usage("report(): a result that was not written has no directory: say where the page is to be")
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            name = self.model.name if self.model is not None else "result"
+            written = self.save(os.path.join(folder, name), format="hdf5")
+            return pathlib.Path(_core.report(str(written), os.fspath(path)))
 
 
 def result_of(kept: _core.KeptRun, model: Model, profiled: bool, directory: str | None) -> Result:
@@ -156,7 +200,7 @@ def raise_failure(kept: _core.KeptRun, result: Result, raised: BaseException | N
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(f"interrupted at {result.time[-1] if len(result.time) else 0.0:g} s", result) from None
         raise raised
-    if kept.exit_code == 0:
+    if kept.exit_code in (0, DISAGREE):
         return
     if kept.exit_code == Interrupted.exit_code:
         raise Interrupted(kept.reason, result)

@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import math
-from numbers import Integral, Real
+from numbers import Real
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
-from ._errors import Error, not_in_this_release, unknown_name, usage
+from ._errors import Error, unknown_name, usage
 from ._result import Array, Result, raise_failure, result_of
-from ._source import Quantity
+from ._source import Quantity, count_of
 from . import _core
 
 if TYPE_CHECKING:
@@ -29,14 +29,6 @@ def number(name: str, value: Quantity, unit: str) -> float:
     return found
 
 
-def count_of(name: str, value: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, Integral):
-        raise TypeError(f"{name}: a whole number is needed, not {type(value).__name__}")
-    if value < 1:
-        raise usage(f"bad value '{value}' of {name}: it must be at least 1", message_id="bad-value")
-    return min(int(value), ALL)
-
-
 class Simulation:
     """A run step by step, assembled at its start; `with` closes it. One thread at a time uses it, any may interrupt() it.
 
@@ -44,8 +36,9 @@ class Simulation:
     """
 
     def __init__(self, model: Model, **options_of_run: Any) -> None:
-        from ._model import begin
+        from ._model import begin, require_model
 
+        require_model(model)
         self._result: Result | None = None
         self._told = self._cut = False  # what ended it was raised; it was before its end
         self.model, self._core, self._directory, self._profiled = begin(model, options_of_run)
@@ -103,7 +96,7 @@ class Simulation:
 
     def __getitem__(self, name: str) -> float:
         """The value of one channel now. Raises UnknownName."""
-        place = self._places.get(name)
+        place = self._places.get(name) if isinstance(name, str) else None
         if place is None:
             raise unknown_name("channel", name, self.names)
         return self._core.value(place)
@@ -115,7 +108,7 @@ class Simulation:
         At the end it stays there. Raises what run() raises, Interrupted after interrupt(), UsageError once it was ended before.
         """
         if until is None:
-            time = self._core.advance(math.inf, ALL if rows is None else count_of("rows", rows), ALL)
+            time = self._core.advance(math.inf, ALL if rows is None else min(count_of("rows", rows), ALL), ALL)
         else:
             if rows is not None:
                 raise usage("advance(): until and rows exclude each other")
@@ -130,7 +123,7 @@ class Simulation:
 
     def step(self, count: int = 1) -> float:
         """Goes on by `count` accepted steps, no farther than the end, and returns the time that is reached [s]."""
-        time = self._core.advance(math.inf, ALL, 1 if count == 1 else count_of("count", count))
+        time = self._core.advance(math.inf, ALL, 1 if count == 1 else min(count_of("count", count), ALL))
         return time if time == time else self._over()
 
     def set(self, name: str, value: Quantity) -> None:
@@ -138,7 +131,7 @@ class Simulation:
 
         name: of a driver with `input`. value: its effort [N, N m]. What holds already changes nothing.
         """
-        place = self._inputs.get(name)
+        place = self._inputs.get(name) if isinstance(name, str) else None
         if place is None:
             raise unknown_name("input", name, list(self._inputs))
         self._core.set(place, number(name, value, self._units[name]))
@@ -179,6 +172,9 @@ class Simulation:
             self._cut = True
             self._over()
 
-    def checkpoint(self) -> NoReturn:
-        """What another simulation goes on from. Not in this release."""
-        not_in_this_release("checkpoint()")
+    def checkpoint(self) -> bytes:
+        """Where the simulation is, with all rows up to now: `model.simulation(checkpoint=...)` goes on from there, in this or another process.
+
+        Raises UsageError once it is over.
+        """
+        return self._core.checkpoint()

@@ -13,19 +13,37 @@ Source = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 OF_TEXT = "<model>"
 
 
+def whole(name: str, text: str) -> str:
+    """A text that UTF-8 can hold."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise usage(f"{name}: the text {ascii(text)} holds half a character", message_id="bad-value") from None
+    return text
+
+
 def quantity(name: str, value: Any) -> str:
     """A number in SI, or a text with a unit, as the command line takes it. Raises TypeError for anything else."""
     if isinstance(value, str):
-        return value
+        return whole(name, value)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name}: a number in SI or a text such as '0.2 mm' is needed, not {type(value).__name__}")
     return repr(int(value)) if isinstance(value, Integral) else repr(float(value))
 
 
+def count_of(name: str, value: int, least: int = 1) -> int:
+    """A whole number from `least` on."""
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise TypeError(f"{name}: a whole number is needed, not {type(value).__name__}")
+    if value < least:
+        raise usage(f"bad value '{value}' of {name}: it must be at least {least}", message_id="bad-value")
+    return int(value)
+
+
 def words(name: str, value: Any) -> list[str]:
     """One word or several."""
     if isinstance(value, str):
-        return [value]
+        return [whole(name, value)]
     try:
         found = list(value)
     except TypeError:
@@ -33,6 +51,7 @@ def words(name: str, value: Any) -> list[str]:
     for word in found:
         if not isinstance(word, str):
             raise TypeError(f"{name}: texts are needed, not {type(word).__name__}")
+        whole(name, word)
     return found
 
 
@@ -62,13 +81,13 @@ def tree_text(tree: Mapping[str, Any]) -> str:
 def place_of(source: Any, folder: Any) -> dict[str, Any]:
     """`file`, and `text` where it is at hand."""
     if isinstance(source, Mapping):
-        return {"text": tree_text(source), "file": file_of_text(folder)}
+        return {"text": whole("the model", tree_text(source)), "file": file_of_text(folder)}
     if isinstance(source, str) and "\n" in source:
-        return {"text": source, "file": file_of_text(folder)}
+        return {"text": whole("the model", source), "file": file_of_text(folder)}
     if isinstance(source, (str, os.PathLike)):
         path = os.fspath(source)
         if isinstance(path, str):
-            return {"file": path}
+            return {"file": whole("the path", path)}
     raise TypeError(f"a model is a path, a text with a line feed or a mapping, not {type(source).__name__}")
 
 
@@ -86,7 +105,7 @@ def build_options(options: Mapping[str, Any]) -> dict[str, Any]:
         for name in changed:
             if not isinstance(name, str):
                 raise TypeError(f"set: names are texts, not {type(name).__name__}")
-        built["set"] = [f"{name}={quantity('set: ' + name, value)}" for name, value in changed.items()]
+        built["set"] = [whole("set", f"{name}={quantity('set: ' + name, value)}") for name, value in changed.items()]
     for name in ("end", "step", "accuracy", "interval"):
         if options.get(name) is not None:
             built[name] = filled(name, quantity(name, options[name]))
@@ -104,10 +123,21 @@ def build_options(options: Mapping[str, Any]) -> dict[str, Any]:
     return built
 
 
+def kept_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those that were given, as they are now: what a caller does with lists and mappings later, or took once from a generator, is no matter."""
+    kept = {name: value for name, value in options.items() if value is not None}
+    for name in ("ideal", "plugins", "channels"):
+        if name in kept:
+            kept[name] = words(name, kept[name])
+    if isinstance(kept.get("set"), Mapping):
+        kept["set"] = dict(kept["set"])
+    return kept
+
+
 def filled(name: str, text: str) -> str:
     if not text:
         raise usage(f"bad value '' of --{name}: it must not be empty", message_id="bad-value")
-    return text
+    return whole(f"--{name}", text)
 
 
 def of_text(file: str | None, folder: Any) -> str | None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 import os
 from importlib import import_module
 from types import MappingProxyType
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
 
 from . import _html
-from ._errors import Message, ResultError, not_in_this_release, unknown_name, usage
+from ._errors import Message, ResultError, UsageError, unknown_name, usage
 
 Column = np.ndarray[Any, np.dtype[Any]]
 
@@ -31,7 +31,7 @@ def is_replaceable(path: str | os.PathLike[str]) -> bool:
         return True
     with open(path, "rb") as file:
         first = file.readline(1 << 20)
-    return not first or (b"," in first and first.isascii() and first.rstrip(b"\r\n").decode().isprintable())
+    return not first or (b"," in first and not set(b"<>{}") & set(first) and first.isascii() and first.rstrip(b"\r\n").decode().isprintable())
 
 
 class Table:
@@ -42,7 +42,8 @@ class Table:
     """
 
     def __init__(self, kind: str, columns: Mapping[str, Sequence[float | str]], units: Mapping[str, str], summary: dict[str, Any],
-                 warnings: Sequence[str] = (), axes: Mapping[str, Column] | None = None, csv: str = "", force: bool = False) -> None:
+                 warnings: Sequence[str] = (), axes: Mapping[str, Column] | None = None, csv: str = "", force: bool = False,
+                 draw: Callable[[], str] | None = None) -> None:
         self.kind = kind
         self.columns: tuple[str, ...] = tuple(columns)
         self.units: Mapping[str, str] = MappingProxyType(dict(units))
@@ -52,13 +53,24 @@ class Table:
         self._cells = {name: column_of(cells) for name, cells in columns.items()}
         self._csv = csv
         self._force = force
+        self._draw = draw
+        self._svg: str | None = None
 
     def __getitem__(self, column: str) -> Column:
         """The values of one column, (rows,). Raises UnknownName."""
-        found = self._cells.get(column)
+        found = self._cells.get(column) if isinstance(column, str) else None
         if found is None:
             raise unknown_name("column", column, self.columns)
         return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "units": dict(self.units)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.units = MappingProxyType(state["units"])
+        for column in self._cells.values():
+            column.setflags(write=False)
 
     def __len__(self) -> int:
         return len(next(iter(self._cells.values()))) if self._cells else 0
@@ -67,6 +79,10 @@ class Table:
         return f"<freeplay.Table of {self.kind}, {len(self)} rows of {len(self.columns)} columns>"
 
     def _repr_html_(self) -> str:
+        try:
+            return _html.page(f"{self.kind}, {len(self)} rows", _html.drawing(self.svg()))
+        except UsageError:
+            pass  # it is no map
         shown = min(len(self), _html.MOST_ROWS)
         head = [f"{name} [{self.units[name]}]" if self.units.get(name) not in (None, "", "1") else name for name in self.columns]
         cells = [[value.item() for value in self[name][:shown]] for name in self.columns]
@@ -101,9 +117,17 @@ class Table:
         if not self._force and not is_replaceable(path):
             text = f"cannot write '{os.fspath(path)}': it is there already, and no table; make the table with force=True, or choose another name"
             raise ResultError(text + " [cannot-write]", [Message(None, None, None, "error", "cannot-write", text, None)])
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(self._csv)
+        try:
+            with open(path, "w", encoding="utf-8", newline="") as file:
+                file.write(self._csv)
+        except OSError as error:
+            text = f"cannot write '{os.fspath(path)}': {error.strerror}"
+            raise ResultError(text + " [cannot-write]", [Message(None, None, None, "error", "cannot-write", text, None)]) from error
 
     def svg(self) -> str:
-        """The map of `--svg`. Not in this release: the command draws it."""
-        not_in_this_release("svg() of a table")
+        """The map of `analyze --svg`, which the analysis is made once more for. Raises UsageError for what is on no grid of x and y."""
+        if self._draw is None:
+            raise usage(f"svg(): a table of {self.kind} is no map")
+        if self._svg is None:
+            self._svg = self._draw()
+        return self._svg
