@@ -23,12 +23,14 @@ class Notebook(unittest.TestCase):
         warnings.simplefilter("ignore", freeplay.ModelWarning)
         self.model = freeplay.load(str(ROOT / "mechanisms/3-rrr.yaml"), end="0.2 ms")
 
-    def test_models_and_results_are_drawn_and_tables_are_short(self):
-        table = self.model.workspace(grid={"x": (-0.2, 0.2, 7), "y": (-0.2, 0.2, 7)})
-        for thing, part in ((self.model, "<svg"), (self.model.run(), "<svg"), (table, "and 29 more rows")):
+    def test_models_results_and_maps_are_drawn_and_tables_are_short(self):
+        grid = self.model.workspace(grid={"x": (-0.2, 0.2, 7), "y": (-0.2, 0.2, 7)})
+        rows = self.model.ik(time=(0, 0.1, 49))
+        for thing, parts in ((self.model, ("<svg", "<table")), (self.model.run(), ("<svg", "<table", "<iframe sandbox")),
+                             (grid, ("<svg", "condition number")), (rows, ("<table", "and 29 more rows"))):
             page = thing._repr_html_()
-            self.assertIn(part, page)
-            self.assertIn("<table", page)
+            for part in parts:
+                self.assertTrue(part in page, f"{part} of {thing}")
             self.assertLess(len(page), 3e6)
             self.assertNotRegex(page, r"<script|(src|href)=[\"']https?:")
         self.assertIn("leg1.B", self.model.run()._repr_html_())
