@@ -339,7 +339,7 @@ void OngoingRun::keep_summary(const Outcome& outcome) {
                    simulation_->statistics(),
                    simulation_->clearances(),
                    simulation_->last_row(),
-                   advice_,
+                   recording_ ? recording_->advice() : advice_,
                    warnings_of(diagnostics_, told()),
                    recording_ ? recording_->files() : std::vector<std::string>()};
   if (beside_->verification()) add_verification(*beside_->verification(), record);

@@ -85,28 +85,52 @@ class Pages(InFolder):
 
 
 class Resumed(InFolder):
-    def cut(self, folder, **options):
+    def cut(self, folder, after=0.0, **options):
         def stop(time, end, steps):
-            raise KeyboardInterrupt
+            if time > after:
+                raise KeyboardInterrupt
         with self.assertRaises(freeplay.Interrupted) as raised:
-            freeplay.run(SLIDER, out=folder, end="60 ms", progress=stop, **options)
+            freeplay.run(SLIDER, out=folder, end="0.3 s", progress=stop, **options)
         return raised.exception.result
 
+    def same_whole(self, folder, **options):
+        """The result that went on is that of a run that was not interrupted."""
+        whole = freeplay.run(SLIDER, out="c", end="0.3 s", force=True, **options)
+        for name in ("results.csv", "events.csv"):
+            self.assertEqual(pathlib.Path("c", name).read_bytes(), pathlib.Path(folder, name).read_bytes())
+        self.assertEqual(summary_of("c"), summary_of(folder))
+        self.assertTrue(same_bits(whole.data, freeplay.open(folder).data))
+
     def test_a_run_that_was_interrupted_goes_on_to_the_same_bytes(self):
-        self.assertLess(self.cut("a").time[-1], 0.06)
+        self.assertLess(self.cut("a").time[-1], 0.3)
         self.cut("b")
-        whole = freeplay.run(SLIDER, out="c", end="60 ms")
         ends = []
         result = freeplay.resume("a", progress=lambda time, end, steps: ends.append(end))
         command("run", "--resume", "b", "--quiet")
-        self.assertTrue(same_bits(whole.data, result.data))
         self.assertEqual(1, result.summary["performance"]["resumed"])
-        self.assertEqual({0.06}, set(ends))
-        for name in ("results.csv", "events.csv"):
-            for folder in "ab":
-                self.assertEqual(pathlib.Path("c", name).read_bytes(), pathlib.Path(folder, name).read_bytes())
-        self.assertEqual(summary_of("c"), summary_of("a"))
+        self.assertEqual({0.3}, set(ends))
+        self.same_whole("a"), self.same_whole("b")
         self.assertEqual("completed", freeplay.resume("a").status)  # nothing to do
+
+    def test_options_and_what_was_counted_before_stay(self):
+        options = {"set": {"c": "0.1 mm"}, "channels": "joint.*"}
+        self.cut("a", after=0.07, **options)  # behind the contact of fewest steps
+        freeplay.resume("a")
+        self.same_whole("a", **options)
+
+    def test_a_run_with_inputs_goes_on_with_them(self):
+        pathlib.Path("rod.yaml").write_text(ROD.replace("end: 0.2 s, step: 1 ms", "end: 20 s, step: 0.1 ms"))
+        pathlib.Path("course.csv").write_text("time,motor\n0,1\n0.0137,2\n1.5,-1\n9,0.5\n90,0\n")
+
+        def stop(time, end, steps):
+            raise KeyboardInterrupt
+        self.assertRaises(freeplay.Interrupted, freeplay.run, "rod.yaml", inputs="course.csv", out="a", progress=stop)
+        command("run", "rod.yaml", "--inputs", "course.csv", "--quiet", "--out", "b")
+        os.remove("course.csv")
+        freeplay.resume("a")
+        for name in ("results.csv", "inputs.csv", "inputs/course.csv"):
+            self.assertEqual(pathlib.Path("a", name).read_bytes(), pathlib.Path("b", name).read_bytes(), name)
+        self.assertEqual(summary_of("b"), summary_of("a"))
 
     def test_a_later_end(self):
         freeplay.run(SLIDER, out="a", end="1 ms", interval="20 us")
