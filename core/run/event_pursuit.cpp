@@ -45,8 +45,6 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   Fault fault;
   StepEvents::Passage found;
-  if (hunted.joint >= 0 && !run_.events.at_end(run_.trial, run_.e_trial, hunted, fault))
-    return failure_.fail_with(fault, run_.trial.t());
   const bool early = hunts < early_hunts;
   if (!run_.events.first_crossing(run_.accepted, run_.e_accepted, run_.trial, run_.e_trial, early, found, fault)) {
     return failure_.fail_with(fault, run_.trial.t());
@@ -58,10 +56,13 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   }
   // Another event comes first, or this is the first sight of one.
   if (found.joint >= 0 && !same) hunted = found;
+  if (!run_.events.at_end(run_.trial, run_.e_trial, hunted, fault)) return failure_.fail_with(fault, run_.trial.t());
   // The step ends just past the zero, so that what begins there acts from the first on.
   const double past = hunted.value;
-  const double tolerance = std::max(StepEvents::tolerance, event_lateness());
-  const bool sharp = is_sharp(hunted) || hunts > most_hunts / 2;
+  // Rounding may leave it no sharper.
+  const bool late = hunts > most_hunts / 2;
+  const double tolerance = late ? std::max(StepEvents::tolerance, event_lateness()) : allowed_past(hunted);
+  const bool sharp = late || is_sharp(hunted);
   const bool ends_there = found.joint < 0 || same || found.fraction == 1.0;
   // An event may lie so close to the start of the step that the time cannot separate them.
   const double least = std::nextafter(run_.accepted.t(), unbounded) - run_.accepted.t();
@@ -92,7 +93,7 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
   const double nudge = std::ldexp(4.0 * rounding, hunts);
   if (std::abs(next - dt) <= nudge * dt) next = past < 0.0 ? dt * (1.0 + nudge) : dt * (1.0 - nudge);
   if (!(next > 0.0)) next = 0.5 * dt;
-  if (hunts > most_hunts / 2) next = bracket.inside(aim).value_or(next);
+  if (late) next = bracket.inside(aim).value_or(next);
   dt = std::max(next, least);
   return true;
 }
@@ -100,14 +101,18 @@ bool EventPursuit::pursue(StepEvents::Passage& hunted, EventBracket& bracket, do
 double EventPursuit::event_lateness() const { return event_share * run_.allowed; }
 
 bool EventPursuit::is_sharp(const StepEvents::Passage& end) const {
-  return end.value <= event_rounding || end.value <= std::max(event_time * end.rate, event_lateness());
+  return end.value <= event_rounding || end.value <= std::max(event_time * end.rate, end.unit * event_lateness());
+}
+
+double EventPursuit::allowed_past(const StepEvents::Passage& end) const {
+  return end.unit * std::max(StepEvents::tolerance, event_lateness());
 }
 
 // How far past its zero a step of the length dt should end.
 double EventPursuit::aim_past(const StepEvents::Passage& end, double dt) const {
-  const double wanted = std::max(0.1 * event_time * end.rate, 0.5 * event_lateness());
+  const double wanted = std::max(0.1 * event_time * end.rate, 0.5 * end.unit * event_lateness());
   // No farther than a small part of the step: from there Newton's step is still one from close by.
-  return std::min({wanted, 0.5 * std::max(StepEvents::tolerance, event_lateness()), 0.05 * dt * std::abs(end.rate)});
+  return std::min({wanted, 0.5 * allowed_past(end), 0.05 * dt * std::abs(end.rate)});
 }
 
 // By how much the interpolated motion misses the equations of motion, as a part of what a step may err: the speed that
@@ -141,7 +146,6 @@ bool EventPursuit::end_inside(const StepEvents::Passage& hunted, double dt, int 
   const Profile::Timer timer(run_.evaluations.profile, Phase::events);
   const DenseStep motion(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial,
                          run_.e_trial->internal_rate);
-  const double tolerance = std::max(StepEvents::tolerance, event_lateness());
   StepEvents::Passage end = hunted;
   double at_event = dt;
   for (int look = 0; look < early_hunts; ++look) {
@@ -154,7 +158,7 @@ bool EventPursuit::end_inside(const StepEvents::Passage& hunted, double dt, int 
         !run_.events.at_end(run_.between, run_.e_between, end, fault)) {
       return false;
     }
-    if (end.value >= 0.0 && end.value <= tolerance && is_sharp(end)) return cut_at(at_event / whole, whole);
+    if (end.value >= 0.0 && end.value <= allowed_past(end) && is_sharp(end)) return cut_at(at_event / whole, whole);
     const double change = (end.value - aim_past(end, at_event)) / end.rate;
     if (!(end.rate > 0.0) || !(std::abs(change) < 0.1 * at_event) || !(at_event - change < last)) return false;
     if (at_event - change == at_event) return false;

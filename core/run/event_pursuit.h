@@ -28,6 +28,7 @@ class EventPursuit {
   bool cut_at(double s, double whole);
   double defect_inside(double dt);
   bool is_sharp(const StepEvents::Passage& end) const;
+  double allowed_past(const StepEvents::Passage& end) const;
   double aim_past(const StepEvents::Passage& end, double dt) const;
 
   RunContext& run_;

@@ -17,7 +17,8 @@ LoadSwitches::LoadSwitches(const System& system)
       room_(system.forces().applied().switch_numbers()),
       scale_(events_.size()),
       scale_here_(events_.size()),
-      sides_(events_.size()) {
+      sides_(events_.size()),
+      units_(events_.size(), 1.0) {
   const LoadChannels channels(system);
   for (const LoadChannels::Load& load : channels.loads()) {
     for (const StateFormula& formula : load.formulas->formulas) {
@@ -49,8 +50,8 @@ void LoadSwitches::functions(const Point& point, std::span<const double> a, cons
       continue;
     }
     // Beside its zero it may change by far less than where the step starts.
-    const double part = even_[s] != 0 ? 1.0 : std::min(1.0, scale_here_[s] / scale_[s]);
-    g[s] = -side * g[s] / scale_[s] - part * band_;
+    units_[s] = even_[s] != 0 ? 1.0 : std::min(1.0, scale_here_[s] / scale_[s]);
+    g[s] = -side * g[s] / scale_[s] - units_[s] * band_;
     rate[s] = -side * rate[s] / scale_[s];
   }
 }

@@ -30,6 +30,9 @@ class LoadSwitches {
   /// The functions of their events [m] and their rates [m/s].
   void functions(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> g,
                  std::span<double> rate);
+  /// The last functions change by so much where the way to their zero does by 1 m: less than 1 where they began to be
+  /// steeper.
+  double unit(int which) const { return units_[at(which)]; }
   /// By so much [m] what decides a switch may be past its zero, as it is measured there.
   double band() const { return band_; }
   /// Takes the sides of this state into its history. Returns whether other forces act from here on.
@@ -46,7 +49,7 @@ class LoadSwitches {
   Slice slots_;  ///< in h
   double band_ = 0.0;
   std::vector<Event> events_;
-  std::vector<double> room_, scale_, scale_here_, sides_;
+  std::vector<double> room_, scale_, scale_here_, sides_, units_;
   std::vector<char> even_;  ///< what decides it changes with the motion as it does where the step starts
 };
 

@@ -17,6 +17,10 @@ constexpr double at_once = 1e-3;        // part of a step: what lies before it i
 constexpr double much_longer = 1.5;     // step than the one before: how functions went there says little
 constexpr double faster_inside = 2.0;  // than at both ends no event function moves inside a step, or its error shows it
 
+bool rises_above(const Hermite& curve, double level) {
+  return first_rise({curve.value0 - level, curve.slope0, curve.value1 - level, curve.slope1}, 0.0).has_value();
+}
+
 // A field may be left NaN, which is recorded as empty.
 bool fields_make_sense(const Event& event, Span<const double> fields, Message& message) {
   const auto wild = std::find_if(fields.begin(), fields.end(), [](double x) { return std::isinf(x); });
@@ -270,7 +274,8 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       const Hermite second{first.value1, first.slope1, sign * end_[event], sign * end_rate_[event] * half};
       double at = 2.0;
       // A function that rests at its zero crosses it by rounding all the time.
-      if (std::max(first.value1, second.value1) <= event_rounding) continue;
+      const bool below = std::max(first.value1, second.value1) <= event_rounding;
+      if (below && !rises_above(first, tolerance) && !rises_above(second, tolerance)) continue;
       if (const auto s = first_rise(first, 0.0)) {
         at = 0.5 * *s;
       } else if (const auto later = first_rise(second, 0.0)) {
@@ -323,6 +328,7 @@ bool StepEvents::at_end(const State& after, const Evaluation& e_after, Passage& 
   const double sign = events[at(passage.event)].crossing == Crossing::rising ? 1.0 : -1.0;
   passage.value = sign * g[at(passage.event)];
   passage.rate = sign * r[at(passage.event)];
+  passage.unit = are_switches(passage.joint) ? switches_.unit(passage.event) : 1.0;
   return true;
 }
 

@@ -39,6 +39,7 @@ class StepEvents {
     double fraction = 1.0;  ///< of the step
     double value = 0.0;     ///< of the function at the end, growing through zero [its unit]
     double rate = 0.0;      ///< its time derivative
+    double unit = 1.0;      ///< change of the function where it is zero, by what its value means
   };
   /// Looks at the events in an accepted state, from which the next steps start.
   bool look_from(const State& start, const Evaluation& e_start, Fault& fault);
