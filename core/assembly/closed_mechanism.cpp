@@ -115,6 +115,13 @@ ClosedMechanism::Rows ClosedMechanism::assemble(Rows rows, const std::vector<Lea
   return rows;
 }
 
+void ClosedMechanism::keep_turns() {
+  for (int j = 0; j < static_cast<int>(model().joints.size()); ++j) {
+    const int turn = system.layout().turn(j);
+    if (turn >= 0) state.h()[at(turn)] = e.coordinate[at(j)];
+  }
+}
+
 void ClosedMechanism::add_path(Rows& rows, Eigen::Index i, std::vector<SparseEntry>& entries) {
   const PathRow& path = paths[at(rows.path[static_cast<std::size_t>(i)])];
   double row[3];

@@ -56,6 +56,9 @@ class ClosedMechanism {
   /// Throws throw_fault() when an element fails.
   void evaluate(unsigned terms);
 
+  /// Whole turns of angles are counted from the last evaluate() on.
+  void keep_turns();
+
   /// Positions at the state: Phi of the rows that hold, and what leads and paths miss.
   Rows position_rows();
   /// Velocities at the state: Phi_q v - nu of all rows, then the speeds of `leading` joints.

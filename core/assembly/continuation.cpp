@@ -30,10 +30,7 @@ bool follow(ClosedMechanism& mechanism, const std::function<void()>& prescribe, 
   prescribe();
   if (!ahead.empty()) mechanism.system.coordinates().retract(q, ahead, mechanism.state.q());
   if (mechanism.holds(mechanism.converge()) && largest_move(mechanism.system, q, mechanism.state.q()) <= longest_move) {
-    for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
-      const int turn = mechanism.system.layout().turn(j);
-      if (turn >= 0) mechanism.state.h()[at(turn)] = mechanism.e.coordinate[at(j)];
-    }
+    mechanism.keep_turns();
     return true;
   }
   std::ranges::copy(q, mechanism.state.q().begin());

@@ -52,9 +52,10 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
     if (rows.lead[i] >= 0) {
       const JointElement& joint = model.joints[at(rows.lead[i])];
-      consider(gap,
-               fmt::format("joint '{}' misses its start value by {}", joint.name, words(gap, joint.ideal_layout.coordinate)),
-               joint.location);
+      consider(
+          gap,
+          fmt::format("joint '{}' misses its start value by {}", joint.name, words(gap, joint.ideal_layout.coordinate)),
+          joint.location);
     }
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {

@@ -43,6 +43,7 @@ class Opening {
     double open = 0.0, others = 0.0;
     for (int step = 0; step < most_steps; ++step) {
       const ClosedMechanism::Rows rows = mechanism_.position_rows();
+      mechanism_.keep_turns();
       const Choice own = rows_of(rows, joint, true), rest = rows_of(rows, joint, false);
       const MatrixXd all = rows.matrix;
       const VectorXd miss = rows.residual(own), rest_miss = rows.residual(rest);
@@ -101,6 +102,7 @@ class Opening {
 std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
   if (mechanism.system.layout().nv() > 200) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
+  const std::vector<double> h(mechanism.state.h().begin(), mechanism.state.h().end());
   Opening opening(mechanism);
   std::optional<LoopGap> gap;
   // Links in line may stand folded where they should be stretched: the smallest of several ways to open.
@@ -112,6 +114,7 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
       increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
     }
     mechanism.system.coordinates().retract(q, increment, mechanism.state.q());
+    std::ranges::copy(h, mechanism.state.h().begin());
     opening.settle(-1);
     const int joint = opening.worst_joint();
     if (joint < 0) continue;
@@ -120,6 +123,7 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
     if (!gap || open < (1.0 - 1e-6) * gap->size) gap = LoopGap{joint, open};
   }
   std::ranges::copy(q, mechanism.state.q().begin());
+  std::ranges::copy(h, mechanism.state.h().begin());
   mechanism.position_rows();
   return gap;
 }
