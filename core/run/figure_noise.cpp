@@ -8,7 +8,7 @@ namespace {
 
 // Of ten mechanisms 5 in 6 means and parts of the time and 3 in 4 counts of another run lie within.
 constexpr double of_spread = 1.5;  // of parts of the run
-constexpr double of_peak = 0.1;    // of the noise of a peak is that of its mean square root at least
+constexpr double of_peak = 0.05;   // of the noise of a peak is that of its mean square root at least
 constexpr double of_chance = 2.0;  // roots of a number of events that hang on chance
 
 }  // namespace

@@ -10,17 +10,34 @@
 namespace freeplay {
 namespace {
 
-constexpr double first_difference = 0.01;  // of the play
-constexpr double growth = 2.0;             // of differences in an impact
-constexpr double same_peak = 0.01;         // of the value
-constexpr double never_by_chance = 1e-4;   // of the value, to which peaks agree
-constexpr std::size_t agreeing = 5;        // peaks that are the same: three are by chance in every twentieth run
-constexpr double widening = 1.5;           // of the scale of the tail
-constexpr double unknown = 0.3;            // of the value, where too little was seen
-constexpr double same_speed = 1.05;        // an approach this much faster than the separation before is driven
+constexpr double first_difference = 0.005;  // of the play
+constexpr double growth = 2.7;              // of differences in an impact
+constexpr double same_peak = 0.01;          // of the value
+constexpr double never_by_chance = 1e-4;    // of the value, to which peaks agree
+constexpr std::size_t agreeing = 5;         // peaks that are the same: three are by chance in every twentieth run
+constexpr std::size_t gaps = 5;             // between bursts, that give the scale of the tail
+constexpr double widening = 3.0;            // of that scale
+constexpr std::size_t gaps_of_parts = 8;    // between parts,
+constexpr double widening_of_parts = 5.0;   // and of their scale
+constexpr double unknown = 0.5;             // of the value, where one burst alone was seen
+constexpr double chaotic = 0.3;             // of what chance can do: from there on bursts are draws
+constexpr double same_speed = 1.05;         // an approach this much faster than the separation before is driven
 
 /// What impacts make of a small difference, of all that chance can do.
 double grown_by(int impacts) { return std::min(1.0, first_difference * (std::pow(growth, impacts) - 1.0)); }
+
+/// Of values: the largest, by how much it is above the next, and the scale of an exponential tail.
+struct Tail {
+  double largest, first = 0.0, scale = 0.0;
+};
+Tail tail(std::span<double> values, std::size_t most_gaps) {
+  std::ranges::sort(values, std::greater<>());
+  Tail out{values[0]};
+  const std::size_t used = std::min(most_gaps, values.size() - 1);
+  for (std::size_t i = 1; i <= used; ++i) out.scale += static_cast<double>(i) * (values[i - 1] - values[i]);
+  if (used > 0) out.first = values[0] - values[1], out.scale /= static_cast<double>(used);
+  return out;
+}
 
 /// Bodies that joints, gears and springs hold together, as groups: a number each, from 0 on.
 class Groups {
@@ -99,7 +116,7 @@ PeakNoise::PeakNoise(const Model& model, const PeakValues& places)
   }
   if (!active_) return;
   groups_ = groups_of_values(model, places, Groups(model));
-  peaks_.resize(places.size());
+  values_.resize(places.size());
 }
 
 void PeakNoise::event(int joint, int event, std::span<const double> fields) {
@@ -121,44 +138,30 @@ void PeakNoise::event(int joint, int event, std::span<const double> fields) {
 }
 
 void PeakNoise::add(double t, std::span<const double> values) {
-  while (t > part_end_ && part_length_ > 0.0 && parts_over_ + 1 < parts) end_part();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    Peak& peak = peaks_[i];
-    if (!(values[i] > peak.present)) continue;
-    peak.present = values[i];
-    if (!(values[i] > peak.all)) continue;
-    peak.all = values[i];
-    if (groups_[i] >= 0) peak.impacts = impacts_[at(groups_[i])];
+  while (t > part_end_ && part_length_ > 0.0 && parts_over_ + 1 < parts) {
+    part_end_ = from_ + static_cast<double>(++parts_over_ + 1) * part_length_;
   }
-}
-
-void PeakNoise::end_part() {
-  part_end_ = from_ + static_cast<double>(++parts_over_ + 1) * part_length_;
-  for (Peak& peak : peaks_) {
-    const auto place = std::ranges::find_if(peak.largest, [&](double value) { return value < peak.present; });
-    if (place != peak.largest.end()) {
-      std::shift_right(place, peak.largest.end(), 1);
-      *place = peak.present;
-    }
-    peak.present = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Part& part = values_[i].part[parts_over_];
+    if (!(values[i] > part.largest)) continue;
+    part.largest = values[i];
+    if (groups_[i] >= 0) part.impacts = impacts_[at(groups_[i])];
   }
 }
 
 int PeakNoise::growing_impacts() const { return impacts_.empty() ? 0 : *std::ranges::max_element(impacts_); }
 
-std::array<double, PeakNoise::kept + 1> PeakNoise::in_order(const Peak& peak) const {
-  std::array<double, kept + 1> x{};
-  std::ranges::copy(peak.largest, x.begin());
-  x.back() = peak.present;
-  std::ranges::sort(x, std::greater<>());
-  return x;
+double PeakNoise::apart(std::size_t value) const {
+  std::array<double, parts> x{};
+  std::ranges::transform(seen(value), x.begin(), &Part::largest);
+  std::ranges::nth_element(x, x.begin() + (agreeing - 1), std::greater<>());
+  return *std::max_element(x.begin(), x.begin() + agreeing) - x[agreeing - 1];
 }
 
 bool PeakNoise::repeats(int group) const {
   for (std::size_t j = 0; j < contacts_.size(); ++j) {
     if (groups_[forces_[j]] != group || !std::ranges::any_of(kinds_[j], &EventKind::begins)) continue;
-    const auto x = in_order(peaks_[forces_[j]]);
-    if (x[0] - x[agreeing - 1] > same_peak * x[0]) return false;
+    if (apart(forces_[j]) > same_peak * std::ranges::max(seen(forces_[j]), {}, &Part::largest).largest) return false;
   }
   return true;
 }
@@ -167,22 +170,37 @@ double PeakNoise::grown(std::size_t value) const {
   return active_ && groups_[value] >= 0 ? grown_by(impacts_[at(groups_[value])]) : 0.0;
 }
 
-double PeakNoise::of(std::size_t value) const {
-  if (!active_) return 0.0;
-  const Peak& peak = peaks_[value];
-  const double grown = grown_by(peak.impacts);
-  if (!(grown > 0.0)) return 0.0;
-  if (parts_over_ < 2) return grown * unknown * peak.all;
-  const auto x = in_order(peak);
-  const double apart = x[0] - x[agreeing - 1];
-  if (apart <= never_by_chance * x[0] || (apart <= same_peak * x[0] && repeats(groups_[value]))) {
-    return grown * same_peak * x[0];
+PeakNoise::Bursts PeakNoise::bursts(std::span<const Part> seen, const std::function<bool(const Part&)>& chosen) {
+  std::array<double, parts> of_bursts{}, of_parts{};
+  std::size_t count = 0, all = 0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!chosen(seen[k])) continue;
+    const double here = of_parts[all++] = seen[k].largest;
+    if ((k > 0 && here <= seen[k - 1].largest) || (k + 1 < seen.size() && here < seen[k + 1].largest)) continue;
+    of_bursts[count++] = here;
   }
-  const std::size_t gaps = std::min(kept - 1, parts_over_);
-  double scale = 0.0;
-  for (std::size_t i = 1; i <= gaps; ++i) scale += static_cast<double>(i) * (x[i - 1] - x[i]);
-  if (gaps > 0) scale /= static_cast<double>(gaps);
-  return grown * std::max(widening * scale, x[0] - x[1]);
+  if (count == 0) return {};
+  const Tail blows = tail({of_bursts.data(), count}, gaps), even = tail({of_parts.data(), all}, gaps_of_parts);
+  const double by_bursts = count > 1 ? std::max(widening * blows.scale, blows.first) : unknown * blows.largest;
+  // What swells and falls without blows differs little from part to part.
+  const double most = all > 1 ? std::max(widening_of_parts * even.scale, even.first) : by_bursts;
+  return {blows.largest, std::min(by_bursts, most)};
+}
+
+double PeakNoise::of(std::size_t value) const {
+  if (!active_ || groups_[value] < 0) return 0.0;
+  const Part peak = std::ranges::max(seen(value), {}, &Part::largest);
+  const double most = peak.largest, grown = grown_by(peak.impacts);
+  const Bursts later = bursts(
+      seen(value), [&](const Part& part) { return part.impacts > peak.impacts && grown_by(part.impacts) > chaotic; });
+  // A peak of chance itself is one of the draws.
+  const double past = grown < 1.0 ? later.largest + later.beyond - most : 0.0;
+  if (!(grown > 0.0)) return std::clamp(past, 0.0, most);
+  const double same = apart(value);
+  const bool again = parts_over_ >= agreeing &&
+                     (same <= never_by_chance * most || (same <= same_peak * most && repeats(groups_[value])));
+  const double own = again ? same_peak * most : bursts(seen(value), [](const Part&) { return true; }).beyond;
+  return std::min(std::max(grown * own, past), most);
 }
 
 }  // namespace freeplay

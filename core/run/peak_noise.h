@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,16 +16,22 @@ namespace freeplay {
 /// follow more and more. Two estimates, both without a second run, for each group of bodies that joints, gears and
 /// springs hold together:
 ///
-/// 1. Growth. Of a difference of a hundredth of the play, what has come of it at the time of a peak is
-///    g = min(1, 0.01 (2^n - 1)) of all that chance can do. n counts the impacts so far, in the joint of the group that
-///    has most, that come faster than the body left the contact before: those that do not, as of a ball that comes to
-///    rest, let differences die out.
-/// 2. What chance can do. The time of the statistics is cut into 32 parts. Their largest values, in falling order
-///    X1 > X2 > ..., are taken as draws from a distribution with an exponential tail, whose scale is the mean of
-///    i (X_i - X_i+1) over the first eight (Weissman 1978, J Am Stat Assoc 73); the largest of many such draws varies
-///    by about as much. 1.5 times that, at least X1 - X2, is the noise. Where X1 to X5 agree to a hundredth the
-///    same peak comes again and again, and a hundredth of it is: another start may settle to a motion a little beside.
-///    The forces of all loose joints of the group must agree so, as one alone does by chance, or X1 to X5 to 1e-4.
+/// 1. Growth. Of a difference of half a hundredth of the play, what has come of it at the time of a peak is
+///    g = min(1, 0.005 (2.7^n - 1)) of all that chance can do. n counts the impacts so far, in the joint of the group
+///    that has most, that come faster than the body left the contact before: those that do not, as of a ball that comes
+///    to rest, let differences die out.
+/// 2. What chance can do. The time of the statistics is cut into 32 parts. Those whose largest value is above that of
+///    the part before and not below that of the next are separate bursts, as neighbours show the same one, and their
+///    values X1 > X2 > ... are taken as draws from a distribution with an exponential tail, whose scale is the mean of
+///    i (X_i - X_i+1) over the first five (Weissman 1978, J Am Stat Assoc 73). 3 times that, at least X1 - X2, is the
+///    noise: it has 95 % of the differences of two such maxima where the tail ends, as forces do. Where five parts
+///    agree to a hundredth the same peak comes again and again, and a hundredth of it is: another start may settle to a
+///    motion a little beside. The forces of all loose joints of the group must agree so, as one alone does by chance,
+///    or the five to 1e-4.
+/// 3. What comes later. A peak that stands early in the window, where little has grown yet, is that of every run, but
+///    what chance does behind it may pass it: the noise reaches to as far as 2. says of the bursts behind it.
+///
+/// The noise is the peak at most: then its power of ten is all that is known.
 ///
 /// Without impacts the noise is zero, and so is that of loads that the model gives. The cost is a comparison for each
 /// value and step.
@@ -56,19 +63,24 @@ class PeakNoise {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.part_end_, self.parts_over_, self.impacts_, self.peaks_, self.contacts_);
+    archive(self.part_end_, self.parts_over_, self.impacts_, self.values_, self.contacts_);
   }
 
  private:
-  static constexpr std::size_t parts = 32, kept = 9;
-  struct Peak {
-    std::array<double, kept> largest{};  // of parts that are over, the largest first
-    double present = 0.0;                // of the present part
-    double all = 0.0;                    // of all
-    int impacts = 0;                     // so far, at that time
+  static constexpr std::size_t parts = 32;
+  struct Part {
+    double largest = 0.0;
+    int impacts = 0;  // so far, at that time
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.largest, self.present, self.all, self.impacts);
+      archive(self.largest, self.impacts);
+    }
+  };
+  struct Value {
+    std::array<Part, parts> part{};
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.part);
     }
   };
   struct Contact {
@@ -84,9 +96,14 @@ class PeakNoise {
     int speed = -1;  // index of the field
   };
   void add(double t, std::span<const double> values);
-  void end_part();
-  /// The largest values of the parts, the largest first.
-  std::array<double, kept + 1> in_order(const Peak& peak) const;
+  std::span<const Part> seen(std::size_t value) const { return std::span(values_[value].part).first(parts_over_ + 1); }
+  /// By how much the largest of five parts differs from the fifth.
+  double apart(std::size_t value) const;
+  /// How far bursts reach beyond the largest of them by chance, and that one, of the parts that are `chosen`.
+  struct Bursts {
+    double largest = 0.0, beyond = 0.0;
+  };
+  static Bursts bursts(std::span<const Part> seen, const std::function<bool(const Part&)>& chosen);
   /// Whether all loose joints of a group have the same peak again and again.
   bool repeats(int group) const;
 
@@ -95,7 +112,7 @@ class PeakNoise {
   std::size_t parts_over_ = 0;
   std::vector<int> impacts_;  // by group
   std::vector<int> groups_;   // of each value
-  std::vector<Peak> peaks_;
+  std::vector<Value> values_;
   std::vector<Contact> contacts_;              // by joint
   std::vector<std::size_t> forces_;            // the value of each joint
   std::vector<std::vector<EventKind>> kinds_;  // by joint and event
