@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
+#include "freeplay/kit/contact_events.h"
 #include "freeplay/kit/contact_phase.h"
 #include "freeplay/kit/friction_slopes.h"
 #include "freeplay/kit/planar_pair.h"
@@ -16,7 +16,9 @@ namespace freeplay::play {
 /// Laws of all contacts of a joint. Throws BadParameter.
 struct PlanarLaws {
   PlanarLaws(const Parameters& p, const ContactPair& pair)
-      : normal(p.contact_law("clearance.contact", pair)), friction(p.friction_law("clearance.friction")) {
+      : PlanarLaws(p.contact_law("clearance.contact", pair), p.friction_law("clearance.friction")) {}
+  PlanarLaws(const ContactLawRef& contact_law, const FrictionLawRef& friction_law)
+      : normal(contact_law), friction(friction_law) {
     if (friction.internal_variables() > static_cast<int>(most_internal_variables))
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
@@ -27,21 +29,6 @@ struct PlanarLaws {
   std::size_t variables = 0;
 };
 
-/// Events of contacts, by name: begin and end of the first one, of the second one, ...
-template <std::size_t N>
-constexpr std::array<Event, N> contact_events(const char* const (&names)[N]) {
-  std::array<Event, N> all{};
-  for (std::size_t i = 0; i < N; ++i)
-    all[i] = {names[i], i % 2 == 0 ? Crossing::rising : Crossing::falling, 1, event_fields};
-  return all;
-}
-template <std::size_t N>
-constexpr std::array<EventRole, N> contact_event_roles() {
-  std::array<EventRole, N> all{};
-  for (std::size_t i = 0; i < N; ++i) all[i] = begin_and_end[i % 2];
-  return all;
-}
-
 /// A joint whose contacts stand where `Geometry` says:
 ///
 ///   static constexpr std::size_t contacts;                              how many
@@ -49,6 +36,13 @@ constexpr std::array<EventRole, N> contact_event_roles() {
 ///   double play;                                                        scale of a flight [m]
 ///   std::array<double, 2> stand(const PlanarMotion<double>&) const;     first channels: where b stands in its play
 ///   bool between_walls() const;                                         endless ones, the joint's PlayShape
+///
+/// One that depends on what was before, as on turns that were counted, keeps numbers of its own in the history:
+///
+///   static constexpr std::size_t kept;                                  how many
+///   void keep_first(const PlanarMotion<double>&, Span<double>) const;   at the start
+///   void keep(const PlanarMotion<double>&, Span<double>) const;         after a step was accepted
+///   Geometry with(Span<const double>) const;                            the geometry that has them
 ///
 /// With delta, n, and C, where both forces act, delta' = n.v and v_T = t.v, v: velocity of b less that of a at C,
 ///
@@ -61,6 +55,7 @@ class PlanarContacts : public Joint {
  public:
   static constexpr std::size_t count = Geometry::contacts;
   static constexpr std::size_t joint_channels = 8, contact_channels = 3;
+  static constexpr bool keeps = requires { Geometry::kept; };
 
   PlanarContacts(const Geometry& geometry, const PlanarLaws& laws) : geometry_(geometry), laws_(laws) {}
 
@@ -68,7 +63,7 @@ class PlanarContacts : public Joint {
     out.potential_rate = 0.0;
     if (all_fly(in)) return;
     const PlanarPair pair(in);
-    const Loads loads = load(in, pair.numbers());
+    const Loads loads = load(in, pair.numbers(), Which::touching);
     for (std::size_t i = 0; i < count; ++i) {
       if (!loads.on[i]) continue;
       out.potential += loads.normal[i].potential;
@@ -89,7 +84,9 @@ class PlanarContacts : public Joint {
     std::fill(internal.begin(), internal.end(), 0.0);
     std::fill(history.begin(), history.end(), 0.0);
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
-    for (std::size_t i = 0; i < count; ++i) play::start(in.t, gap(motion, i), history.part(i * slots, slots));
+    if constexpr (keeps) geometry_.keep_first(motion, kept(history));
+    const Geometry& geometry = with(history);
+    for (std::size_t i = 0; i < count; ++i) play::start(in.t, gap(geometry, motion, i), history.part(i * slots, slots));
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
                   Span<double> history) const override {
@@ -100,14 +97,15 @@ class PlanarContacts : public Joint {
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    const Geometry& geometry = with(in.history);
     for (std::size_t i = 0; i < count; ++i)
-      write_events(contact_input(in, i), gap(motion, i), g.part(2 * i, 2), rate.part(2 * i, 2));
+      write_events(contact_input(in, i), gap(geometry, motion, i), g.part(2 * i, 2), rate.part(2 * i, 2));
   }
   void on_event(int index, const JointInput& in, Span<double> internal, Span<double> history,
                 Span<double> fields) const override {
     const auto i = static_cast<std::size_t>(index / 2);
     const PlanarPair pair(in);
-    const PlanarContact<double> at = contact(pair.numbers(), i);
+    const PlanarContact<double> at = contact(with(in.history), pair.numbers(), i);
     const JointInput one = contact_input(in, i);
     const Span<double> own = history.part(i * slots, slots);
     if (index % 2 == 0) {
@@ -124,19 +122,21 @@ class PlanarContacts : public Joint {
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    const Geometry& geometry = with(in.history);
     for (std::size_t i = 0; i < count; ++i) {
       const Span<double> own = history.part(i * slots, slots);
       const bool touched = own[phase] != flight;
-      play::commit(contact_input(in, i), gap(motion, i), laws_.normal, 1.0, own);
+      play::commit(contact_input(in, i), gap(geometry, motion, i), laws_.normal, 1.0, own);
       if (touched && own[phase] == flight) forget(i, in.internal, history);
     }
+    if constexpr (keeps) geometry_.keep(motion, kept(history));
   }
 
   /// Where b stands, deepest delta, sums of F_N, F_T and of the power of the forces, whether any contact is on, v_T of
   /// the one that carries most; then, of several, delta, F_N and F_T of each.
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
-    const Loads loads = load(in, motion);
+    const Loads loads = load(in, motion, Which::all);
     double deepest = -unbounded, normal = 0.0, tangential = 0.0, power = 0.0, touching = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
       const PlanarContact<double>& at = loads.at[i];
@@ -156,14 +156,14 @@ class PlanarContacts : public Joint {
       own[1] = own_normal;
       own[2] = own_tangential;
     }
-    const std::array<double, 2> stand = geometry_.stand(motion);
+    const std::array<double, 2> stand = with(in.history).stand(motion);
     const double all[] = {stand[0],   stand[1], deepest,  normal,
                           tangential, power,    touching, loads.at[most_loaded(loads)].slip};
     static_assert(std::size(all) == joint_channels);
     std::copy(std::begin(all), std::end(all), channels.begin());
   }
   void contacts(const JointInput& in, Span<double> numbers) const override {
-    const Loads loads = load(in, PlanarPair(in).numbers());
+    const Loads loads = load(in, PlanarPair(in).numbers(), Which::touching);
     std::fill(numbers.begin(), numbers.end(), 0.0);
     for (std::size_t i = 0; i < count; ++i) {
       if (!loads.on[i]) continue;
@@ -177,11 +177,12 @@ class PlanarContacts : public Joint {
   }
   void kinks(const JointInput& in, Span<double> g) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    const Geometry& geometry = with(in.history);
     const std::size_t each = g.size / count;
     for (std::size_t i = 0; i < count; ++i) {
       const JointInput one = contact_input(in, i);
       if (one.history[phase] == flight) continue;
-      const PlanarContact<double> at = contact(motion, i);
+      const PlanarContact<double> at = contact(geometry, motion, i);
       const Approach here = at.approach();
       if (touches(one, here)) write_kinks(laws_.normal, laws_.friction, here, at.slip, one, g.part(each * i, each));
     }
@@ -189,10 +190,11 @@ class PlanarContacts : public Joint {
   /// In flight no contact nears its surface by more than the play, whichever way an end may lie.
   double step_limit(const JointInput& in) const override {
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    const Geometry& geometry = with(in.history);
     double limit = unbounded;
     for (std::size_t i = 0; i < count; ++i) {
       const JointInput one = contact_input(in, i);
-      const PlanarContact<double> at = contact(motion, i);
+      const PlanarContact<double> at = contact(geometry, motion, i);
       const double speed = geometry_.between_walls() ? std::abs(at.rate) : std::sqrt(dot(at.velocity, at.velocity));
       if (one.history[phase] != flight) {
         limit = std::min(limit, impact_step(one));
@@ -209,16 +211,17 @@ class PlanarContacts : public Joint {
     double free = unbounded;
     for (std::size_t i = 0; i < count; ++i) {
       if (in.history[i * slots + phase] != flight) return 0.0;
-      free = std::min(free, -contact(motion, i).penetration);
+      free = std::min(free, -contact(with(in.history), motion, i).penetration);
     }
     return std::max(0.0, free);
   }
   const char* warning(const JointInput& in) const override {
     if (all_fly(in)) return nullptr;
     const PlanarMotion<double> motion = PlanarPair(in).numbers();
+    const Geometry& geometry = with(in.history);
     for (std::size_t i = 0; i < count; ++i) {
       const JointInput one = contact_input(in, i);
-      const Approach here = gap(motion, i);
+      const Approach here = gap(geometry, motion, i);
       if (one.history[phase] == flight || !touches(one, here)) continue;
       const char* why = laws_.normal.outside_range({here.penetration, here.rate, one.history[approach_speed]});
       if (why != nullptr) return why;
@@ -236,6 +239,7 @@ class PlanarContacts : public Joint {
     layout.wants_whole_mobility = 1;
     layout.internal_variables = static_cast<std::int32_t>(count * laws_.variables);
     layout.history = static_cast<std::int32_t>(count * (slots + laws_.variables));
+    if constexpr (keeps) layout.history += static_cast<std::int32_t>(Geometry::kept);
     layout.kinks = static_cast<std::int32_t>(count) * count_kinks(laws_.normal, laws_.friction);
     layout.clearance = geometry_.play;
   }
@@ -245,10 +249,24 @@ class PlanarContacts : public Joint {
  private:
   using Dual = PlanarPair::Dual;
 
-  PlanarContact<double> contact(const PlanarMotion<double>& motion, std::size_t i) const {
-    return {geometry_.place(motion, i), motion};
+  static PlanarContact<double> contact(const Geometry& geometry, const PlanarMotion<double>& motion, std::size_t i) {
+    return {geometry.place(motion, i), motion};
   }
-  Approach gap(const PlanarMotion<double>& motion, std::size_t i) const { return contact(motion, i).approach(); }
+  static Approach gap(const Geometry& geometry, const PlanarMotion<double>& motion, std::size_t i) {
+    return contact(geometry, motion, i).approach();
+  }
+  /// The geometry that this history places.
+  decltype(auto) with(Span<const double> history) const {
+    if constexpr (keeps) {
+      return geometry_.with(kept(history));
+    } else {
+      return (geometry_);
+    }
+  }
+  template <class T>
+  static Span<T> kept(Span<T> history) {
+    return history.part(history.size - Geometry::kept, Geometry::kept);
+  }
 
   /// Where steps end at events nothing can touch then.
   static bool all_fly(const JointInput& in) {
@@ -265,21 +283,22 @@ class PlanarContacts : public Joint {
     std::array<bool, count> on{};
     bool any = false;
   };
-  Loads load(const JointInput& in, const PlanarMotion<double>& motion) const {
-    Loads loads{contacts_of(motion, std::make_index_sequence<count>())};
+  /// Those of which the kinematics are wanted: most corners of most joints fly most of the time.
+  enum class Which : bool { touching, all };
+  Loads load(const JointInput& in, const PlanarMotion<double>& motion, Which which) const {
+    const Geometry& geometry = with(in.history);
+    Loads loads;
     for (std::size_t i = 0; i < count; ++i) {
+      const ContactPlace<double> place = geometry.place(motion, i);
       const JointInput one = contact_input(in, i);
-      const Approach here = loads.at[i].approach();
-      if (!touches(one, here)) continue;
-      loads.normal[i] = normal_force(laws_.normal, here, one);
-      loads.on[i] = loads.any = true;
+      loads.on[i] = touches(one, {place.penetration, 0.0});
+      if (!loads.on[i] && which == Which::touching) continue;
+      loads.at[i] = PlanarContact<double>(place, motion);
+      if (!loads.on[i]) continue;
+      loads.normal[i] = normal_force(laws_.normal, loads.at[i].approach(), one);
+      loads.any = true;
     }
     return loads;
-  }
-  template <std::size_t... i>
-  std::array<PlanarContact<double>, count> contacts_of(const PlanarMotion<double>& motion,
-                                                       std::index_sequence<i...>) const {
-    return {contact(motion, i)...};
   }
   /// The contact that carries most, or lies deepest where none is on.
   static std::size_t most_loaded(const Loads& loads) {
@@ -336,11 +355,12 @@ class PlanarContacts : public Joint {
   void differentiate(const JointInput& in, const PlanarPair& pair, const Loads& loads, JointForces& out) const {
     const PlanarMotion<Dual> motion = pair.duals();
     const std::size_t n = laws_.variables, columns = 24 + count * n;
+    const Geometry& geometry = with(in.history);
     double unused[most_internal_variables];
     PlanarPair::Force<Dual> total;
     for (std::size_t i = 0; i < count; ++i) {
       if (!loads.on[i]) continue;
-      const PlanarContact<Dual> at{geometry_.place(motion, i), motion};
+      const PlanarContact<Dual> at{geometry.place(motion, i), motion};
       const ContactForce& law = loads.normal[i];
       const FrictionForce f = friction(in, loads, i, {unused, n});
       const Dual normal = space::chained(law.normal, law.d_penetration, at.penetration, law.d_rate, at.rate);
@@ -375,14 +395,30 @@ class PlanarContacts : public Joint {
   /// v_0 of a contact that begins in this step, from the exact second derivative of delta.
   double predict(const JointInput& in, const MarkerAccelerations& acc, std::size_t i, double dt) const {
     const PlanarPair pair(in);
+    const PlanarContact<double> here = contact(with(in.history), pair.numbers(), i);
+    if (geometry_.between_walls() && !may_touch(here, pair.numbers(), acc, dt)) return 0.0;
     const PlanarMotion<Dual> motion = pair.duals();
     const Dual::Gradient rates = pair.rates(acc);
-    const PlanarContact<Dual> at{geometry_.place(motion, i), motion};
+    const PlanarContact<Dual> at{with(in.history).place(motion, i), motion};
     const auto rate_of = [&](const Dual& x) { return x.gradient.dot(rates); };
     const Eigen::Vector2d velocity(at.velocity.x.value, at.velocity.y.value);
     const Eigen::Vector2d second(rate_of(at.velocity.x), rate_of(at.velocity.y));
     return predicted_speed(at.approach(), rate_of(at.rate), dt,
                            [&](double s) { return (velocity + s * second).norm(); });
+  }
+  /// Whether a depth that stands at a flat wall can grow to zero within dt. Its second derivative is at most that of
+  /// the contact's point, of the lever r_b on b and r_a on a,
+  ///
+  ///   |a_b - a_a| + r_b (|alpha_b| + w_b^2) + r_a (|alpha_a| + 3 w_a^2) + 2 |w_a| |v|
+  static bool may_touch(const PlanarContact<double>& at, const PlanarMotion<double>& m, const MarkerAccelerations& acc,
+                        double dt) {
+    const auto length = [](double x, double y) { return std::abs(x) + std::abs(y); };
+    const double w_a = std::abs(m.w_a),
+                 second = length(acc.b[0] - acc.a[0], acc.b[1] - acc.a[1]) +
+                          length(at.arm.x, at.arm.y) * (std::abs(acc.b[5]) + m.w_b * m.w_b) +
+                          length(at.from_a.x, at.from_a.y) * (std::abs(acc.a[5]) + 3.0 * w_a * w_a) +
+                          2.0 * w_a * length(at.velocity.x, at.velocity.y);
+    return !(at.penetration + dt * (std::abs(at.rate) + 0.5 * dt * second) < 0.0);
   }
   /// 1/m = w.(W w) of the wrench w on b at its origin for a unit force at the contact; 0: not known.
   static double inverse_mass(const JointInput& in, const PlanarPair& pair, const PlanarContact<double>& at) {

@@ -41,6 +41,7 @@ struct ContactPlace {
 /// The kinematics that follow: velocity of b less that of a, both at the point of the forces.
 template <class T>
 struct PlanarContact : ContactPlace<T> {
+  PlanarContact() = default;
   PlanarContact(const ContactPlace<T>& place, const PlanarMotion<T>& m)
       : ContactPlace<T>(place),
         from_a(m.d + place.arm),
