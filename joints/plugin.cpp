@@ -16,6 +16,7 @@ Component universal();
 Component cylindrical();
 Component planar_joint();
 Component spherical_clearance();
+Component cylindrical_clearance();
 Component bushing();
 Component joint_friction();
 Component joint_stop();
@@ -42,6 +43,7 @@ FREEPLAY_PLUGIN(joints) {
                                          cylindrical(),
                                          planar_joint(),
                                          spherical_clearance(),
+                                         cylindrical_clearance(),
                                          bushing(),
                                          joint_friction(),
                                          joint_stop(),

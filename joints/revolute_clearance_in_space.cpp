@@ -13,18 +13,6 @@ namespace {
 using namespace play;
 using space::PairInFirstAxes;
 
-constexpr Event end_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
-                                {"upper_contact_end", Crossing::falling, 1, event_fields},
-                                {"lower_contact_begin", Crossing::rising, 1, event_fields},
-                                {"lower_contact_end", Crossing::falling, 1, event_fields},
-                                {"upper_shoulder_contact_begin", Crossing::rising, 1, event_fields},
-                                {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
-                                {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
-                                {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
-constexpr EventRole contact_roles[] = {EventRole::contact_begin, EventRole::contact_end,   EventRole::contact_begin,
-                                       EventRole::contact_end,   EventRole::contact_begin, EventRole::contact_end,
-                                       EventRole::contact_begin, EventRole::contact_end};
-
 /// Journal (radius R_J, marker b) in a bearing (radius R_B, marker a) of length L, in space; the axes are the z axes.
 /// No constraint rows. `revolute_play_ends.h` has the kinematics: at each end plane of the bearing, z_a = +-L/2, the
 /// axis of the journal has an eccentricity e, a penetration delta = |e| - c and half of the laws' forces,
@@ -39,32 +27,39 @@ constexpr EventRole contact_roles[] = {EventRole::contact_begin, EventRole::cont
 /// speed, begin and end. Work and stored energy agree exactly at any tilt. Left out: that a tilted round section is an
 /// ellipse (1 - cos(tilt) of R_J), the moment of shoulders, the friction on them. Flores and Lankarani 2016, Contact
 /// Force Models for Multibody Dynamics; Brutti, Coglitore and Valentini 2011, Nonlinear Dyn 65.
-class RevoluteClearanceInSpace final : public Joint {
+template <Kept way>
+class PinInSpace final : public Joint {
  public:
-  explicit RevoluteClearanceInSpace(const Parameters& p) : play_(p, p.number("clearance.length")) {
-    const double length = p.number("clearance.length"), axial = p.number("clearance.axial_clearance");
+  static constexpr std::size_t contacts_kept = way == Kept::by_shoulders ? places : std::size_t{lower_end} + 1;
+
+  explicit PinInSpace(const Parameters& p) : play_(p, p.number("clearance.length")) {
+    const double length = p.number("clearance.length");
     if (std::isnan(length))
       throw BadParameter("clearance", "missing-key", "a bearing in a spatial model needs its 'length'");
+    const double axial = way == Kept::by_shoulders ? p.number("clearance.axial_clearance") : unbounded;
     bearing_ = {0.5 * length, std::isnan(axial) ? play_.radii.clearance : axial};
   }
 
   void declare(JointLayout& layout) const override {
     layout.time_scale = unbounded;
-    layout.coordinate = Coordinate::angle;
+    if constexpr (way == Kept::by_shoulders) layout.coordinate = Coordinate::angle;
     layout.forces_without_coordinate = 1;
-    layout.history = static_cast<int>(std::size_t{places} * slots) + ends * play_.memory();
+    layout.wants_whole_mobility = 1;
+    layout.history = static_cast<int>(contacts_kept * slots) + ends * play_.memory();
     layout.forces = 1;
     layout.internal_variables = ends * play_.memory();
     layout.analytic_derivatives = 1;
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
-    layout.events = end_events;
-    layout.event_roles = contact_roles;
+    layout.events = {end_events, 2 * contacts_kept};
+    layout.event_roles = {end_event_roles, 2 * contacts_kept};
     layout.kinks = ends * play_.count_kinks();
     layout.channels = gap_channels;
-    layout.channel_roles = gap_roles;
+    layout.channel_roles = way == Kept::by_shoulders ? Span<const ChannelRole>(gap_roles) : along_roles;
   }
-  void coordinate(const JointInput& in, CoordinateRow& row) const override { space::AngleAboutZ(in).write(row); }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override {
+    if constexpr (way == Kept::by_shoulders) space::AngleAboutZ(in).write(row);
+  }
   bool place(double angle, Pose& b_in_a) const override {
     b_in_a = planar::pose(0.0, angle);
     return true;
@@ -76,7 +71,7 @@ class RevoluteClearanceInSpace final : public Joint {
     const RelativeMotion<double> motion = pair.numbers();
     const Normals normals = normal_forces(in, motion);
     if (!normals.any) return;
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       if (!normals.on[i]) continue;
       out.potential += share(i) * normals.force[i].potential;
       out.potential_rate += share(i) * storing_power(play_.contact, normals.gap[i], normals.force[i]);
@@ -89,19 +84,19 @@ class RevoluteClearanceInSpace final : public Joint {
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
     std::fill(internal.begin(), internal.end(), 0.0);
     const RelativeMotion<double> motion = motion_of(in);
-    for (std::size_t i = 0; i < places; ++i) play::start(in.t, gap(motion, i), history.part(i * slots, slots));
+    for (std::size_t i = 0; i < contacts_kept; ++i) play::start(in.t, gap(motion, i), history.part(i * slots, slots));
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
                   Span<double> history) const override {
     const PairInFirstAxes pair = PairInFirstAxes::with_axis(in, 2);
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       const Span<double> own = history.part(i * slots, slots);
       if (play::begin_step(contact_input(in, i), dt, own)) own[predicted] = predict(pair, pair.rates(acc), i, dt);
     }
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     const RelativeMotion<double> motion = motion_of(in);
-    for (std::size_t i = 0; i < places; ++i)
+    for (std::size_t i = 0; i < contacts_kept; ++i)
       write_events(contact_input(in, i), gap(motion, i), g.part(2 * i, 2), rate.part(2 * i, 2));
   }
   void on_event(int index, const JointInput& in, Span<double> internal, Span<double> history,
@@ -113,9 +108,9 @@ class RevoluteClearanceInSpace final : public Joint {
     const Span<double> own = history.part(place * slots, slots);
     if (index % 2 == 0) {
       tell_begin(one, gap(motion, place), own, fields);
-      if (in.mobility != nullptr) {
+      if (in.whole_mobility != nullptr) {
         own[impact_time] = impact_duration(play_.contact, gap(motion, place), play_.radii.clearance,
-                                           inverse_mass(pair, place, in.mobility), share(place));
+                                           inverse_mass(pair, place, in.whole_mobility), share(place));
       }
     } else {
       tell_end(one, gap(motion, place), own, fields);
@@ -128,7 +123,7 @@ class RevoluteClearanceInSpace final : public Joint {
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
     const RelativeMotion<double> motion = motion_of(in);
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       const Span<double> own = history.part(i * slots, slots);
       const bool touched = own[phase] != flight;
       play::commit(contact_input(in, i), gap(motion, i), play_.contact, share(i), own);
@@ -143,7 +138,7 @@ class RevoluteClearanceInSpace final : public Joint {
     double deepest = -unbounded, normal = 0.0, tangential = 0.0, touching = 0.0, slip = 0.0;
     std::array<double, std::size_t{ends} * 3 * most_law_variables> unused;
     const Span<double> rates{unused.data(), in.internal.size};
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       if (contact_input(in, i).history[phase] != flight) touching = 1.0;
       if (!is_end(i)) continue;
       deepest = std::max(deepest, normals.gap[i].penetration);
@@ -158,6 +153,7 @@ class RevoluteClearanceInSpace final : public Joint {
       tangential += share(i) * along_turn(end, friction);
     }
     for (std::size_t i = 0; i < 3; ++i) channels[i] = in.b->position[i] - in.a->position[i];
+    if constexpr (way == Kept::not_along) write_middle(pair, channels);
     channels[3] = deepest;
     channels[4] = normal;
     channels[5] = tangential;
@@ -171,7 +167,7 @@ class RevoluteClearanceInSpace final : public Joint {
     std::fill(numbers.begin(), numbers.end(), 0.0);
     std::array<double, std::size_t{ends} * 3 * most_law_variables> unused;
     const Span<double> rates{unused.data(), in.internal.size};
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       if (!normals.on[i]) continue;
       const ContactForce& f = normals.force[i];
       const Approach& here = normals.gap[i];
@@ -192,7 +188,7 @@ class RevoluteClearanceInSpace final : public Joint {
   void kinks(const JointInput& in, Span<double> g) const override {
     const RelativeMotion<double> motion = motion_of(in);
     const std::size_t each = g.size / ends;
-    for (std::size_t i = 0, end = 0; i < places; ++i) {
+    for (std::size_t i = 0, end = 0; i < contacts_kept; ++i) {
       if (!is_end(i)) continue;
       const Span<double> own = g.part(each * end++, each);
       const JointInput one = contact_input(in, i);
@@ -208,9 +204,9 @@ class RevoluteClearanceInSpace final : public Joint {
   double step_limit(const JointInput& in) const override {
     const RelativeMotion<double> motion = motion_of(in);
     bool flies = true;
-    for (std::size_t i = 0; i < places; ++i) flies = flies && contact_input(in, i).history[phase] == flight;
+    for (std::size_t i = 0; i < contacts_kept; ++i) flies = flies && contact_input(in, i).history[phase] == flight;
     double limit = unbounded;
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       const JointInput one = contact_input(in, i);
       if (one.history[phase] != flight) {
         limit = std::min(limit, impact_step(one));
@@ -218,7 +214,9 @@ class RevoluteClearanceInSpace final : public Joint {
       }
       double speed = std::abs(gap(motion, i).rate);
       if (flies && is_end(i)) {
-        const Vec<double> h = bearing_.end(motion, i, play_).h;
+        const EndGap<double> end = bearing_.end(motion, i, play_);
+        Vec<double> h = end.h;
+        if constexpr (way == Kept::not_along) h = end.g - (end.g.z / motion.r.z) * motion.r;
         speed = std::sqrt(dot(h, h));
       }
       if (speed > 0.0) limit = std::min(limit, play_.radii.clearance / speed);
@@ -227,7 +225,7 @@ class RevoluteClearanceInSpace final : public Joint {
   }
   const char* warning(const JointInput& in) const override {
     const RelativeMotion<double> motion = motion_of(in);
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       const JointInput one = contact_input(in, i);
       const Approach here = gap(motion, i);
       if (one.history[phase] == flight || !touches(one, here)) continue;
@@ -250,7 +248,7 @@ class RevoluteClearanceInSpace final : public Joint {
     // The bearing pushes the journal along -n.
     if (radial >= 1e-12)
       place.head<2>() = -(clearance + resting_penetration(play_.contact, clearance, radial)) / radial * load.head<2>();
-    if (axial >= 1e-12)
+    if (way == Kept::by_shoulders && axial >= 1e-12)
       place.z() =
           -std::copysign(bearing_.axial_clearance + resting_penetration(play_.contact, clearance, axial), load.z());
     Eigen::Map<Eigen::Vector3d>(out.position) = axes * place;
@@ -259,9 +257,9 @@ class RevoluteClearanceInSpace final : public Joint {
  private:
   /// The contacts that are on, and the whole force of the law in each.
   struct Normals {
-    std::array<Approach, places> gap;
-    std::array<ContactForce, places> force;
-    std::array<bool, places> on{};
+    std::array<Approach, contacts_kept> gap;
+    std::array<ContactForce, contacts_kept> force;
+    std::array<bool, contacts_kept> on{};
     bool any = false;
   };
 
@@ -271,7 +269,7 @@ class RevoluteClearanceInSpace final : public Joint {
   }
   Normals normal_forces(const JointInput& in, const RelativeMotion<double>& motion) const {
     Normals normals{};
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       normals.gap[i] = gap(motion, i);
       const JointInput one = contact_input(in, i);
       if (!touches(one, normals.gap[i])) continue;
@@ -289,6 +287,12 @@ class RevoluteClearanceInSpace final : public Joint {
     return lower ? lower_end : upper_end;
   }
 
+  /// Eccentricity of the shaft's axis in the middle of its sleeve, world axes: its origin may be far along.
+  void write_middle(const PairInFirstAxes& pair, Span<double> channels) const {
+    const Vec<double> e = EndGap<double>(pair.numbers(), 0.0, 0.0, play_).e;
+    Eigen::Map<Eigen::Vector3d>(channels.data) = pair.axes() * Eigen::Vector3d(e.x, e.y, 0.0);
+  }
+
   /// Only the ends slide and have a memory.
   static constexpr int ends = 2;
 
@@ -300,7 +304,7 @@ class RevoluteClearanceInSpace final : public Joint {
   }
   template <class T>
   Span<T> forgotten(Span<T> history, std::size_t place) const {
-    const std::size_t first = std::size_t{places} * slots;
+    const std::size_t first = contacts_kept * slots;
     return part_of(history.part(first, history.size - first), place);
   }
   Memory memory(const JointInput& in, std::size_t place) const {
@@ -323,7 +327,7 @@ class RevoluteClearanceInSpace final : public Joint {
   /// and by a law with internal variables, whose rates it writes.
   template <class T>
   struct WithMemory {
-    const RevoluteClearanceInSpace& joint;
+    const PinInSpace& joint;
     const JointInput& in;
     const RelativeMotion<T>& motion;
     Span<T> rates;
@@ -377,7 +381,7 @@ class RevoluteClearanceInSpace final : public Joint {
   template <class T, class Friction>
   RelativeForce<T> force(const RelativeMotion<T>& motion, const Normals& normals, const Friction& friction) const {
     RelativeForce<T> total{};
-    for (std::size_t i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
       if (!normals.on[i]) continue;
       const ContactForce& f = normals.force[i];
       if (!is_end(i)) {
@@ -414,15 +418,18 @@ class RevoluteClearanceInSpace final : public Joint {
                            second + vector(motion.w_a).cross(h), dt);
   }
 
-  /// 1/m = n^T W n with the mobility W of the origins; that a free journal also turns is left out.
+  /// 1/m = w.(W w) of the wrench w on b at its origin for a unit normal force: an end that meets the bearing also turns
+  /// the journal.
   double inverse_mass(const PairInFirstAxes& pair, std::size_t place, const double* mobility) const {
-    Eigen::Vector3d n(0.0, 0.0, 1.0);
+    Eigen::Vector3d n(0.0, 0.0, 1.0), arm(0.0, 0.0, 0.0);
     if (is_end(place)) {
-      const Vec<double> m = bearing_.end(pair.numbers(), place, play_).m;
-      n = {m.x, m.y, m.z};
+      const EndGap<double> end = bearing_.end(pair.numbers(), place, play_);
+      n = {end.m.x, end.m.y, end.m.z};
+      arm = {end.q.x, end.q.y, end.q.z};
     }
-    n = pair.axes() * n;
-    return n.dot(Eigen::Map<const RowMajor3>(mobility) * n);
+    Eigen::Matrix<double, 6, 1> wrench;
+    wrench << pair.axes() * n, pair.axes() * arm.cross(n);
+    return wrench.dot(Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(mobility) * wrench);
   }
 
   /// Size of a tangential vector with the sign of its part along t = z_a x n.
@@ -436,6 +443,7 @@ class RevoluteClearanceInSpace final : public Joint {
 
 }  // namespace
 
-JointFace revolute_clearance_in_space() { return joint_face<RevoluteClearanceInSpace>(); }
+JointFace revolute_clearance_in_space() { return joint_face<PinInSpace<Kept::by_shoulders>>(); }
+JointFace cylindrical_clearance_in_space() { return joint_face<PinInSpace<Kept::not_along>>(); }
 
 }  // namespace freeplay

@@ -6,5 +6,7 @@
 namespace freeplay {
 
 JointFace revolute_clearance_in_space();
+/// The same without shoulders, for `cylindrical_clearance.cpp`.
+JointFace cylindrical_clearance_in_space();
 
 }  // namespace freeplay

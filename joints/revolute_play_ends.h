@@ -11,6 +11,28 @@ using space::RelativeMotion;
 /// In this order the joint keeps its contacts. The upper ones are those on the side of +z of marker a.
 enum Place : std::size_t { upper_end, lower_end, upper_shoulder, lower_shoulder, places };
 
+/// Begin and end of each.
+inline constexpr Event end_events[] = {{"upper_contact_begin", Crossing::rising, 1, event_fields},
+                                       {"upper_contact_end", Crossing::falling, 1, event_fields},
+                                       {"lower_contact_begin", Crossing::rising, 1, event_fields},
+                                       {"lower_contact_end", Crossing::falling, 1, event_fields},
+                                       {"upper_shoulder_contact_begin", Crossing::rising, 1, event_fields},
+                                       {"upper_shoulder_contact_end", Crossing::falling, 1, event_fields},
+                                       {"lower_shoulder_contact_begin", Crossing::rising, 1, event_fields},
+                                       {"lower_shoulder_contact_end", Crossing::falling, 1, event_fields}};
+inline constexpr EventRole end_event_roles[] = {
+    EventRole::contact_begin, EventRole::contact_end, EventRole::contact_begin, EventRole::contact_end,
+    EventRole::contact_begin, EventRole::contact_end, EventRole::contact_begin, EventRole::contact_end};
+
+/// A pin is kept by its shoulders and has an angle; a shaft in its sleeve goes along and has no single coordinate.
+enum class Kept : bool { by_shoulders, not_along };
+
+/// Of a shaft `ex ey ez` are no place of its origin.
+inline constexpr ChannelRole along_roles[] = {
+    ChannelRole::none,        ChannelRole::none,         ChannelRole::none,
+    ChannelRole::penetration, ChannelRole::normal_force, ChannelRole::friction_force,
+    ChannelRole::none,        ChannelRole::in_contact,   ChannelRole::slip_speed};
+
 constexpr bool is_end(std::size_t place) { return place <= lower_end; }
 constexpr double side(std::size_t place) { return place == upper_end || place == upper_shoulder ? 1.0 : -1.0; }
 /// Each end carries half of the law's force, so that both together are the joint of a planar model.

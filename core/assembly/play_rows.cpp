@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "assembly/play_gap.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
 #include "component/parameter_block.h"
@@ -69,12 +70,11 @@ double share_inside(ClosedMechanism& mechanism, const std::vector<InitialOffset>
   double share = 1.0;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointElement& joint = model.joints[j];
-    if (!joint.has_play || plays_between_walls(joint.layout)) continue;
+    if (!joint.has_play || joint.gear >= 0 || plays_between_walls(joint.layout)) continue;
     const MarkerKinematics &a = mechanism.e.markers[at(joint.marker_a)], &b = mechanism.e.markers[at(joint.marker_b)];
-    const double apart[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
-                             b.position[2] - a.position[2]};
     const double farthest = std::max(joint.layout.clearance, length(offsets[j].position));
-    if (const double away = length(apart); away > rounding * farthest) share = std::min(share, farthest / away);
+    if (const double away = play_gap(joint, model.space, a, b).norm(); away > rounding * farthest)
+      share = std::min(share, farthest / away);
   }
   return share;
 }

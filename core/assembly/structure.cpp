@@ -13,6 +13,7 @@
 
 #include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
+#include "assembly/play_gap.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
@@ -129,15 +130,13 @@ class Examination {
               joint.name, joint.location);
       }
       const MarkerKinematics &a = open_.markers[at(joint.marker_a)], &b = open_.markers[at(joint.marker_b)];
-      double apart[3], along = 0.0;
-      for (std::size_t i = 0; i < 3; ++i) apart[i] = b.position[i] - a.position[i];
-      // The axis of a pin in space, z of the first marker, does not count, nor does that of a slide, x.
+      Eigen::Vector3d apart = play_gap(joint, model_.space, a, b);
+      // The axis of a pin in space, z of the first marker, does not count.
       const bool slide = plays_between_walls(joint.layout);
       const bool pin = model_.space == Space::spatial && joint.ideal_layout.coordinate == Coordinate::angle;
-      const std::size_t axis = slide ? 0 : 2;
-      for (std::size_t i = 0; i < 3 && (pin || slide); ++i) along += apart[i] * a.rotation[3 * i + axis];
-      for (std::size_t i = 0; i < 3 && (pin || slide); ++i) apart[i] -= along * a.rotation[3 * i + axis];
-      const double eccentricity = std::hypot(apart[0], apart[1], apart[2]);
+      const Eigen::Vector3d axis(a.rotation[2], a.rotation[5], a.rotation[8]);
+      if (pin) apart -= axis.dot(apart) * axis;
+      const double eccentricity = apart.norm();
       if (eccentricity <= deep_start * play) continue;
       doubt("doubtful-clearance",
             fmt::format("the {} of joint '{}' starts {:.3g} m from the {}, {:.3g} m deep in its wall, as the clearance "

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "assembly/closed_mechanism.h"
+#include "assembly/play_gap.h"
 #include "base/angle.h"
 #include "base/index.h"
-#include "component/joint_roles.h"
 #include "linear/row_solutions.h"
 #include "stage/newton_stage_solver.h"
 
@@ -221,15 +221,10 @@ class WarmStart {
     evaluate(term_position);
   }
 
-  /// Where the second marker of a joint stands from its first, of a slide across it [m].
   Eigen::Vector3d gap(int joint) const {
     const JointElement& one = model_.joints[at(joint)];
     const MarkerKinematics &a = e_.markers[at(one.marker_a)], &b = e_.markers[at(one.marker_b)];
-    const Eigen::Vector3d apart =
-        Eigen::Map<const Eigen::Vector3d>(b.position) - Eigen::Map<const Eigen::Vector3d>(a.position);
-    if (!plays_between_walls(one.layout)) return apart;
-    const Eigen::Vector3d axis(a.rotation[0], a.rotation[3], a.rotation[6]);
-    return apart - axis.dot(apart) * axis;
+    return play_gap(one, model_.space, a, b);
   }
 
   void close() {
