@@ -11,6 +11,7 @@ Component spring_damper();
 Component revolute_clearance();
 Component prismatic_clearance();
 Component point_on_line_clearance();
+Component gear_clearance();
 Component spherical();
 Component universal();
 Component cylindrical();
@@ -38,6 +39,7 @@ FREEPLAY_PLUGIN(joints) {
                                          revolute_clearance(),
                                          prismatic_clearance(),
                                          point_on_line_clearance(),
+                                         gear_clearance(),
                                          spherical(),
                                          universal(),
                                          cylindrical(),

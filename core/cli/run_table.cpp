@@ -324,7 +324,10 @@ std::string run_table(const RunRecord& record) {
   const std::string tables = joints.text("  ") + play.text("  ") + gears.text("  ") + drivers.text("  ") +
                              forces.text("  ") + paths.text("  ");
   text += tables + noise_line(tables) + window_lines(record);
-  if (!record.model.gears.empty()) text += gear_sentence;
+  const auto rigid = [&](const Gear& one) {
+    return !record.model.joints[static_cast<std::size_t>(one.joint)].has_play;
+  };
+  if (std::ranges::any_of(record.model.gears, rigid)) text += gear_sentence;
   text += twin_line(record.twin);
   text += repeat_lines(record.repeat);
   const bool any = record.statistics.any();

@@ -202,7 +202,7 @@ class ModelWriter {
   }
 
   Json joint(const JointElement& one) const {
-    Json json = {{"type", one.component->description.name}};
+    Json json = {{"type", one.gear >= 0 ? "gear" : one.component->description.name}};
     if (one.gear >= 0) {
       const Gear& gear = model_.gears[at(one.gear)];
       const JointElement &first = model_.joints[at(gear.first)], &second = model_.joints[at(gear.second)];
@@ -210,6 +210,13 @@ class ModelWriter {
       json["of"] = {first.name, second.name};
       json["ratio"] = number(gear.ratio, unit == input ? "1" : unit + "/" + input);
       json["offset"] = gear.offset ? number(*gear.offset, unit) : Json("auto");
+      if (!one.has_play) return json;
+      const char* const block = one.component->description.block;
+      Json own = parameters(*one.parameters);
+      for (const char* key : {"first_radius", "middle"}) own[block].erase(key);  // of the gear
+      for (const char* key : {block, "pressure_angle"}) {
+        if (own.contains(key)) json[key] = own[key];
+      }
       return json;
     }
     json["between"] = {marker(one.marker_a), marker(one.marker_b)};

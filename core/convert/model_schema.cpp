@@ -234,6 +234,7 @@ class ModelSchema {
       if (std::ranges::find(force_types_, name) != force_types_.end()) forces.emplace_back(name, "joint-" + name);
     }
     joints.emplace_back("gear", "gear");
+    add_block_of_gear();
     for (const FormatMap& map : format_maps()) {
       constexpr std::string_view prefix = "force ";
       if (!map.name.starts_with(prefix)) continue;
@@ -241,6 +242,20 @@ class ModelSchema {
     }
     set_choice("joint", joints);
     set_choice("force", forces);
+  }
+
+  void add_block_of_gear() {
+    for (const RegisteredComponent& other : registry_.components()) {
+      const Description& twin = other.component->description;
+      if (twin.ideal == nullptr || twin.block == nullptr || std::string_view(twin.ideal) != "gear") continue;
+      for (const ParameterTree& child : ParameterTree(twin.parameters).children) {
+        if (child.name != twin.block) continue;
+        Json& written = definitions_["gear"]["properties"][twin.block];
+        Json keys = tree_schema(child, twin.block);
+        keys["description"] = written["description"];
+        written = std::move(keys);
+      }
+    }
   }
 
   /// An entry without a type has it from a preset.

@@ -1,6 +1,7 @@
 #include "format/gear.h"
 
 #include "format/doubtful_number.h"
+#include "format/loose_gear.h"
 #include "freeplay/plugin.h"
 
 namespace freeplay {
@@ -23,16 +24,22 @@ const Component gear_component{ComponentKind::joint,
 /// Reads one entry.
 class GearEntry {
  public:
-  GearEntry(Draft& draft, const Part& part, MapReader& map, int joint)
-      : draft_(draft), part_(part), map_(map), joint_(joint) {}
+  GearEntry(Draft& draft, const Part& part, const CheckedValue& entry, MapReader& map, int joint)
+      : draft_(draft), part_(part), entry_(entry), map_(map), joint_(joint) {}
 
   void read() {
     map_.find("type");
     const auto of = map_.require("of"), ratio = map_.require("ratio"), offset = map_.find("offset");
-    map_.finish();
     Gear gear;
     gear.joint = joint_;
     const bool paired = of && read_pair(*of, gear);
+    const Component* loose = loose_gear(draft_, map_);
+    const CheckedParameters play = loose != nullptr ? read_play(*loose, gear, paired) : CheckedParameters{};
+    if (const auto teeth = map_.find("pressure_angle"); teeth && loose == nullptr) {
+      teeth->fail_at_key("conflicting-keys", "'" + teeth->path() + "' is of teeth with play", {},
+                         "give their play by a block 'clearance'");
+    }
+    map_.finish();
     const bool given = offset && !(offset->node().is_scalar() && offset->node().text == "auto");
     // Of what dimension they must be is known by the pair alone; they are read without it for their other mistakes.
     const auto read = [&](const CheckedValue& value, const Dimension& by) -> std::optional<double> {
@@ -49,9 +56,22 @@ class GearEntry {
     gear.ratio = number.value_or(1.0);
     draft_.model.joints[static_cast<std::size_t>(joint_)].gear = static_cast<int>(draft_.model.gears.size());
     draft_.model.gears.push_back(gear);
+    if (play.block) loosen(draft_, gear, play, entry_);
   }
 
  private:
+  /// Only between turns the ratio is a plain number, as the teeth need it.
+  CheckedParameters read_play(const Component& loose, const Gear& gear, bool paired) {
+    const bool turn = paired && dimension_of(gear.first) == dimension_of(gear.second);
+    if (turn) return check_parameters(loose, map_, draft_.registry);
+    const auto block = map_.find(loose.description.block);
+    if (paired && block) {
+      block->fail_at_key("wrong-type", "teeth with play join two wheels that turn, no slide", {},
+                         "leave '" + block->key() + "' out, or couple two joints that turn");
+    }
+    return {};
+  }
+
   const JointElement& element(int joint) const { return draft_.model.joints[static_cast<std::size_t>(joint)]; }
   Dimension dimension_of(int joint) const {
     return element(joint).ideal_layout.coordinate == Coordinate::angle ? dimension::angle : dimension::length;
@@ -90,6 +110,7 @@ class GearEntry {
 
   Draft& draft_;
   const Part& part_;
+  const CheckedValue& entry_;
   MapReader& map_;
   int joint_;
 };
@@ -110,7 +131,7 @@ void add_gears(Draft& draft, const Part& part) {
     const std::optional<int> joint = draft.joints.find(part.full(entry.key()));
     if (!joint || draft.model.joints[static_cast<std::size_t>(*joint)].component != &gear_component) continue;
     MapReader map(entry, "gear");
-    GearEntry(draft, part, map, *joint).read();
+    GearEntry(draft, part, entry, map, *joint).read();
   }
 }
 

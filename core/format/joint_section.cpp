@@ -22,10 +22,6 @@ constexpr double softest = 1e5, hardest = 1.2e13;  // [Pa]
 
 bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
 
-bool serves(Space space, Space model_space) {
-  return (static_cast<unsigned>(space) & static_cast<unsigned>(model_space)) != 0;
-}
-
 /// Reads one entry of `joints`, or one of `forces` that is a joint.
 class JointEntry {
  public:
@@ -50,6 +46,7 @@ class JointEntry {
     read_ends(named);
     // Without a type it is unknown which keys are allowed.
     if (named == nullptr || !serves_space(*named, *type)) return;
+    if (same_text(named->description.ideal, gear_word)) return refuse_as_type(*named, *type);
     choose_twins(*named);
     read_turn(named->description.axis);
     create();
@@ -74,6 +71,11 @@ class JointEntry {
   static void refuse_as_force(const CheckedValue& type) {
     type.fail("unknown-type", "the type '" + type.node().text + "' is a joint, not a force", {},
               "write it under 'joints'");
+  }
+
+  static void refuse_as_type(const Component& named, const CheckedValue& type) {
+    type.fail("unknown-type", std::string("'") + named.description.name + "' is what a gear with play is", {},
+              std::string("write 'type: gear' with a block '") + named.description.block + "'");
   }
 
   bool serves_space(const Component& named, const CheckedValue& type) {
@@ -181,33 +183,22 @@ class JointEntry {
 
   // --- components ------------------------------------------------------------------------------------------------
 
-  bool is_made_ideal() {
-    bool made = false;
-    for (std::size_t i = 0; i < draft_.options.ideal.size(); ++i) {
-      const std::string& pattern = draft_.options.ideal[i];
-      if (pattern != "all" && !matches(pattern, element().name)) continue;
-      draft_.ideal_matched[i] = true;
-      made = true;
-    }
-    return made;
-  }
-
   void create() {
     JointRef joint, ideal;
     const CheckedParameters ideal_parameters = check_parameters(*ideal_, map_, draft_.registry);
     const bool twins = ideal_ != component_;
-    const bool usable = make(ideal_parameters, ideal, element().ideal_layout);
+    const bool usable = make_joint(draft_, ideal_parameters, entry_, ideal, element().ideal_layout);
     JointLayout layout = element().ideal_layout;
     joint = ideal;
     const CheckedParameters parameters =
         twins ? check_parameters(*component_, map_, draft_.registry) : ideal_parameters;
-    if (twins) make(parameters, joint, layout);
+    if (twins) make_joint(draft_, parameters, entry_, joint, layout);
     if (parameters.block) {
       doubt_parameters(*parameters.block, parameters.places, draft_.length_scale,
                        twins ? bare_limit::bearing : bare_limit::length);
     }
     if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
-    const bool play = twins && !is_made_ideal();
+    const bool play = twins && !is_made_ideal(draft_, element().name);
     if (twins && !play) draft_.model.ideal.push_back(element().name);
     element().ideal_component = ideal_;
     element().ideal = ideal;
@@ -273,26 +264,6 @@ class JointEntry {
                     stiffness->name, entry_.key(), stiffness->value, stiffness->unit, stiffness->modulus));
   }
 
-  bool make(const CheckedParameters& parameters, JointRef& joint, JointLayout& layout) {
-    joint = JointRef();
-    layout = JointLayout();
-    layout.space = draft_.model.space;
-    if (!parameters.block) return false;
-    CreationFault fault;
-    joint = draft_.model.instances.create_joint(*parameters.block, draft_.model.space, fault);
-    if (!joint) {
-      report_fault(fault, parameters, entry_);
-      return false;
-    }
-    Message message;
-    const std::string fault_text = joint.declare(layout, message) ? declaration_fault(layout) : message.text;
-    if (fault_text.empty()) return true;
-    throw Error(Error::Category::plugin, "plugin-failed",
-                "in '" + entry_.path() + "': " + draft_.model.instances.words_of(*parameters.block->component) +
-                    " failed: " + fault_text,
-                entry_.key_location());
-  }
-
   Draft& draft_;
   const Part& part_;
   const CheckedValue& entry_;
@@ -304,6 +275,42 @@ class JointEntry {
 };
 
 }  // namespace
+
+bool serves(Space space, Space model_space) {
+  return (static_cast<unsigned>(space) & static_cast<unsigned>(model_space)) != 0;
+}
+
+bool is_made_ideal(Draft& draft, const std::string& name) {
+  bool made = false;
+  for (std::size_t i = 0; i < draft.options.ideal.size(); ++i) {
+    const std::string& pattern = draft.options.ideal[i];
+    if (pattern != "all" && !matches(pattern, name)) continue;
+    draft.ideal_matched[i] = true;
+    made = true;
+  }
+  return made;
+}
+
+bool make_joint(Draft& draft, const CheckedParameters& parameters, const CheckedValue& entry, JointRef& joint,
+                JointLayout& layout) {
+  joint = JointRef();
+  layout = JointLayout();
+  layout.space = draft.model.space;
+  if (!parameters.block) return false;
+  CreationFault fault;
+  joint = draft.model.instances.create_joint(*parameters.block, draft.model.space, fault);
+  if (!joint) {
+    report_fault(fault, parameters, entry);
+    return false;
+  }
+  Message message;
+  const std::string fault_text = joint.declare(layout, message) ? declaration_fault(layout) : message.text;
+  if (fault_text.empty()) return true;
+  throw Error(Error::Category::plugin, "plugin-failed",
+              "in '" + entry.path() + "': " + draft.model.instances.words_of(*parameters.block->component) +
+                  " failed: " + fault_text,
+              entry.key_location());
+}
 
 void add_joints(Draft& draft, const Part& part) {
   const auto section = part.section("joints");

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "base/kept_input.h"
 #include "base/sha256.h"
 #include "component/library.h"
+#include "format/gear.h"
 #include "format/model_builder.h"
 
 namespace freeplay {
@@ -22,6 +24,7 @@ void require_twins(const Registry& registry, std::size_t named, const LoadOption
   for (const RegisteredComponent& type : registry.components()) {
     const Description& description = type.component->description;
     if (type.component->kind != ComponentKind::joint || description.ideal == nullptr) continue;
+    if (std::string_view(description.ideal) == gear_word) continue;  // of the format itself
     if (registry.find(ComponentKind::joint, description.ideal) != nullptr) continue;
     const std::string reason = fmt::format("plugin '{}': the ideal type '{}' of its joint '{}' is not there",
                                            type.library, description.ideal, description.name);

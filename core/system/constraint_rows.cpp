@@ -25,7 +25,9 @@ bool Constraints::evaluate_others(const Point& point, Evaluation& e) const {
     const auto make = [&]<class Bodies>(Bodies) { return make_rows<Bodies>(point, e); };
     if (!by_space(model_.space, make)) return false;
   }
-  for (std::size_t g = 0; g < gears_.size(); ++g) evaluate_gear(gears_[g], gear_offsets_[g], e);
+  for (std::size_t g = 0; g < gears_.size(); ++g) {
+    if (gears_[g].row >= 0) evaluate_gear(gears_[g], gear_offsets_[g], e);
+  }
   for (const DriverRow& row : driver_rows_) evaluate_driver(row, e);
   return true;
 }

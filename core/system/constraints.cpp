@@ -59,8 +59,9 @@ void Constraints::add_joint(const JointRecord& joint) {
 }
 
 void Constraints::add_gear(const Gear& gear) {
-  GearRow own{layout_.rows(gear.joint).offset, {gear.first, gear.second}, gear.ratio, {}};
-  for (std::size_t i = 0; i < 2; ++i) {
+  const Slice rows = layout_.rows(gear.joint);  // none where its teeth have play
+  GearRow own{rows.size > 0 ? rows.offset : -1, {gear.first, gear.second}, gear.ratio, {-1, -1, -1, -1}};
+  for (std::size_t i = 0; i < 2 && own.row >= 0; ++i) {
     own.offsets[2 * i] = jacobian_.add(joints_[own.joints[i]].body_a, own.row, 1);
     own.offsets[2 * i + 1] = jacobian_.add(joints_[own.joints[i]].body_b, own.row, 1);
   }
@@ -102,7 +103,7 @@ void Constraints::fill_driven(Evaluation& e) const {
 
 void Constraints::reaction(int index, const Evaluation& e, std::span<const double> lambda, double* wrench) const {
   const JointRows& own = rows_[at(index)];
-  const int gear = model_.joints[at(index)].gear;
+  const int gear = own.rows.size > 0 ? model_.joints[at(index)].gear : -1;
   const int offset_a = gear >= 0 ? gears_[at(gear)].offsets[2] : own.offset_a;
   const int offset_b = gear >= 0 ? gears_[at(gear)].offsets[3] : own.offset_b;
   const bool second = offset_b >= 0;

@@ -30,6 +30,7 @@ std::vector<Rows> rows_of(const Model& model) {
     touch(all.emplace_back(Rows{j, -1, element.layout.constraint_rows, {}}), j);
   }
   for (const Gear& gear : model.gears) {
+    if (model.joints[at(gear.joint)].layout.constraint_rows == 0) continue;  // its teeth have play
     Rows& rows = all.emplace_back(Rows{-1, -1, 1, {}});
     touch(rows, gear.first);
     touch(rows, gear.second);

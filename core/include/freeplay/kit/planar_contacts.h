@@ -401,10 +401,12 @@ class PlanarContacts : public Joint {
     const Dual::Gradient rates = pair.rates(acc);
     const PlanarContact<Dual> at{with(in.history).place(motion, i), motion};
     const auto rate_of = [&](const Dual& x) { return x.gradient.dot(rates); };
+    // Of a normal that is no unit vector, as where a depth counts an angle.
+    const double size = std::hypot(at.normal.x.value, at.normal.y.value);
     const Eigen::Vector2d velocity(at.velocity.x.value, at.velocity.y.value);
     const Eigen::Vector2d second(rate_of(at.velocity.x), rate_of(at.velocity.y));
     return predicted_speed(at.approach(), rate_of(at.rate), dt,
-                           [&](double s) { return (velocity + s * second).norm(); });
+                           [&](double s) { return (keeps ? size : 1.0) * (velocity + s * second).norm(); });
   }
   /// Whether a depth that stands at a flat wall can grow to zero within dt. Its second derivative is at most that of
   /// the contact's point, of the lever r_b on b and r_a on a,
