@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
+#include "format/study_axis.h"
 #include "study/percentile_ranks.h"
 #include "study/picture_page.h"
 #include "study/table_columns.h"
@@ -18,7 +20,6 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t most_marks = 4000;  // of a series
 constexpr double interval_confidence = 0.95;
 
 using Pairs = std::vector<std::pair<double, double>>;
@@ -37,18 +38,6 @@ std::vector<std::string> distinct(const std::vector<std::string>& words) {
     if (std::ranges::find(names, word) == names.end()) names.push_back(word);
   }
   return names;
-}
-
-/// Every k-th of so many that are too many, with the extremes of `y`.
-std::vector<std::size_t> thinned(const std::vector<std::size_t>& rows, const std::vector<double>& y) {
-  if (rows.size() <= most_marks) return rows;
-  const std::size_t step = rows.size() / (most_marks - 2) + 1;
-  const auto [low, high] = std::ranges::minmax_element(rows, {}, [&](std::size_t row) { return y[row]; });
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i % step == 0 || rows[i] == *low || rows[i] == *high) kept.push_back(rows[i]);
-  }
-  return kept;
 }
 
 class Drawing {
@@ -99,6 +88,10 @@ class Drawing {
   std::vector<std::string> families(const TableColumns& columns) const {
     return request_.by.empty() ? std::vector<std::string>(columns.rows()) : columns.words(request_.by);
   }
+  /// In a legend.
+  std::vector<std::string> shown(const std::vector<std::string>& names) const {
+    return request_.by.empty() ? std::vector<std::string>() : names;
+  }
   /// The column as places along a scale.
   std::pair<PictureScale, std::vector<double>> scale_of(const TableColumns& columns, const std::string& name) const {
     if (!has_words(name)) {
@@ -116,16 +109,16 @@ class Drawing {
     const TableColumns columns = table({needed(request_.x, "x"), y_name});
     const auto [scale, x] = scale_of(columns, request_.x);
     const std::vector<double> y = columns.numbers(y_name), index = columns.numbers("index");
-    PicturePage page(title(fmt::format("{} over {}", y_name, request_.x)), scale,
-                     PictureScale(y_name, y, unit_of(y_name), svg::Fit::round));
     const std::vector<std::string> family = families(columns), names = distinct(family);
+    PicturePage page(title(fmt::format("{} over {}", y_name, request_.x)), scale,
+                     PictureScale(y_name, y, unit_of(y_name), svg::Fit::round), shown(names));
     for (std::size_t s = 0; s < names.size(); ++s) {
       std::map<double, std::vector<double>> by_x;
-      std::vector<std::size_t> rows;
+      std::vector<PictureMark> marks;
       for (std::size_t i = 0; i < y.size(); ++i) {
         if (family[i] != names[s] || !std::isfinite(y[i]) || !std::isfinite(x[i])) continue;
         by_x[x[i]].push_back(y[i]);
-        rows.push_back(i);
+        marks.push_back({x[i], y[i], static_cast<std::uint64_t>(index[i])});
       }
       Pairs middle, band, upper;
       for (auto& entry : by_x) {
@@ -137,9 +130,8 @@ class Drawing {
       band.insert(band.end(), upper.rbegin(), upper.rend());
       page.band(band, s);
       page.line(middle, s);
-      for (const std::size_t i : thinned(rows, y)) page.mark(x[i], y[i], static_cast<std::uint64_t>(index[i]), s, 2.2);
+      page.marks(marks, s, 2.2);
     }
-    if (!request_.by.empty()) page.legend(names);
     return page.text();
   }
 
@@ -190,17 +182,14 @@ class Drawing {
       least = std::min(least, entry.second.sum / entry.second.count);
       most = std::max(most, entry.second.sum / entry.second.count);
     }
-    const std::string unit = unit_of(value).empty() || unit_of(value) == "1" ? "" : " " + unit_of(value);
-    PicturePage page(title(fmt::format("{}, white {:.4g}{} to dark {:.4g}{}", value, least, unit, most, unit)), scale_x,
-                     scale_y);
+    PicturePage page(title(fmt::format("{} over {} and {}", value, request_.x, request_.y)), scale_x, scale_y);
+    if (!tiles.empty()) page.shades(least, most, unit_of(value));
     for (const auto& entry : tiles) {
       const double mean = entry.second.sum / entry.second.count;
       const double dark = most > least ? (mean - least) / (most - least) : 0.5;
-      const auto part = [&](double at_dark) { return static_cast<int>(std::lround(250.0 + dark * (at_dark - 250.0))); };
       const auto& [from_x, until_x] = x_edges.at(entry.first.first);
       const auto& [from_y, until_y] = y_edges.at(entry.first.second);
-      page.tile(from_x, until_x, from_y, until_y, entry.second.point,
-                fmt::format("#{:02x}{:02x}{:02x}", part(8.0), part(48.0), part(107.0)),
+      page.tile(from_x, until_x, from_y, until_y, entry.second.point, PicturePage::shade(dark),
                 fmt::format("{} {}", value, number_text(mean)));
     }
     return page.text();
@@ -218,23 +207,21 @@ class Drawing {
     const std::vector<std::string> family = families(columns), names = distinct(family);
     std::map<double, std::size_t> row_of;
     for (std::size_t i = 0; i < index.size(); ++i) row_of[index[i]] = i;
-    std::vector<double> shown;
+    std::vector<double> seen;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (reducer[k] == value) shown.push_back(values[k]);
+      if (reducer[k] == value) seen.push_back(values[k]);
     }
     PicturePage page(title(fmt::format("{} over {}", value, request_.x)), scale,
-                     PictureScale(value, shown, unit_of_samples(value), svg::Fit::round));
+                     PictureScale(value, seen, unit_of_samples(value), svg::Fit::round), shown(names));
     for (std::size_t s = 0; s < names.size(); ++s) {
-      std::vector<std::size_t> rows;
+      std::vector<PictureMark> marks;
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (reducer[k] != value || !row_of.contains(at[k])) continue;
-        if (family[row_of[at[k]]] == names[s] && std::isfinite(values[k])) rows.push_back(k);
+        const auto row = reducer[k] == value && std::isfinite(values[k]) ? row_of.find(at[k]) : row_of.end();
+        if (row == row_of.end() || family[row->second] != names[s]) continue;
+        marks.push_back({x[row->second], values[k], static_cast<std::uint64_t>(at[k])});
       }
-      for (const std::size_t k : thinned(rows, values)) {
-        page.mark(x[row_of[at[k]]], values[k], static_cast<std::uint64_t>(at[k]), s, 1.0);
-      }
+      page.marks(marks, s, 1.0);
     }
-    if (!request_.by.empty()) page.legend(names);
     return page.text();
   }
 
@@ -268,8 +255,9 @@ class Drawing {
       if (counts[s][bin]++ == 0.0) first[s][bin] = static_cast<std::uint64_t>(index[i]);
       most = std::max(most, counts[s][bin]);
     }
+    const double room = 1.0 + 0.05 * static_cast<double>(names.size());  // for marks of percentiles
     PicturePage page(title(fmt::format("{} of {} points", value, sorted.size())), scale,
-                     PictureScale("points", {0.0, most}, "", svg::Fit::round));
+                     PictureScale("points", {0.0, room * most}, "", svg::Fit::round), shown(names));
     const auto edge = [&](double bin) {
       return scale.axis().from + bin / static_cast<double>(bins) * (scale.axis().until - scale.axis().from);
     };
@@ -283,20 +271,27 @@ class Drawing {
                   fmt::format("{:g}", counts[s][bin]));
       }
     }
-    mark_percentiles(page, sorted);
-    if (!request_.by.empty()) page.legend(names);
+    for (std::size_t s = 0; s < names.size(); ++s) {
+      std::vector<double> own;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (family[i] == names[s] && std::isfinite(values[i])) own.push_back(values[i]);
+      }
+      std::ranges::sort(own);
+      mark_percentiles(page, own, s);
+    }
     return page.text();
   }
 
   /// With the interval of order statistics, where there are points enough for one.
-  void mark_percentiles(PicturePage& page, const std::vector<double>& sorted) const {
+  void mark_percentiles(PicturePage& page, const std::vector<double>& sorted, std::size_t series) const {
     if (sorted.empty()) return;
     for (const double percent : request_.percentiles) {
       const double part = 0.01 * percent;
       const bool inside = part > 0.0 && part < 1.0;
       const auto ranks = inside ? percentile_ranks(sorted.size(), part, interval_confidence) : std::nullopt;
-      if (ranks) page.shade(sorted[ranks->first - 1], sorted[ranks->second - 1]);
-      page.upright(quantile(sorted, part), fmt::format("{:g} %", percent));
+      std::optional<std::pair<double, double>> interval;
+      if (ranks) interval = {sorted[ranks->first - 1], sorted[ranks->second - 1]};
+      page.upright(quantile(sorted, part), interval, series, fmt::format("{:g} %", percent));
     }
   }
 
@@ -338,8 +333,9 @@ std::vector<PictureRequest> picture_requests(const StudyPlan& plan) {
     request.by = text("by");
     if (const Node* percentiles = entry.value->find("percentiles")) {
       request.percentiles.clear();
-      for (const Node* item : percentiles->items)
-        request.percentiles.push_back(std::strtod(item->text.c_str(), nullptr));
+      for (const Node* item : percentiles->items) {
+        if (const auto percent = constant_quantity(item->text)) request.percentiles.push_back(percent->value);
+      }
     }
     requests.push_back(std::move(request));
   }

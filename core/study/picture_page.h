@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "svg/axis.h"
@@ -29,37 +32,56 @@ class PictureScale {
   svg::Axis axis_;
 };
 
+/// Where a value of a point stands.
+struct PictureMark {
+  double x = 0.0, y = 0.0;
+  std::uint64_t point = 0;
+};
+
 class PicturePage {
  public:
-  PicturePage(std::string title, PictureScale x, PictureScale y);
+  /// `families`: names of the series, for a legend.
+  PicturePage(std::string title, PictureScale x, PictureScale y, std::vector<std::string> families = {});
 
   const PictureScale& x() const { return x_; }
   const PictureScale& y() const { return y_; }
   static const char* colour(std::size_t series);
+  /// From white at 0 to dark at 1.
+  static std::string shade(double dark);
+  static constexpr std::size_t most_marks = 4000;  ///< of a series
 
-  void legend(std::vector<std::string> names) { names_ = std::move(names); }
-  void mark(double x, double y, std::uint64_t point, std::size_t series, double radius);
+  /// What white and dark stand for.
+  void shades(double least, double most, const std::string& unit);
+  /// Discs. Of more than `most_marks` one stands for all in a cell of the picture, at the first of them, the larger
+  /// the more there are: nothing that stands apart is lost.
+  void marks(std::span<const PictureMark> marks, std::size_t series, double radius);
   void tile(double from_x, double until_x, double from_y, double until_y, std::uint64_t point, const std::string& fill,
             const std::string& words);
   /// Points of a line; of a band first along its lower edge, then back along the upper one.
   void line(const std::vector<std::pair<double, double>>& points, std::size_t series);
   void band(const std::vector<std::pair<double, double>>& points, std::size_t series);
-  /// A value of x across the picture, dashed, with a word.
-  void upright(double x, const std::string& words);
-  void shade(double from_x, double until_x);
+  /// A value of x across the picture, dashed, with a word; its interval is a bar near the upper edge. Series stand one
+  /// below the other.
+  void upright(double x, std::optional<std::pair<double, double>> interval, std::size_t series,
+               const std::string& words);
 
   std::string text() const;
   /// One picture of several, one below the other.
   static std::string stacked(const std::vector<PicturePage>& pages);
 
  private:
+  void disc(const PictureMark& mark, std::size_t series, double radius);
   double px_x(double x) const;
   double px_y(double y) const;
   std::string path(const std::vector<std::pair<double, double>>& points) const;
+  std::string legend() const;
+  std::string labels_of_x() const;
+  bool leans() const;
 
   std::string title_;
   PictureScale x_, y_;
-  std::vector<std::string> names_;
+  std::vector<std::string> families_;
+  double left_, top_, bottom_;  // margins [px]
   std::string body_;
 };
 

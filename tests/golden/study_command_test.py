@@ -15,7 +15,7 @@ import time
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import BUILD, PROGRAM, ProgramTest
+from program import BUILD, PROGRAM, ProgramTest, mechanism
 
 BALL = """freeplay: 1
 name: ball
@@ -295,6 +295,15 @@ class StudyCommand(ProgramTest):
         self.freeplay("report", "chain")
         page = self.read("chain", "report.html")
         self.assertEqual([0, 1, 2], sorted(int(n) for n in re.findall(r'"before":(\d+)', page)))
+
+    def test_a_histogram_marks_percentiles_of_each_family(self):
+        self.write("two.yaml", BALL + "study:\n  axes: {g: {uniform: [1, 2]}, v: [0, 1]}\n  sample: {method: random, points: 30, seed: 1}\n"
+                   "  reducers: {x: {channel: body.ball.x, reduce: final}, y: {channel: body.ball.y, reduce: final}}\n"
+                   "  plots: {one: {kind: histogram, value: y, percentiles: [100/2]}, two: {kind: histogram, value: y, by: v, percentiles: [50]}}\n")
+        self.study("run", "two.yaml", "--out", "r", "--quiet")
+        self.study("plot", "r")
+        self.assertEqual([1, 2], [self.read("r", "plots", name + ".svg").count(">50 %<") for name in ("one", "two")])
+
 
 
 if __name__ == "__main__":
