@@ -48,13 +48,19 @@ double tree_seconds() {
 
 /// The first file that is not as it was, and the first line there.
 std::string difference(const StudyPlan& plan, const StudyFolder& folder) {
-  for (const KeptFile& file : plan.kept_files()) {
+  const std::vector<KeptFile> files = plan.kept_files();
+  for (const KeptFile& file : files) {
     if (file.path == "inputs/study.json") continue;
     std::ifstream stream(folder.path() / file.path, std::ios::binary);
     const std::string old{std::istreambuf_iterator<char>(stream), {}};
     if (old == file.bytes) continue;
     const auto [ours, theirs] = std::mismatch(file.bytes.begin(), file.bytes.end(), old.begin(), old.end());
     return fmt::format("{} differs from line {} on", file.path, 1 + std::count(file.bytes.begin(), ours, '\n'));
+  }
+  const Json copies = folder.record().value("copies", Json::object());
+  for (const auto& copy : copies.items()) {
+    const auto is_it = [&](const KeptFile& file) { return file.path == copy.key(); };
+    if (std::ranges::none_of(files, is_it)) return fmt::format("{} is not read any more", copy.key());
   }
   return "what the command line sets differs";
 }

@@ -13,14 +13,16 @@
 namespace freeplay {
 namespace {
 
-/// Such as a law or an integrator: what is no quantity and could not be meant as one either. Texts in quotes are meant
-/// as they are.
+/// Such as a law, an integrator or a frame: what is no quantity and could not be meant as one either. Texts in quotes
+/// are meant as they are.
 bool is_word(const Node& node) {
   if (!node.is_scalar()) return true;
   if (constant_quantity(node.text)) return false;
   if (node.quoted && node.text.find('$') == std::string::npos) return true;
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  const auto inside = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '*'; };
+  const auto inside = [&](char c) {
+    return letter(c) || (c >= '0' && c <= '9') || std::string_view("-.*/").find(c) != std::string_view::npos;
+  };
   return !node.text.empty() && letter(node.text.front()) && std::ranges::all_of(node.text, inside);
 }
 

@@ -326,6 +326,7 @@ class StudyReader {
       const auto word = kind ? kind->word({"line", "heat", "bifurcation", "histogram", "tornado"}) : std::nullopt;
       check_plot_columns(map);
       if (word) require_plot_keys(map, static_cast<PlotKind>(*word));
+      if (word) doubt_plot_keys(map, static_cast<PlotKind>(*word), kind->node().text);
       if (const auto percentiles = map.find("percentiles")) {
         for (const CheckedValue& item : percentiles->list().value_or(std::vector<CheckedValue>{})) {
           item.quantity(dimension::none, Range{.minimum = 0.0, .maximum = 100.0});
@@ -354,6 +355,24 @@ class StudyReader {
       if ((text != name && !text.starts_with(name + ".")) || (reduce != nullptr && reduce->text == "poincare"))
         continue;
       value->fail("wrong-type", fmt::format("a bifurcation shows a reducer of `reduce: poincare`; '{}' is none", name));
+    }
+  }
+
+  /// What a picture of that kind does not look at.
+  static void doubt_plot_keys(MapReader& map, PlotKind kind, const std::string& word) {
+    const bool over_x = kind == PlotKind::line || kind == PlotKind::heat || kind == PlotKind::bifurcation;
+    const bool has_families = kind != PlotKind::heat && kind != PlotKind::tornado;
+    const auto doubt = [&](const char* key) {
+      if (const auto value = map.find(key)) {
+        value->warn_at_key("unused", fmt::format("a plot of kind {} does not look at '{}'", word, key));
+      }
+    };
+    if (!over_x) doubt("x");
+    if (!has_families) doubt("by");
+    if (kind != PlotKind::histogram) doubt("percentiles");
+    if (kind == PlotKind::bifurcation) doubt("y");
+    if (kind != PlotKind::heat && kind != PlotKind::bifurcation && map.has("y") && map.has("value")) {
+      doubt(kind == PlotKind::line ? "value" : "y");
     }
   }
 

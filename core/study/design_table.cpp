@@ -54,6 +54,8 @@ std::optional<DesignTable> DesignTable::read(const std::string& place, const Che
   return made;
 }
 
+int DesignTable::line(std::uint64_t row) const { return text_->field(static_cast<std::size_t>(row), 0).location.line; }
+
 AxisValue DesignTable::value(std::uint64_t row, std::size_t column) const {
   const std::string_view field = text_->field(static_cast<std::size_t>(row), column).text;
   if (const auto number = csv_number(field)) return AxisValue::of(*number, std::nullopt);

@@ -21,6 +21,8 @@ class DesignTable {
   const std::vector<std::string>& targets() const { return targets_; }
   std::uint64_t rows() const { return text_->rows(); }
   AxisValue value(std::uint64_t row, std::size_t column) const;
+  /// Of the file.
+  int line(std::uint64_t row) const;
   /// Of the values of a column: quantities, not words; and their unit.
   bool words(std::size_t column) const { return words_[column]; }
   /// Byte for byte.

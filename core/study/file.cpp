@@ -136,7 +136,7 @@ void StudyFile::check_reducers(const CheckedValue& section) const {
   const Node* reducers = section.node().is_map() ? section.node().find("reducers") : nullptr;
   if (reducers == nullptr || !reducers->is_map()) return;
   const Node* points = section.node().find("do");
-  read_reducers(CheckedValue(reading_, *reducers, nullptr, "reducers"), points != nullptr && points->is_map());
+  read_reducers(CheckedValue(reading_, *reducers, nullptr, "study.reducers"), points != nullptr && points->is_map());
 }
 
 // The last one of a target counts; those of the command line come after the file's.
@@ -309,7 +309,8 @@ void StudyFile::find_targets(PlannedAxis& axis, const LoadOptions& options) cons
     }
     if (models_.size() > 1) message = fmt::format("model '{}': {}", models_[lacking].name, message);
     if (models > 0) hint = "`where_present: true` leaves it out where it is not";
-    source.entry.fail_at_key("unknown-name", message, {}, hint);
+    if (axis.table()) message = fmt::format("column '{}' of '{}': {}", target, source.table->node().text, message);
+    axis.written(target).fail_at_key("unknown-name", message, {}, hint);
   }
 }
 
@@ -327,16 +328,22 @@ void StudyFile::check_targets(const LoadOptions& options) {
     }
   }
   std::unordered_map<std::string, std::string> seen;  // and where they are set
-  for (const PlannedSetting& setting : set_) seen.emplace(setting.target, "`set`");
+  for (const PlannedSetting& setting : set_) {
+    for (const std::string& address : addressed(models_, setting.target)) seen.emplace(address, "`set`");
+  }
   for (const PlannedAxis& axis : axes_) {
+    std::string said;  // once of a pattern
     for (const std::string& target : axis.targets()) {
-      const auto other = seen.find(target);
-      if (other != seen.end()) {
-        axis.source().entry.fail_at_key(
-            "duplicate-name", fmt::format("'{}' is set by {} and by '{}'", target, other->second, axis.name()));
-      } else {
-        const Location place = axis.source().entry.key_location();
-        seen.emplace(target, fmt::format("'{}' (line {})", axis.name(), place.line));
+      for (const std::string& address : addressed(models_, target)) {
+        const auto other = seen.find(address);
+        if (other == seen.end()) {
+          const Location place = axis.source().entry.key_location();
+          seen.emplace(address, fmt::format("'{}' (line {})", axis.name(), place.line));
+        } else if (said != target) {
+          axis.source().entry.fail_at_key(
+              "duplicate-name", fmt::format("'{}' is set by {} and by '{}'", address, other->second, axis.name()));
+          said = target;
+        }
       }
     }
   }
@@ -349,7 +356,7 @@ void StudyFile::check_columns() const {
       const CheckedValue& entry = axis.source().entry;
       if (std::ranges::find(reserved_columns, column.name) != reserved_columns.end()) {
         entry.fail_at_key("reserved-name", fmt::format("the table has a column '{}' of its own", column.name), {},
-                          "give the axis another name, and `target: " + column.name + "`");
+                          "give the axis another name, and `target: " + axis.targets().front() + "`");
       } else if (!seen.insert(column.name).second) {
         entry.fail_at_key("duplicate-name", fmt::format("two axes are called '{}'", column.name));
       }

@@ -37,7 +37,10 @@ ModelProbe::Result refused(const Error& error, const TargetTexts& set) {
     if (!name && !acting && !error.message().starts_with(start + "=")) continue;
     result.refused = target;
     diagnostic.id = name ? "unknown-name" : target == "simulation.integrator" ? "unknown-type" : "bad-value";
-    if (name) diagnostic.message = error.message().substr(start.size() + 2);
+    for (const std::string& before :
+         {start + ": ", start + "='" + text + "': ", option_of(target) + " " + text + ": "}) {
+      if (error.message().starts_with(before)) diagnostic.message = error.message().substr(before.size());
+    }
     break;
   }
   if (!result.refused) throw error;
@@ -155,6 +158,16 @@ std::optional<StudyModel> read_kept_model(const std::string& place, const std::s
   made.plugins = libraries(kept_libraries(place));
   made.sha256 = fingerprint(*made.document, made.inputs);
   return made;
+}
+
+std::set<std::string> addressed(const std::vector<StudyModel>& models, const std::string& target) {
+  if (!is_pattern(target)) return {target};
+  std::set<std::string> all;
+  for (const StudyModel& model : models) {
+    std::ranges::copy_if(model.addresses, std::inserter(all, all.end()),
+                         [&](const std::string& address) { return matches(target, address); });
+  }
+  return all;
 }
 
 }  // namespace freeplay

@@ -66,4 +66,7 @@ std::optional<StudyModel> read_study_model(const std::string& place, const std::
 /// it shows is left open: addresses and play.
 std::optional<StudyModel> read_kept_model(const std::string& place, const std::string& file, Diagnostics& diagnostics);
 
+/// All that the models have of a pattern; what is none is itself alone.
+std::set<std::string> addressed(const std::vector<StudyModel>& models, const std::string& target);
+
 }  // namespace freeplay

@@ -107,8 +107,14 @@ std::vector<std::uint64_t> PlannedAxis::kinds() const {
   return kinds;
 }
 
-const CheckedValue& PlannedAxis::written(std::uint64_t place) const {
-  return source_->list.empty() ? source_->entry : source_->list[place];
+const CheckedValue& PlannedAxis::written(const std::string& target, std::optional<std::uint64_t> place) const {
+  if (place && !source_->list.empty()) return source_->list[*place];
+  for (std::size_t i = 0; i < source_->cases.size(); ++i) {
+    const auto& values = source_->cases[i].values;
+    const auto found = std::ranges::find(values, target, &TargetValue::target);
+    if (found != values.end() && (!place || *place == i)) return found->value;
+  }
+  return source_->entry;
 }
 
 }  // namespace freeplay

@@ -48,8 +48,8 @@ class PlannedAxis {
            std::vector<std::string>& cells) const;
   /// Values that differ in more than a number, to be tried one by one.
   std::vector<std::uint64_t> kinds() const;
-  /// Where value `place` is written.
-  const CheckedValue& written(std::uint64_t place) const;
+  /// Where it is written what value `place` gives the target, or, without a place, that the target is set at all.
+  const CheckedValue& written(const std::string& target, std::optional<std::uint64_t> place = {}) const;
   const std::optional<DesignTable>& table() const { return table_; }
 
   /// Does the model have it? By number of the model; filled by who knows the models.

@@ -9,9 +9,10 @@ namespace freeplay {
 namespace {
 
 // What does not depend on the size of numbers.
-constexpr std::array ids = {"unknown-name",       "unknown-key",  "unknown-type",     "missing-key",      "wrong-type",
-                            "dimension-mismatch", "bad-value",    "conflicting-keys", "bad-expression",   "bad-unit",
-                            "time-not-allowed",   "wrong-length", "type-space",       "state-not-allowed"};
+constexpr std::array ids = {"unknown-name",   "unknown-key",        "unknown-type",     "missing-key",
+                            "wrong-type",     "dimension-mismatch", "bad-value",        "conflicting-keys",
+                            "bad-expression", "bad-unit",           "time-not-allowed", "wrong-length",
+                            "type-space",     "state-not-allowed",  "file-not-found"};
 
 const Diagnostic* fault_in(const ModelProbe::Result& result) {
   const auto found = std::ranges::find_if(
@@ -73,9 +74,20 @@ class ValueCheck {
     const ModelProbe::Result result = tried(settings);
     const Diagnostic* fault = fault_in(result);
     if (fault == nullptr) return;
+    const std::string of_set = "--set ";
+    auto at = std::ranges::find_if(settings, [&](const PlannedSetting& one) {
+      return fault->location.file == of_set + one.target || result.refused == one.target;
+    });
+    if (at == settings.end()) at = settings.begin();
     const PlannedAxis& axis = study_.axes()[number];
-    axis.written(kinds_[number][round])
-        .fail(fault->id, "'" + axis.name() + "' = " + settings.front().value.text + ": " + fault->message,
+    const std::uint64_t place = kinds_[number][round];
+    const bool several = axis.table() || !axis.source().cases.empty();
+    const std::string where =
+        axis.table() ? fmt::format("line {} of '{}': ", axis.table()->line(place), axis.source().table->node().text)
+                     : "";
+    axis.written(at->target, place)
+        .fail(fault->id,
+              fmt::format("{}'{}' = {}: {}", where, several ? at->target : axis.name(), at->value.text, fault->message),
               fault->suggestion, fault->hint);
   }
 

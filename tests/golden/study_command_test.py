@@ -296,6 +296,31 @@ class StudyCommand(ProgramTest):
         page = self.read("chain", "report.html")
         self.assertEqual([0, 1, 2], sorted(int(n) for n in re.findall(r'"before":(\d+)', page)))
 
+    def test_messages_name_the_target_where_it_is_written(self):
+        self.write("far.csv", "g,w\n1,2\n")
+        self.write("word.csv", "g,v\n1,2\nfast,3\n")
+        for section, words in (
+                ("  axes: {way: {cases: {a: {g: 1}, b: {gg: 1}}}}\n", r"9:39: error: the model has no parameter of this name"),
+                ("  axes: {way: {cases: {a: {g: 1}, b: {g: 2, v: 1 s}}}}\n", r"9:48: error: 'v' = 1 s: "),
+                ("  axes: {way: {table: far.csv}}\n", r"column 'w' of 'far\.csv': the model has no parameter"),
+                ("  axes: {way: {table: word.csv}}\n", r"line 3 of 'word\.csv': 'g' = fast: 'fast' is not a number"),
+                ("  axes: {bodies.ball.mass: [1, 2], all: {target: 'bodies.*.mass', list: [1, 2]}}\n",
+                 r"'bodies\.ball\.mass' is set by 'bodies\.ball\.mass' \(line 9\) and by 'all'"),
+                ("  axes: {start: {target: g, list: [1, 2]}}\n", r"give the axis another name, and `target: g`")):
+            with self.subTest(words):
+                self.write("bad.yaml", BALL + "study:\n" + section + "  reducers: {y: {channel: body.ball.y, reduce: final}}\n")
+                self.assertRegex(self.study("plan", "bad.yaml", code=3)[1], words)
+        self.write("bad.yaml", BALL + "study:\n  reducers: {y: {channel: body.ball.y, reduce: fnal}}\n")
+        self.assertEqual(1, self.study("plan", "bad.yaml", code=3)[1].count("error:"))
+
+    def test_a_key_that_a_plot_does_not_look_at_is_told(self):
+        self.write("plots.yaml", BALL + "study:\n  axes: {g: [1, 2], v: [0, 1]}\n  reducers: {y: {channel: body.ball.y, reduce: final}}\n"
+                   "  plots:\n    a: {kind: heat, x: g, y: v, value: y, by: v}\n    b: {kind: tornado, value: y, x: g}\n"
+                   "    c: {kind: line, x: g, y: y, percentiles: [5]}\n    d: {kind: line, x: g, y: y, by: v}\n")
+        warnings = self.study("plan", "plots.yaml", "--probe", "0")[1]
+        self.assertEqual([("heat", "by"), ("tornado", "x"), ("line", "percentiles")],
+                         re.findall(r"a plot of kind (\w+) does not look at '(\w+)'", warnings))
+
     def test_a_histogram_marks_percentiles_of_each_family(self):
         self.write("two.yaml", BALL + "study:\n  axes: {g: {uniform: [1, 2]}, v: [0, 1]}\n  sample: {method: random, points: 30, seed: 1}\n"
                    "  reducers: {x: {channel: body.ball.x, reduce: final}, y: {channel: body.ball.y, reduce: final}}\n"
