@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/option_value.h"
 #include "cli/study_probe.h"
 #include "cli/study_table.h"
 #include "cli/study_views.h"
@@ -22,9 +23,7 @@ JobEngine engine_of(const std::string& word) {
     throw Error(Error::Category::usage, "missing-argument", "study script needs --engine", {},
                 fmt::format("--engine {}", fmt::join(words, "|")));
   }
-  if (std::ranges::find(words, word) == words.end()) {
-    bad_value("--engine", word, fmt::format("it must be {}", fmt::join(words, ", ")));
-  }
+  require_word("--engine", word, words);
   return word == "slurm" ? JobEngine::slurm : word == "snakemake" ? JobEngine::snakemake : JobEngine::gnu_parallel;
 }
 

@@ -112,11 +112,11 @@ JobScripts slurm(const JobRequest& request, const JobPlan& plan) {
                                      "#SBATCH --open-mode=append\n#SBATCH --output={}\nexec {}\n",
                                      shell, name, plan.time,
                                      shell_word((slurm_pattern(words.jobs) / "merge.log").string()), words.merge()));
-  writer.put("submit.sh",
-             fmt::format("{}set -eu\narray=$(sbatch --parsable {})\n"
-                         "sbatch --dependency=afterany:\"${{array%%;*}}\" {}\n"
-                         "echo \"array ${{array%%;*}} of {} tasks; what is done: {}\"\n",
-                         shell, words.in_jobs("array.sh"), words.in_jobs("merge.sh"), plan.tasks, words.status()));
+  writer.put("submit.sh", fmt::format("{}set -eu\narray=$(sbatch --parsable {})\n"
+                                      "sbatch --dependency=afterany:\"${{array%%;*}}\" {}\n"
+                                      "echo \"array ${{array%%;*}} of {} tasks; what is done:\" {}\n",
+                                      shell, words.in_jobs("array.sh"), words.in_jobs("merge.sh"), plan.tasks,
+                                      shell_word(words.status())));
   return writer.finish("bash " + words.in_jobs("submit.sh"));
 }
 

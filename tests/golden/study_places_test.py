@@ -78,12 +78,23 @@ class StudyPlaces(ProgramTest):
                     if "study run" in line or "study merge" in line:
                         self.assertIn(" ".join(words), line)
 
+    def test_scripts_for_slurm_are_submitted_from_any_folder(self):
+        queue = self.write("sbatch", "#!/bin/sh\necho 7\n")
+        os.chmod(self.path(queue), 0o755)
+        self.write("ball.yaml", BALL + GRID)
+        folder = self.path("it's $5 of `all` \"good\" 10% \\{}")
+        command = self.freeplay("study", "script", "ball.yaml", "--out", folder, "--engine", "slurm", "--probe", "1")[0].splitlines()[-1]
+        done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=dict(os.environ, PATH=self.folder + ":" + os.environ["PATH"]))
+        self.assertEqual((0, ""), (done.returncode, done.stderr))
+        status = done.stdout.splitlines()[-1].split("what is done: ")[1]
+        self.assertIn("0 of", subprocess.run(["bash", "-c", status], capture_output=True, text=True).stdout)
+
     def test_scripts_that_no_engine_takes_are_refused(self):
         self.write("ball.yaml", BALL + GRID)
         for words, text in ((("slurm", "--tasks", "5000"), "--tasks 5000 is more than --max-array 1000"),
                             (("slurm", "--tasks", "200", "--max-array", "100"), "--tasks 200 is more than --max-array 100"),
                             (("gnu-parallel", "--hosts", "nowhere"), "there is no such file"),
-                            (("slurm", "--minutes", "5"), "from 10 to 60")):
+                            (("slurm", "--minutes", "5"), "from 10 to 60"), (("slrm",), "did you mean 'slurm'?")):
             self.assertIn(text, self.study("script", "ball.yaml", "--engine", *words, code=2)[1])
         self.assertFalse(os.path.exists(self.path("results")))
 
@@ -105,6 +116,19 @@ class StudyPlaces(ProgramTest):
         self.assertEqual(["", "", ""], [closed[name] for name in ("force", "ratio", "turns")])
         self.assertNotIn("", [loose[name] for name in ("force", "ratio", "place")])
         self.assertNotEqual("", closed["place"])
+
+    def test_a_file_that_a_point_reads_is_looked_for_before_anything_runs(self):
+        self.write("disc.yaml", "freeplay: 1\nbodies: {disc: {mass: 1, inertia: 1}}\njoints: {axle: {type: revolute, between: [ground, disc]}}\n"
+                   "drivers: {motor: {joint: axle, kind: velocity, table: {file: a.csv}}}\nsimulation: {end: 10 ms}\n"
+                   "study:\n  axes: {drivers.motor.table.file: [a.csv, b.csv]}\n  reducers: {w: {channel: joint.axle.speed, reduce: final}}\n")
+        for name in ("a.csv", "b.csv"):
+            self.write(name, "t,w\n0,0\n1,%d\n" % ord(name[0]))
+        self.study("run", "disc.yaml", "--out", "r", "--quiet")
+        os.remove(self.path("b.csv"))
+        self.assertRegex(self.study("run", "disc.yaml", "--out", "r", code=3)[1], r"disc\.yaml:7:44: error: .*cannot read 'b\.csv'")
+        self.write("disc.yaml", self.read("disc.yaml").replace(", b.csv", ""))
+        self.assertIn("--extend keeps", self.study("run", "disc.yaml", "--out", "r", code=3)[1])
+        self.assertEqual("2 points: same\n", self.study("verify", "r")[0])  # the folder needs nothing outside
 
     def test_a_model_without_play_has_no_events(self):
         section = ("study:\n  axes: {g: [1, 2]}\n  reducers: {hits: {events: '%s', reduce: count}, "
