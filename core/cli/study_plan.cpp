@@ -17,8 +17,9 @@ namespace {
 constexpr double longest_plan_probe = 10.0;  // [s]
 constexpr std::size_t bytes_of_number = 20, bytes_of_row = 60;
 
-/// Of a row in a segment, without samples.
-std::size_t row_bytes(const OpenStudy& study) {
+/// Of a row in a segment: those of the points that were tried, else about, without samples.
+std::size_t row_bytes(const OpenStudy& study, const std::optional<PointSeconds>& seconds) {
+  if (seconds) return static_cast<std::size_t>(seconds->row_bytes);
   return bytes_of_row + bytes_of_number * (study.layout().columns.size() + 3);
 }
 
@@ -59,10 +60,10 @@ Json plan_json(const OpenStudy& study, const std::optional<PointSeconds>& second
   for (const StudyColumn& column : study.columns().table) columns.push_back(column.name);
   const Json times =
       seconds ? Json{{"mean", seconds->mean}, {"min", seconds->min}, {"max", seconds->max}} : Json(nullptr);
-  return {{"name", study.plan().name()},     {"study", study.plan().identity()},
-          {"points", study.plan().points()}, {"axes", axes},
-          {"columns", std::move(columns)},   {"seconds_per_point", times},
-          {"row_bytes", row_bytes(study)}};
+  return {{"name", study.plan().name()},           {"study", study.plan().identity()},
+          {"points", study.plan().points()},       {"axes", axes},
+          {"columns", std::move(columns)},         {"seconds_per_point", times},
+          {"row_bytes", row_bytes(study, seconds)}};
 }
 
 std::string size_text(double bytes) {
@@ -86,7 +87,7 @@ std::string plan_text(const OpenStudy& study, bool probed, const std::optional<P
     text += fmt::format("  column     {}{}\n", column.name,
                         column.unit.empty() || column.unit == "1" ? "" : " [" + column.unit + "]");
   }
-  text += fmt::format("  disk       {}\n", size_text(points * static_cast<double>(row_bytes(study)) * 2.0));
+  text += fmt::format("  disk       {}\n", size_text(points * static_cast<double>(row_bytes(study, seconds)) * 2.0));
   if (!seconds) {
     if (probed) text += fmt::format("  a point    longer than {:g} s: --probe 0 tries none\n", longest_plan_probe);
     return text;

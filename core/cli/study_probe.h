@@ -12,6 +12,7 @@ namespace freeplay {
 /// Processor time: what others do on the machine does not count.
 struct PointSeconds {
   double mean = 0.0, min = 0.0, max = 0.0;
+  double row_bytes = 0.0;  ///< of a row in a segment, with its samples
 };
 
 /// Runs up to `count` points, spread over the study, for at most `longest` seconds; nothing where none ended.

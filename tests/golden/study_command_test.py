@@ -329,6 +329,17 @@ class StudyCommand(ProgramTest):
         self.study("plot", "r")
         self.assertEqual([1, 2], [self.read("r", "plots", name + ".svg").count(">50 %<") for name in ("one", "two")])
 
+    def test_a_plan_counts_the_samples_of_sections(self):
+        sizes = []
+        for count, every in ((5, "20 ms"), (5, "1 ms")):
+            self.write("disk.yaml", BALL + "study:\n  axes: {g: {linspace: [1, 2, %d]}}\n"
+                       "  reducers: {s: {channel: body.ball.y, reduce: poincare, every: %s}}\n" % (count, every))
+            sizes.append(json.loads(self.study("plan", "disk.yaml", "--json")[0])["row_bytes"])
+        self.study("run", "disk.yaml", "--out", "r", "--quiet")
+        self.assertGreater(sizes[1], sizes[0] + 800)
+        lines = sum(os.path.getsize(name) for name in glob.glob(self.path("r", "rows", "*")))
+        self.assertAlmostEqual(lines / 5, sizes[1], delta=200)
+
 
 
 if __name__ == "__main__":
