@@ -91,12 +91,14 @@ void append_moving_pose(Row& row, const Station& station, const PostureSolver& s
   append_pose(row, solver.form(), pose);
 }
 
-/// "time", then the numbers of a pose; `first` may be empty.
-std::vector<std::string> pose_columns(const PoseForm& form, const char* first) {
-  std::vector<std::string> columns;
-  if (first[0] != 0) columns.emplace_back(first);
-  columns.insert(columns.end(), form.words.begin(), form.words.end());
-  return columns;
+/// The numbers of a pose.
+void add_pose_columns(AnalysisTable& table, const PoseForm& form) {
+  for (std::size_t i = 0; i < form.size(); ++i) table.add_column(form.words[i], form.is_turn(i) ? "rad" : "m");
+}
+
+/// Of a coordinate of an input, or of what is divided by time once or twice.
+std::string unit_of(const IdealMechanism& mechanism, int input, const char* by_time = "") {
+  return (mechanism.is_angle(input) ? "rad" : "m") + std::string(by_time);
 }
 
 /// Coordinate rows of the inputs at a posture: value, speed, acceleration.
@@ -147,14 +149,15 @@ std::string station_words(const PoseForm& form, const Station& station) {
 AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                       const std::vector<int>& branch_of, const Tick& tick) {
   AnalysisTable table;
-  table.columns = pose_columns(mechanism.form(), "time");
+  table.add_column("time", "s");
+  add_pose_columns(table, mechanism.form());
   for (int i = 0; i < input_count(mechanism); ++i) {
     const std::string prefix = "joint." + input_name(mechanism, i);
-    table.columns.push_back(prefix + (mechanism.is_angle(i) ? ".angle" : ".position"));
-    table.columns.push_back(prefix + ".speed");
-    table.columns.push_back(prefix + ".acceleration");
+    table.add_column(prefix + (mechanism.is_angle(i) ? ".angle" : ".position"), unit_of(mechanism, i));
+    table.add_column(prefix + ".speed", unit_of(mechanism, i, "/s"));
+    table.add_column(prefix + ".acceleration", unit_of(mechanism, i, "/s^2"));
   }
-  if (!branch_of.empty()) table.columns.push_back("branch");
+  if (!branch_of.empty()) table.add_column("branch", "1");
   PostureSolver solver(mechanism);
   Turns turns, frame_turns;
   for (std::size_t k = 0; k < stations.size(); ++k) {
@@ -173,8 +176,8 @@ AnalysisTable ik_rows(const IdealMechanism& mechanism, const std::vector<Station
 AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Station>& stations, const Components& given,
                              int threads, const Tick& tick) {
   AnalysisTable table;
-  table.columns = pose_columns(mechanism.form(), "");
-  table.columns.insert(table.columns.end(), {"reachable", "legs", "condition"});
+  add_pose_columns(table, mechanism.form());
+  for (const char* name : {"reachable", "legs", "condition"}) table.add_column(name, "1");
   table.rows.resize(stations.size());
   const Posture start = mechanism.closed_form() ? Posture{} : regular_start(mechanism, given);
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
@@ -200,9 +203,10 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
 AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                                const Components& given, int threads, const Tick& tick) {
   AnalysisTable table;
-  table.columns = pose_columns(mechanism.form(), "");
-  table.columns.insert(table.columns.end(),
-                       {"reachable", "sigma_min", "sigma_max", "condition", "inverse_min", "kind"});
+  add_pose_columns(table, mechanism.form());
+  for (const char* name : {"reachable", "sigma_min", "sigma_max", "condition", "inverse_min", "kind"}) {
+    table.add_column(name, "1");
+  }
   table.rows.resize(stations.size());
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
@@ -246,29 +250,28 @@ namespace {
 /// In the plane the turn is one of the changes.
 bool has_several_turns(const PoseForm& form) { return form.size() > form.lengths + 1; }
 
-std::vector<std::string> error_columns(const IdealMechanism& mechanism, const ErrorColumns& of) {
+void add_error_columns(AnalysisTable& table, const IdealMechanism& mechanism, const ErrorColumns& of) {
   const PoseForm& form = mechanism.form();
-  std::vector<std::string> out = pose_columns(form, "");
-  out.emplace_back("reachable");
+  add_pose_columns(table, form);
+  table.add_column("reachable", "1");
   for (const std::string prefix : {"", "ls_"}) {
-    for (const char* change : form.changes) out.push_back(prefix + change);
-    out.push_back(prefix + "position");
-    if (has_several_turns(form)) out.push_back(prefix + "dangle");
+    for (std::size_t i = 0; i < form.size(); ++i) {
+      table.add_column(prefix + form.changes[i], form.is_turn(i) ? "rad" : "m");
+    }
+    table.add_column(prefix + "position", "m");
+    if (has_several_turns(form)) table.add_column(prefix + "dangle", "rad");
   }
   if (of.sensitivity) {
-    for (const Play& play : mechanism.plays()) {
-      out.push_back(play_name(mechanism, play) + ".sensitivity");
-    }
+    for (const Play& play : mechanism.plays()) table.add_column(play_name(mechanism, play) + ".sensitivity", "1");
     for (int i = 0; i < input_count(mechanism); ++i) {
-      out.push_back("driver." + input_name(mechanism, i) + ".sensitivity");
+      table.add_column("driver." + input_name(mechanism, i) + ".sensitivity", mechanism.is_angle(i) ? "m/rad" : "1");
     }
   }
   if (of.samples > 0) {
-    for (const char* name : {"rms_position", "rms_dangle", "max_position", "max_dangle"}) {
-      out.push_back(std::string("sample_") + name);
+    for (const std::string name : {"rms_position", "rms_dangle", "max_position", "max_dangle"}) {
+      table.add_column("sample_" + name, name.ends_with("dangle") ? "rad" : "m");
     }
   }
-  return out;
 }
 
 }  // namespace
@@ -278,7 +281,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
                          const Tick& tick) {
   AnalysisTable table;
   const PoseForm& form = mechanism.form();
-  table.columns = error_columns(mechanism, columns);
+  add_error_columns(table, mechanism, columns);
   table.rows.resize(stations.size());
   std::vector<char> singular(stations.size(), 0), unclosed = singular;
   in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
@@ -335,9 +338,11 @@ std::span<const char* const> moments_of(const JointElement& joint, bool planar) 
 AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::vector<Station>& stations,
                                     double preload, const Tick& tick) {
   AnalysisTable table;
-  table.columns = pose_columns(mechanism.form(), "time");
+  table.add_column("time", "s");
+  add_pose_columns(table, mechanism.form());
   for (int i = 0; i < input_count(mechanism); ++i) {
-    table.columns.push_back("driver." + input_name(mechanism, i) + (mechanism.is_angle(i) ? ".torque" : ".force"));
+    const bool turns = mechanism.is_angle(i);
+    table.add_column("driver." + input_name(mechanism, i) + (turns ? ".torque" : ".force"), turns ? "N*m" : "N");
   }
   std::vector<std::size_t> shown;
   const bool planar = mechanism.model().space == Space::planar;
@@ -345,8 +350,11 @@ AnalysisTable inverse_dynamics_rows(const IdealMechanism& mechanism, const std::
     const JointElement& joint = mechanism.model().joints[j];
     if (joint.is_force) continue;
     shown.push_back(j);
-    for (const char* word : mechanism.form().forces) table.columns.push_back("joint." + joint.name + "." + word);
-    for (const char* word : moments_of(joint, planar)) table.columns.push_back("joint." + joint.name + "." + word);
+    const std::string prefix = "joint." + joint.name + ".";
+    for (const std::string word : mechanism.form().forces) {
+      table.add_column(prefix + word, word.front() == 'f' ? "N" : "N*m");
+    }
+    for (const char* word : moments_of(joint, planar)) table.add_column(prefix + word, "N*m");
   }
   PostureSolver solver(mechanism);
   InverseDynamics dynamics(solver);

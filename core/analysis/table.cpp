@@ -1,10 +1,16 @@
 #include "analysis/table.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/number_text.h"
 
 namespace freeplay {
+
+void AnalysisTable::add_column(std::string name, std::string unit) {
+  columns.push_back(std::move(name));
+  units.push_back(std::move(unit));
+}
 
 std::string AnalysisTable::csv() const {
   std::string text;

@@ -14,9 +14,11 @@ using AnalysisCell = std::variant<double, std::string>;
 
 struct AnalysisTable {
   std::vector<std::string> columns;
+  std::vector<std::string> units;  ///< of the columns; "1" also of words
   std::vector<std::vector<AnalysisCell>> rows;
   Json summary = Json::object();
 
+  void add_column(std::string name, std::string unit);
   std::string csv() const;
   /// {"kind", "columns", "rows", "summary"}; rows are lists in column order, null for empty.
   Json json(const std::string& kind) const;

@@ -125,6 +125,10 @@ void PointReducers::finish(const AnalysisTable& table) {
       if (value != nullptr && std::isfinite(*value)) of.reduced.add(*value);
     }
     values_[of.column] = of.reduced.result();
+    // Once for all points, so that formulas have one unit at all of them.
+    if (lacking_ == Lacking::mistake && has_unit_of_values(*of.entry->reduction)) {
+      columns_.set_unit(of.column, table.units[place]);
+    }
   }
   fill_others();
 }

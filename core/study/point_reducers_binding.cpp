@@ -69,10 +69,6 @@ std::string unit_of(const Expression& formula) {
   return formula.kind() == DimensionKind::dimensioned ? si_unit(formula.dimension()) : "1";
 }
 
-bool has_unit_of_values(const std::optional<Reduction>& reduction) {
-  return reduction != Reduction::count && reduction != Reduction::time_fraction;
-}
-
 /// A quantity of the dimension, or of any.
 double quantity_of(const CheckedValue& value, const std::optional<Dimension>& dimension, const Range& range = {}) {
   if (dimension) return value.quantity(*dimension, range).value_or(0.0);
@@ -154,8 +150,8 @@ void PointReducers::bind_course(const ReducerEntry& entry, std::size_t index) {
     columns_.set_sample_unit(columns_.list(index), unit);
     return bind_section(entry, index, std::move(*course));
   }
-  columns_.set_unit(column, has_unit_of_values(entry.reduction) ? unit : "1");
   if (!entry.reduction) return;
+  columns_.set_unit(column, has_unit_of_values(*entry.reduction) ? unit : "1");
   const auto dimension = any ? std::nullopt : std::optional<Dimension>(parse_unit(unit).dimension);
   timed_.push_back({column, std::move(*course), window_of(entry), Reduced(rule_of(entry, dimension))});
 }
@@ -233,7 +229,7 @@ void PointReducers::bind_events(const ReducerEntry& entry, std::size_t index) {
     unit = event_layout_.events[static_cast<std::size_t>(of.field)].unit;
     if (entry.above) of.above = quantity_of(*entry.above, parse_unit(unit).dimension);
   }
-  columns_.set_unit(columns_.first(index), has_unit_of_values(entry.reduction) ? unit : "1");
+  columns_.set_unit(columns_.first(index), has_unit_of_values(*entry.reduction) ? unit : "1");
   of_events_.push_back(std::move(of));
 }
 

@@ -74,10 +74,11 @@ struct PointRunner::Impl {
     const int before = diagnostics.errors();
     for (const Document* document : source.models) registries.push_back(load_registry(options, document));
     if (source.reducers != nullptr) {
-      entries = read_reducers(CheckedValue(reading, *source.reducers, nullptr, "reducers"), source.analysis != nullptr);
+      entries =
+          read_reducers(CheckedValue(reading, *source.reducers, nullptr, "study.reducers"), source.analysis != nullptr);
     }
     if (source.analysis != nullptr) {
-      analysis = read_analysis_words(CheckedValue(reading, *source.analysis, nullptr, "do"));
+      analysis = read_analysis_words(CheckedValue(reading, *source.analysis, nullptr, "study.do"));
     }
     if (diagnostics.errors() == before) check(diagnostics);
   }
@@ -130,7 +131,9 @@ void PointRunner::Impl::check(Diagnostics& diagnostics) {
     const Channels channels(*one.model);
     PointReducers reducers = bind(*one.model, channels, PointReducers::Lacking::mistake);
     if (reducers.needs_summary()) check_summaries(*one.model, channels);
-    if (analysis && !diagnostics.has_errors()) check_analysis(*one.model, reducers);
+    if (!analysis || diagnostics.has_errors()) continue;
+    check_analysis(*one.model, reducers);
+    bind(*one.model, channels, PointReducers::Lacking::mistake);  // formulas, now that columns have units
   }
 }
 

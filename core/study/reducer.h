@@ -22,6 +22,9 @@ enum class Reduction {
   count,
 };
 
+/// Else it is a number without one.
+inline bool has_unit_of_values(Reduction kind) { return kind != Reduction::count && kind != Reduction::time_fraction; }
+
 struct ReductionRule {
   Reduction kind = Reduction::final;
   double p = 50.0;     ///< of percentile

@@ -340,6 +340,15 @@ class StudyCommand(ProgramTest):
         lines = sum(os.path.getsize(name) for name in glob.glob(self.path("r", "rows", "*")))
         self.assertAlmostEqual(lines / 5, sizes[1], delta=200)
 
+    def test_columns_of_an_analysis_have_its_units(self):
+        self.write("error.yaml", "freeplay: 1\nstudy:\n  models: [%s]\n  axes: {c: [0.1 mm, 0.2 mm]}\n  do: {analyze: error, pose: [0, 0, 0]}\n"
+                   "  reducers:\n    error: {column: position, reduce: max}\n    turn: {column: dangle, reduce: max}\n"
+                   "    poses: {column: position, reduce: count}\n    part: {of: '[error]/$c'}\n" % mechanism("3-rrr"))
+        self.study("run", "error.yaml", "--out", "r", "--quiet")
+        record = json.loads(self.read("r", "study.json"))
+        self.assertEqual(["m", "rad", "1", "1"], record["units"])
+        self.write("wrong.yaml", self.read("error.yaml").replace("[error]/$c", "[error] + 1 kg"))
+        self.assertIn("[dimension-mismatch]", self.study("plan", "wrong.yaml", code=3)[1])
 
 
 if __name__ == "__main__":
