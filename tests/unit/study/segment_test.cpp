@@ -39,7 +39,7 @@ struct Read {
   std::vector<std::size_t> damaged;
 };
 
-Read read(const std::string& text) {
+Read read_segment_text(const std::string& text) {
   const ScratchFolder folder;
   folder.write("a.rows", text);
   Read result;
@@ -94,7 +94,7 @@ TEST(Segment, TornLastLineIsNoRowAndNoDamage) {
   const std::string text = second_shard.text() + lines_of(1, 1.0) + lines_of(2, 2.0);
   const std::size_t second = text.rfind("+2");
   for (std::size_t size = second_shard.text().size(); size < text.size(); ++size) {
-    const Read result = read(text.substr(0, size));
+    const Read result = read_segment_text(text.substr(0, size));
     EXPECT_EQ(size >= second ? Numbers{1} : Numbers{}, result.rows) << size;
     EXPECT_TRUE(result.damaged.empty()) << size;
   }
@@ -107,7 +107,7 @@ TEST(Segment, EveryFlippedBitCostsOnePointAndIsSaid) {
     std::string changed = text;
     changed[at] = static_cast<char>(changed[at] ^ 1);
     if (changed[at] == '\n' || text[at] == '\n') continue;
-    const Read result = read(changed);
+    const Read result = read_segment_text(changed);
     EXPECT_EQ((Numbers{1, 3}), result.rows) << at;
     EXPECT_EQ(at < row ? Lines{4} : Lines{5}, result.damaged) << at;
   }
@@ -115,15 +115,15 @@ TEST(Segment, EveryFlippedBitCostsOnePointAndIsSaid) {
 
 TEST(Segment, RowWithoutItsSamplesIsNone) {
   const std::string whole = lines_of(1, 1.0), bare = whole.substr(whole.find('\n') + 1);
-  const Read result = read(second_shard.text() + bare + lines_of(2, 2.0));
+  const Read result = read_segment_text(second_shard.text() + bare + lines_of(2, 2.0));
   EXPECT_EQ((Numbers{2}), result.rows);
   EXPECT_EQ((Lines{2}), result.damaged);
 }
 
 TEST(Segment, ForeignFileHasNoRows) {
-  EXPECT_EQ((Lines{1}), read("hello\n" + lines_of(1, 1.0)).damaged);
-  EXPECT_TRUE(read("hello\n" + lines_of(1, 1.0)).rows.empty());
-  EXPECT_TRUE(read("").damaged.empty());
+  EXPECT_EQ((Lines{1}), read_segment_text("hello\n" + lines_of(1, 1.0)).damaged);
+  EXPECT_TRUE(read_segment_text("hello\n" + lines_of(1, 1.0)).rows.empty());
+  EXPECT_TRUE(read_segment_text("").damaged.empty());
 }
 
 TEST(Segment, LinesLongerThanTheBufferAreRead) {
@@ -133,7 +133,7 @@ TEST(Segment, LinesLongerThanTheBufferAreRead) {
   for (int k = 0; k < 300'000; ++k) outcome.samples[0].emplace_back(k, 0.1 * k);
   std::string lines;
   append_point(lines, 1, std::string(24, 'c'), outcome, layout);
-  EXPECT_EQ((Numbers{1, 2, 1}), read(second_shard.text() + lines + lines_of(2, 1.0) + lines).rows);
+  EXPECT_EQ((Numbers{1, 2, 1}), read_segment_text(second_shard.text() + lines + lines_of(2, 1.0) + lines).rows);
 }
 
 TEST(Segment, NoSpaceIsAnErrorThatNamesTheFile) {

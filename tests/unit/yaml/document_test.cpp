@@ -14,7 +14,7 @@ namespace freeplay {
 namespace {
 
 /// A text that must be readable.
-Document read(const std::string& text) {
+Document read_yaml_text(const std::string& text) {
   Diagnostics diagnostics;
   auto document = parse_yaml(text, "m.yaml", diagnostics);
   EXPECT_EQ(diagnostics.format(0), "");
@@ -39,7 +39,7 @@ std::string place(const Node& node) {
 }
 
 TEST(ReadYaml, KeepsOrderKindsAndPlaces) {
-  const Document document = read("name: rod\nlist: [1, 2 mm]\nmap: {b: 1, a: 2}\n");
+  const Document document = read_yaml_text("name: rod\nlist: [1, 2 mm]\nmap: {b: 1, a: 2}\n");
   const Node& root = document.root();
   ASSERT_TRUE(root.is_map());
   ASSERT_EQ(root.entries.size(), 3u);
@@ -56,14 +56,14 @@ TEST(ReadYaml, KeepsOrderKindsAndPlaces) {
 }
 
 TEST(ReadYaml, CountsColumnsInCharacters) {
-  const Document document = read("{\u00b5\u20ac: \"\U0001F600\", b: 1}\n");
+  const Document document = read_yaml_text("{\u00b5\u20ac: \"\U0001F600\", b: 1}\n");
   EXPECT_EQ(place(*document.root().entries[0].key), "1:2+2");
   EXPECT_EQ(place(*document.root().entries[0].value), "1:6+3");
   EXPECT_EQ(place(*document.root().find("b")), "1:14+1");
 }
 
 TEST(ReadYaml, MapsAnOffsetToAPlaceWhereTheTextIsVerbatim) {
-  const Document document = read("a: 2*$l\nb: '2*$l'\nc: \"2\\t$l\"\nd: >\n  2*$l\ne: 2\n  * 3\n");
+  const Document document = read_yaml_text("a: 2*$l\nb: '2*$l'\nc: \"2\\t$l\"\nd: >\n  2*$l\ne: 2\n  * 3\n");
   EXPECT_EQ(document.root().find("a")->location_at(2).column, 6);
   EXPECT_EQ(document.root().find("b")->location_at(2).column, 7);
   EXPECT_EQ(document.root().find("c")->location_at(2).column, 4);
@@ -73,7 +73,7 @@ TEST(ReadYaml, MapsAnOffsetToAPlaceWhereTheTextIsVerbatim) {
 }
 
 TEST(ReadYaml, DistinguishesAnAbsentValueFromTheWordNull) {
-  const Document document = read("a:\nnull: ~\nb: null\nc: [~, 1]\nd:\n  -\n");
+  const Document document = read_yaml_text("a:\nnull: ~\nb: null\nc: [~, 1]\nd:\n  -\n");
   EXPECT_TRUE(document.root().find("a")->is_null());
   EXPECT_EQ(place(*document.root().find("a")), "1:1+1");
   EXPECT_EQ(document.root().find("null")->text, "~");
@@ -84,7 +84,7 @@ TEST(ReadYaml, DistinguishesAnAbsentValueFromTheWordNull) {
 }
 
 TEST(ReadYaml, SharesTheNodeOfAnAlias) {
-  const Document document = read("x-a: &a # why\n  {k: 1}\nb: *a\nc: &n 5 mm\nd: *n\n");
+  const Document document = read_yaml_text("x-a: &a # why\n  {k: 1}\nb: *a\nc: &n 5 mm\nd: *n\n");
   const Node& root = document.root();
   EXPECT_EQ(root.find("x-a"), root.find("b"));
   EXPECT_EQ(place(*root.find("b")), "2:3+1");
@@ -93,14 +93,14 @@ TEST(ReadYaml, SharesTheNodeOfAnAlias) {
 
 TEST(ReadYaml, TakesAnEmptyTextAsNothing) {
   for (const char* text : {"", "# only a comment\n", "---\n", "\xEF\xBB\xBF"}) {
-    const Document document = read(text);
+    const Document document = read_yaml_text(text);
     EXPECT_TRUE(document.root().is_null());
     EXPECT_EQ(document.root().location().line, 1);
   }
 }
 
 TEST(ReadYaml, IgnoresAByteOrderMarkAndCarriageReturns) {
-  const Document document = read(
+  const Document document = read_yaml_text(
       "\xEF\xBB\xBF"
       "a: 1\r\nb: 2\r\n");
   EXPECT_EQ(place(*document.root().entries[0].key), "1:1+1");
@@ -226,7 +226,7 @@ TEST(ReadYaml, DoesNotOpenDirectoriesAndDevices) {
 }
 
 TEST(Document, ReplacesAValueByATextFromElsewhere) {
-  Document document = read("p: {c: &v 1 mm, d: *v}\n");
+  Document document = read_yaml_text("p: {c: &v 1 mm, d: *v}\n");
   const Node& parameters = *document.root().find("p");
   EXPECT_TRUE(document.replace_value(parameters, "c", "--set c", "50 um"));
   EXPECT_FALSE(document.replace_value(parameters, "e", "--set e", "1"));
@@ -244,7 +244,7 @@ TEST(Document, CanBeAScalarFromTheCommandLine) {
 }
 
 TEST(Document, KeepsItsNodesWhenItIsMoved) {
-  Document first = read("a: [1, 2]\n");
+  Document first = read_yaml_text("a: [1, 2]\n");
   const Node* list = first.root().find("a");
   const Document second = std::move(first);
   EXPECT_EQ(second.root().find("a"), list);
@@ -275,7 +275,7 @@ std::string yaml_message(const std::string& text) {
 }
 
 TEST(ReadYaml, TakesTabsInEmptyLinesAndBeforeCommentsOfTheirOwn) {
-  const Document document = read("a: 1\n\t\nb:\n  c: 2\n  \t\n\t# note\n  d: [1,\n\t# note\n    2]\n");
+  const Document document = read_yaml_text("a: 1\n\t\nb:\n  c: 2\n  \t\n\t# note\n  d: [1,\n\t# note\n    2]\n");
   EXPECT_EQ(document.root().find("a")->text, "1");
   EXPECT_EQ(document.root().find("b")->find("d")->items.size(), 2u);
   EXPECT_EQ(errors("a:\n\tb: 1\n"), "2:1 yaml-syntax");
@@ -283,11 +283,12 @@ TEST(ReadYaml, TakesTabsInEmptyLinesAndBeforeCommentsOfTheirOwn) {
 }
 
 TEST(ReadYaml, KeepsTabsInBlockScalars) {
-  EXPECT_EQ(read("a: |  # note\n  x\n  \ty\n  \t\n  \t# z\nb: 1\n").root().find("a")->text, "x\n\ty\n\t\n\t# z\n");
+  EXPECT_EQ(read_yaml_text("a: |  # note\n  x\n  \ty\n  \t\n  \t# z\nb: 1\n").root().find("a")->text,
+            "x\n\ty\n\t\n\t# z\n");
 }
 
 TEST(ReadYaml, TakesACarriageReturnAsTheEndOfALine) {
-  const Document document = read("a: 1\rb:\r  c: \"x\r    y\"\r");
+  const Document document = read_yaml_text("a: 1\rb:\r  c: \"x\r    y\"\r");
   EXPECT_EQ(document.root().find("b")->find("c")->text, "x y");
   EXPECT_EQ(place(*document.root().find("b")->find("c")), "3:6+2");
   EXPECT_EQ(errors("a: 1\r\nb: 2\rb: 3\n"), "3:1 duplicate-key");
