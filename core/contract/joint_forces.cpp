@@ -89,9 +89,13 @@ EnergyBalance energy_balance(const JointProbe& probe, const JointMoment& moment,
     const ProbedForces values = forces_at(x);
     return values.wrench.empty() ? std::vector<double>{} : std::vector<double>{values.potential};
   };
-  // The rounding of the positions and angles counts as the forces make it count.
+  // The rounding of the positions and angles counts as the forces make it count: those at rest are the gradients of the
+  // energy also where a damper cancels what it pulls with.
+  JointMoment rest = moment;
+  rest.markers = with_twists(moment.markers, {});
   const double rounded =
-      std::max(work_of_positions(f, moment.markers), work_of_positions(forces_at(reach), moment.markers));
+      std::max({work_of_positions(f, moment.markers), work_of_positions(probe.forces(rest), moment.markers),
+                work_of_positions(forces_at(reach), moment.markers)});
   const Slope stored = slope(potential, reach, Side::above, {rounded});
   if (stored.value.empty() || f.wrench.empty()) return {};
   return {power(f, moment.markers), stored.value[0], stored.error[0], power_size(f, moment.markers)};

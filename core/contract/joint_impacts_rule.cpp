@@ -25,7 +25,7 @@ constexpr double apart_before = 0.35;  // of the depth: how far apart the body s
 ///
 /// which is pi d/v for n = 1, 2.94 d/v for n = 3/2, and nears 2 d/v as n grows; damping makes it longer. So a joint
 /// that takes any of these for its own law is right to 2/pi. One that takes a mass M in place of m finds (M/m)^p as
-/// much: a body that turns as lightly as here has m = M/51, and a spring (p = 1/2) or a Hertz force (p = 2/5) would
+/// much: a body that turns as lightly as here has m = M/51, and a spring (p = 1/2) or a ball on a plane (p = 2/5) would
 /// give it 0.14 or 0.21 of its steps.
 constexpr double fewest_steps = per_contact * 2.0 / std::numbers::pi;
 constexpr double light = 0.02;  // square of the body's radius of gyration by that of the contact's lever

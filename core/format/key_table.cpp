@@ -87,8 +87,8 @@ constexpr FormatKey gear[] = {
     {"ratio", "quantity", "", "required", "Plain, or length per angle between a turn and a slide.", "-2"},
     {"offset", "quantity | 'auto'", "", "auto", "auto: what the assembled start has.", "0"},
     {"pressure_angle", "quantity", "rad", "", "Of teeth that press at the pitch point, with play.", "20 deg"},
-    {"clearance", "contents", "", "", "Teeth with play: the keys of gear-clearance.",
-     "{pitch_radius: 50 mm, gap: 50 um, contact: {law: hertz, K: 1e9}}"},
+    {"clearance", "contents", "", "", "Teeth with play: the keys of the loose gear.",
+     "{pitch_radius: 50 mm, gap: 50 um}"},
     use};
 
 constexpr FormatKey driver[] = {
