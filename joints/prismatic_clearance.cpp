@@ -93,8 +93,8 @@ struct SlideStart : WallStart {
 ///
 ///   delta_i = sigma (n.d + s_x sin(Theta)) - B (1 - cos(Theta)) - g
 ///
-/// `planar_contacts.h` has what follows from it. One corner, two on a side or two opposite ones are not told apart; as
-/// the block lays itself flat, its two corners tend to the same force. Where only g is known, B counts as zero:
+/// `planar_contacts.h` has what follows from it. One corner, two on a side or two opposite ones are not distinguished;
+/// as the block lays itself flat, its two corners tend to the same force. Where only g is known, B counts as zero:
 /// friction is then inert. Flores, Ambrosio, Claro and Lankarani 2008, J Comput Nonlinear Dyn 3, 011007; Flores, Leine
 /// and Glocker 2010, Multibody Syst Dyn 23.
 class PrismaticClearance final : public PlanarContacts<BlockInGuide> {

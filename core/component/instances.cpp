@@ -33,7 +33,7 @@ struct NamedLaw {
 
   static const NamedLaw& of(const void* self) { return *static_cast<const NamedLaw*>(self); }
   /// The status of a call; puts the name before what one that failed has said.
-  Status told(Status status, Message* message) const noexcept {
+  Status named(Status status, Message* message) const noexcept {
     if (status == Status::ok) return status;
     Message text = *message;
     const std::size_t length = std::min(name.size(), sizeof text.text / 2);
@@ -44,10 +44,10 @@ struct NamedLaw {
     return status;
   }
   /// The same of one for a force, which must be a finite number.
-  Status told(Status status, bool finite, Message* message) const noexcept {
-    if (status != Status::ok || finite) return told(status, message);
+  Status named(Status status, bool finite, Message* message) const noexcept {
+    if (status != Status::ok || finite) return named(status, message);
     abi::copy_text(message->text, sizeof message->text, "it returned a force that is not a finite number");
-    return told(Status::failed, message);
+    return named(Status::failed, message);
   }
 };
 using NamedContactLaw = NamedLaw<abi::ContactLawTable>;
@@ -60,19 +60,19 @@ constexpr abi::ContactLawTable named_contact_law{
       const auto& me = NamedContactLaw::of(self);
       const Status status = me.table.evaluate(me.law, in, out, m);
       const bool asked_finite = std::isfinite(in->penetration + in->rate);
-      return me.told(status, std::isfinite(out->normal + out->potential) || !asked_finite, m);
+      return me.named(status, std::isfinite(out->normal + out->potential) || !asked_finite, m);
     },
     [](const void* self, const ContactState* in, const char** why, Message* m) noexcept {
       const auto& me = NamedContactLaw::of(self);
-      return me.told(me.table.outside_range(me.law, in, why, m), m);
+      return me.named(me.table.outside_range(me.law, in, why, m), m);
     },
     [](const void* self, std::int32_t* count, Message* m) noexcept {
       const auto& me = NamedContactLaw::of(self);
-      return me.told(me.table.switches(me.law, count, m), m);
+      return me.named(me.table.switches(me.law, count, m), m);
     },
     [](const void* self, const ContactState* in, Span<double> values, Message* m) noexcept {
       const auto& me = NamedContactLaw::of(self);
-      return me.told(me.table.decide(me.law, in, values, m), m);
+      return me.named(me.table.decide(me.law, in, values, m), m);
     }};
 
 constexpr abi::FrictionLawTable named_friction_law{
@@ -80,25 +80,25 @@ constexpr abi::FrictionLawTable named_friction_law{
     nullptr,
     [](const void* self, std::int32_t* count, Message* m) noexcept {
       const auto& me = NamedFrictionLaw::of(self);
-      return me.told(me.table.internal_variables(me.law, count, m), m);
+      return me.named(me.table.internal_variables(me.law, count, m), m);
     },
     [](const void* self, const FrictionState* in, Span<double> rate, FrictionForce* out, Message* m) noexcept {
       const auto& me = NamedFrictionLaw::of(self);
       const Status status = me.table.evaluate(me.law, in, rate, out, m);
       const bool asked_finite = std::isfinite(in->normal_force + in->slip_speed);
-      return me.told(status, std::isfinite(out->tangential) || !asked_finite, m);
+      return me.named(status, std::isfinite(out->tangential) || !asked_finite, m);
     },
     [](const void* self, Span<const double>* speeds, Message* m) noexcept {
       const auto& me = NamedFrictionLaw::of(self);
-      return me.told(me.table.kinks(me.law, speeds, m), m);
+      return me.named(me.table.kinks(me.law, speeds, m), m);
     },
     [](const void* self, std::int32_t* count, Message* m) noexcept {
       const auto& me = NamedFrictionLaw::of(self);
-      return me.told(me.table.switches(me.law, count, m), m);
+      return me.named(me.table.switches(me.law, count, m), m);
     },
     [](const void* self, const FrictionState* in, Span<double> values, Message* m) noexcept {
       const auto& me = NamedFrictionLaw::of(self);
-      return me.told(me.table.decide(me.law, in, values, m), m);
+      return me.named(me.table.decide(me.law, in, values, m), m);
     }};
 
 CreationFault fault_of(const Component& component, Status status, const Message& message) {

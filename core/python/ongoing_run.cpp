@@ -307,7 +307,7 @@ std::shared_ptr<KeptRun> OngoingRun::finish() {
     beside_->run_twin(outcome, tick_);
     beside_->verify(assembled_->system, outcome, simulation_->statistics(), tick_);
     if (recording_) {
-      for (const std::string& text : told()) recording_->log().write("warning", text);
+      for (const std::string& text : warnings()) recording_->log().write("warning", text);
       close(outcome);
     }
     keep_summary(outcome);
@@ -324,7 +324,7 @@ std::shared_ptr<KeptRun> OngoingRun::finish() {
 }
 
 // Met on the way, and by the runs beside.
-std::vector<std::string> OngoingRun::told() const {
+std::vector<std::string> OngoingRun::warnings() const {
   const std::span<const std::string> met = simulation_->warnings();
   std::vector<std::string> all(met.begin(), met.end());
   all.insert(all.end(), beside_->warnings().begin(), beside_->warnings().end());
@@ -340,7 +340,7 @@ void OngoingRun::keep_summary(const Outcome& outcome) {
                    simulation_->clearances(),
                    simulation_->last_row(),
                    recording_ ? recording_->advice() : advice_,
-                   warnings_of(diagnostics_, told()),
+                   warnings_of(diagnostics_, warnings()),
                    recording_ ? recording_->files() : std::vector<std::string>()};
   if (beside_->verification()) add_verification(*beside_->verification(), record);
   if (recording_) recording_->bearing(simulation_->clearances());

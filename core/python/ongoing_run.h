@@ -60,7 +60,7 @@ class OngoingRun {
   void begin_log();
   void look_up();
   const Checkpoint* from() const;
-  std::vector<std::string> told() const;
+  std::vector<std::string> warnings() const;
   void note_instant();
   void keep_profile();
   void add_asked(Json& record);

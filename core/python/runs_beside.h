@@ -48,7 +48,7 @@ class RunsBeside {
 
   const Json& twin() const { return twin_; }
   const std::optional<Verification>& verification() const { return verification_; }
-  /// What is to be told besides.
+  /// What the result says besides.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:

@@ -29,7 +29,7 @@ namespace freeplay {
 ///    motion a little beside. The forces of all loose joints of the group must agree so, as one alone does by chance,
 ///    or the five to 1e-4.
 /// 3. What comes later. A peak that stands early in the window, where little has grown yet, is that of every run, but
-///    what chance does behind it may pass it: the noise reaches to as far as 2. says of the bursts behind it.
+///    what chance does after it may pass it: the noise reaches to as far as 2. says of the bursts after it.
 ///
 /// The noise is the peak at most: then its power of ten is all that is known.
 ///

@@ -71,8 +71,8 @@ bool Recorder::know_row() {
   return row_is_known_ = true;
 }
 
-// A joint that sleeps is in flight, as in the row before it fell asleep; of one that never touched it is told how far
-// it moved.
+// A joint that sleeps is in flight, as in the row before it fell asleep; one that never touched
+// says how far it is from touching.
 bool Recorder::know_loads() {
   if (loads_are_known()) return true;
   const bool row_is_due = !(run_.accepted.t() < row_time(next_row_ - 1));

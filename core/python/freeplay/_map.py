@@ -94,9 +94,9 @@ def listed(points: Mapping[str, Any] | Iterable[Mapping[str, Quantity]]) -> tupl
 
 
 def done_of(answer: tuple[dict[str, Any], BaseException | None], shift: int = 0) -> Done:
-    told, raised = answer
-    rows = [Row(number + shift, cells, exit_code, error, message, values) for number, cells, exit_code, error, message, values in told["rows"]]
-    return Done(told["keys"], told["columns"], rows, raised)
+    report, raised = answer
+    rows = [Row(number + shift, cells, exit_code, error, message, values) for number, cells, exit_code, error, message, values in report["rows"]]
+    return Done(report["keys"], report["columns"], rows, raised)
 
 
 def part_done(model: Model, reducers: str, targets: list[str], values: list[list[str]], shift: int) -> Done:

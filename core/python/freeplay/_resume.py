@@ -25,8 +25,8 @@ def resume(path: str | os.PathLike[str], *, end: Quantity | None = None, checkpo
     given = {name: filled(name, quantity(name, value)) for name, value in (("end", end), ("checkpoint", checkpoint)) if value is not None}
     if "checkpoint" in given:
         words["checkpoint"] = given["checkpoint"]
-    told = progress_of(progress, ends)
-    kept, raised = _core.resume(os.fspath(path), given.get("end", ""), bool(allow_plugins), words, ends.append, told)
+    on_progress = progress_of(progress, ends)
+    kept, raised = _core.resume(os.fspath(path), given.get("end", ""), bool(allow_plugins), words, ends.append, on_progress)
     result = open(path)
     if kept is None:
         return result
