@@ -71,9 +71,10 @@ class PointOnCurve final : public Joint {
     const Row row = row_of(in);
     rows.phi[0] = row.phi;
     rows.gamma[0] = row.gamma;
-    for (int i = 0; i < 2; ++i) {
-      rows.jacobian[velocity_a + i] = -row.normal[i];
-      rows.jacobian[velocity_b + i] = row.normal[i];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double along = row.normal[static_cast<Eigen::Index>(i)];
+      rows.jacobian[velocity_a + i] = -along;
+      rows.jacobian[velocity_b + i] = along;
     }
     rows.jacobian[turn_a] = row.by_turn;
   }

@@ -334,8 +334,8 @@ class PinInSpace final : public Joint {
     Vec<T> operator()(std::size_t place, const T& normal, const EndGap<T>& gap) const {
       const Memory memory = joint.memory(in, place);
       const auto z = memory.numbers<T>();
-      return joint.play_.friction_force<T>(normal, gap.slip, gap.n, gap.n_rate(motion), {z.data(), memory.size},
-                                           joint.part_of(rates, place));
+      return joint.play_.template friction_force<T>(normal, gap.slip, gap.n, gap.n_rate(motion),
+                                                    {z.data(), memory.size}, joint.part_of(rates, place));
     }
   };
 
