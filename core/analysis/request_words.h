@@ -25,7 +25,7 @@ PlatformOverrides platform_overrides(Model& model, const AnalysisWords& words);
 /// Throws Error{usage} "bad-value", "unknown-name".
 AnalysisRequest request_of(const IdealMechanism& mechanism, const AnalysisWords& words, int threads);
 /// The options that ask for the same.
-std::vector<std::string> arguments_of(const AnalysisWords& words, bool coloured);
+std::vector<std::string> arguments_of(const AnalysisWords& asked, bool coloured);
 /// The seed of samples that the words ask for.
 long seed_of(const AnalysisWords& words);
 

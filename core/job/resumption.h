@@ -29,9 +29,10 @@ Resumption read_resumption(const std::filesystem::path& directory, const std::st
 
 /// Throws Error{input} "resume-mismatch" where another program made the checkpoint.
 void require_same_program(const Checkpoint& checkpoint);
-/// The same where the model, an input or a plugin of a run with this record is not the one of the run that goes on.
-void require_same_making(const Checkpoint& checkpoint, const Json& provenance);
+/// The same where the model, an input or a plugin of a run whose provenance is `now` is not the one of the run that
+/// goes on.
+void require_same_making(const Checkpoint& checkpoint, const Json& now);
 /// The same where the settings are others.
-void require_same_settings(const Checkpoint& checkpoint, const Json& settings);
+void require_same_settings(const Checkpoint& checkpoint, const Json& now);
 
 }  // namespace freeplay

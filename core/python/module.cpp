@@ -43,7 +43,7 @@ void raise(const Refusal& refusal) {
 
 void translate(std::exception_ptr pointer) {
   try {
-    std::rethrow_exception(pointer);
+    std::rethrow_exception(std::move(pointer));
   } catch (const Refusal& refusal) {
     raise(refusal);
   } catch (const Error& error) {

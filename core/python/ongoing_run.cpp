@@ -123,6 +123,7 @@ void OngoingRun::begin_recording(const Making& making) {
   if (from() == nullptr) {
     recording_ = std::make_unique<Recording>(*request_.out, request_.force, model_, channels_, making);
   } else {
+    // NOLINTNEXTLINE(modernize-make-unique): a recording cannot be moved, and go_on() makes it in its place
     recording_.reset(new Recording(Recording::go_on(*request_.out, model_, channels_, making, kept_part_of(*from()))));
   }
   files_.begin(recording_->sinks());

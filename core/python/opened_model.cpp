@@ -46,7 +46,7 @@ LoadOptions load_options(const OpenRequest& request) {
 OpenedModel::OpenedModel(OpenRequest request)
     : request_(std::move(request)), loaded_(read_whole(request_, remarks_)), channels_(*loaded_.model) {}
 
-Json OpenedModel::check(OpenRequest request) {
+Json OpenedModel::check(const OpenRequest& request) {
   std::vector<std::string> remarks;
   LoadedModel loaded = read(request, build_options(request.words), remarks);
   if (loaded.model) assemble_model(loaded);

@@ -34,7 +34,7 @@ class OpenedModel {
   /// Throws Refusal with the messages of the file, Error{usage} for what is asked for.
   explicit OpenedModel(OpenRequest request);
   /// All messages of a file, of its assembly too where there is a model.
-  static Json check(OpenRequest request);
+  static Json check(const OpenRequest& request);
 
   const OpenRequest& request() const { return request_; }
   const Model& model() const { return *loaded_.model; }

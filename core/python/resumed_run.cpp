@@ -7,7 +7,7 @@ namespace freeplay {
 std::shared_ptr<OpenedModel> model_of(const Resumption& resumption, bool allow_plugins) {
   OpenRequest request;
   request.file = resumption.model;
-  request.words = resumption.words;
+  request.words = static_cast<const RunWords&>(resumption.words);
   request.plugins = resumption.words.plugins;
   request.strict = resumption.words.strict;
   request.allow_plugins = allow_plugins;

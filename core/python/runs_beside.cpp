@@ -121,7 +121,7 @@ void RunsBeside::verify(const System& system, Outcome& outcome, const Statistics
   if (cut && outcome.exit_code == 0) interrupted_beside(outcome, "the second run of --verify");
 }
 
-void RunsBeside::repeat(Outcome& outcome, Json& json, const RunTick& tick) {
+void RunsBeside::repeat(Outcome& outcome, Json& summary, const RunTick& tick) {
   if (plan_.runs == 0) return;
   std::atomic<int> stop{outcome.status == RunStatus::interrupted ? 1 : 0};
   RepeatWork work(opened_.model(), plan_, &stop);
@@ -148,18 +148,18 @@ void RunsBeside::repeat(Outcome& outcome, Json& json, const RunTick& tick) {
     }
   }
   const bool came_to_its_end = outcome.status == RunStatus::completed || outcome.status == RunStatus::stopped;
-  if (came_to_its_end) found.add(0, RepeatSummary::values_of(json));
+  if (came_to_its_end) found.add(0, RepeatSummary::values_of(summary));
   if (outcome.status == RunStatus::failed) found.fail(0, outcome.exit_code, outcome.reason);
-  json["repeat"] = found.json(json);
+  summary["repeat"] = found.json(summary);
   if (outcome.exit_code != 0) return;
   if (stop != 0) {
     interrupted_beside(outcome, "the other runs of --repeat");
     outcome.reason = "interrupted during the other runs of --repeat: the first one had come to its end";
-    json["status"] = status_word(outcome.status);
-    json["exit_code"] = outcome.exit_code;
-    json["stop_reason"] = outcome.reason;
-  } else if (!json["repeat"]["failed"].empty()) {
-    outcome.exit_code = json["repeat"]["failed"][0]["exit_code"].get<int>();
+    summary["status"] = status_word(outcome.status);
+    summary["exit_code"] = outcome.exit_code;
+    summary["stop_reason"] = outcome.reason;
+  } else if (!summary["repeat"]["failed"].empty()) {
+    outcome.exit_code = summary["repeat"]["failed"][0]["exit_code"].get<int>();
   }
 }
 
