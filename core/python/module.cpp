@@ -64,11 +64,11 @@ Opened open_model(const py::dict& options) {
 }
 
 py::object check_model(const py::dict& options) {
-  OpenRequest request = request_of_dict(options);
+  const OpenRequest request = request_of_dict(options);
   Json messages;
   {
     const Away away;
-    messages = OpenedModel::check(std::move(request));
+    messages = OpenedModel::check(request);
   }
   return python_of(messages);
 }
