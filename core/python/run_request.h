@@ -18,7 +18,7 @@ struct RunRequest {
   std::string call{};                          ///< how the caller asked, for the record of its making
   std::string inputs{};                        ///< a table of them, for run_to_end(); empty: none
   std::string repeat{}, seed{}, checkpoint{};  ///< as on the command line
-  bool stepped = false;                        ///< the caller sets efforts and instants: nobody else can go on with it
+  bool stepped = false;                        ///< the caller sets efforts and instants; no other can continue it
   const Resumption* resumed = nullptr;         ///< what goes on
   std::optional<std::string> state{};          ///< checkpoint() of a simulation that goes on; none: from the start
   Sink* also = nullptr;                        ///< gets rows, too

@@ -28,7 +28,7 @@ class Recorder {
   bool observe_start();
   /// Makes the row of the accepted state, unless it is known.
   bool know_row();
-  /// The same of those columns alone that the run is judged by: in steps that nobody else asks for, the rest of a row
+  /// The same of those columns alone that the run is judged by: in steps that no output needs, the rest of a row
   /// would take longer than they do.
   bool know_loads();
   bool loads_are_known() const { return row_is_known_ || loads_are_known_; }

@@ -117,7 +117,7 @@ def axes_of(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def asked(model: Model, words: dict[str, Any]) -> dict[str, Any]:
-    """What the core tells of an analysis."""
+    """What the core returns of an analysis."""
     table, raised = _core.analyse(model._core, words)
     if raised is not None:
         if isinstance(raised, KeyboardInterrupt):
