@@ -42,8 +42,8 @@ std::int64_t size_of(int descriptor) {
 
 GrowingFile::GrowingFile(std::filesystem::path path, Begin begin)
     : path_(std::move(path)),
-      descriptor_(
-          ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (begin == Begin::empty ? O_TRUNC : O_APPEND), 0666)),
+      descriptor_(::open(path_.c_str(),
+                         O_WRONLY | O_CREAT | O_CLOEXEC | O_APPEND | (begin == Begin::empty ? O_TRUNC : 0), 0666)),
       last_flush_(std::chrono::steady_clock::now()) {
   if (descriptor_ < 0) throw Error(Error::Category::file, "cannot-write", words(path_, std::strerror(errno)));
   size_ = size_of(descriptor_);

@@ -58,6 +58,9 @@ struct Hdf5Writer::File {
   void finish(const BearingTables& tables, const std::string& summary);
   void sync() const;
   void put_in_place();
+  /// Throws Hdf5Failure where another program changed the file since the last call. Asked after every write, for the
+  /// next one may make a file that was cut as long as it had been.
+  void look();
 
   const fs::path path, part;
   const RecordLayout& layout;
@@ -65,6 +68,7 @@ struct Hdf5Writer::File {
   const hsize_t chunk;
   ino_t inode = 0;  // of a file that grows
   dev_t device = 0;
+  bool disturbed = false;  // by another program
   hid_t file = -1;
   std::vector<hid_t> columns, event_columns;
   hid_t event = -1;
@@ -90,6 +94,7 @@ struct Hdf5Writer::File {
   std::vector<double> times;  // not yet written: rows are complete as far as they are
   std::vector<double> events;
   hsize_t events_written = 0;
+  std::int64_t size = 0;  // bytes at the last look
 };
 
 Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& options)
@@ -113,6 +118,18 @@ Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& 
   if (grows && !options.named_later) put_in_place();
   open_datasets();
   waiting.resize(layout.columns.size() * chunk);
+}
+
+void Hdf5Writer::File::look() {
+  if (inode == 0) return;
+  struct stat there {};
+  const bool same = ::stat(path.c_str(), &there) == 0 && there.st_ino == inode && there.st_dev == device;
+  disturbed = !same || there.st_size < size;
+  if (disturbed) {
+    throw Hdf5Failure(same ? "another program cut it while it was written"
+                           : "it was removed or replaced while it was written");
+  }
+  size = there.st_size;
 }
 
 void Hdf5Writer::File::put_in_place() {
@@ -285,6 +302,7 @@ void Hdf5Writer::File::write_columns() {
   for (std::size_t c = 1; c < columns.size() && count > 0; ++c) {
     extend(columns[c], rows);
     put(columns[c], H5T_NATIVE_DOUBLE, first, count, waiting.data() + c * chunk + done_in_chunk);
+    look();
   }
   done_in_chunk = in_chunk;
   if (in_chunk == chunk) in_chunk = done_in_chunk = 0;
@@ -318,10 +336,12 @@ void Hdf5Writer::File::flush() {
   write_columns();
   write_events();
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  look();
   if (!times.empty()) {
     extend(columns.front(), rows);
     put(columns.front(), H5T_NATIVE_DOUBLE, rows - times.size(), times.size(), times.data());
     checked(H5Dflush(columns.front()));
+    look();
   }
   if (some_events) extend(event, events_written);
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
@@ -360,7 +380,9 @@ void Hdf5Writer::File::finish(const BearingTables& tables, const std::string& su
     extend(length, summary.size());
   }
   checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  look();
   checked(H5Fclose(std::exchange(file, -1)));
+  size = 0;  // the library may give space back
   sync();
 }
 
@@ -378,7 +400,7 @@ Hdf5Writer::~Hdf5Writer() {
 }
 
 void Hdf5Writer::fail(const char* reason) {
-  failure_ = fmt::format("cannot write '{}': {}", path_.string(), reason);
+  failure_ = words(reason);
   std::error_code ignored;
   fs::remove(part_of(path_), ignored);
   if (file_ == nullptr) return;
@@ -399,14 +421,14 @@ void Hdf5Writer::attempt(Act&& act) {
     require_memory_for_hdf5(2 * largest_chunk * sizeof(double) * layout_.columns.size());  // one chunk of each is kept
     if (file_ == nullptr) file_ = std::make_unique<File>(path_, layout_, options_);
     act(*file_);
+    file_->look();
   } catch (const Hdf5Failure& failure) {
-    fail(failure.what());
+    look_after();  // a file that was cut fails in the library, too
+    if (failure_.empty()) fail(failure.what());
   } catch (const std::bad_alloc&) {
     fail(std::strerror(ENOMEM));
   }
   if (file_ != nullptr) held_ = file_->held;
-  struct stat there {};
-  if (::stat(path_.c_str(), &there) == 0) size_ = there.st_size;
 }
 
 void Hdf5Writer::write(const RecordBlock& block) {
@@ -433,13 +455,18 @@ void Hdf5Writer::put_in_place() {
 }
 
 void Hdf5Writer::look_after() {
-  struct stat there {};
-  if (file_ == nullptr || file_->inode == 0 || !failure_.empty()) return;
-  const bool same = ::stat(path_.c_str(), &there) == 0 && there.st_ino == file_->inode && there.st_dev == file_->device;
-  disturbed_ = !same || there.st_size < size_;
-  if (!disturbed_) return;
-  failure_ = fmt::format("cannot write '{}': {} while it was written", path_.string(),
-                         same ? "another program cut it" : "it was removed or replaced");
+  if (file_ == nullptr || !failure_.empty()) return;
+  try {
+    file_->look();
+  } catch (const Hdf5Failure& failure) {
+    failure_ = words(failure.what());
+  }
+}
+
+bool Hdf5Writer::disturbed() const { return file_ != nullptr && file_->disturbed; }
+
+std::string Hdf5Writer::words(const char* reason) const {
+  return fmt::format("cannot write '{}': {}", path_.string(), reason);
 }
 
 void Hdf5Writer::finish(const BearingTables& tables, const std::string& summary) {

@@ -43,7 +43,7 @@ class Hdf5Writer : public RecordWriter {
   /// Hands over the rest; the file stays open for finish().
   void close() override { flush(); }
   void look_after() override;
-  bool disturbed() const override { return disturbed_; }
+  bool disturbed() const override;
   const HeldRows* held() const override { return &held_; }
   const std::string& failure() const override { return failure_; }
   /// Whether the file had its name once; another program took it away where it is not there then.
@@ -60,6 +60,7 @@ class Hdf5Writer : public RecordWriter {
   template <class Act>
   void attempt(Act&& act);
   void fail(const char* reason);
+  std::string words(const char* reason) const;
 
   std::filesystem::path path_;
   const RecordLayout& layout_;
@@ -67,8 +68,6 @@ class Hdf5Writer : public RecordWriter {
   std::unique_ptr<File> file_;
   HeldRows held_;
   std::string failure_;
-  bool disturbed_ = false;
-  std::int64_t size_ = 0;  // bytes after the last call that wrote
 };
 
 }  // namespace freeplay
