@@ -193,7 +193,7 @@ TEST(ComponentContract, FindsChannelsThatRepeatAColumn) {
   EXPECT_TRUE(judge("shows-position").held()) << broken_rules(judge("shows-position"));
 }
 
-TEST(SampleParameters, StayWithinBounds) {
+TEST(SampleParameters, StayWithinBoundsLong) {
   const Registry registry = Registry::with_builtins();
   for (const RegisteredComponent& entry : registry.components()) {
     const ParameterSamples found = sample_parameters(*entry.component, registry);

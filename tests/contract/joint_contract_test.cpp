@@ -91,7 +91,7 @@ TEST(JointContract, FindsWrongPlaces) {
                         {Flaw::place_stretches, "place"}});
 }
 
-TEST(JointContract, FindsFaultsFarFromTheOrdinary) {
+TEST(JointContract, FindsFaultsFarFromTheOrdinaryLong) {
   for (const Flaw flaw : {Flaw::wrong_when_turned, Flaw::wrong_when_turning, Flaw::wrong_when_fast,
                           Flaw::wrong_when_late, Flaw::wrong_when_far}) {
     const Swivel joint(flaw);

@@ -123,7 +123,7 @@ class ContactRows(ProgramTest):
         self.assertEqual(without["twin"], with_rows["twin"])
 
     def test_a_run_that_is_cut_goes_on_to_the_same_bytes(self):
-        for options in (("--end", "0.1 s"), ("--end", "0.3 s", "--accuracy", "1um")):
+        for options in (("--end", "0.06 s"), ("--end", "0.15 s", "--accuracy", "1um")):
             model = self.model("slider-crank", 5)
             options += ("--checkpoint", "20 ms", "--quiet")
             began = time.monotonic()

@@ -31,7 +31,7 @@ templates:
   pendulum:
     bodies: {rod: {mass: 1 kg, inertia: 0.02, com: [0.5, 0]}}
     joints: {pin: {type: revolute, between: [ground, rod]}}
-instances: {a: {template: pendulum, count: 1500}}
+instances: {a: {template: pendulum, count: 600}}
 simulation: {end: 2 ms, step: 1 ms, output: {interval: 1 ms}}
 """
 
@@ -125,9 +125,9 @@ class System(ProgramTest):
     def test_any_amount_of_memory_gives_a_result_or_a_message(self):
         crank = mechanism("slider-crank")
         commands = [("run", crank, "--end", "1 ms", "--quiet", "--out", "r"), ("validate", mechanism("4-rrr"), "--quiet"),
-                    ("analyze", "error", mechanism("3-rrr"), "--grid", "x=-0.1:0.1:20", "--grid", "y=-0.1:0.1:20"),
+                    ("analyze", "error", mechanism("3-rrr"), "--grid", "x=-0.1:0.1:8", "--grid", "y=-0.1:0.1:8"),
                     ("export", "done", "--to", "csv", "--table", "spectra", "--channels", "body.slider.x")]
-        self.freeplay("run", crank, "--quiet", "--out", "done")
+        self.freeplay("run", crank, "--quiet", "--end", "50 ms", "--out", "done")
         self.write("pendulums.yaml", PENDULUMS)
         commands.append(("run", "pendulums.yaml", "--format", "csv", "--quiet", "--out", "r"))
         enough = 400
@@ -136,7 +136,7 @@ class System(ProgramTest):
             seen = set()
             good = 0
             for mb in [least + k / 2 for k in range(40)] + [least + k for k in range(20, 120, 3)] + [enough]:
-                if good > 4:  # more is enough, too
+                if good > 2:  # more is enough, too
                     break
                 with self.subTest(words=words, mb=mb):
                     shutil.rmtree(self.path("r"), ignore_errors=True)

@@ -74,7 +74,7 @@ class Resume(ProgramTest):
 
     def test_a_killed_run_goes_on_to_the_same_bytes(self):
         draw = random.Random(1)
-        for options in (("--end", "0.1 s"), ("--end", "0.7 s", "--accuracy", "1um")):
+        for options in (("--end", "0.1 s"), ("--end", "0.3 s", "--accuracy", "1um")):
             options += ("--checkpoint", "25 ms")
             seconds = self.whole(*options)
             for again in range(3):

@@ -60,7 +60,7 @@ TEST(ClearanceError, SharesOfTheJointsAddUpToTheWorstError) {
   }
 }
 
-TEST(ClearanceError, SensitivityIsTheDerivativeByThePlay) {
+TEST(ClearanceError, SensitivityIsTheDerivativeByThePlayLong) {
   for (const char* name : {"3-rpr", "five-bar"}) {
     const auto at = [&](const std::string& joint, double change) {
       Bench bench(test::mechanism(name));
@@ -230,7 +230,7 @@ TEST(ClearanceError, AnotherLegNeverMakesItLarger) {
 
 // The same set told by rows that are turned into each other: no row has a generator of its own any more, and the dual
 // is minimised where vertices were tried.
-TEST(FeasibleSet, DualAgreesWithVertices) {
+TEST(FeasibleSet, DualAgreesWithVerticesLong) {
   std::mt19937_64 engine(5);
   const auto uniform = [&] { return 2.0 * static_cast<double>(engine() >> 11) * 0x1.0p-53 - 1.0; };
   for (const Eigen::Index rows : std::initializer_list<Eigen::Index>{4, 5, 6}) {

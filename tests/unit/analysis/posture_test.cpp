@@ -195,7 +195,7 @@ TEST(Posture, WaysEndOnAFoldAndNotBeyondIt) {
   }
 }
 
-TEST(Posture, AllAssembliesOfTheDirectProblem) {
+TEST(Posture, AllAssembliesOfTheDirectProblemLong) {
   for (const Json& entry : platforms::numbers()["direct_kinematics"]) {
     Bench bench(platforms::legs_text(platforms::sizes(entry["mechanism"])));
     Demand demand;

@@ -155,7 +155,7 @@ TEST(Hdf5Result, OfADamagedFileIsReadOrRefused) {
   int read = 0, refused = 0;
   for (const char* name : {"growing.h5", "whole.h5"}) {
     const std::string bytes = folder.read(name);
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 100; ++i) {
       std::string damaged = bytes;
       for (int left = i % 3 == 0 ? 1 : 30; left > 0; --left) {
         damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
@@ -174,8 +174,8 @@ TEST(Hdf5Result, OfADamagedFileIsReadOrRefused) {
       }
     }
   }
-  EXPECT_GT(read, 10);
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(read, 5);
+  EXPECT_GT(refused, 50);
 }
 
 TEST(Hdf5Result, KeepsBearingTables) {

@@ -90,7 +90,7 @@ TEST(FitClearance, HasTheMomentsOfItsZones) {
   }
 }
 
-TEST(FitClearance, CutHasTheMomentsOfTheCutDifference) {
+TEST(FitClearance, CutHasTheMomentsOfTheCutDifferenceLong) {
   for (const auto& [low, high] : std::vector<std::pair<double, double>>{
            {8e-6, 14.5e-6}, {2.5e-6, 6e-6}, {11e-6, 13e-6}, {4e-6, 9e-6}, {2.5e-6, 14e-6}}) {
     for (const bool normal : {true, false}) {
