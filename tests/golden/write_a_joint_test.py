@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 import unittest
 
 from program import BUILD, ROOT, ProgramTest
@@ -14,13 +15,21 @@ PAGE = os.path.join(ROOT, "docs", "write-a-joint.md")
 BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```", re.M | re.S)
 
 
+def setUpModule():
+    global PREFIX
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    PREFIX = folder.name
+    subprocess.run(["cmake", "--install", BUILD, "--prefix", PREFIX], check=True, capture_output=True)
+
+
 class InstalledTest(ProgramTest):
-    """With Freeplay installed in a folder of the test, found through PATH."""
+    """With Freeplay installed in a folder of all tests, found through PATH."""
 
     def setUp(self):
         super().setUp()
         prefix = self.path("install")
-        subprocess.run(["cmake", "--install", BUILD, "--prefix", prefix], check=True, capture_output=True)
+        os.symlink(PREFIX, prefix)
         self.environment = {**os.environ, "PATH": os.path.join(prefix, "bin") + ":" + os.environ["PATH"]}
         # A library built by one compiler runs in a program built by another, but not one without the sanitizers' run time.
         os.mkdir(self.path("work"))
@@ -108,6 +117,7 @@ class PackageTest(InstalledTest):
     def test_a_library_of_the_folder_of_plugins_is_found_by_name(self):
         folder = self.path("install", "lib", "freeplay")
         os.makedirs(folder, exist_ok=True)
+        self.addCleanup(os.remove, os.path.join(folder, "kuwabara_kono.so"))
         shutil.copy(os.path.join(BUILD, "plugins", "example", "kuwabara_kono.so"), folder)
         self.assertIn("kuwabara-kono", self.shell("freeplay list laws"))
 

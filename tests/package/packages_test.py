@@ -1,4 +1,5 @@
 """The Debian packages: what is in them, what they need, and that they run from wherever they are unpacked."""
+import functools
 import os
 import pathlib
 import re
@@ -34,8 +35,10 @@ class Packages(unittest.TestCase):
         for path in cls.files.values():
             output("dpkg-deb", "-x", path, cls.root)
 
-    def fields(self, name):
-        return {word: output("dpkg-deb", "-f", self.files[name], word).strip() for word in
+    @classmethod
+    @functools.cache
+    def fields(cls, name):
+        return {word: output("dpkg-deb", "-f", cls.files[name], word).strip() for word in
                 ("Package", "Version", "Architecture", "Maintainer", "Depends", "Suggests", "Description")}
 
     def run_program(self, *words, **options):
@@ -60,14 +63,16 @@ class Packages(unittest.TestCase):
                 self.assertIn(word, self.fields("python3-freeplay")["Suggests"])
 
     def test_every_library_that_is_loaded_is_of_a_package_that_it_depends_on(self):
-        for name, places in {"freeplay": "usr/bin/*", "python3-freeplay": "usr/lib/python3/dist-packages/freeplay/*.so"}.items():
-            if name not in self.files:
-                continue
-            depends = re.findall(r"[\w.+-]+(?= \(|,|$)", self.fields(name)["Depends"])
-            for file in self.root.glob(places):
-                for library in re.findall(r"NEEDED.*\[(.*)\]", output("readelf", "-d", file)):
-                    owners = re.findall(r"^[\w.+-]+", output("dpkg-query", "-S", "*/" + library), re.M)
-                    self.assertTrue(set(owners) & set(depends), "%s of %s" % (library, file))
+        needed = {(name, library) for name, places in {"freeplay": "usr/bin/*", "python3-freeplay": "usr/lib/python3/dist-packages/freeplay/*.so"}.items()
+                  if name in self.files for file in self.root.glob(places)
+                  for library in re.findall(r"NEEDED.*\[(.*)\]", output("readelf", "-d", file))}
+        self.assertTrue(needed)
+        owners = output("dpkg-query", "-S", *("*/" + library for library in {library for _, library in needed})).splitlines()
+        for name in self.files:
+            depends = set(re.findall(r"[\w.+-]+(?= \(|,|$)", self.fields(name)["Depends"]))
+            for library in (library for of, library in needed if of == name):
+                found = {re.match(r"[\w.+-]+", line)[0] for line in owners if line.endswith("/" + library)}
+                self.assertTrue(found & depends, "%s of %s" % (library, name))
 
     def test_files_lie_below_usr_and_belong_to_root(self):
         for name, path in self.files.items():
