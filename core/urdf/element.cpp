@@ -328,6 +328,14 @@ Eigen::Matrix3d rotation(const Eigen::Vector3d& rpy) {
   return r;
 }
 
+bool looks_like_degrees(double limit) {
+  constexpr double turn = 2.0 * std::numbers::pi, no_limit = 1000.0;
+  const double size = std::abs(limit);
+  if (size < 10.0 || size >= no_limit) return false;
+  if (std::remainder(size, 5.0) == 0.0) return true;
+  return size > 3.0 * turn && std::abs(std::remainder(size, turn / 36.0)) > 5e-3;
+}
+
 void Element::doubt_turns(const Eigen::Vector3d& rpy) {
   constexpr double pi = std::numbers::pi;
   for (const double angle : rpy) {

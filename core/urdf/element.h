@@ -60,6 +60,10 @@ std::string misspelt(const std::string& word, const std::vector<std::string>& wo
 /// A finite decimal number, whatever the locale. On failure says why: "'0,5' is not a number".
 std::optional<double> read_number(std::string_view text, std::string& why, std::string& hint);
 
+/// A limit in rad that is as large as the usual ones in degrees and written like them: a multiple of 5 from 10 on. More
+/// than three turns in radians are no such number where they are a multiple of ten degrees, nor is what means no limit.
+bool looks_like_degrees(double limit);
+
 class Element {
  public:
   /// With `exact`, an attribute that was not read is an error; without, one that looks like a misspelt one is.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -286,6 +288,18 @@ class RobotReader {
     joint.reach = std::max(std::abs(limits.lower), std::abs(limits.upper));
     if (read.type == ::urdf::Joint::CONTINUOUS || !joint.has_coordinate()) return;
     joint.limits = Limits{limits.lower, limits.upper, limits.effort, name_spot(xml)};
+    if (joint.turns()) doubt_degrees(limits, xml, owner);
+  }
+
+  void doubt_degrees(const ::urdf::JointLimits& limits, const XmlElement& xml, const std::string& owner) {
+    for (const auto& [key, angle] : {std::pair{"lower", limits.lower}, std::pair{"upper", limits.upper}}) {
+      if (!looks_like_degrees(angle)) continue;
+      messages_.warning(spot_of(xml, key), "doubtful-angle",
+                        fmt::format("'{}' of {} is {:.6g} rad, {:.3g} turns: robot files are in radians, not in "
+                                    "degrees",
+                                    key, owner, angle, std::abs(angle) / (2.0 * std::numbers::pi)));
+      return;
+    }
   }
 
   void take_dynamics(const ::urdf::JointDynamics& read, const XmlElement& xml, const std::string& owner, Joint& joint) {

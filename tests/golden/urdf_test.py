@@ -289,6 +289,16 @@ class Messages(UrdfTest):
         self.assertEqual({"urdf-ignored"}, {m["id"] for m in messages})
         self.assertEqual({"warning"}, {m["severity"] for m in messages})
 
+    def test_limits_of_a_turn_that_look_like_degrees_are_doubted(self):
+        for lower, upper, place in (("-90", "90", "lower"), ("0", "120", "upper"), ("-1", "87.5", "upper")):
+            text = ARM.replace('lower="-1" upper="1"', 'lower="%s" upper="%s"' % (lower, upper))
+            message = next(m for m in self.verdict(text, code=0) if m["id"] == "doubtful-angle")
+            self.assertIn("'%s' of the limit of joint 'shoulder'" % place, message["message"])
+            self.assertIn("not in degrees", message["message"])
+        for lower, upper in (("-6.981317", "6.981317"), ("-12.566371", "31.415927"), ("-1e16", "1e16")):
+            text = ARM.replace('lower="-1" upper="1"', 'lower="%s" upper="%s"' % (lower, upper))
+            self.assertNotIn("doubtful-angle", {m["id"] for m in self.verdict(text, code=0)})
+
     def test_out_of_plane_joints_are_named_with_their_residual(self):
         second = ARM.replace("</robot>", """<link name="fore"><inertial><mass value="1"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
