@@ -194,10 +194,11 @@ std::optional<std::string> closes_with(ClosedMechanism& mechanism, int joint, do
   }
   std::ranges::copy(q, mechanism.state.q().begin());
   if (!(least < infinite)) return std::nullopt;
+  const double unit = turns ? 1.0 : mechanism.system.size();
+  if (std::abs(closed) < closed_range * unit) closed = 0.0;
   const std::string at_value =
       fmt::format("it closes with joint '{}' at {}", model.joints[at(joint)].name, words(closed, coordinate));
   if (!range.limited()) return at_value;
-  const double unit = turns ? 1.0 : mechanism.system.size();
   if (range.to - range.from <= closed_range * unit) return at_value + ", where it is locked";
   return at_value + fmt::format(", which can {}", words(range, coordinate));
 }
