@@ -93,6 +93,16 @@ std::vector<double> sorted_reaches(const std::vector<Outline>& outlines, const D
   return reaches;
 }
 
+/// Does a place say a unit of length? That of an angle beside it says nothing of its own.
+bool place_says_unit(const CheckedValue& place) {
+  if (!place.node().is_map()) return says_unit(place);
+  return std::ranges::any_of(place.node().entries, [&](const Node::Entry& entry) {
+    const CheckedValue part(place.reading(), *entry.value, entry.key, place.path());
+    if (entry.key->text == "position") return says_unit(part);
+    return entry.key->text == "polar" && !entry.value->items.empty() && says_unit(part.item(0));
+  });
+}
+
 class BodyDoubts {
  public:
   explicit BodyDoubts(const Draft& draft)
@@ -198,7 +208,7 @@ class BodyDoubts {
     }
     const double own = distance(outline.farthest_place, {});
     if (i && (!value || distance(body(*i).com, {}) > own)) value = key_of(*i, "com");
-    if (!value || says_unit(*value)) return false;
+    if (!value || place_says_unit(*value)) return false;
     const bool foreign = i && is_foreign(*i);
     const double number = i && value->key() == "com" ? distance(body(*i).com, {}) : own;
     if (!doubted_.insert(&value->node()).second) return true;
@@ -254,11 +264,11 @@ class BodyDoubts {
   bool says_length_unit(std::size_t i) const {
     const auto frame = draft_.frames.find(outlines_[i].farthest);
     if (frame != draft_.frames.end() && frame->second.value != nullptr &&
-        says_unit(CheckedValue(*frame->second.reading, *frame->second.value, frame->second.key, frame->first))) {
+        place_says_unit(CheckedValue(*frame->second.reading, *frame->second.value, frame->second.key, frame->first))) {
       return true;
     }
     const auto com = key_of(i, "com");
-    return com && says_unit(*com);
+    return com && place_says_unit(*com);
   }
 
   /// Is it dense against the other bodies, and written without a unit?

@@ -25,6 +25,8 @@ MISTAKES = [
     (CRANK, "mass: 0.21", "mass: 210", MASS, "210", "density"),
     (CRANK, "mass: 0.21", "mass: 210 kg", MASS, "210", "density"),
     (CRANK, "[0.12, 0]", "[120, 0]", LENGTH, "[120", "120 mm"),
+    (CRANK, "[0.12, 0]", "{position: [120, 0], angle: 10 deg}", LENGTH, "{position", "120 mm"),
+    (CRANK, "[0.12, 0]", "{polar: [120, 10 deg]}", LENGTH, "{polar", "120 mm"),
     (CRANK, "[0.12, 0]", "[120 m, 0]", INERTIA, "2.5e-4", "its frame 'coupler/tip' is 119.9 m away"),
     (CRANK, "com: [0.06, 0], frames: {tip: [0.12, 0]}", "com: [60, 0], frames: {tip: [120, 0]}", LENGTH, "[60", "mm"),
     (CRANK, "com: [0.06, 0]", "com: [60, 0]", LENGTH, "[60", "mm"),
