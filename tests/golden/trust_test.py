@@ -375,14 +375,6 @@ simulation: {end: 1 s, accuracy: 1 um}
             self.run_model(ram % (moved % part))
             self.assertNotIn("load-size", self.ids(), self.trust)
 
-    def test_a_motor_that_nothing_brakes_is_doubtful_by_its_speed(self):
-        self.run_model("freeplay: 1\nbodies: {arm: {mass: 1, inertia: 0.01, com: [0.1, 0]}}\n"
-                       "joints: {axle: {type: revolute, between: [ground, arm]}}\n"
-                       "drivers: {motor: {joint: axle, kind: torque, value: 2000}}\nsimulation: {end: 0.2, accuracy: 1 um}\n")
-        reason = next(r for r in self.trust["reasons"] if r["id"] == "body-speed")
-        self.assertEqual(("body 'arm'", 1000), (reason["element"], reason["limit"]))
-        self.assertIn("driver 'motor' has put", reason["message"])
-
     def test_a_joint_driven_through_its_stop_is_doubtful(self):
         text = ("freeplay: 1\nbodies: {arm: {mass: 1, inertia: 0.01}}\njoints: {axle: {type: revolute, between: [ground, arm]}}\n"
                 "forces: {stop: {type: joint-stop, kind: rotational, between: [ground, arm], lower: -10 deg, upper: 90 deg, stiffness: 100}}\n"
