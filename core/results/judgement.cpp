@@ -39,6 +39,7 @@ constexpr double least_slew = M_PI / 18.0;  // a turn that is the whole of a mot
 constexpr double whole_period = 0.99;       // of a window
 constexpr double lasting = 0.5;             // part of the time in contact that is no series of impacts,
 constexpr double long_enough = 0.1;         // in a window of this part of the run
+constexpr double shortest_window = 0.01;    // of what is left out
 
 /// One reason, if `value` passes a limit.
 void judge(double value, const Limits& limits, TrustReason reason, Verdict& verdict) {
@@ -314,6 +315,16 @@ SlowestDriver slowest_driver(const Model& model, double from) {
   return slowest;
 }
 
+void judge_instant(const Settings& settings, double window, Verdict& verdict) {
+  verdict.add({.id = "statistics-window",
+               .level = Trust::doubtful,
+               .message = fmt::format("statistics cover {:.3g} s, less than a hundredth of the {:.3g} s that 'discard' "
+                                      "leaves out",
+                                      window, settings.discard),
+               .value = window,
+               .limit = shortest_window * settings.discard});
+}
+
 void judge_window(const RunRecord& record, Verdict& verdict) {
   const Settings& settings = record.model.settings;
   const double from = settings.start + settings.discard, window = record.outcome.time - from;
@@ -350,6 +361,8 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
                  .limit = longest});
     return;
   }
+  if (settings.discard > 0.0 && window < shortest_window * settings.discard)
+    return judge_instant(settings, window, verdict);
   // Without a period what was left out at the start says that a lasting state is looked for.
   const auto impacts = static_cast<double>(record.statistics.contacts());
   if (settings.discard == 0.0 || record.statistics.contacts_total() == 0 || impacts >= fewest_impacts) return;

@@ -26,6 +26,17 @@ simulation: {end: %s, step: 10 us%s}
             self.assertIn("statistics-window", self.ids(crank % case), case)
         self.assertEqual([], self.ids(crank % ("velocity", "1 rad/s", "1 s", "")))
 
+    def test_a_hundredth_of_what_is_left_out_is_no_window(self):
+        pendulum = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1, inertia: 0.1, com: [0.2, 0]}}
+joints: {pin: {type: revolute, between: [ground, rod]}}
+initial: {joints: {pin: 20 deg}}
+simulation: {end: 2, accuracy: 1 um, output: {discard: %s}}
+"""
+        self.assertEqual(["statistics-window"], self.ids(pendulum % "1.999"))
+        self.assertEqual([], self.ids(pendulum % "1.9"))
+
 
 if __name__ == "__main__":
     unittest.main()
