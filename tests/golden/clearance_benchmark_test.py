@@ -70,6 +70,20 @@ class Benchmark(ProgramTest):
             late.append(begins[1] - expected[1][0])
         self.assertAlmostEqual(0.4, math.log(late[0] / late[1]) / math.log(1e2), delta=0.02)
 
+    def test_a_block_nears_impacts_of_both_corners_without_duration(self):
+        """Newton's law at two corners at once; without friction as K^-0.4, with it the first contact alone is known."""
+        page = self.path("page.md")
+        self.benchmark(FOLDER, "6b", "--page", page)
+        with open(page, encoding="utf-8") as file:
+            cells = [line.split(" | ") for line in file if line.startswith("| 6b block-impacts") and " | 0.01 nm | " in line]
+        self.assertEqual(4, len(cells))
+        for row in cells:
+            self.assertLess(float(row[3]), 1e-9)
+        soft, firm, stiff, rubbed = (float(row[4]) for row in cells)
+        self.assertLess(rubbed, 1e-9)
+        for more, less in ((soft, firm), (firm, stiff)):
+            self.assertAlmostEqual(0.4, math.log(more / less) / math.log(1e2), delta=0.02)
+
 
 if __name__ == "__main__":
     unittest.main()
