@@ -5,6 +5,7 @@
 #include "freeplay/kit/planar_slide.h"
 #include "freeplay/kit/wall_play.h"
 #include "freeplay/plugin.h"
+#include "prismatic_clearance_in_space.h"
 
 namespace freeplay {
 namespace {
@@ -130,6 +131,9 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
       : PlanarContacts({0.5 * p.number("clearance.length"), widths.known() ? widths.journal : 0.0, widths.clearance},
                        wall_laws(p, widths.clearance)),
         start_(p) {
+    for (const char* height : {"clearance.guide_height", "clearance.height", "clearance.gap_height"})
+      if (p.given(height))
+        throw BadParameter(height, "type-space", "a slider has a height in spatial models only; its width is 'width'");
     const BlockInGuide& block = geometry();
     if (widths.known() && !(block.play < 2.0 * widths.journal))
       throw BadParameter("clearance.gap", "out-of-range",
@@ -182,6 +186,9 @@ constexpr Parameter width_rows[] = {
     length("clearance.guide_width", "Distance of the walls of the guide on the first body."),
     length("clearance.width", "Width of the slider across the guide."),
     length("clearance.gap", "Play to each side: half of the guide's width minus the slider's."),
+    length("clearance.guide_height", "Spatial models: distance of the walls across z of the first frame."),
+    length("clearance.height", "Spatial models, where it is needed: size of the slider along z of its frame."),
+    length("clearance.gap_height", "Spatial models: play to each side across z; `gap` unless given."),
     {.name = "clearance.length",
      .unit = "m",
      .default_value = required,
@@ -206,19 +213,23 @@ constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, wal
 Component prismatic_clearance() {
   return joint<PrismaticClearance>(
       {.name = "prismatic-clearance",
-       .space = Space::planar,
-       .summary = "Slider with play: a block between two walls, which its four corners touch by a contact law.",
+       .space = Space::both,
+       .summary = "Slider with play: a block between walls, which its corners touch by a contact law.",
        .formula =
            "corner i at (+-length/2, sigma width/2) of the slider, sigma = +1 above and -1 below: delta = sigma (n.d + "
            "s_x sin(Theta)) - width/2 (1 - cos(Theta)) - gap, d = P_b - P_a, n normal to the guide, Theta the angle "
-           "between both; force on the slider -sigma F_N n + F_T h at the corner for delta > 0, each corner by itself.",
+           "between both; force on the slider -sigma F_N n + F_T h at the corner for delta > 0, each corner by itself. "
+           "In "
+           "space eight corners at (+-length/2, +-width/2, +-height/2), each before a wall across y and one across z, "
+           "with half of the force at each.",
        .validity = "Gap small against the length; a guide without ends; rigid faces apart from the corners.",
        .references = "Flores, Ambrosio, Claro and Lankarani 2008, J Comput Nonlinear Dyn 3, 011007; Flores, Leine and "
                      "Glocker 2010, Multibody Syst Dyn 23, 165-190",
        .parameters = {prismatic_clearance_parameters.data(), prismatic_clearance_parameters.size()},
        .ideal = "prismatic",
        .block = "clearance",
-       .axis = MarkerAxis::x});
+       .axis = MarkerAxis::x,
+       .in_space = prismatic_clearance_in_space()});
 }
 
 }  // namespace freeplay

@@ -24,21 +24,17 @@ inline constexpr ChannelRole gap_roles[] = {
     ChannelRole::penetration,    ChannelRole::normal_force,   ChannelRole::friction_force,
     ChannelRole::none,           ChannelRole::in_contact,     ChannelRole::slip_speed};
 
-/// Radii, laws and start. Throws BadParameter.
-struct SpatialPlay {
-  /// `length`: of the bearing [m], NaN without one.
-  SpatialPlay(const Parameters& p, double length) : radii(read_radii(p)), start(p) {
-    ContactPair pair{radii.bearing, radii.journal, radii.clearance, length, {}, {}};
-    read_materials(p, pair);
-    surfaces = Surfaces(pair);
-    contact = p.contact_law("clearance.contact", pair);
-    friction = p.friction_law("clearance.friction");
-    law_variables = friction.internal_variables();
+/// The laws of all contacts of a joint, and how friction acts across their normals. Throws BadParameter.
+struct SpatialLaws {
+  /// Without the sizes of the surfaces, `sized`, there is no friction: its arms are not known.
+  SpatialLaws(const Parameters& p, const ContactPair& pair, bool sized)
+      : contact(p.contact_law("clearance.contact", pair)),
+        friction(p.friction_law("clearance.friction")),
+        law_variables(friction.internal_variables()) {
     if (law_variables > most_law_variables)
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
-    require_radii(radii, friction);
-    slides = radii.known() && !is_inert(friction);
+    slides = sized && !is_inert(friction);
   }
   /// Of one contact: where its laws have kinks. Without sliding the law of friction is not asked.
   std::int32_t count_kinks() const { return slides ? play::count_kinks(contact, friction) : contact.switches(); }
@@ -46,8 +42,6 @@ struct SpatialPlay {
     if (slides) return play::write_kinks(contact, friction, gap, slip, in, g);
     contact.decide({gap.penetration, gap.rate, in.history[approach_speed]}, g);
   }
-  double radius_a() const { return radii.known() ? radii.bearing : 0.0; }
-  double radius_b() const { return radii.known() ? radii.journal : 0.0; }
 
   /// Friction on b for the normal force and the slip velocity of b on a, both in the tangential plane:
   ///
@@ -80,13 +74,10 @@ struct SpatialPlay {
   Vec<T> friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate, Span<const T> z,
                         Span<T> z_rate) const;
 
-  Radii radii;
-  Surfaces surfaces;
-  Start start;
   ContactLawRef contact;
   FrictionLawRef friction;
-  bool slides = false;  ///< is there friction?
-  int law_variables = 0;
+  int law_variables;
+  bool slides;  ///< is there friction?
 
  private:
   /// The law's force and rates where its internal variables are `state`.
@@ -95,6 +86,30 @@ struct SpatialPlay {
     return friction.evaluate({normal, speed, {state, count}}, {rate, count}).tangential;
   }
   Dual evaluate(const Dual& normal, const Dual& speed, const Dual* state, Dual* rate) const;
+};
+
+/// A pin or a ball: its radii, too, and its start. Throws BadParameter.
+struct SpatialPlay : SpatialLaws {
+  /// `length`: of the bearing [m], NaN without one.
+  SpatialPlay(const Parameters& p, double length) : SpatialPlay(p, read_radii(p), length) {}
+  double radius_a() const { return radii.known() ? radii.bearing : 0.0; }
+  double radius_b() const { return radii.known() ? radii.journal : 0.0; }
+
+  Radii radii;
+  Surfaces surfaces;
+  Start start;
+
+ private:
+  SpatialPlay(const Parameters& p, const Radii& r, double length) : SpatialPlay(p, r, pair_of(p, r, length)) {}
+  SpatialPlay(const Parameters& p, const Radii& r, const ContactPair& pair)
+      : SpatialLaws(p, pair, r.known()), radii(r), surfaces(pair), start(p) {
+    require_radii(radii, friction);
+  }
+  static ContactPair pair_of(const Parameters& p, const Radii& r, double length) {
+    ContactPair pair{r.bearing, r.journal, r.clearance, length, {}, {}};
+    read_materials(p, pair);
+    return pair;
+  }
 };
 
 /// |e| - c without the loss of digits of a difference of nearly equal numbers.
@@ -109,7 +124,7 @@ Vec<T> across(const Vec<T>& v, const Vec<T>& n) {
   return v - dot(v, n) * n;
 }
 
-inline Dual SpatialPlay::evaluate(const Dual& normal, const Dual& speed, const Dual* state, Dual* rate) const {
+inline Dual SpatialLaws::evaluate(const Dual& normal, const Dual& speed, const Dual* state, Dual* rate) const {
   const auto count = static_cast<std::size_t>(law_variables);
   double z[most_law_variables], rates[most_law_variables];
   for (std::size_t i = 0; i < count; ++i) z[i] = state[i].value;
@@ -132,7 +147,7 @@ inline Dual SpatialPlay::evaluate(const Dual& normal, const Dual& speed, const D
 }
 
 template <class T>
-Vec<T> SpatialPlay::friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate,
+Vec<T> SpatialLaws::friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate,
                                    Span<const T> z, Span<T> z_rate) const {
   using std::sqrt;
   const auto count = static_cast<std::size_t>(law_variables);
@@ -190,7 +205,7 @@ struct Memory {
 
 /// Derivatives of friction with memory by the numbers of the memory: use(j, dF/dz_j, dz'/dz_j) for each.
 template <class Use>
-void differentiate_by_memory(const SpatialPlay& play, double normal, const Vec<double>& slip, const Vec<double>& n,
+void differentiate_by_memory(const SpatialLaws& laws, double normal, const Vec<double>& slip, const Vec<double>& n,
                              const Vec<double>& n_rate, const Memory& memory, const Use& use) {
   auto z = memory.numbers<double>();
   double high[3 * most_law_variables], low[3 * most_law_variables];
@@ -199,7 +214,7 @@ void differentiate_by_memory(const SpatialPlay& play, double normal, const Vec<d
     const double middle = z[j], step = 1e-5 * std::max(std::abs(middle), 1e-6);
     const auto at = [&](double value, double* rate) {
       z[j] = value;
-      return play.friction_force<double>(normal, slip, n, n_rate, {z.data(), size}, {rate, size});
+      return laws.friction_force<double>(normal, slip, n, n_rate, {z.data(), size}, {rate, size});
     };
     const Vec<double> above = at(middle + step, high), below = at(middle - step, low);
     z[j] = middle;

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "analysis/clearance_error.h"
 #include "analysis/rows.h"
 #include "analysis/workspace.h"
 #include "base/index.h"
+#include "component/joint_roles.h"
 
 namespace freeplay {
 namespace {
@@ -25,6 +28,16 @@ AnalysisTable workspace(IdealMechanism& mechanism, const AnalysisRequest& reques
   return table;
 }
 
+/// The walls of a slider in space bound its shifts and turns together, which no sum of independent plays does.
+void refuse_sliders_in_space(const Model& model) {
+  for (const JointElement& joint : model.joints) {
+    if (model.space == Space::planar || !joint.has_play || !plays_between_walls(joint.layout)) continue;
+    throw Error(Error::Category::input, "type-space",
+                fmt::format("joint '{}' is a slider with play in space, whose errors are not known", joint.name),
+                joint.location, "--ideal closes it");
+  }
+}
+
 AnalysisTable rows(IdealMechanism& mechanism, const AnalysisRequest& request, const RequestedStations& stations,
                    std::vector<std::string>& warnings, const TickOf& tick_of) {
   const std::vector<Station>& all = stations.all();
@@ -37,6 +50,7 @@ AnalysisTable rows(IdealMechanism& mechanism, const AnalysisRequest& request, co
     case AnalysisKind::singularity:
       return singularity_rows(mechanism, all, stations.given(), request.threads, tick);
     case AnalysisKind::error:
+      refuse_sliders_in_space(mechanism.model());
       if (mechanism.plays().empty() && mechanism.input_error() == 0.0) {
         warnings.push_back("no joint has clearance and no input errs: all errors are 0");
       }

@@ -284,7 +284,7 @@ class Block(ModelTest):
                 self.refusal(head + "clearance: {" + keys + tail, **expected)
 
     def test_a_block_is_refused_where_its_type_has_no_play(self):
-        text = block(gravity="0, 0, -9.81").replace("inertia: 0.01", "inertia: [0.01, 0.01, 0.01]")
+        text = block(gravity="0, 0, -9.81").replace("inertia: 0.01", "inertia: [0.01, 0.01, 0.01]").replace("prismatic", "point-on-line")
         self.refusal(text, head="freeplay: 1\nspace: spatial\n", id="type-space")
         self.refusal(block().replace("prismatic", "fixed"), id="unknown-key")
 

@@ -394,7 +394,7 @@ class Page(SpatialTest):
             "belt": ", first_radius: 1, second_radius: 1, stiffness: 1",
             "revolute-clearance": ", clearance: {radial_clearance: 1 mm, length: 1 cm, contact: {law: hertz, K: 1e8}}",
             "point-on-line-clearance": ", clearance: {gap: 1 mm, contact: {law: hertz, K: 1e8}}",
-            "prismatic-clearance": ", clearance: {gap: 1 mm, length: 20 mm, contact: {law: hertz, K: 1e8}}",
+            "prismatic-clearance": ", clearance: {gap: 1 mm, length: 20 mm, width: 1 cm, height: 1 cm, contact: {law: hertz, K: 1e8}}",
             "spherical-clearance": ", clearance: {radial_clearance: 1 mm, contact: {law: hertz, K: 1e8}}",
             "cylindrical-clearance": ", clearance: {radial_clearance: 1 mm, length: 2 cm, contact: {law: hertz, K: 1e8}}"}
     ROW = re.compile(r"^\| `([-a-z]+)` \| (\d|-)?(?:, (\d|-)|0 in space) \| (angle|position|none) \|", re.M)
@@ -410,7 +410,7 @@ class Page(SpatialTest):
             joint = "joints: {J: {type: %s, between: [ground, b]%s}}\n" % (name, self.MORE.get(name, ""))
             for space, count, body in (("planar", flat, "inertia: 1, pose: {position: [1, 0]}"),
                                        ("spatial", deep or "0", "inertia: [1, 1, 1], pose: {position: [1, 0, 0]}")):
-                flat_only = joint.replace(", length: 1 cm", "") if space == "planar" else joint
+                flat_only = joint.replace(", length: 1 cm", "").replace(", height: 1 cm", "") if space == "planar" else joint
                 text = "space: %s\nbodies: {b: {mass: 1, %s}}\n%s" % (space, body, flat_only)
                 if not count.isdigit():
                     self.refusal(text, id="type-space", line=4)
