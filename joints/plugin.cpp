@@ -25,6 +25,8 @@ Component point_on_plane();
 Component revolute_spherical();
 Component screw();
 Component belt();
+Component brake();
+Component one_way_clutch();
 Component point_on_curve();
 }  // namespace freeplay
 
@@ -53,6 +55,8 @@ FREEPLAY_PLUGIN(joints) {
                                          revolute_spherical(),
                                          screw(),
                                          belt(),
+                                         brake(),
+                                         one_way_clutch(),
                                          point_on_curve()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }
