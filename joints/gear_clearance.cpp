@@ -5,6 +5,7 @@
 
 #include "freeplay/kit/planar_contacts.h"
 #include "freeplay/plugin.h"
+#include "no_friction.h"
 
 namespace freeplay {
 namespace {
@@ -72,13 +73,6 @@ struct Flanks {
   double start;         ///< phi_0; NaN: where the wheels stand at the start [rad]
   double last_line = 0.0, last_turn = 0.0;
 };
-
-/// Teeth roll on each other at the pitch point; nothing slides there.
-class NoFriction final : public FrictionLaw {
- public:
-  FrictionForce evaluate(const FrictionState&, Span<double>) const override { return {}; }
-};
-const NoFriction no_friction;
 
 constexpr const char* flank_events[] = {"ahead_contact_begin", "ahead_contact_end", "behind_contact_begin",
                                         "behind_contact_end"};
@@ -165,7 +159,7 @@ class GearClearance final : public PlanarContacts<Flanks> {
   GearClearance(const Parameters& p, const Flanks& flanks)
       : PlanarContacts(flanks, {p.contact_law("clearance.contact", {not_a_number, not_a_number, flanks.play,
                                                                     not_a_number, unknown, unknown}),
-                                FrictionLawRef(abi::friction_law_table<NoFriction>, &no_friction)}) {}
+                                no_friction()}) {}
 
   static constexpr Material unknown{not_a_number, not_a_number};
 };

@@ -28,6 +28,7 @@ Component belt();
 Component brake();
 Component one_way_clutch();
 Component point_on_curve();
+Component point_on_curve_lift_off();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
@@ -57,6 +58,7 @@ FREEPLAY_PLUGIN(joints) {
                                          belt(),
                                          brake(),
                                          one_way_clutch(),
-                                         point_on_curve()};
+                                         point_on_curve(),
+                                         point_on_curve_lift_off()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "curve.h"
 #include "freeplay/kit/planar_marker.h"
 #include "freeplay/plugin.h"
 
@@ -9,43 +10,8 @@ namespace freeplay {
 namespace {
 
 using namespace planar;
-
-/// Value, slope and bend of a curve. The bend is the difference of exact slopes at three places on either side, to
-/// sixth order: exact for polynomials up to the seventh degree.
-class Curve {
- public:
-  Curve(const Formula& formula, double step) : formula_(formula), step_(step) {}
-
-  struct At {
-    double value, slope, bend;
-  };
-  At at(double x) const {
-    At out{};
-    out.value = value_at(x, out.slope);
-    constexpr double weights[] = {45.0, -9.0, 1.0};
-    for (int k = 1; k <= 3; ++k) {
-      double above = 0.0, below = 0.0;
-      value_at(x + k * step_, above);
-      value_at(x - k * step_, below);
-      out.bend += weights[k - 1] * (above - below) / (60.0 * step_);
-    }
-    return out;
-  }
-
- private:
-  double value_at(double x, double& slope) const {
-    const double variables[] = {x};
-    double slopes[1] = {};
-    const double value = formula_.at(variables, slopes);
-    slope = slopes[0];
-    return value;
-  }
-
-  Formula formula_;
-  double step_;
-};
-
-enum CurveForm { cartesian, polar };
+using curves::Curve;
+using curves::CurveForm;
 
 /// A pin in a curved groove, or the roller of a follower on a cam: the second origin stays on a curve of marker a, the
 /// turn is free. With d = P_b - P_a, V = d', w the angular speed of a, and
@@ -58,8 +24,7 @@ enum CurveForm { cartesian, polar };
 class PointOnCurve final : public Joint {
  public:
   explicit PointOnCurve(const Parameters& p)
-      : form_(static_cast<CurveForm>(p.word("form"))),
-        curve_(p.formula("curve"), form_ == polar ? polar_step : cartesian_step) {}
+      : form_(static_cast<CurveForm>(p.word("form"))), curve_(p.formula("curve"), form_) {}
 
   void declare(JointLayout& layout) const override {
     static constexpr Channel channels[] = {{"normal_force", "N"}};
@@ -84,8 +49,7 @@ class PointOnCurve final : public Joint {
   }
 
  private:
-  static constexpr double smallest_distance = 1e-12;                 // [m]
-  static constexpr double polar_step = 1e-3, cartesian_step = 1e-4;  // of differences of slopes [rad, m]
+  static constexpr double smallest_distance = 1e-12;  // [m]
 
   struct Row {
     double phi, gamma, by_turn;
@@ -93,7 +57,7 @@ class PointOnCurve final : public Joint {
   };
   Row row_of(const JointInput& in) const {
     const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
-    return form_ == polar ? around(in, d, rate) : along(in, d, rate);
+    return form_ == CurveForm::polar ? around(in, d, rate) : along(in, d, rate);
   }
   Row along(const JointInput& in, const Eigen::Vector2d& d, const Eigen::Vector2d& rate) const {
     const Eigen::Vector2d h = x_axis(*in.a), n = turned(h);
@@ -120,18 +84,6 @@ class PointOnCurve final : public Joint {
   Curve curve_;
 };
 
-constexpr Parameter point_on_curve_parameters[] = {
-    {.name = "form",
-     .kind = ParameterKind::choice,
-     .default_value = cartesian,
-     .choices = "cartesian|polar",
-     .summary = "The curve gives y over x of the first frame, or the distance from its origin over the angle."},
-    {.name = "curve",
-     .kind = ParameterKind::formula,
-     .unit = "m",
-     .summary = "Height at x, or distance at the angle x from 0 to one turn; points as well.",
-     .variables = "x: form: m | rad"}};
-
 }  // namespace
 
 Component point_on_curve() {
@@ -147,7 +99,7 @@ Component point_on_curve() {
        .validity = "The point does not lift off: a negative normal_force pulls. Where the curvature of a formula or of "
                    "points jumps, accelerations go over within 3e-4 m or 3e-3 rad.",
        .references = "Norton 2009, Cam Design and Manufacturing Handbook",
-       .parameters = point_on_curve_parameters});
+       .parameters = curves::curve_rows});
 }
 
 }  // namespace freeplay
