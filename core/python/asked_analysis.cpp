@@ -1,8 +1,13 @@
 #include "python/asked_analysis.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <thread>
+#include <utility>
+#include <variant>
 
 #include "analysis/analyse.h"
 #include "drawing/analysis_map.h"
@@ -34,6 +39,55 @@ class AnalysisPulse {
   std::atomic<bool> stopped_ = false;
 };
 
+AnalysedColumn column_of(const AnalysisTable& table, std::size_t place) {
+  AnalysedColumn column{.name = table.columns[place]};
+  const auto is_word = [&](const std::vector<AnalysisCell>& row) {
+    return std::holds_alternative<std::string>(row[place]);
+  };
+  const bool words = std::ranges::any_of(table.rows, is_word);
+  for (const std::vector<AnalysisCell>& row : table.rows) {
+    const double* const number = std::get_if<double>(&row[place]);
+    if (words) {
+      column.words.push_back(number != nullptr ? std::string() : std::get<std::string>(row[place]));
+    } else {
+      column.numbers.push_back(std::isfinite(*number) ? *number : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return column;
+}
+
+/// The text of the table, some rows at a time; these are taken out of it.
+std::string csv_of(AnalysisTable& table, AnalysisPulse& pulse) {
+  constexpr std::size_t rows_at_once = 1024;
+  AnalysisTable part;
+  part.columns = table.columns;
+  std::string text = part.csv();
+  const std::size_t head = text.size();
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    part.rows.push_back(std::move(table.rows[row]));
+    if (part.rows.size() < rows_at_once && row + 1 < table.rows.size()) continue;
+    text.append(part.csv(), head);
+    part.rows.clear();
+    pulse.beat();
+  }
+  return text;
+}
+
+AskedAnalysis asked_of(AnalysisResult result, std::string picture, AnalysisPulse& pulse) {
+  AskedAnalysis asked{.columns = {},
+                      .rows = result.table.rows.size(),
+                      .summary = std::move(result.table.summary),
+                      .csv = {},
+                      .map = std::move(picture),
+                      .warnings = std::move(result.warnings)};
+  for (std::size_t place = 0; place < result.table.columns.size(); ++place) {
+    asked.columns.push_back(column_of(result.table, place));
+    pulse.beat();
+  }
+  asked.csv = csv_of(result.table, pulse);
+  return asked;
+}
+
 }  // namespace
 
 AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& words, AskedMap map, int threads,
@@ -61,7 +115,7 @@ AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& word
       if (!words.samples.empty()) making.seed = seed_of(words);
       picture = opened.with_record(picture, model, std::move(making));
     }
-    return {std::move(result.table), std::move(picture), std::move(result.warnings)};
+    return asked_of(std::move(result), std::move(picture), pulse);
   } catch (const Error& error) {
     opened.refuse(error);
   }

@@ -1,13 +1,14 @@
 // AskedAnalysis: an analysis that a script asked for.
 #pragma once
 
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "analysis/request_words.h"
-#include "analysis/table.h"
+#include "base/json_text.h"
 #include "python/opened_model.h"
 
 namespace freeplay {
@@ -15,8 +16,18 @@ namespace freeplay {
 /// What to draw besides the table.
 enum class AskedMap { none, grey, coloured };
 
+/// A column of numbers, NaN where empty, or of words.
+struct AnalysedColumn {
+  std::string name;
+  std::vector<double> numbers{};
+  std::vector<std::string> words{};
+};
+
 struct AskedAnalysis {
-  AnalysisTable table;
+  std::vector<AnalysedColumn> columns;
+  std::size_t rows = 0;
+  Json summary;
+  std::string csv;  ///< as the command writes it
   std::string map;  ///< SVG with the record of its making; empty where none was asked for
   std::vector<std::string> warnings;
 };
@@ -26,8 +37,8 @@ struct AnalysisStopped : std::exception {
   const char* what() const noexcept override { return "stopped"; }
 };
 
-/// The table of `analyze`, and the picture of its --svg. `tick` is called now and then; where it returns false the
-/// analysis ends. Throws Refusal, Error{usage}, AnalysisStopped.
+/// The table of `analyze`, and the picture of its --svg. `tick` is called now and then in the thread of the caller;
+/// where it returns false the analysis ends. Throws Refusal, Error{usage}, AnalysisStopped.
 AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& words, AskedMap map, int threads,
                             const std::function<bool()>& tick);
 

@@ -137,9 +137,9 @@ py::dict read_stored(const std::string& path, const std::vector<std::string>& ch
     const Away away;
     *stored = read_result(path, channels);
   }
-  const py::capsule owner(new std::shared_ptr<StoredResult>(stored),
-                          [](void* held) { delete static_cast<std::shared_ptr<StoredResult>*>(held); });
+  const py::object owner = py::cast(stored);
   py::dict out = layout_of(stored->layout);
+  out["stored"] = owner;
   out["data"] = block_of(*stored->block, owner);
   out["event_numbers"] = events_of(stored->events, stored->layout, owner);
   out["summary"] = python_of(stored->summary);
@@ -196,27 +196,29 @@ py::tuple analyse_words(const Opened& model, const py::dict& options) {
   const AskedMap map = drawn.empty() ? AskedMap::none : drawn == "grey" ? AskedMap::grey : AskedMap::coloured;
   Pulse pulse{py::none()};
   std::optional<AskedAnalysis> result;
-  std::string csv;
   try {
     const Away away;
     result = analyse_model(*model, words, map, processor_count(), [&] { return pulse(0.0, 0); });
-    csv = result->table.csv();
   } catch (const AnalysisStopped&) {
     return py::make_tuple(py::none(), pulse.raised());
   }
-  py::list columns;
-  for (std::size_t i = 0; i < result->table.columns.size(); ++i) {
-    py::list cells;
-    for (const auto& row : result->table.rows) cells.append(py::cast(row[i]));
-    columns.append(cells);
+  auto* const held = new std::vector<AnalysedColumn>(std::move(result->columns));
+  const py::capsule owner(held, [](void* pointer) { delete static_cast<std::vector<AnalysedColumn>*>(pointer); });
+  py::dict columns;
+  for (const AnalysedColumn& column : *held) {
+    if (column.words.empty()) {
+      columns[py::str(column.name)] =
+          numbers(column.numbers.data(), {static_cast<py::ssize_t>(result->rows)}, {sizeof(double)}, owner);
+    } else {
+      columns[py::str(column.name)] = column.words;
+    }
   }
   py::dict out;
-  out["names"] = result->table.columns;
   out["columns"] = columns;
-  out["rows"] = result->table.rows.size();
-  out["summary"] = python_of(result->table.summary);
+  out["rows"] = result->rows;
+  out["summary"] = python_of(result->summary);
   out["warnings"] = result->warnings;
-  out["csv"] = csv;
+  out["csv"] = result->csv;
   out["map"] = result->map;
   return py::make_tuple(out, py::none());
 }
@@ -275,6 +277,7 @@ PYBIND11_MODULE(_core, module) {
       .def("start", answer(&OpenedModel::start))
       .def("tree", answer(&OpenedModel::tree))
       .def("svg", answer(&OpenedModel::svg));
+  py::class_<StoredResult, std::shared_ptr<StoredResult>>(module, "StoredResult");
   bind_runs(module);
   bind_maps(module);
   module.def("open_model", &open_model);

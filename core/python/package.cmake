@@ -22,7 +22,7 @@ set_target_properties(freeplay_python PROPERTIES PREFIX "" SUFFIX ${extension_su
                                                  LINK_DEPENDS ${PROJECT_SOURCE_DIR}/core/python/exported.map)
 target_include_directories(freeplay_python SYSTEM PRIVATE ${PYBIND11_INCLUDE} ${PYTHON_INCLUDE})
 target_compile_definitions(freeplay_python PRIVATE FREEPLAY_BUILD="${CMAKE_BUILD_TYPE}")
-target_compile_options(freeplay_python PRIVATE $<$<CONFIG:Release>:-O1>)
+target_compile_options(freeplay_python PRIVATE $<$<CONFIG:Release>:-Os>)
 # HDF5 is loaded when it is needed; expat is there with the interpreter.
 find_library(HDF5_SHARED NAMES hdf5_serial hdf5 REQUIRED)
 get_filename_component(hdf5_library ${HDF5_SHARED} REALPATH)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "python/binding.h"
 #include "python/resumed_run.h"
 #include "python/stepped_run.h"
+#include "python/stored_result.h"
 #include "report/report.h"
 
 namespace freeplay {
@@ -100,14 +102,26 @@ std::string report_on(const std::string& result, const std::string& file) {
   return write_page(result, file, {});
 }
 
-void save_kept(const KeptRun& run, const std::string& path, bool force, const std::string& format) {
-  const Away away;
-  const auto found = std::ranges::find(result_formats, format, [](const char* word) { return std::string(word); });
+/// None where no word says it.
+std::optional<ResultFormat> format_of(const std::optional<std::string>& word) {
+  if (!word) return std::nullopt;
+  const auto found = std::ranges::find(result_formats, *word, [](const char* known) { return std::string(known); });
   if (found == std::end(result_formats)) {
     throw Error(Error::Category::usage, "bad-value",
-                "bad value '" + format + "' of --format: it must be csv, hdf5 or both");
+                "bad value '" + *word + "' of --format: it must be csv, hdf5 or both");
   }
-  save_run(run, path, force, static_cast<ResultFormat>(found - std::begin(result_formats)));
+  return static_cast<ResultFormat>(found - std::begin(result_formats));
+}
+
+void save_kept(const KeptRun& run, const std::string& path, bool force, const std::optional<std::string>& format) {
+  const Away away;
+  save_run(run, path, force, format_of(format).value_or(run.model->model().settings.format));
+}
+
+void save_again(const StoredResult& result, const std::string& path, bool force,
+                const std::optional<std::string>& format) {
+  const Away away;
+  save_stored(result, path, force, format_of(format));
 }
 
 /// A run step by step with the caller's function. For one thread at a time.
@@ -262,6 +276,7 @@ void bind_runs(py::module_& module) {
     return std::make_unique<BoundRun>(model, request, progress);
   });
   module.def("save", &save_kept);
+  module.def("save", &save_again);
 }
 
 }  // namespace freeplay

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "python/result_copy.h"
 #include "results/channel_choice.h"
 #include "results/provenance.h"
 #include "results/reader.h"
@@ -38,19 +40,35 @@ StoredResult read_result(const std::filesystem::path& path, const std::vector<st
   for (std::size_t at = 0; at < rows.size(); at += width) {
     result.block->add(std::span<const double>(rows).subspan(at, width));
   }
-  reader->events([&](std::span<const double> numbers) { append_block(result.events, numbers); });
+  const std::filesystem::path whole = whole_result(path);
+  std::error_code ignored;
+  const bool in_directory = std::filesystem::is_directory(whole, ignored);
+  if (in_directory || !reader->layout().events.empty()) {  // a table of rows may stand alone
+    reader->events([&](std::span<const double> numbers) { append_block(result.events, numbers); });
+  }
+  result.file = reader->file();
+  result.whole = columns.size() == reader->layout().columns.size();
   result.layout = reader->layout();
   result.layout.columns.clear();
   for (const std::size_t column : columns) result.layout.columns.push_back(reader->layout().columns[column]);
-  const std::filesystem::path whole = whole_result(path);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(whole, ignored)) {
+  if (in_directory) {
     result.directory = whole.string();
     result.summary = read_summary(whole);
   } else if (const std::string text = reader->summary(); !text.empty()) {
     result.summary = Json::parse(text, nullptr, false);
   }
   return result;
+}
+
+void save_stored(const StoredResult& result, const std::filesystem::path& path, bool force,
+                 std::optional<ResultFormat> format) {
+  const auto refuse = [&](const char* why) {
+    throw Error(Error::Category::usage, "usage", fmt::format("save(): '{}' {}", result.file, why));
+  };
+  if (result.directory.empty()) refuse("stands alone: a result directory has the model and the summary, too");
+  if (!result.summary.is_object()) refuse("is of a run that has not ended: `freeplay seal` ends its files");
+  if (!result.whole) refuse("was opened with some of its channels: open it with all");
+  copy_result(result.directory, result.summary, path, force, format);
 }
 
 Comparison compare_results(const std::filesystem::path& a, const std::filesystem::path& b, const ComparisonRules& rules,

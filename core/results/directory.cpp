@@ -12,6 +12,7 @@
 #include "base/sha256.h"
 #include "base/whole_file.h"
 #include "results/reader.h"
+#include "results/result_names.h"
 
 namespace freeplay {
 namespace {
@@ -97,6 +98,8 @@ std::string result_name(std::string_view model_name, bool ideal) {
   }
   return ideal ? name + "-ideal" : name;
 }
+
+std::span<const char* const> result_names() { return own_files; }
 
 std::string model_copy_name(const Model& model) {
   return fs::path(model.file).extension() == ".urdf" ? "model.urdf" : "model.yaml";

@@ -107,10 +107,8 @@ def analysis_words(kind: str, options: Mapping[str, Any]) -> dict[str, Any]:
 def axes_of(table: Mapping[str, Any]) -> dict[str, Any]:
     """The axes of more than one value of a table whose rows stand on a grid; else none."""
     axes = {}
-    for name, cells in zip(table["names"], table["columns"]):
-        if name not in ("x", "y", "z", "angle", "roll", "pitch", "yaw"):
-            continue
-        values = list(dict.fromkeys(cells))
+    for name in ("x", "y", "z", "angle", "roll", "pitch", "yaw"):
+        values = list(dict.fromkeys(table["columns"][name].tolist())) if name in table["columns"] else []
         if len(values) > 1:
             axes[name] = np.array(values)
     return axes if axes and int(np.prod([len(axis) for axis in axes.values()])) == table["rows"] else {}
@@ -138,7 +136,7 @@ def analyse(model: Model, kind: str, options: Mapping[str, Any], force: bool, co
     words = analysis_words(kind, options)
     table = asked(model, words)
     channels = {channel.name: channel.unit for channel in model.channels}
-    columns = dict(zip(table["names"], table["columns"]))
+    columns = table["columns"]
     axes = axes_of(table) if options.get("pose") is None and options.get("time") is None and options.get("input") is None else {}
     return Table(kind, columns, {name: unit_of(name, channels) for name in columns}, table["summary"], table["warnings"], axes,
                  table["csv"], force, partial(drawn, model, {**words, "map": "colours" if colours else "grey"}))

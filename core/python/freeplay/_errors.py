@@ -1,7 +1,7 @@
 """What may go wrong, as exceptions: each has the exit code and the messages of the command line."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, NoReturn, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Sequence
 
 if TYPE_CHECKING:
     from ._result import Result
@@ -118,10 +118,6 @@ def refused(exit_code: int, messages: Sequence[Mapping[str, Any]], text: str) ->
 
 def usage(text: str, kind: type[UsageError] = UsageError, message_id: str = "usage", suggestion: str | None = None) -> UsageError:
     return kind(text, [Message(None, None, None, "error", message_id, text, suggestion)])
-
-
-def not_in_this_release(what: str) -> NoReturn:
-    raise usage(f"{what}: not in this release", message_id="not-in-this-release")
 
 
 def unknown_name(what: str, name: str, known: Sequence[str]) -> UnknownName:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Mapping
 import numpy as np
 
 from . import _core, _html
-from ._errors import Error, Interrupted, NumericalError, Message, PluginError, ResultError, not_in_this_release, unknown_name, usage
+from ._errors import Error, Interrupted, NumericalError, Message, PluginError, ResultError, unknown_name, usage
 from ._source import names as names_of
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class Result:
     """
 
     def __init__(self, layout: Mapping[str, Any], data: Array, numbers: Array, summary: dict[str, Any], model: Model | None,
-                 kept: _core.KeptRun | None = None, directory: str | None = None) -> None:
+                 kept: _core.KeptRun | _core.StoredResult | None = None, directory: str | None = None) -> None:
         self.names: tuple[str, ...] = tuple(layout["names"])
         self.units: Mapping[str, str] = MappingProxyType(dict(zip(self.names, layout["units"])))
         self.data: Array = data
@@ -160,14 +160,15 @@ class Result:
     def save(self, out: str | os.PathLike[str], *, force: bool = False, format: str | None = None) -> pathlib.Path:
         """Writes a result directory with the bytes that the command line writes, and returns its path.
 
-        out: the directory. force: write beside other files. format: csv, hdf5 or both (what the model says).
+        out: the directory. force: write beside other files. format: csv, hdf5 or both (what the model says). A result that was opened
+        is copied, every file as it stands; of its rows csv can be made where they are in hdf5.
         """
         if self.status == "unfinished" and self._directory is None:
             raise usage("save(): the simulation is not over: close() it before")
-        if self._kept is None or self.model is None:
-            not_in_this_release("save() of a result that was opened")
+        if self._kept is None:
+            raise usage("save(): a result that came from another process has its numbers alone: save it there")
         path = os.fspath(out)
-        _core.save(self._kept, path, force, self.model._known["format"] if format is None else format)
+        _core.save(self._kept, path, force, format)
         return pathlib.Path(path)
 
     def report(self, path: str | os.PathLike[str] | None = None) -> pathlib.Path:
@@ -224,4 +225,5 @@ def open(path: str | os.PathLike[str], *, channels: str | Iterable[str] = "*") -
     summary = stored["summary"] if isinstance(stored["summary"], dict) else {}
     directory = stored["directory"] or None
     model = model_of_result(directory, summary) if directory else None
-    return Result(stored, stored["data"], stored["event_numbers"], summary, model, directory=os.path.abspath(directory or os.fspath(path)))
+    return Result(stored, stored["data"], stored["event_numbers"], summary, model, stored["stored"],
+                  os.path.abspath(directory or os.fspath(path)))

@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import math
+import warnings
+import weakref
 from numbers import Real
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -29,6 +31,16 @@ def number(name: str, value: Quantity, unit: str) -> float:
     return found
 
 
+def seal(core: _core.SteppedRun, directory: str) -> None:
+    """What close() does to the files of a simulation that nothing refers to any more, also at the end of the program."""
+    try:
+        if core.ended() is None:
+            core.close()
+            warnings.warn(f"nobody closed the simulation in '{directory}': it ends where it was left", ResourceWarning, stacklevel=2)
+    except RuntimeError:
+        pass  # a thread that the program did not wait for is in a step
+
+
 class Simulation:
     """A run step by step, assembled at its start; `with` closes it. One thread at a time uses it, any may interrupt() it.
 
@@ -47,6 +59,8 @@ class Simulation:
         self._places = {name: place for place, name in enumerate(self.names)}
         self._units: dict[str, str] = dict(self.model._known["inputs"])
         self._inputs = {name: place for place, name in enumerate(self._units)}
+        if self._directory is not None:
+            weakref.finalize(self, seal, self._core, self._directory)
         if self._core.ended() is not None:
             self._over()
 

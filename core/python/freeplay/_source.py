@@ -33,6 +33,8 @@ def quantity(name: str, value: Any) -> str:
 
 def count_of(name: str, value: int, least: int = 1) -> int:
     """A whole number from `least` on."""
+    if type(value) is int and value >= least:
+        return value  # a loop over steps waits for it
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise TypeError(f"{name}: a whole number is needed, not {type(value).__name__}")
     if value < least:

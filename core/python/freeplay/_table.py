@@ -14,8 +14,10 @@ from ._errors import Message, ResultError, UsageError, unknown_name, usage
 Column = np.ndarray[Any, np.dtype[Any]]
 
 
-def column_of(cells: Sequence[float | str]) -> Column:
+def column_of(cells: Sequence[float | str] | Column) -> Column:
     """Words as texts where there is one; else numbers, NaN where empty."""
+    if isinstance(cells, np.ndarray):
+        return cells
     if any(isinstance(cell, str) for cell in cells):
         column: Column = np.array([cell if isinstance(cell, str) else "" for cell in cells], dtype=str)
     else:
@@ -41,7 +43,7 @@ class Table:
     warnings: sentences. axes: values of the grid by axis, where it is on a grid.
     """
 
-    def __init__(self, kind: str, columns: Mapping[str, Sequence[float | str]], units: Mapping[str, str], summary: dict[str, Any],
+    def __init__(self, kind: str, columns: Mapping[str, Sequence[float | str] | Column], units: Mapping[str, str], summary: dict[str, Any],
                  warnings: Sequence[str] = (), axes: Mapping[str, Column] | None = None, csv: str = "", force: bool = False,
                  draw: Callable[[], str] | None = None) -> None:
         self.kind = kind
