@@ -1,14 +1,17 @@
 #include "analysis/station.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <deque>
 #include <exception>
+#include <semaphore>
 #include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
 
+#include "analysis/pieces.h"
 #include "analysis/regular_start.h"
 #include "base/error.h"
 #include "base/index.h"
@@ -166,9 +169,11 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
                              int threads, const Tick& tick) {
   long points = 1;
   for (const GridValues& axis : axes) points *= axis.count;
-  std::vector<Station> stations(static_cast<std::size_t>(points));
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    Demand& demand = stations[i].demand;
+  std::vector<Station> stations;
+  stations.reserve(static_cast<std::size_t>(points));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points); ++i) {
+    if (tick && i % 1024 == 0) tick(0);
+    Demand& demand = stations.emplace_back().demand;
     demand.t = mechanism.model().settings.start;
     demand.given = given;
     long stride = points;
@@ -181,7 +186,7 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
     GridFlood(mechanism, given, axes, stations, tick).run();
     return stations;
   }
-  in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+  in_pieces(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
     PostureSolver solver(mechanism);
     for (std::size_t i = first; i < last; ++i) {
       stations[i].reachable = solver.reach(stations[i].demand, {}, stations[i].posture, stations[i].why);
@@ -192,6 +197,11 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
 }
 
 void in_parallel(std::size_t count, int threads, const std::function<void(int, std::size_t, std::size_t)>& work) {
+  in_pieces(count, threads, {}, work);
+}
+
+void in_pieces(std::size_t count, int threads, const Tick& tick,
+               const std::function<void(int, std::size_t, std::size_t)>& work) {
   const std::size_t pieces = std::clamp<std::size_t>(at(std::max(threads, 1)), 1, std::max<std::size_t>(count, 1));
   std::vector<std::exception_ptr> failures(pieces);
   const auto run = [&](std::size_t piece) {
@@ -203,13 +213,30 @@ void in_parallel(std::size_t count, int threads, const std::function<void(int, s
   };
   std::vector<std::thread> others;
   others.reserve(pieces);
+  std::counting_semaphore<> ended(0);
   std::size_t piece = 1;
   try {
-    for (; piece < pieces; ++piece) others.emplace_back(run, piece);
+    for (; piece < pieces; ++piece) {
+      others.emplace_back([&, piece] {
+        run(piece);
+        ended.release();
+      });
+    }
   } catch (const std::system_error&) {  // no more threads: the rest is done here
   }
   run(0);
   for (; piece < pieces; ++piece) run(piece);
+  try {
+    for (std::size_t left = others.size(); left > 0;) {
+      if (ended.try_acquire_for(std::chrono::milliseconds(50))) {
+        --left;
+      } else if (tick) {
+        tick(0);
+      }
+    }
+  } catch (...) {
+    if (!failures[0]) failures[0] = std::current_exception();
+  }
   for (std::thread& other : others) other.join();
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
