@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@ class LargestValues {
   void note_written();
   /// The same of any row that was seen.
   void note_written_later(std::span<const double> row);
+  /// Of a step before the window that no row is made of: one of its values.
+  void raise_before(std::size_t value, double to) { before_[value] = std::max(before_[value], to); }
   /// Any event of a joint, with its fields.
   void note_event(int joint, int event, std::span<const double> fields) { noise_.event(joint, event, fields); }
 

@@ -9,6 +9,7 @@
 #include "run/contact_rows.h"
 #include "run/event_storm.h"
 #include "run/impact_maxima.h"
+#include "run/left_out_loads.h"
 #include "run/observer.h"
 #include "run/peak_search.h"
 #include "run/sink.h"
@@ -32,7 +33,7 @@ class Recorder {
   /// would take longer than they do.
   bool know_loads();
   bool loads_are_known() const { return row_is_known_ || loads_are_known_; }
-  void forget_row() { row_is_known_ = loads_are_known_ = false; }
+  void forget_row() { row_is_known_ = loads_are_known_ = contacts_are_known_ = false; }
   /// The last that was made, every channel.
   std::span<const double> row() const { return row_; }
 
@@ -83,6 +84,8 @@ class Recorder {
     const State& end;
     const Evaluation& e_end;
   };
+  bool is_left_out() const;
+  bool know_contacts();
   bool write_row_at(double t);
   bool see_at(double t, std::span<double> row);
   void give_step();
@@ -103,6 +106,7 @@ class Recorder {
   StepInside& inside_;
   std::vector<Sink*> sinks_;
   Observer observer_;
+  LeftOutLoads left_out_;
   Statistics statistics_;
   ClearanceStatistics clearances_;
   ContactLedger ledger_;
@@ -113,9 +117,10 @@ class Recorder {
   EventStorm storm_;
   StepFeed feed_;
   std::vector<double> row_, row_between_, row_middle_, residual_;
-  bool row_is_known_ = false;     // row_ is that of the accepted state
-  bool loads_are_known_ = false;  // its columns that know_loads() makes are
-  std::vector<int> touching_;     // joints whose own channels say something of a contact
+  bool row_is_known_ = false;        // row_ is that of the accepted state
+  bool loads_are_known_ = false;     // its columns that know_loads() makes are
+  bool contacts_are_known_ = false;  // of those that joints make of contacts
+  std::vector<int> touching_;        // joints whose own channels say something of a contact
   long next_row_ = 1;
 };
 

@@ -74,6 +74,7 @@ class Statistics {
   StatisticsWindow window() const { return {discard_until_, any() ? last_time_ : discard_until_}; }
   bool any() const { return duration_ > 0.0; }
   long instants() const { return instants_; }  ///< that statistics are of
+  LargestValues& largest() { return largest_; }
   const LargestValues& largest() const { return largest_; }
   long contacts() const { return contacts_; }
   long contacts_total() const { return contacts_total_; }

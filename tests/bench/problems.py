@@ -93,7 +93,7 @@ PROBLEMS = {
     "3-rrr": Problem(
         "3-rrr", "3-rrr", 20e-3, PLATFORM, 1e-6, (1e-5, 5e-6, 4e-6, 2e-6, 1e-6),
         (5e-4, 2e-4, 1e-4, 1e-5, 1e-6, 1e-7),
-        between=(3e-4, 5e-5, 2e-5), timed_interval="1 ms", trajectory="p3_3rrr_c100_mu100.csv", columns=CONTACT, hand="p3",
+        between=(2e-3, 1e-3, 3e-4, 5e-5, 2e-5), timed_interval="1 ms", trajectory="p3_3rrr_c100_mu100.csv", columns=CONTACT, hand="p3",
         hand_options=("--window", "0.02", "--horizon", "0.02", "--sample", "1e-4")),
     "4-rrr": Problem(
         "4-rrr", "4-rrr", 20e-3, PLATFORM, 1e-6, (1e-5, 5e-6, 4e-6, 2e-6, 1e-6),
