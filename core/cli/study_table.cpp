@@ -26,21 +26,19 @@ StudyTable::StudyTable(OpenStudy& study, const StudyFolder& folder)
     : study_(study), folder_(folder), scan_(study.work(), study.layout()), rule_(study.stop_rule()) {}
 
 void StudyTable::look(const StudyMark& mark, const Shard& shard, const SegmentReader::Damage& damage) {
-  const StopWatch stop = watch();
-  std::function<void(const SegmentRow&)> each;
-  if (rule_) {
-    each = [&](const SegmentRow& row) {
-      if (row.good()) stop.note(row.index, value_at(row.values, stop.column));
-    };
-  }
   scan_.read(
       folder_.segments(),
       [&](const SegmentReader& reader) {
         require_same(*reader.header(), reader.path(), mark);
         return reader.header()->shard.meets(shard);
       },
-      damage, each);
-  if (!rule_ || scan_.failed().count() == 0) return;
+      damage);
+  if (!rule_) return;
+  const StopWatch stop = watch();
+  scan_.each_that_counts([&](const SegmentRow& row) {
+    if (row.good()) stop.note(row.index, value_at(row.values, stop.column));
+  });
+  if (scan_.failed().count() == 0) return;
   for (std::uint64_t point = 0; point < study_.plan().points(); ++point) {
     if (scan_.failed().has(point)) stop.note(point, std::numeric_limits<double>::quiet_NaN());
   }
@@ -77,8 +75,8 @@ std::vector<std::uint64_t> StudyTable::missing(std::size_t most) const {
 
 MergeCounts StudyTable::merge() {
   MergePlan plan = study_.merge_plan();
-  if (ended_early()) {
-    plan.wanted = [this](std::uint64_t point) { return is_wanted(point); };
+  if (ended_early() || study_.plan().chained()) {
+    plan.wanted = [this](const SegmentRow& row) { return is_wanted(row.index) && scan_.counts(row); };
   }
   return merge_rows(folder_.path(), folder_.segments(), plan, [](const std::filesystem::path&, std::size_t) {});
 }

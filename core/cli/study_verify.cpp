@@ -60,18 +60,14 @@ std::string difference(const StudyOutcome& row, const StudyOutcome& now, const R
 }
 
 /// Rows that count of some points.
-std::map<std::uint64_t, StudyOutcome> rows_of(const std::vector<std::uint64_t>& points, const StudyFolder& folder,
+std::map<std::uint64_t, StudyOutcome> rows_of(const std::vector<std::uint64_t>& points, const RowScan& scan,
                                               const RowLayout& layout) {
   std::map<std::uint64_t, StudyOutcome> rows;
-  for (const std::filesystem::path& segment : folder.segments()) {
-    SegmentReader reader(segment, [](const std::filesystem::path&, std::size_t) {});
-    if (!reader.header()) continue;
-    while (const SegmentRow* row = reader.next(layout)) {
-      if (!std::ranges::binary_search(points, row->index)) continue;
-      const auto [place, added] = rows.try_emplace(row->index);
-      if (added || place->second.exit_code != 0) place->second = outcome_of(*row, layout);
-    }
-  }
+  scan.each_that_counts([&](const SegmentRow& row) {
+    if (!std::ranges::binary_search(points, row.index)) return;
+    const auto [place, added] = rows.try_emplace(row.index);
+    if (added || place->second.exit_code != 0) place->second = outcome_of(row, layout);
+  });
   return rows;
 }
 
@@ -88,7 +84,7 @@ int study_verify(const StudyOptions& options, const CommonOptions& common) {
   table.look(study.mark(), {}, warn_of_damage(common));
   const std::vector<std::uint64_t> points =
       choose(table, study.plan().points(), static_cast<std::size_t>(count), static_cast<std::uint64_t>(seed));
-  const auto rows = rows_of(points, opened.folder, study.layout());
+  const auto rows = rows_of(points, table.scan(), study.layout());
   std::map<std::uint64_t, std::string> differing;
   std::size_t given = 0;
   WorkerPool pool(study.work(), {.jobs = processor_count(), .isolate = true});

@@ -98,7 +98,7 @@ MergeCounts merge_rows(const std::filesystem::path& folder, const std::vector<st
     if (!reader.header()) continue;
     hosts[i] = reader.header()->host;
     while (const SegmentRow* row = reader.next(plan.layout)) {
-      if (row->index < plan.points && (!plan.wanted || plan.wanted(row->index))) {
+      if (row->index < plan.points && (!plan.wanted || plan.wanted(*row))) {
         sorter.put(*row, static_cast<std::uint32_t>(i));
       }
     }

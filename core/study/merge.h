@@ -28,8 +28,8 @@ struct MergePlan {
   std::optional<std::size_t> start_cell{};
   /// Cells of the key columns of a point.
   std::function<void(std::uint64_t point, std::vector<std::string>& cells)> cells;
-  /// Whether a point belongs to the table; all where empty.
-  std::function<bool(std::uint64_t point)> wanted;
+  /// Whether a row belongs to the table; all where empty.
+  std::function<bool(const SegmentRow& row)> wanted;
   std::string title;  ///< of study.h5
 };
 

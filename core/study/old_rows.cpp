@@ -1,5 +1,7 @@
 #include "study/old_rows.h"
 
+#include <algorithm>
+
 #include "study/row_outcome.h"
 
 namespace freeplay {
@@ -10,8 +12,13 @@ OldRows::OldRows(const std::vector<std::filesystem::path>& segments, const RowLa
     SegmentReader reader(segment, damage);
     if (!reader.header()) continue;
     while (const SegmentRow* row = reader.next(layout_)) {
-      const auto [place, added] = rows_.try_emplace(std::string(row->hash));
-      if (added || place->second.exit_code != 0) place->second = outcome_of(*row, layout_);
+      std::vector<Row>& rows = rows_[std::string(row->hash)];
+      const auto known = std::ranges::find(rows, row->origin, &Row::origin);
+      if (known == rows.end()) {
+        rows.push_back({row->origin, outcome_of(*row, layout_)});
+      } else if (known->outcome.exit_code != 0) {
+        known->outcome = outcome_of(*row, layout_);
+      }
     }
   }
 }
@@ -31,15 +38,15 @@ void OldRows::each(const StudyPlan& plan, Take&& take) const {
 
 std::uint64_t OldRows::kept(const StudyPlan& plan) const {
   std::uint64_t count = 0;
-  each(plan, [&](std::uint64_t, const std::string&, const StudyOutcome&) { ++count; });
+  each(plan, [&](std::uint64_t, const std::string&, const std::vector<Row>&) { ++count; });
   return count;
 }
 
 void OldRows::write(const StudyPlan& plan, SegmentWriter& segment) const {
   std::string lines;
-  each(plan, [&](std::uint64_t point, const std::string& hash, const StudyOutcome& outcome) {
+  each(plan, [&](std::uint64_t point, const std::string& hash, const std::vector<Row>& rows) {
     lines.clear();
-    append_point(lines, point, hash, outcome, layout_);
+    for (const Row& row : rows) append_point(lines, point, hash, row.outcome, layout_, row.origin);
     segment.put(lines);
   });
   segment.close();

@@ -32,7 +32,11 @@ class OldRows {
   void each(const StudyPlan& plan, Take&& take) const;
 
   RowLayout layout_;
-  std::unordered_map<std::string, StudyOutcome> rows_;  // by hash
+  struct Row {
+    std::uint64_t origin;
+    StudyOutcome outcome;
+  };
+  std::unordered_map<std::string, std::vector<Row>> rows_;  // by hash; of a chain one for each origin
 };
 
 }  // namespace freeplay

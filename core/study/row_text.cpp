@@ -44,7 +44,7 @@ std::string_view unsealed(std::string_view line) {
 }
 
 void append_point(std::string& out, std::uint64_t index, const std::string& hash, const StudyOutcome& outcome,
-                  const RowLayout& layout) {
+                  const RowLayout& layout, std::uint64_t origin) {
   std::size_t from = out.size();
   const bool good = outcome.exit_code == 0;
   for (std::size_t i = 0; good && i < layout.samples.size(); ++i, from = out.size()) {
@@ -70,8 +70,9 @@ void append_point(std::string& out, std::uint64_t index, const std::string& hash
   if (layout.chained) {
     out += '@';
     append_index(out, index);
-    ((out += outcome.start) += '\t') += outcome.state;
-    out += '\t';
+    (out += outcome.start) += '\t';
+    append_index(out, origin);
+    (out += outcome.state) += '\t';
     seal_line(out, from);
     from = out.size();
   }

@@ -25,8 +25,9 @@ void seal_line(std::string& out, std::size_t from);
 /// The line without checksum and line feed, its last tab included; empty if the checksum is wrong.
 std::string_view unsealed(std::string_view line);
 
-/// Appends the lines of a point: samples, message and state, then the row that makes them count.
+/// Appends the lines of a point: samples, message and state, then the row that makes them count. `origin`: in a chain,
+/// the place of the cold start that it goes back to.
 void append_point(std::string& out, std::uint64_t index, const std::string& hash, const StudyOutcome& outcome,
-                  const RowLayout& layout);
+                  const RowLayout& layout, std::uint64_t origin = 0);
 
 }  // namespace freeplay

@@ -110,8 +110,8 @@ bool Schedule::next(StudyTask& task) {
     if (place_ < unit_end_) break;
     if (!begin_unit()) return false;
   }
-  task = {unit_, place_, place_ + 1, scan_.state_before(unit_, place_)};
-  while (task.end < unit_end_ && open(work_.unit_point(unit_, task.end))) ++task.end;
+  // Where one point of a chain ends otherwise than before, all that follow begin otherwise.
+  task = {unit_, place_, unit_end_, scan_.state_before(unit_, place_)};
   place_ = task.end;
   return true;
 }

@@ -134,6 +134,7 @@ const SegmentRow* SegmentReader::next(const RowLayout& layout) {
 bool SegmentReader::take(std::string_view row, const RowLayout& layout) {
   row_.samples.clear();
   row_.message = row_.start = row_.state = {};
+  row_.origin = 0;
   if (!take_number(row, row_.index)) return false;
   row_.hash = take_field(row);
   if (!take_number(row, row_.exit_code)) return false;
@@ -155,8 +156,8 @@ bool SegmentReader::take(std::string_view row, const RowLayout& layout) {
       message = true;
     } else if (kind == '@') {
       row_.start = take_field(line);
+      state = take_number(line, row_.origin);
       row_.state = take_field(line);
-      state = true;
     } else if (row_.samples.size() < layout.samples.size() && take_field(line) == layout.samples[row_.samples.size()]) {
       row_.samples.push_back(without_last_tab(line));
     }

@@ -24,6 +24,7 @@ struct SegmentRow {
   std::vector<std::string_view> samples;  ///< of each list the fields time:value, apart by tabs
   std::string_view message;               ///< of a failed point
   std::string_view start, state;          ///< in a chain
+  std::uint64_t origin = 0;               ///< in a chain: place of the cold start that it goes back to
 
   bool good() const { return exit_code == 0; }
   /// An administrator or a lack of memory ended its worker: no fact about the point.

@@ -21,6 +21,12 @@ STUDY = """study:
     mean: {channel: joint.wrist.delta, reduce: mean}
     section: {channel: joint.wrist.ex, reduce: poincare, every: 1 ms}
 """
+CHAIN = """study:
+  set: {simulation.end: 2*2*pi/$speed}
+  axes: {c: {linspace: [0.1 mm, 0.2 mm, 4]}}
+  warm_start: {along: c, direction: both}
+  reducers: {force: {channel: joint.wrist.fn, reduce: max}, section: {channel: joint.wrist.ex, reduce: poincare, every: 5 ms}}
+"""
 TABLES = ("study.csv", "samples.csv", "failures.jsonl", "study.h5")
 
 
@@ -160,15 +166,39 @@ class StudyOfTheCrank(ProgramTest):
         self.assert_same_tables("whole", "torn")
 
     def test_a_chain_that_was_cut_goes_on_from_where_it_ended(self):
-        self.crank("chain.yaml", "study:\n  set: {simulation.end: 2*2*pi/$speed}\n  axes: {c: {linspace: [0.1 mm, 0.2 mm, 4]}}\n"
-                                 "  warm_start: {along: c, direction: both}\n"
-                                 "  reducers: {force: {channel: joint.wrist.fn, reduce: max}}\n")
+        self.crank("chain.yaml", CHAIN)
         self.run_study("whole", file="chain.yaml", code=0)
         rows = list(csv.DictReader(self.read("whole", "study.csv").splitlines()))
         self.assertEqual(["cold"] + 7 * ["warm"], [row["start"] for row in rows])
         self.assertEqual(3, self.run_study("cut", "--only", "2", file="chain.yaml", code=0)["ran"])
         self.assertEqual(5, self.run_study("cut", file="chain.yaml", code=0)["ran"])
         self.assertEqual(self.read("whole", "study.csv"), self.read("cut", "study.csv"))
+
+    def test_a_chain_is_as_if_nothing_had_happened_once_its_failed_point_is_good(self):
+        self.crank("chain.yaml", CHAIN)
+        self.run_study("whole", "--jobs", "1", file="chain.yaml", code=0)
+        self.run_study("late", "--only", "2", "--jobs", "1", file="chain.yaml", code=0)
+        with open(self.segment("late"), "rb") as file:
+            lines = file.read().splitlines(keepends=True)
+        row = lines[-1].split(b"\t")
+        self.assertEqual(b"2", row[0])
+        kept = [line for line in lines if line.split(b"\t")[0] not in (b"+2", b"@2", b"2")]
+        failed = sealed([b"!2", b"it took long"]) + sealed([b"@2", b"", b"0", b""]) + sealed([b"2", row[1], b"4", b"timeout", b"0", b"0", b"0"])
+        with open(self.segment("late"), "wb") as file:
+            file.write(b"".join(kept) + failed)
+        self.assertEqual(5, self.run_study("late", file="chain.yaml")["ran"])
+        rows = list(csv.DictReader(self.read("late", "study.csv").splitlines()))
+        self.assertEqual(["cold", "warm", "", "cold"] + 4 * ["warm"], [row["start"] for row in rows])
+        self.assertEqual(0, self.run_study("late", file="chain.yaml")["ran"])
+        self.assertEqual(2, self.run_study("late", "--retry-failed", "--only", "3", file="chain.yaml", code=0)["ran"])
+        status = json.loads(self.study("status", "late", "--json")[0])
+        self.assertEqual([4, 4, 0], [status[key] for key in ("done", "left", "failed")])
+        self.assertIn("study-gaps", self.study("merge", "late", code=3)[1])
+        self.study("merge", "late", "whole", "--out", "both")
+        self.assert_same_tables("whole", "both")
+        self.assertEqual(4, self.run_study("late", file="chain.yaml", code=0)["ran"])
+        self.assert_same_tables("whole", "late")
+        self.assertEqual("8 points: same\n", self.study("verify", "late")[0])
 
     def test_shipped_studies_plan_without_a_message(self):
         for name, points in (("clearance-bifurcation", 800), ("speed-bifurcation", 800), ("tolerance-bound", 160000),
