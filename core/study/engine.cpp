@@ -19,7 +19,7 @@ EngineReport run_points(StudyWork& work, const RowLayout& layout, Schedule& sche
   const auto next = [&](StudyTask& task) { return !stopped() && schedule.next(task); };
   const auto take = [&](std::uint64_t point, const StudyOutcome& outcome) {
     lines.clear();
-    append_point(lines, point, work.hash(point), outcome, layout, scan.origin(point));
+    append_point(lines, point, work.hash(point), outcome, layout, scan.running_origin(point));
     segment.put(lines);
     scan.note(point, outcome);
     const bool good = outcome.exit_code == 0 && stop.column < outcome.values.size();

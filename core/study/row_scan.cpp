@@ -21,10 +21,24 @@ void RowScan::read(const std::vector<std::filesystem::path>& segments,
 }
 
 void RowScan::note(std::uint64_t point, const StudyOutcome& outcome) {
-  note(point, origin(point), {outcome.exit_code == 0, outcome.error == "killed", outcome.error}, outcome.state);
+  const std::uint64_t origin = running_origin(point);
+  const bool good = outcome.exit_code == 0;
+  if (work_.chained()) {
+    const UnitPlace at = work_.place_of(point);
+    running_[at.unit] = {at.place + 1, good ? origin : at.place + 1};
+  }
+  note(point, origin, {good, outcome.error == "killed", outcome.error}, outcome.state);
 }
 
-void RowScan::note(std::uint64_t point, std::uint64_t origin, Fact fact, std::string_view state) {
+std::uint64_t RowScan::running_origin(std::uint64_t point) const {
+  if (!work_.chained()) return 0;
+  const UnitPlace at = work_.place_of(point);
+  const auto running = running_.find(at.unit);
+  return running != running_.end() && running->second.place == at.place ? running->second.origin
+                                                                        : origin_at(at.unit, at.place);
+}
+
+void RowScan::note(std::uint64_t point, std::uint64_t origin, const Fact& fact, std::string_view state) {
   if (!work_.chained()) return count(point, fact);
   const UnitPlace at = work_.place_of(point);
   learn(point, origin, fact);

@@ -33,8 +33,11 @@ class RowScan {
   /// without rows of interest.
   void read(const std::vector<std::filesystem::path>& segments, const std::function<bool(const SegmentReader&)>& accept,
             const SegmentReader::Damage& damage);
-  /// A row that has just been written, with origin().
+  /// A row that has just been computed, with running_origin().
   void note(std::uint64_t point, const StudyOutcome& outcome);
+  /// Where a row that has just been computed goes back to. Of a point that has a good row already it need not count: if
+  /// the point before it has failed this time, it began cold.
+  std::uint64_t running_origin(std::uint64_t point) const;
 
   /// Points with a row that counts; those of them without a good one; those of these that were only killed.
   const PointSet& done() const { return done_; }
@@ -64,8 +67,11 @@ class RowScan {
     std::uint64_t place, next_origin;
     std::string state;
   };
+  struct Running {
+    std::uint64_t place, origin;
+  };
 
-  void note(std::uint64_t point, std::uint64_t origin, Fact fact, std::string_view state);
+  void note(std::uint64_t point, std::uint64_t origin, const Fact& fact, std::string_view state);
   void count(std::uint64_t point, const Fact& fact);
   void forget(std::uint64_t point);
   void learn(std::uint64_t point, std::uint64_t origin, const Fact& fact);
@@ -84,6 +90,7 @@ class RowScan {
   std::map<std::pair<std::uint64_t, std::uint64_t>, Fact> others_;  // all other rows, by point and origin
   std::set<std::pair<std::uint64_t, std::uint64_t>> cold_again_;    // unit and place after each failed row that counts
   std::unordered_map<std::uint64_t, Last> last_;                    // of those that are not at their ends
+  std::unordered_map<std::uint64_t, Running> running_;              // of those of which rows are noted: what comes next
 };
 
 }  // namespace freeplay

@@ -61,7 +61,7 @@ void go_on(StudyWork& work, const ScratchFolder& folder, int number, bool retry,
       const StudyOutcome outcome = late.contains(point)
                                        ? StudyOutcome{.exit_code = 4, .error = "timeout", .message = "it took long"}
                                        : work.run(point, task.state);
-      append_point(text, point, work.hash(point), outcome, fake_layout(work), scan.origin(point));
+      append_point(text, point, work.hash(point), outcome, fake_layout(work), scan.running_origin(point));
       scan.note(point, outcome);
       task.state = outcome.state;
     }
