@@ -9,7 +9,6 @@
 
 #include "analysis/clearance_error.h"
 #include "analysis/inverse_dynamics.h"
-#include "analysis/pieces.h"
 #include "analysis/play_samples.h"
 #include "analysis/regular_start.h"
 #include "analysis/singularity.h"
@@ -181,7 +180,7 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
   for (const char* name : {"reachable", "legs", "condition"}) table.add_column(name, "1");
   table.rows.resize(stations.size());
   const Posture start = mechanism.closed_form() ? Posture{} : regular_start(mechanism, given);
-  in_pieces(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
+  in_parallel(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {
       tick(1);
@@ -209,7 +208,7 @@ AnalysisTable singularity_rows(const IdealMechanism& mechanism, const std::vecto
     table.add_column(name, "1");
   }
   table.rows.resize(stations.size());
-  in_pieces(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
+  in_parallel(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {
       tick(1);
@@ -234,7 +233,7 @@ std::vector<double> determinants(const IdealMechanism& mechanism, const std::vec
                                  const Components& given, int threads, const Tick& tick) {
   if (static_cast<int>(mechanism.platform().inputs.size()) != count(given)) return {};
   std::vector<double> out(stations.size(), nan);
-  in_pieces(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
+  in_parallel(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, given);
     for (std::size_t i = first; i < last; ++i) {
       tick(1);
@@ -285,7 +284,7 @@ AnalysisTable error_rows(const IdealMechanism& mechanism, const std::vector<Stat
   add_error_columns(table, mechanism, columns);
   table.rows.resize(stations.size());
   std::vector<char> singular(stations.size(), 0), unclosed = singular;
-  in_pieces(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
+  in_parallel(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
     Looker looker(mechanism, form.all());
     for (std::size_t i = first; i < last; ++i) {
       tick(1);

@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/pieces.h"
 #include "analysis/regular_start.h"
 #include "base/error.h"
 #include "base/index.h"
@@ -186,7 +185,7 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
     GridFlood(mechanism, given, axes, stations, tick).run();
     return stations;
   }
-  in_pieces(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
+  in_parallel(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {
     PostureSolver solver(mechanism);
     for (std::size_t i = first; i < last; ++i) {
       stations[i].reachable = solver.reach(stations[i].demand, {}, stations[i].posture, stations[i].why);
@@ -196,12 +195,8 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
   return stations;
 }
 
-void in_parallel(std::size_t count, int threads, const std::function<void(int, std::size_t, std::size_t)>& work) {
-  in_pieces(count, threads, {}, work);
-}
-
-void in_pieces(std::size_t count, int threads, const Tick& tick,
-               const std::function<void(int, std::size_t, std::size_t)>& work) {
+void in_parallel(std::size_t count, int threads, const Tick& tick,
+                 const std::function<void(int, std::size_t, std::size_t)>& work) {
   const std::size_t pieces = std::clamp<std::size_t>(at(std::max(threads, 1)), 1, std::max<std::size_t>(count, 1));
   std::vector<std::exception_ptr> failures(pieces);
   const auto run = [&](std::size_t piece) {

@@ -43,7 +43,8 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
                              int threads, const Tick& tick = {});
 
 /// Calls work(worker, first, last) for pieces of 0 .. count, `threads` at a time, `worker` being the number of the
-/// piece. Rethrows the first exception by piece.
-void in_parallel(std::size_t count, int threads, const std::function<void(int, std::size_t, std::size_t)>& work);
+/// piece, and tick(0) now and then while the caller waits for others. Rethrows the first exception by piece.
+void in_parallel(std::size_t count, int threads, const Tick& tick,
+                 const std::function<void(int, std::size_t, std::size_t)>& work);
 
 }  // namespace freeplay

@@ -12,7 +12,7 @@ void AnalysisTable::add_column(std::string name, std::string unit) {
   units.push_back(std::move(unit));
 }
 
-std::string AnalysisTable::csv() const {
+std::string AnalysisTable::csv(const std::function<void()>& beat) const {
   std::string text;
   for (std::size_t c = 0; c < columns.size(); ++c) text += (c > 0 ? "," : "") + columns[c];
   text += '\n';
@@ -26,6 +26,7 @@ std::string AnalysisTable::csv() const {
       }
     }
     text += '\n';
+    if (beat) beat();
   }
   return text;
 }

@@ -1,6 +1,7 @@
 // AnalysisTable: the rows of an analysis, as CSV and JSON.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,7 +20,8 @@ struct AnalysisTable {
   Json summary = Json::object();
 
   void add_column(std::string name, std::string unit);
-  std::string csv() const;
+  /// `beat` is called now and then; what it throws comes through.
+  std::string csv(const std::function<void()>& beat = {}) const;
   /// {"kind", "columns", "rows", "summary"}; rows are lists in column order, null for empty.
   Json json(const std::string& kind) const;
 };

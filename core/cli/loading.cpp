@@ -5,11 +5,7 @@
 namespace freeplay {
 
 LoadOptions loading(const CommonOptions& common) {
-  LoadOptions options;
-  options.strict = common.strict;
-  options.plugins = common.plugins;
-  options.allow_plugins = common.allow_plugins;
-  options.recorded_plugins = common.recorded_plugins;
+  LoadOptions options{common};
   options.warn = [no_color = common.no_color](const std::string& text) {
     print_messages("freeplay: warning: " + text + "\n", no_color);
   };

@@ -10,6 +10,7 @@
 
 #include "base/option_value.h"
 #include "base/unit.h"
+#include "load/options.h"
 #include "load/run_words.h"
 
 // The library's header is of options.cpp and of those who parse: it takes longer to compile than a command.
@@ -20,12 +21,10 @@ class App;
 namespace freeplay {
 
 /// Options of every command.
-struct CommonOptions {
-  bool quiet = false, verbose = false, json = false, no_color = false, strict = false, allow_plugins = false;
+struct CommonOptions : LoadWords {
+  bool quiet = false, verbose = false, json = false, no_color = false;
   int max_errors = 20;  ///< 0: no limit
-  std::vector<std::string> plugins;
-  std::vector<std::string> recorded_plugins;  ///< files that a result which goes on was made with
-  std::string command;                        ///< the command line as typed
+  std::string command;  ///< the command line as typed
 };
 
 /// A command that was added to the program, and what to do when it was chosen. Returns the exit code.

@@ -56,35 +56,17 @@ AnalysedColumn column_of(const AnalysisTable& table, std::size_t place) {
   return column;
 }
 
-/// The text of the table, some rows at a time; these are taken out of it.
-std::string csv_of(AnalysisTable& table, AnalysisPulse& pulse) {
-  constexpr std::size_t rows_at_once = 1024;
-  AnalysisTable part;
-  part.columns = table.columns;
-  std::string text = part.csv();
-  const std::size_t head = text.size();
-  for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    part.rows.push_back(std::move(table.rows[row]));
-    if (part.rows.size() < rows_at_once && row + 1 < table.rows.size()) continue;
-    text.append(part.csv(), head);
-    part.rows.clear();
-    pulse.beat();
-  }
-  return text;
-}
-
 AskedAnalysis asked_of(AnalysisResult result, std::string picture, AnalysisPulse& pulse) {
   AskedAnalysis asked{.columns = {},
                       .rows = result.table.rows.size(),
                       .summary = std::move(result.table.summary),
-                      .csv = {},
+                      .csv = result.table.csv([&] { pulse.beat(); }),
                       .map = std::move(picture),
                       .warnings = std::move(result.warnings)};
   for (std::size_t place = 0; place < result.table.columns.size(); ++place) {
     asked.columns.push_back(column_of(result.table, place));
     pulse.beat();
   }
-  asked.csv = csv_of(result.table, pulse);
   return asked;
 }
 

@@ -89,9 +89,9 @@ OpenRequest request_of_dict(const py::dict& options) {
   list("channels", request.words.channels);
   list("set", request.words.model_options.set);
   list("ideal", request.words.model_options.ideal);
-  list("plugins", request.plugins);
-  if (options.contains("strict")) request.strict = options["strict"].cast<bool>();
-  if (options.contains("allow_plugins")) request.allow_plugins = options["allow_plugins"].cast<bool>();
+  list("plugins", request.load.plugins);
+  if (options.contains("strict")) request.load.strict = options["strict"].cast<bool>();
+  if (options.contains("allow_plugins")) request.load.allow_plugins = options["allow_plugins"].cast<bool>();
   return request;
 }
 

@@ -26,7 +26,7 @@ BuildOptions common_options(const OpenRequest& request) {
 
 MappedPoints::MappedPoints(std::shared_ptr<const OpenedModel> model, const std::string& reducers,
                            const std::vector<std::string>& targets, const std::vector<std::vector<std::string>>& points)
-    : model_(std::move(model)), options_(load_options(model_->request())) {
+    : model_(std::move(model)), options_{model_->request().load} {
   const BuildOptions build = build_options(model_->request().words);
   source_.models = {&model_->document()};
   source_.build = common_options(model_->request());
@@ -46,7 +46,7 @@ MappedPoints::MappedPoints(std::shared_ptr<const OpenedModel> model, const std::
   check();
 }
 
-MappedPoints::MappedPoints(const OpenRequest& request, const std::string& reducers) : options_(load_options(request)) {
+MappedPoints::MappedPoints(const OpenRequest& request, const std::string& reducers) : options_{request.load} {
   Diagnostics diagnostics;
   StudyPlanOptions options{.load = options_};
   for (const auto& [target, text] : build_options(request.words).set) options.set.emplace_back(target, text);

@@ -36,10 +36,10 @@ KeptWords kept_words(const OpenedModel& opened, const RunRequest& request) {
   words.inputs = request.inputs;
   words.repeat = request.repeat;
   words.seed = request.seed;
-  words.plugins = opened.request().plugins;
+  words.plugins = opened.request().load.plugins;
   words.verify = request.verify;
   words.twin = request.twin;
-  words.strict = opened.request().strict;
+  words.strict = opened.request().load.strict;
   return words;
 }
 

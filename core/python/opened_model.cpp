@@ -18,7 +18,7 @@ namespace {
 std::mutex reading;
 
 LoadedModel read(const OpenRequest& request, const BuildOptions& build, std::vector<std::string>& remarks) {
-  LoadOptions options = load_options(request);
+  LoadOptions options{request.load};
   options.warn = options.note = [&](const std::string& text) { remarks.push_back(text); };
   const std::lock_guard lock(reading);
   return request.text ? load_text(*request.text, request.file, build, options)
@@ -33,15 +33,6 @@ LoadedModel read_whole(const OpenRequest& request, std::vector<std::string>& rem
 }
 
 }  // namespace
-
-LoadOptions load_options(const OpenRequest& request) {
-  LoadOptions options;
-  options.strict = request.strict;
-  options.plugins = request.plugins;
-  options.allow_plugins = request.allow_plugins;
-  options.recorded_plugins = request.recorded_plugins;
-  return options;
-}
 
 OpenedModel::OpenedModel(OpenRequest request)
     : request_(std::move(request)), loaded_(read_whole(request_, remarks_)), channels_(*loaded_.model) {}
@@ -126,7 +117,7 @@ std::string OpenedModel::with_record(const std::string& picture, const Model& mo
   };
   add("--set", request_.words.model_options.set);
   add("--ideal", request_.words.model_options.ideal);
-  add("--plugin", request_.plugins);
+  add("--plugin", request_.load.plugins);
   making.build = FREEPLAY_BUILD;
   return picture_with_record(picture, provenance_with_texts(model, making));
 }

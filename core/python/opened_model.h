@@ -20,14 +20,9 @@ struct OpenRequest {
   std::optional<std::string> text;  ///< of a YAML model; without it `file` is read
   std::string file;
   RunWords words;
-  std::vector<std::string> plugins;
-  bool strict = false, allow_plugins = false;
-  // Of a run that goes on: the files of its plugins, and its name, which the copy of the model may not have.
-  std::vector<std::string> recorded_plugins;
-  std::string name;
+  LoadWords load;
+  std::string name;  ///< of a run that goes on, which the copy of the model may not have
 };
-
-LoadOptions load_options(const OpenRequest& request);
 
 class OpenedModel {
  public:

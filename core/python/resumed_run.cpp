@@ -8,10 +8,10 @@ std::shared_ptr<OpenedModel> model_of(const Resumption& resumption, bool allow_p
   OpenRequest request;
   request.file = resumption.model;
   request.words = static_cast<const RunWords&>(resumption.words);
-  request.plugins = resumption.words.plugins;
-  request.strict = resumption.words.strict;
-  request.allow_plugins = allow_plugins;
-  request.recorded_plugins = resumption.recorded_plugins;
+  request.load = {.strict = resumption.words.strict,
+                  .plugins = resumption.words.plugins,
+                  .allow_plugins = allow_plugins,
+                  .recorded_plugins = resumption.recorded_plugins};
   request.name = resumption.model_name;
   auto model = std::make_shared<OpenedModel>(request);
   if (request.words.interval.empty() && model->model().settings.interval != resumption.interval) {

@@ -59,7 +59,7 @@ Kept run_whole(const Opened& model, const RunRequest& request, const RunTick& ti
   run.run_to_end();
   Kept ended = run.finish();
   if (request.report && ended->exit_code != 6) {
-    write_page(request.out->string(), "", load_options(model->request()));
+    write_page(request.out->string(), "", {model->request().load});
   }
   return ended;
 }

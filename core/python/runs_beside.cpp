@@ -101,7 +101,7 @@ void RunsBeside::run_twin(Outcome& outcome, const RunTick& tick) {
 void RunsBeside::verify(const System& system, Outcome& outcome, const Statistics& statistics, const RunTick& tick) {
   if (!rows_ || outcome.exit_code != 0) return;
   const BuildOptions build = build_options(opened_.request().words);
-  const LoadOptions load = load_options(opened_.request());
+  const LoadOptions load{opened_.request().load};
   bool cut = false;
   const VerifiedRun run{[&](const BuildOptions& other) { return opened_.read_with(other); },
                         build,

@@ -28,7 +28,7 @@ struct StoredResult {
 /// Reads what is complete of any result, the columns that fit `patterns`. Throws Error.
 StoredResult read_result(const std::filesystem::path& path, const std::vector<std::string>& patterns);
 
-/// Writes it once more as a result directory (python/result_copy.h); without a `format` that it has. Throws
+/// Writes it once more as a result directory (results/result_copy.h); without a `format` that it has. Throws
 /// Error{usage} for a part of a result, and what copy_result() throws.
 void save_stored(const StoredResult& result, const std::filesystem::path& path, bool force,
                  std::optional<ResultFormat> format);

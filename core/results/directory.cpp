@@ -12,7 +12,6 @@
 #include "base/sha256.h"
 #include "base/whole_file.h"
 #include "results/reader.h"
-#include "results/result_names.h"
 
 namespace freeplay {
 namespace {

@@ -17,6 +17,9 @@ namespace freeplay {
 /// dots replaced by '_', and `-ideal` appended for an ideal run.
 std::string result_name(std::string_view model_name, bool ideal);
 
+/// Names of the files and folders that a result is made of, whatever its format.
+std::span<const char* const> result_names();
+
 /// Name of the copy of the model's file in a result: model.yaml or model.urdf.
 std::string model_copy_name(const Model& model);
 

@@ -85,7 +85,7 @@ void error_map(benchmark::State& state, const std::string& name) {
   Subject subject(name);
   for (auto _ : state) {
     const auto stations = on_grid(subject.mechanism, square(0.2), whole, threads);
-    in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    in_parallel(stations.size(), threads, {}, [&](int, std::size_t first, std::size_t last) {
       PostureSolver solver(subject.mechanism);
       VelocityMapper mapper(subject.mechanism, whole);
       VelocityMap map;
@@ -105,7 +105,7 @@ void singularity_map(benchmark::State& state, const std::string& name) {
   Subject subject(name);
   for (auto _ : state) {
     const auto stations = on_grid(subject.mechanism, square(0.2), whole, threads);
-    in_parallel(stations.size(), threads, [&](int, std::size_t first, std::size_t last) {
+    in_parallel(stations.size(), threads, {}, [&](int, std::size_t first, std::size_t last) {
       PostureSolver solver(subject.mechanism);
       VelocityMapper mapper(subject.mechanism, whole);
       VelocityMap map;
