@@ -1,4 +1,4 @@
-"""Results that were opened and are saved, simulations that nobody closes, analyses that are broken off."""
+"""Results that were opened and are saved, simulations that are not closed, analyses that are broken off."""
 import gc
 import json
 import os
@@ -60,16 +60,16 @@ class Saved(InFolder):
 
 
 class Left(InFolder):
-    def test_a_simulation_that_nobody_closes_seals_its_files(self):
+    def test_a_simulation_that_is_not_closed_seals_its_files(self):
         with freeplay.load(SLIDER, end="1 ms").simulation(out="b") as sim:
             sim.advance("0.5 ms")
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             sim = freeplay.load(SLIDER, end="1 ms").simulation(out="a")
             sim.advance("0.5 ms")
             del sim
             gc.collect()
-        self.assertIn(ResourceWarning, [one.category for one in told])
+        self.assertIn(ResourceWarning, [one.category for one in caught])
         self.assertEqual("stopped", freeplay.open("a").status)
         self.assertEqual(pathlib.Path("b/results.csv").read_bytes(), pathlib.Path("a/results.csv").read_bytes())
 

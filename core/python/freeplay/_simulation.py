@@ -36,7 +36,7 @@ def seal(core: _core.SteppedRun, directory: str) -> None:
     try:
         if core.ended() is None:
             core.close()
-            warnings.warn(f"nobody closed the simulation in '{directory}': it ends where it was left", ResourceWarning, stacklevel=2)
+            warnings.warn(f"the simulation in '{directory}' was not closed: it ends where it stopped", ResourceWarning, stacklevel=2)
     except RuntimeError:
         pass  # a thread that the program did not wait for is in a step
 
