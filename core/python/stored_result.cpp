@@ -40,15 +40,18 @@ StoredResult read_result(const std::filesystem::path& path, const std::vector<st
   for (std::size_t at = 0; at < rows.size(); at += width) {
     result.block->add(std::span<const double>(rows).subspan(at, width));
   }
-  reader->events([&](std::span<const double> numbers) { append_block(result.events, numbers); });
+  const std::filesystem::path whole = whole_result(path);
+  std::error_code ignored;
+  const bool in_directory = std::filesystem::is_directory(whole, ignored);
+  if (in_directory || !reader->layout().events.empty()) {  // a table of rows may stand alone
+    reader->events([&](std::span<const double> numbers) { append_block(result.events, numbers); });
+  }
   result.file = reader->file();
   result.whole = columns.size() == reader->layout().columns.size();
   result.layout = reader->layout();
   result.layout.columns.clear();
   for (const std::size_t column : columns) result.layout.columns.push_back(reader->layout().columns[column]);
-  const std::filesystem::path whole = whole_result(path);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(whole, ignored)) {
+  if (in_directory) {
     result.directory = whole.string();
     result.summary = read_summary(whole);
   } else if (const std::string text = reader->summary(); !text.empty()) {

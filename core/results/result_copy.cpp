@@ -27,9 +27,9 @@ void require_apart(const fs::path& from, const fs::path& to) {
   const fs::path source = fs::weakly_canonical(from, ignored), target = fs::weakly_canonical(to, ignored);
   for (fs::path folder = source;; folder = folder.parent_path()) {
     if (folder == target) {
-      throw Error(Error::Category::usage, "bad-value",
-                  fmt::format("'{}' is or holds the result '{}', of which it would be a copy", to.string(),
-                              from.string()));
+      throw Error(
+          Error::Category::usage, "bad-value",
+          fmt::format("'{}' is or holds the result '{}', of which it would be a copy", to.string(), from.string()));
     }
     if (folder == folder.parent_path()) return;
   }
@@ -88,10 +88,10 @@ void copy_result(const fs::path& from, const Json& summary, const fs::path& to, 
   require_apart(from, to);
   require_same(from, summary);
   if (format && format != ResultFormat::csv && !fs::exists(from / "results.h5", ignored)) {
-    throw Error(Error::Category::usage, "bad-value",
-                fmt::format("'{}' has no results.h5, whose tables by bearing sector cannot be made from rows",
-                            from.string()),
-                {}, "run its model again with that format");
+    throw Error(
+        Error::Category::usage, "bad-value",
+        fmt::format("'{}' has no results.h5, whose tables by bearing sector cannot be made from rows", from.string()),
+        {}, "run its model again with that format");
   }
   check_result_directory(to, force);
   const ResultDirectory directory(to, force);
@@ -102,12 +102,15 @@ void copy_result(const fs::path& from, const Json& summary, const fs::path& to, 
   if (format && format != ResultFormat::hdf5 && !fs::exists(from / "results.csv", ignored)) {
     write_text_rows(from / "results.h5", to / "results.csv");
   }
-  std::vector<std::string> files = directory.files();
-  files.insert(std::ranges::lower_bound(files, "summary.json"), "summary.json");
-  if (Json(files) == summary.value("files", Json())) {
+  const auto alike = [&](const char* name) {
+    return fs::exists(from / name, ignored) == fs::exists(to / name, ignored);
+  };
+  if (alike("results.csv") && alike("results.h5")) {
     copy_part(from / "summary.json", to / "summary.json");
     return;
   }
+  std::vector<std::string> files = directory.files();
+  files.insert(std::ranges::lower_bound(files, "summary.json"), "summary.json");
   Json own = summary;
   own["files"] = files;
   directory.write("summary.json", json_text(own));

@@ -50,8 +50,11 @@ class Saved(InFolder):
         with self.assertRaisesRegex(freeplay.UsageError, "some of its channels"):
             freeplay.open("over/a", channels="body.*").save("b")
         pathlib.Path("alone.csv").write_bytes(pathlib.Path("over/a/results.csv").read_bytes())
+        alone = freeplay.open("alone.csv")
+        self.assertTrue(same_bits(whole.data, alone.data))
+        self.assertEqual((0, None), (len(alone.events), alone.model))
         with self.assertRaisesRegex(freeplay.UsageError, "stands alone"):
-            freeplay.open("alone.csv").save("b")
+            alone.save("b")
         self.assertEqual(before, files_of("over"))
         freeplay.run(SLIDER, end="0.5 ms", out="over/a", force=True)
         with self.assertRaisesRegex(freeplay.ResultError, "another summary than when it was opened"):
