@@ -37,8 +37,8 @@ struct AnalysisStopped : std::exception {
   const char* what() const noexcept override { return "stopped"; }
 };
 
-/// The table of `analyze`, and the picture of its --svg. `tick` is called now and then in the thread of the caller; where
-/// it returns false the analysis ends. Throws Refusal, Error{usage}, AnalysisStopped.
+/// The table of `analyze`, and the picture of its --svg. `tick` is called now and then in the thread of the caller;
+/// where it returns false the analysis ends. Throws Refusal, Error{usage}, AnalysisStopped.
 AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& words, AskedMap map, int threads,
                             const std::function<bool()>& tick);
 
