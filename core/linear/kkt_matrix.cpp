@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numeric>
 
 #include <Eigen/Core>
@@ -213,7 +214,10 @@ double KktMatrix::factor() {
     return m.pivots;
   }
   if (!m.symbolic) m.symbolic = klu_analyze(m.size, m.starts.data(), m.rows.data(), &m.common);
-  if (!m.symbolic || !(m.reuse_pivots() || m.choose_pivots())) return 0.0;
+  if (!m.symbolic || !(m.reuse_pivots() || m.choose_pivots())) {
+    if (m.common.status == KLU_OUT_OF_MEMORY) throw std::bad_alloc();  // which is no singular matrix
+    return 0.0;
+  }
   m.pivots = klu_rcond(m.symbolic, m.numeric, &m.common) != 0 ? m.common.rcond : 0.0;
   return m.pivots;
 }

@@ -1,6 +1,7 @@
 #include "linear/sparse_rows.h"
 
 #include <algorithm>
+#include <new>
 
 // Before Eigen's wrapper, which needs it.
 #include <Eigen/SPQRSupport>
@@ -17,6 +18,14 @@ double largest_column(const SparseMatrix& matrix) {
   return largest;
 }
 
+/// Throws std::bad_alloc where SPQR has no memory, which leaves no factors and no word in what Eigen knows of it.
+void factor(Eigen::SPQR<SparseMatrix>& qr, const SparseMatrix& matrix, double threshold) {
+  qr.cholmodCommon()->print = 0;  // its messages would stand among the program's own
+  qr.setPivotThreshold(threshold);
+  qr.compute(matrix);
+  if (qr.cholmodCommon()->status < CHOLMOD_OK) throw std::bad_alloc();
+}
+
 }  // namespace
 
 struct SparseRows::Impl {
@@ -25,8 +34,7 @@ struct SparseRows::Impl {
 
 SparseRows::SparseRows(const SparseMatrix& j, double tolerance) : impl_(std::make_unique<Impl>()) {
   const SparseMatrix transposed = j.transpose();
-  impl_->qr.setPivotThreshold(tolerance * largest_column(transposed));
-  impl_->qr.compute(transposed);
+  factor(impl_->qr, transposed, tolerance * largest_column(transposed));
 }
 
 SparseRows::~SparseRows() = default;
@@ -59,8 +67,7 @@ void least_norm_multipliers(const SparseMatrix& j, int first_driver, double tole
   Eigen::Map<Eigen::VectorXd> all(lambda.data(), j.rows());
   const SparseMatrix weighted = weight.cwiseInverse().asDiagonal() * j;
   Eigen::SPQR<SparseMatrix> qr;
-  qr.setPivotThreshold(tolerance * largest_column(weighted));
-  qr.compute(weighted);
+  factor(qr, weighted, tolerance * largest_column(weighted));
   const Eigen::VectorXd right = weight.cwiseProduct(all), x = qr.solve(right);
   all = weight.cwiseInverse().cwiseProduct(weighted * x);
 }
