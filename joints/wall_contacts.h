@@ -132,10 +132,10 @@ class WallContacts : public Joint {
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
                   Span<double> history) const override {
     bool any = false;
-    std::array<bool, count> foresees{};
+    std::array<bool, count> begins{};
     for (std::size_t i = 0; i < count; ++i)
-      any = (foresees[i] = play::begin_step(contact_input(in, i), dt, history.part(i * slots, slots))) || any;
-    if (any) predict(in, acc, dt, foresees, history);
+      any = (begins[i] = play::begin_step(contact_input(in, i), dt, history.part(i * slots, slots))) || any;
+    if (any) predict(in, acc, dt, begins, history);
   }
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     const Points points(*this, in);
