@@ -260,15 +260,13 @@ class Reproduce(ProgramTest):
             self.assert_different("again.html", "the (model|input .*) was changed afterwards")
 
     def test_what_a_killed_run_left_is_compared_as_far_as_it_goes(self):
-        for attempt in range(5):
-            with subprocess.Popen([PROGRAM, "run", "crank.yaml", "--quiet", "--out", "k", "--force", "--end", "0.1 s"],
-                                  cwd=self.folder, stderr=subprocess.DEVNULL) as process:
-                while process.poll() is None and not os.path.exists(self.path("k", "results.h5")):
-                    time.sleep(0.005)
-                time.sleep(0.4 / 2 ** attempt)
-                process.send_signal(signal.SIGKILL)
-            if process.returncode == -signal.SIGKILL:
-                break
+        rows = self.path("k", "results.csv")
+        with subprocess.Popen([PROGRAM, "run", "crank.yaml", "--quiet", "--out", "k", "--end", "0.6 s"], cwd=self.folder,
+                              stderr=subprocess.DEVNULL) as process:
+            while process.poll() is None and not (os.path.exists(rows) and os.path.getsize(rows) > 500_000):
+                time.sleep(0.001)
+            process.send_signal(signal.SIGKILL)
+        self.assertEqual(-signal.SIGKILL, process.returncode)
         self.assertFalse(os.path.exists(self.path("k", "summary.json")))
         out = self.assert_same("k")
         self.assertIn("its run had not ended: compared as far as it goes", out)
