@@ -6,12 +6,11 @@ import pty
 import re
 import signal
 import subprocess
-import time
 import unittest
 import xml.etree.ElementTree as xml
 
 from analyze_cases import FOUR_BAR, KINDS, AnalyzeTest
-from program import PROGRAM, mechanism
+from program import PROGRAM, let_work, mechanism
 
 ERROR = "x,y,angle,reachable,dx,dy,dangle,position,ls_dx,ls_dy,ls_dangle,ls_position"
 
@@ -304,7 +303,7 @@ class Analyze(AnalyzeTest):
                  "--out", "e.csv"]
         for sign in (signal.SIGINT, signal.SIGTERM):
             with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-                time.sleep(1.0)
+                let_work(process, 0.5)
                 process.send_signal(sign)
                 out, err = process.communicate(timeout=60)
             self.assertEqual(130, process.returncode)
@@ -316,7 +315,7 @@ class Analyze(AnalyzeTest):
             ours, theirs = pty.openpty()
             words = [PROGRAM, "analyze", "error", mechanism("4-rrr"), "--pose", "0,0", "--samples", "1000000000", *options]
             with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=theirs) as process:
-                time.sleep(1.5)
+                let_work(process, 3.0)
                 process.terminate()
                 process.wait(timeout=60)
             os.close(theirs)

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -131,6 +132,7 @@ class ContactRows(ProgramTest):
             seconds = time.monotonic() - began
             for number, part in ((signal.SIGKILL, 0.3), (signal.SIGKILL, 0.7), (signal.SIGTERM, 0.5)):
                 with self.subTest(options, number=number, part=part):
+                    shutil.rmtree(self.path("cut"), ignore_errors=True)
                     with subprocess.Popen([PROGRAM, "run", model, "--out", "cut", "--force", *options], cwd=self.folder,
                                           stderr=subprocess.DEVNULL) as process:
                         while process.poll() is None and not os.path.exists(self.path("cut", "checkpoint.bin")):

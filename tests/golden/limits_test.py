@@ -65,11 +65,11 @@ class Room(ProgramTest):
 
     def started(self, *words):
         """Messages of a run until its first row is there; then it is interrupted."""
+        shutil.rmtree(self.path("r"), ignore_errors=True)
         with subprocess.Popen([PROGRAM, "run", *words], cwd=self.folder, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL,
                               text=True) as process:
             while process.poll() is None and not os.path.exists(self.path("r", "checkpoint.bin")):
                 time.sleep(0.01)
-            time.sleep(0.3)
             process.send_signal(signal.SIGINT)
             _, err = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, err)

@@ -11,7 +11,7 @@ import subprocess
 import time
 import unittest
 
-from program import BUILD, PROGRAM, ProgramTest, mechanism
+from program import BUILD, PROGRAM, ProgramTest, let_work, mechanism
 
 PLUGINS = os.path.join(BUILD, "plugins")
 EXAMPLE = os.path.join(PLUGINS, "example", "torsional_spring_damper.so")
@@ -309,7 +309,7 @@ class ProbesTest(ProgramTest):
         while not os.path.exists(self.path("r", "results.csv")):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)
-        time.sleep(0.3)
+        let_work(running, 0.5)  # of which the way to the function takes a hundredth
         running.send_signal(signal.SIGINT)
         time.sleep(0.3)
         self.assertIsNone(running.poll())

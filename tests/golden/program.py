@@ -3,6 +3,7 @@ import os
 import re
 import subprocess
 import tempfile
+import time
 import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -18,6 +19,22 @@ def mechanism(name):
 def drawing(text):
     """A picture without the record of how it was made, which has words of the compiler."""
     return re.sub(r"\n<metadata>.*</metadata>", "", text, flags=re.S)
+
+
+def processor_seconds(process):
+    """What the process of that number has used so far; None if there is none."""
+    try:
+        with open("/proc/%d/stat" % process, encoding="ascii") as file:
+            state, *fields = file.read().rsplit(")", 1)[1].split()
+    except FileNotFoundError:
+        return None
+    return None if state == "Z" else (int(fields[10]) + int(fields[11])) / os.sysconf("SC_CLK_TCK")
+
+
+def let_work(process, seconds):
+    """Waits until a child has used so much of the processor, however busy the machine is, or has ended."""
+    while process.poll() is None and processor_seconds(process.pid) < seconds:
+        time.sleep(0.005)
 
 
 class ProgramTest(unittest.TestCase):

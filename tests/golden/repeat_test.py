@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, mechanism, processor_seconds
 
 # A crank-rocker that drives a slider, loose in two pins: its peaks hang on chance.
 SIX_BAR = """freeplay: 1
@@ -173,13 +173,6 @@ class Repeat(ProgramTest):
         with open("/proc/%d/task/%d/children" % (process.pid, process.pid), encoding="ascii") as file:
             return [int(word) for word in file.read().split()]
 
-    @staticmethod
-    def ticks(process):
-        """Processor time, in hundredths of a second."""
-        with open("/proc/%d/stat" % process, encoding="ascii") as file:
-            fields = file.read().rsplit(")", 1)[1].split()
-        return int(fields[11]) + int(fields[12])
-
     def wait_for_children(self, process):
         deadline = time.monotonic() + 60
         while len(self.children(process)) < 2 and time.monotonic() < deadline:
@@ -190,7 +183,7 @@ class Repeat(ProgramTest):
         self.write("m.yaml", SIX_BAR)
         process = self.start("m.yaml", "--repeat", "6", "--end", "1 s")
         worker = self.wait_for_children(process)[0]
-        while self.ticks(worker) < 10:  # a run that has not begun is done elsewhere
+        while processor_seconds(worker) < 0.1:  # a run that has not begun is done elsewhere
             time.sleep(0.01)
         os.kill(worker, signal.SIGSEGV)
         out, err = process.communicate(timeout=120)
@@ -208,7 +201,8 @@ class Repeat(ProgramTest):
         workers = self.wait_for_children(process)
         while not os.path.exists(self.path("results", "six-bar", "results.csv")):
             time.sleep(0.01)
-        time.sleep(3.0)
+        while min(map(processor_seconds, workers)) < 1.5:  # of which a run takes 0.7
+            time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, out + err)
@@ -222,10 +216,11 @@ class Repeat(ProgramTest):
     def test_results_that_are_removed_while_others_run_are_missed(self):
         self.write("m.yaml", SIX_BAR)
         process = self.start("m.yaml", "--repeat", "10000")
-        self.wait_for_children(process)
+        workers = self.wait_for_children(process)
         while not os.path.exists(self.path("results", "six-bar", "results.csv")):
             time.sleep(0.01)
-        time.sleep(3.0)
+        while min(map(processor_seconds, workers)) < 1.5:  # of which a run takes 0.7
+            time.sleep(0.01)
         shutil.rmtree(self.path("results", "six-bar"))
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=60)

@@ -139,7 +139,10 @@ class Results(ProgramTest):
         import h5py
         command = [PROGRAM, "run", MODEL, "--quiet", "--end", "100 s", "--out", "r", "--format", "hdf5"]
         with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.DEVNULL) as run:
-            time.sleep(2.5)
+            file = self.path("r", "results.h5")
+            while not os.path.exists(file) or self.freeplay("export", "r", "--to", "csv")[0].count("\n") < 20:  # read as it goes on
+                self.assertIsNone(run.poll())
+                time.sleep(0.05)
             run.kill()
         with self.assertRaises(OSError):
             h5py.File(self.path("r", "results.h5"), "r")

@@ -12,7 +12,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, ProgramTest, mechanism
+from program import PROGRAM, ProgramTest, let_work, mechanism
 
 SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "statistics",
            "residuals", "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until",
@@ -329,7 +329,7 @@ simulation: {end: 10 ms, step: 1 ms}
         process = subprocess.Popen([PROGRAM, "run", mechanism("slider-crank"), "--end", "24 ms", "--accuracy", "1e-9",
                                     "--verify", "--out", "v"], cwd=self.folder, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
-        time.sleep(2.0)  # the first run takes a fifth of a second, the second half a minute
+        let_work(process, 2.0)  # the first run takes a fifth of a second, the second half a minute
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
         self.assertEqual(130, process.returncode, out + err)
