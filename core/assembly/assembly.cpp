@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/bare_start.h"
 #include "assembly/closed_mechanism.h"
 #include "assembly/dead_point.h"
 #include "assembly/failure.h"
@@ -30,14 +31,18 @@ namespace {
 
 using Eigen::VectorXd;
 
+/// What is found out besides the state itself.
+enum class Account { full, none };
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The closed mechanism at the start time and the rows that hold it there.
 class Assembler {
  public:
-  Assembler(System& system, const OffsetChange& change)
+  Assembler(System& system, const OffsetChange& change, Account account)
       : system_(system),
         change_(change),
+        account_(account),
         model_(system.model()),
         mechanism_(system),
         closed_(mechanism_.system),
@@ -52,13 +57,15 @@ class Assembler {
     set_offsets({});
     solve_positions();
     check_paths();
-    report_.chosen = solve_velocities(mechanism_, system_.inertia().mass());
+    solve_speeds();
     if (load_journals()) {
       solve_positions();
-      report_.chosen = solve_velocities(mechanism_, system_.inertia().mass());
+      solve_speeds();
     }
-    report_.moved = moved_starts(closed_, state_.q(), state_.v());
-    report_moved_journals();
+    if (account_ == Account::full) {
+      report_.moved = moved_starts(closed_, state_.q(), state_.v());
+      report_moved_journals();
+    }
     return release();
   }
 
@@ -235,6 +242,15 @@ class Assembler {
     return found;
   }
 
+  void solve_speeds() {
+    const std::span<const double> mass = system_.inertia().mass();
+    if (account_ == Account::full) {
+      report_.chosen = solve_velocities(mechanism_, mass);
+    } else {
+      solve_bare_velocities(mechanism_, mass);
+    }
+  }
+
   // Of journals whose block says where or how fast they start.
   void report_moved_journals() {
     const std::vector<PlayRank> ranks = play_ranks(mechanism_, [](const JointElement&) { return true; });
@@ -297,8 +313,9 @@ class Assembler {
   }
 
   Start release() {
+    const bool full = account_ == Account::full;
     ConstraintFacts ideal;
-    if (model_.clearance_joints() > 0) ideal = facts_of(closed_);
+    if (full && model_.clearance_joints() > 0) ideal = facts_of(closed_);
     evaluate(term_position | term_velocity);
     Start start{State(system_.layout(), 0), count_facts(model_), {}, std::move(report_)};
     State& state = start.state;
@@ -323,6 +340,7 @@ class Assembler {
       throw Error(Error::Category::input, "singular-mass", solver.trouble());
     }
     start.facts.actual = facts_of(system_);
+    if (!full) return start;
     if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
     start.structure = examine_structure(system_, released, closed_, e_, dead_start(system_, start.state),
                                         unstable_start(system_, start.state));
@@ -362,6 +380,7 @@ class Assembler {
 
   System& system_;
   const OffsetChange& change_;
+  const Account account_;
   const Model& model_;
   ClosedMechanism mechanism_;
   System& closed_;
@@ -395,6 +414,10 @@ ModelFacts count_facts(const Model& model) {
   return facts;
 }
 
-Start assemble(System& system, const OffsetChange& change) { return Assembler(system, change).run(); }
+Start assemble(System& system, const OffsetChange& change) { return Assembler(system, change, Account::full).run(); }
+
+Start assemble_bare(System& system, const OffsetChange& change) {
+  return Assembler(system, change, Account::none).run();
+}
 
 }  // namespace freeplay

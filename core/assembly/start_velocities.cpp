@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/bare_start.h"
 #include "assembly/dead_point.h"
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
@@ -39,13 +40,17 @@ class Velocities {
     }
   }
 
-  std::vector<ChosenSpeed> solve() {
+  std::vector<ChosenSpeed> solve_and_list() {
+    solve();
+    return system_.layout().nv() <= most_listed_velocities ? chosen() : std::vector<ChosenSpeed>{};
+  }
+
+  void solve() {
     start_velocities(system_, mechanism_.state.q(), mechanism_.state.v());
     const VectorXd given = velocities();
     solve_least_change(given);
-    if (system_.layout().nv() > most_dense_columns) return {};
+    if (system_.layout().nv() > most_dense_columns) return;
     if (gives_any() && !keeps(given)) keep_what_can_be_kept(given);
-    return system_.layout().nv() <= most_listed_velocities ? chosen() : std::vector<ChosenSpeed>{};
   }
 
  private:
@@ -350,7 +355,11 @@ class Velocities {
 }  // namespace
 
 std::vector<ChosenSpeed> solve_velocities(ClosedMechanism& mechanism, std::span<const double> mass) {
-  return Velocities(mechanism, mass).solve();
+  return Velocities(mechanism, mass).solve_and_list();
+}
+
+void solve_bare_velocities(ClosedMechanism& mechanism, std::span<const double> mass) {
+  Velocities(mechanism, mass).solve();
 }
 
 }  // namespace freeplay

@@ -129,9 +129,15 @@ class ParameterCheck {
   }
 
   std::optional<Unit> unit_of(const Parameter& parameter, bool last) const {
-    const auto exponent = [&](std::string_view name) { return this->exponent(name, last); };
+    bool known = true;
+    const auto exponent = [&](std::string_view name) {
+      std::optional<double> found = this->exponent(name, last);
+      known = known && (found || last);
+      return found || last ? found : 1.0;  // no matter which: the unit waits
+    };
     try {
-      return parse_unit(parameter.unit, exponent);
+      const Unit unit = parse_unit(parameter.unit, exponent);
+      return known ? std::optional<Unit>(unit) : std::nullopt;
     } catch (const ExpressionError& error) {
       if (!last) return std::nullopt;
       throw Error(Error::Category::plugin, "plugin-failed",

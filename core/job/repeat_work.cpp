@@ -30,7 +30,7 @@ StudyOutcome failure(int exit_code, const std::string& reason) {
 StudyOutcome RepeatWork::run(std::uint64_t point, const std::string&) {
   try {
     System system(model_);
-    const Start start = assemble_in_play(system, plan_.seed, point + 1);
+    const Start start = assemble_bare_in_play(system, plan_.seed, point + 1);
     const Channels channels(model_);
     Simulation simulation(system, start, channels, {});
     RunHooks hooks;

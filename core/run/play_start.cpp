@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/bare_start.h"
 #include "base/index.h"
 #include "base/philox.h"
 #include "run/observer.h"
@@ -57,11 +58,10 @@ void slide(const Vector3& ball, double reach, double* e) {
   for (std::size_t i = 0; i < 3; ++i) e[i] = scale * moved[i];
 }
 
-}  // namespace
-
-Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number) {
-  Start own = assemble(system);
-  if (number == 0) return own;
+/// Start `number` of a repeated run, as `assembled` puts it together.
+Start moved_start(System& system, std::uint64_t seed, std::uint64_t number,
+                  Start (*assembled)(System&, const OffsetChange&)) {
+  const Start own = assemble_bare(system);
   const Model& model = system.model();
   const std::vector<bool> rests = touching(system, own);
   std::vector<double> share(model.joints.size(), 1.0);  // of the way from the middle of the play
@@ -75,7 +75,7 @@ Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number)
   };
   std::string still;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    Start start = assemble(system, move);
+    Start start = assembled(system, move);
     const std::vector<bool> touches = touching(system, start);
     still.clear();
     for (std::size_t j = 0; j < touches.size(); ++j) {
@@ -87,6 +87,16 @@ Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number)
   }
   throw Error(Error::Category::numerical, "no-free-start",
               fmt::format("joint '{}' is in contact wherever it is put in its play", still));
+}
+
+}  // namespace
+
+Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number) {
+  return number == 0 ? assemble(system) : moved_start(system, seed, number, assemble);
+}
+
+Start assemble_bare_in_play(System& system, std::uint64_t seed, std::uint64_t number) {
+  return number == 0 ? assemble_bare(system) : moved_start(system, seed, number, assemble_bare);
 }
 
 }  // namespace freeplay

@@ -21,5 +21,7 @@ inline constexpr double moved_in_play = 0.01;
 /// Philox with the key (seed, 0x706c6179) and the counter (number, joint, 0, 0).
 /// Throws Error{numerical} "no-free-start" where that fails, and what assemble() throws.
 Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number);
+/// The same as assemble_bare() makes it: for one run of many.
+Start assemble_bare_in_play(System& system, std::uint64_t seed, std::uint64_t number);
 
 }  // namespace freeplay

@@ -13,10 +13,12 @@
 #include <fmt/format.h>
 
 #include "format/parameter_scope.h"
+#include "format/run_override.h"
 #include "load/load.h"
 #include "load/plugins.h"
 #include "results/contact_advice.h"
 #include "results/summary.h"
+#include "run/play_start.h"
 #include "run/requirements.h"
 #include "run/simulation.h"
 #include "study/chain_state.h"
@@ -202,14 +204,16 @@ void PointRunner::Impl::run_point(const StudyPoint& point, const std::string& st
 
 void PointRunner::Impl::simulate(LoadedModel& loaded, const Channels& channels, PointReducers& reducers,
                                  const std::string& state_before, StudyOutcome& outcome) {
-  const auto assembled = assemble_model(loaded);
-  if (!assembled) fail(loaded.diagnostics, loaded.exit_code);
+  System system(*loaded.model);
+  const StartChoice choice = start_choice(*loaded.model);
+  Start begin = assemble_bare_in_play(system, choice.seed, choice.repeat - 1);
+  require_attainable_accuracy(system);
   if (source.chained) outcome.start = state_before.empty() ? "cold" : "warm";
-  if (!state_before.empty()) start_from(assembled->system, chain_motion(state_before), assembled->start);
+  if (!state_before.empty()) start_from(system, chain_motion(state_before), begin);
   ContactAdvice advice(*loaded.model);
   std::vector<Sink*> sinks(reducers.sinks().begin(), reducers.sinks().end());
   if (reducers.needs_summary()) sinks.push_back(&advice);
-  Simulation simulation(assembled->system, assembled->start, channels, sinks);
+  Simulation simulation(system, begin, channels, sinks);
   RunHooks hooks;
   if (reducers.needs_steps()) hooks.steps = &reducers;
   hooks.interrupt = interrupt;
@@ -218,16 +222,9 @@ void PointRunner::Impl::simulate(LoadedModel& loaded, const Channels& channels, 
   outcome.run = processor_time() - before;
   if (end.exit_code != 0) throw failure_of(end);
   reducers.finish(simulation.statistics(), [&] {
-    RunRecord record{*loaded.model,
-                     channels,
-                     assembled->start.facts,
-                     end,
-                     simulation.statistics(),
-                     simulation.clearances(),
-                     simulation.last_row(),
-                     advice,
-                     {},
-                     {}};
+    RunRecord record{
+        *loaded.model,         channels, begin.facts, end, simulation.statistics(), simulation.clearances(),
+        simulation.last_row(), advice,   {},          {}};
     record.extremes = simulation.extremes();
     return summary(record);
   });

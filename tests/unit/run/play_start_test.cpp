@@ -1,6 +1,8 @@
 #include "run/play_start.h"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -92,6 +94,24 @@ TEST(PlayStart, AJournalThatRestsInItsBearingIsMovedAlongIt) {
     }
   }
   EXPECT_GT(turned, 0.5 * moved_in_play);
+}
+
+std::vector<double> numbers_of(const Start& start) { return {start.state.block().begin(), start.state.block().end()}; }
+
+TEST(PlayStart, IsTheSameWithoutAccount) {
+  for (const std::string& text :
+       {test::mechanism("slider-crank"), test::mechanism("3-rrr"), test::mechanism("4-rrr"),
+        test::mechanism("pendulum"), test::mechanism("slider-in-guide"), hanger(", initial: loaded"), hanger("")}) {
+    const auto model = load(text);
+    for (const std::uint64_t number : {0, 2}) {
+      System one(*model), other(*model);
+      const Start full = assemble_in_play(one, 1, number), bare = assemble_bare_in_play(other, 1, number);
+      EXPECT_EQ(numbers_of(full), numbers_of(bare)) << text;
+      EXPECT_EQ(full.facts.actual.redundant, bare.facts.actual.redundant);
+      EXPECT_EQ(full.facts.actual.driver_redundant, bare.facts.actual.driver_redundant);
+      EXPECT_EQ(full.facts.actual.dof, bare.facts.actual.dof);
+    }
+  }
 }
 
 }  // namespace
