@@ -23,9 +23,10 @@ int study_point(const StudyOptions& options, const CommonOptions& common) {
   const StudyInFolder opened = open_kept(options.studies[0], StudyUse::look, common);
   if (!opened.study) return opened.exit_code;
   const StudyPlan& plan = opened.study->plan();
-  const PointRanges ranges = point_ranges("INDEX", options.studies[1], plan.points());
-  if (ranges.size() != 1 || ranges[0].first != ranges[0].second)
-    bad_value("INDEX", options.studies[1], "it must be one point");
+  const std::string& index = options.studies[1];
+  if (index.find_first_not_of("0123456789") != std::string::npos)
+    bad_value("INDEX", index, "it must be the number of one point, such as 12");
+  const PointRanges ranges = point_ranges("INDEX", index, plan.points());
   const StudyPoint point = plan.point(ranges[0].first);
   const fs::path folder = fs::absolute(opened.folder.path()).lexically_normal();
   std::vector<std::string> words = point_words(plan, folder, point, common.plugins);

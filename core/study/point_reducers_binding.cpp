@@ -272,6 +272,12 @@ PointReducers::Window PointReducers::window_of(const ReducerEntry& entry) const 
     entry.until->fail("out-of-range",
                       fmt::format("the time ends at {:g} s, before it begins at {:g} s", window.until, window.from));
   }
+  if (fixed(entry.from) && window.from > settings.end && lacking_ == Lacking::mistake) {
+    entry.from->warn("no-statistics",
+                     fmt::format("the time begins at {:g} s, but at the values of the file the run ends at {:g} s: "
+                                 "where it does, the column is empty",
+                                 window.from, settings.end));
+  }
   return window;
 }
 

@@ -223,6 +223,8 @@ class StudyCommand(ProgramTest):
         self.run_json("ball.yaml", "--out", "r")
         told = json.loads(self.study("point", "r", "3", "--json")[0])
         self.assertEqual({"g", "v"}, set(told["set"]))
+        for wrong in ("1.5", "1-2", "-1"):
+            self.assertIn("it must be the number of one point, such as 12", self.study("point", "r", wrong, code=2)[1])
         self.study("point", "r", "3", "--run", "--out", "again")
         self.assertTrue(os.path.exists(self.path("again", "results.csv")))
         self.assertEqual("20 points: same\n", self.study("verify", "r")[0])

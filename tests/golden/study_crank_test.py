@@ -254,6 +254,13 @@ class StudyOfTheCrank(ProgramTest):
         self.assertFalse(os.path.exists(self.path("wrong")))
         self.assertFalse(os.path.exists(self.path("results")))
 
+    def test_a_column_that_begins_after_the_run_is_doubted(self):
+        self.crank("late.yaml", STUDY.replace("reduce: mean", "reduce: mean, from: 2 s"))
+        err = self.study("plan", "late.yaml", "--probe", "0", code=0)[1]
+        self.assertRegex(err, r"late\.yaml:\d+:\d+: warning: the time begins at 2 s, but at the values of the file the run ends at")
+        self.crank("late.yaml", STUDY)
+        self.assertEqual("", self.study("plan", "late.yaml", "--probe", "0", code=0)[1])
+
 
 if __name__ == "__main__":
     unittest.main()
